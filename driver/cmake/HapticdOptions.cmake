@@ -1,0 +1,39 @@
+# What every target shares: language level, warnings as errors, sanitizers, where artefacts land.
+
+option(HAPTICD_TESTS "build the tests" ON)
+option(HAPTICD_BENCH "build the benchmarks" ON)
+set(HAPTICD_SANITIZE "" CACHE STRING "sanitizers, for example 'address,undefined', 'thread' or 'realtime' (clang 20 and newer)")
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_C_STANDARD 11)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_C_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+find_program(HAPTICD_CCACHE ccache)
+if(HAPTICD_CCACHE)
+  set(CMAKE_C_COMPILER_LAUNCHER ${HAPTICD_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${HAPTICD_CCACHE})
+endif()
+
+# One tree in the build folder that looks like an installation, so that the daemon finds its plugins in both alike.
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set(HAPTICD_MODULE_DIR lib/hapticd) # plugins/ and devices/ below it
+
+add_library(hapticd_options INTERFACE)
+target_compile_options(hapticd_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Werror
+  # errno and traps are never read from mathematics here; both keep sqrt and fma out of line.
+  -fno-math-errno -fno-trapping-math)
+if(HAPTICD_SANITIZE)
+  add_compile_options(-fsanitize=${HAPTICD_SANITIZE} -fno-omit-frame-pointer -g)
+  add_link_options(-fsanitize=${HAPTICD_SANITIZE})
+  add_compile_definitions(HAPTICD_SANITIZED=1)
+endif()
