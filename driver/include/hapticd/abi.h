@@ -19,8 +19,11 @@ extern "C" {
 #define HSP_ABI_MAJOR 1u /* the host refuses any other major        */
 #define HSP_ABI_MINOR 0u /* informative: never refuse because of it */
 #define HSP_EXPORT __attribute__((visibility("default")))
-#if defined(__clang__) && __clang_major__ >= 20
-#define HSP_RT __attribute__((nonblocking)) /* clang checks what such a function calls; RTSan does so at run time */
+/* clang checks what such a function calls; RTSan does so at run time */
+#if defined(__clang__) && __clang_major__ >= 20 && defined(__cplusplus)
+#define HSP_RT [[clang::nonblocking]]
+#elif defined(__clang__) && __clang_major__ >= 20
+#define HSP_RT __attribute__((nonblocking))
 #else
 #define HSP_RT
 #endif

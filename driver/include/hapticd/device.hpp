@@ -1,0 +1,135 @@
+/// A device module in C++: derive from hapticd::Device, list the parameters, write open, start, read, write, stop,
+/// close, and name the class in HAPTICD_DEVICES(...). The C ABI behind it is device.h.
+#pragma once
+#include <exception>
+#include <new>
+
+#include "device.h"
+#include "parameters.hpp"
+
+namespace hapticd {
+
+/// What a class says of itself before any instance exists.
+struct DeviceInfo {
+  const char* id;    ///< reverse DNS, "org.example.device.arm"
+  const char* name;  ///< as device files write it, "simulated"
+  const char* version;
+  const char* license;
+  const char* doc;
+};
+
+/// Base of devices. A derived class T has
+///   static constexpr DeviceInfo kInfo;
+///   static constexpr auto fields();                        std::array<Field<T>, N>, one line a parameter
+///   void open(hdv_info&);  void start(const hdv_start&);   [main] may allocate, block, and throw std::exception
+///   hsp_status read(uint64_t now_ns, hdv_sample&) noexcept HSP_RT;           [rt]
+///   hsp_status write(uint64_t now_ns, const hdv_command&) noexcept HSP_RT;   [rt]
+/// and may hide the functions below.
+class Device {
+ public:
+  void stop() {}                                                   ///< [main] motors off
+  void close() {}                                                  ///< [main]
+  const void* extension(const char* /*name*/) { return nullptr; }  ///< [main]
+  const hsp_host* host() const { return host_; }
+
+ private:
+  template <class T>
+  friend struct DeviceClass;
+  enum class State { kClosed, kOpen, kStarted };
+  const hsp_host* host_ = nullptr;
+  State state_ = State::kClosed;
+};
+
+/// The C functions of class T, and its description as constant data.
+template <class T>
+struct DeviceClass {
+  static constexpr auto kFields = T::fields();
+  static constexpr auto kParams = detail::tableOf(kFields);
+  using State = Device::State;
+
+  static T& self(hdv_device* device) { return *reinterpret_cast<T*>(device); }
+
+  static hdv_device* create(const hdv_class*, const hsp_host* host) {
+    try {
+      T* object = new T;
+      static_cast<Device*>(object)->host_ = host;
+      detail::applyDefaults(*object, kFields);
+      return reinterpret_cast<hdv_device*>(object);
+    } catch (const std::exception& e) {
+      detail::logError(host, std::string(T::kInfo.name) + ": " + e.what());
+      return nullptr;
+    }
+  }
+  static void destroy(hdv_device* device) { delete &self(device); }
+
+  static hsp_status set(hdv_device* device, uint32_t param, const hsp_value* value) {
+    if (base(device).state_ != State::kClosed) return HSP_E_STATE;
+    return detail::assign(self(device), kFields, base(device).host_, param, value);
+  }
+  static hsp_status get(hdv_device* device, uint32_t param, hsp_value* value) {
+    return detail::fetch(self(device), kFields, param, value);
+  }
+
+  static hsp_status open(hdv_device* device, hdv_info* info) {
+    return move(device, State::kClosed, State::kOpen, [&](T& object) { object.open(*info); });
+  }
+  static hsp_status start(hdv_device* device, const hdv_start* how) {
+    return move(device, State::kOpen, State::kStarted, [&](T& object) { object.start(*how); });
+  }
+  static hsp_status read(hdv_device* device, uint64_t now_ns, hdv_sample* sample) noexcept HSP_RT {
+    if (base(device).state_ != State::kStarted) return HSP_E_STATE;
+    return self(device).read(now_ns, *sample);
+  }
+  static hsp_status write(hdv_device* device, uint64_t now_ns, const hdv_command* command) noexcept HSP_RT {
+    if (base(device).state_ != State::kStarted) return HSP_E_STATE;
+    return self(device).write(now_ns, *command);
+  }
+  static void stop(hdv_device* device) {
+    if (base(device).state_ == State::kStarted) self(device).stop();
+    if (base(device).state_ == State::kStarted) base(device).state_ = State::kOpen;
+  }
+  static void close(hdv_device* device) {
+    stop(device);
+    if (base(device).state_ == State::kOpen) self(device).close();
+    base(device).state_ = State::kClosed;
+  }
+  static const void* extension(hdv_device* device, const char* name) { return self(device).extension(name); }
+
+  static constexpr hdv_class kClass = {
+      sizeof(hdv_class), static_cast<uint32_t>(kParams.size()), 0, 0, T::kInfo.id, T::kInfo.name, T::kInfo.version,
+      T::kInfo.license, T::kInfo.doc, kParams.data(), &create, &destroy, &set, &get, &open, &start, &read, &write,
+      &stop, &close, &extension};
+
+ private:
+  static Device& base(hdv_device* device) { return self(device); }
+
+  template <class Action>
+  static hsp_status move(hdv_device* device, State from, State to, Action action) {
+    if (base(device).state_ != from) return HSP_E_STATE;
+    try {
+      action(self(device));
+      base(device).state_ = to;
+      return HSP_OK;
+    } catch (const std::bad_alloc&) {
+      return HSP_E_NOMEM;
+    } catch (const std::exception& e) {
+      detail::logError(base(device).host_, e.what());
+      return HSP_E_IO;
+    }
+  }
+};
+
+namespace detail {
+template <class... T>
+inline constexpr std::array<const hdv_class*, sizeof...(T)> kDeviceClasses = {&DeviceClass<T>::kClass...};
+}
+
+}  // namespace hapticd
+
+/// Exports the devices of this module: HAPTICD_DEVICES(SimulatedArm)
+#define HAPTICD_DEVICES(...)                                                                                 \
+  extern "C" {                                                                                               \
+  constinit const hdv_entry hdv_module_entry = {HDV_MAGIC, HSP_ABI_MAJOR, HSP_ABI_MINOR,                     \
+                                                ::hapticd::detail::kDeviceClasses<__VA_ARGS__>.size(),       \
+                                                ::hapticd::detail::kDeviceClasses<__VA_ARGS__>.data()};      \
+  }

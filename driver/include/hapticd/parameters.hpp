@@ -1,0 +1,238 @@
+/// Parameter tables for plugins and device modules in C++: one line a parameter gives the C table, the defaults, the
+/// checks and the assignment to a member. Used through shape.hpp and device.hpp.
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "abi.h"
+
+namespace hapticd {
+
+/// One parameter of class T and the member that holds its value.
+template <class T>
+struct Field {
+  using Member = std::variant<double T::*, int T::*, bool T::*, std::string T::*, std::vector<double> T::*,
+                              std::array<double, 3> T::*>;
+  hsp_param param;
+  Member member;
+};
+
+/// Builders of one table line each: `id` (a dot nests), member, unit, range and default, one sentence of documentation.
+template <class T>
+struct Fields {
+  static constexpr hsp_param blank(uint32_t kind, const char* id, const char* unit, uint32_t flags, const char* doc) {
+    hsp_param p{};
+    p.struct_size = sizeof(hsp_param);
+    p.kind = kind;
+    p.flags = flags;
+    p.id = id;
+    p.unit = unit;
+    p.doc = doc;
+    return p;
+  }
+  static constexpr Field<T> real(const char* id, double T::*member, const char* unit, double min, double max, double def,
+                                 const char* doc, uint32_t flags = 0) {
+    hsp_param p = blank(HSP_REAL, id, unit, flags, doc);
+    p.min = min, p.max = max, p.def = def;
+    return {p, member};
+  }
+  static constexpr Field<T> integer(const char* id, int T::*member, const char* unit, int min, int max, int def,
+                                    const char* doc, uint32_t flags = 0) {
+    hsp_param p = blank(HSP_INT, id, unit, flags, doc);
+    p.min = min, p.max = max, p.def = def;
+    return {p, member};
+  }
+  static constexpr Field<T> boolean(const char* id, bool T::*member, bool def, const char* doc, uint32_t flags = 0) {
+    hsp_param p = blank(HSP_BOOL, id, "", flags, doc);
+    p.min = 0, p.max = 1, p.def = def ? 1 : 0;
+    return {p, member};
+  }
+  /// `choices` must have static storage; the member holds the index of the choice.
+  template <size_t N>
+  static constexpr Field<T> choice(const char* id, int T::*member, const char* const (&choices)[N], int def,
+                                   const char* doc, uint32_t flags = 0) {
+    hsp_param p = blank(HSP_ENUM, id, "", flags, doc);
+    p.min = 0, p.max = N - 1, p.def = def;
+    p.choices = choices;
+    p.choice_count = N;
+    return {p, member};
+  }
+  static constexpr Field<T> path(const char* id, std::string T::*member, const char* doc, uint32_t flags = 0) {
+    return {blank(HSP_PATH, id, "", flags, doc), member};
+  }
+  static constexpr Field<T> text(const char* id, std::string T::*member, const char* def, const char* doc,
+                                 uint32_t flags = 0) {
+    hsp_param p = blank(HSP_TEXT, id, "", flags, doc);
+    p.def_text = def;
+    return {p, member};
+  }
+  /// Any structure, handed over as JSON text that the module itself checks.
+  static constexpr Field<T> data(const char* id, std::string T::*member, const char* def, const char* doc,
+                                 uint32_t flags = 0) {
+    hsp_param p = blank(HSP_DATA, id, "", flags, doc);
+    p.def_text = def;
+    return {p, member};
+  }
+  /// Three numbers; `def` is their default as text, "[0, 1, 0]".
+  static constexpr Field<T> vector3(const char* id, std::array<double, 3> T::*member, const char* unit, double min,
+                                    double max, const char* def, const char* doc, uint32_t flags = 0) {
+    return {arrayParam(id, unit, 3, 3, 3, min, max, def, doc, flags), member};
+  }
+  /// `columns` numbers a row, between min_count and max_count numbers in all.
+  static constexpr Field<T> array(const char* id, std::vector<double> T::*member, const char* unit, uint32_t columns,
+                                  uint32_t min_count, uint32_t max_count, double min, double max, const char* def,
+                                  const char* doc, uint32_t flags = 0) {
+    return {arrayParam(id, unit, columns, min_count, max_count, min, max, def, doc, flags), member};
+  }
+
+ private:
+  static constexpr hsp_param arrayParam(const char* id, const char* unit, uint32_t columns, uint32_t min_count,
+                                        uint32_t max_count, double min, double max, const char* def, const char* doc,
+                                        uint32_t flags) {
+    hsp_param p = blank(HSP_ARRAY, id, unit, flags, doc);
+    p.min = min, p.max = max;
+    p.columns = columns, p.min_count = min_count, p.max_count = max_count;
+    p.def_text = def;
+    return p;
+  }
+};
+
+/// Joins tables, so that a base class can bring its own lines: `join(Base::fields<T>(), std::array{...})`.
+template <class T, size_t... N>
+constexpr auto join(const std::array<Field<T>, N>&... tables) {
+  std::array<Field<T>, (N + ...)> all{};
+  size_t i = 0;
+  ((void)[&] { for (const Field<T>& field : tables) all[i++] = field; }(), ...);
+  return all;
+}
+
+namespace detail {
+
+/// Numbers of a default such as "[[0, 1], [2, 3]]" in reading order.
+inline std::vector<double> numbersIn(const char* text) {
+  std::vector<double> numbers;
+  while (text != nullptr && *text != '\0') {
+    char* end = nullptr;
+    const double value = std::strtod(text, &end);
+    if (end == text) {
+      ++text;
+    } else {
+      numbers.push_back(value);
+      text = end;
+    }
+  }
+  return numbers;
+}
+
+inline void logError(const hsp_host* host, const std::string& text) {
+  if (host != nullptr && host->log != nullptr) host->log(host, HSP_LOG_ERROR, text.c_str());
+}
+
+/// [main] Puts the defaults of the table into the members of a new object.
+template <class T, size_t N>
+void applyDefaults(T& object, const std::array<Field<T>, N>& fields) {
+  for (const Field<T>& field : fields) {
+    const hsp_param& p = field.param;
+    if (auto m = std::get_if<double T::*>(&field.member)) object.**m = p.def;
+    if (auto m = std::get_if<int T::*>(&field.member)) object.**m = static_cast<int>(p.def);
+    if (auto m = std::get_if<bool T::*>(&field.member)) object.**m = p.def != 0;
+    if (auto m = std::get_if<std::string T::*>(&field.member)) object.**m = p.def_text != nullptr ? p.def_text : "";
+    if (auto m = std::get_if<std::vector<double> T::*>(&field.member)) object.**m = numbersIn(p.def_text);
+    if (auto m = std::get_if<std::array<double, 3> T::*>(&field.member)) {
+      const std::vector<double> numbers = numbersIn(p.def_text);
+      for (size_t i = 0; i < 3; ++i) (object.**m)[i] = i < numbers.size() ? numbers[i] : 0;
+    }
+  }
+}
+
+inline bool inRange(const hsp_param& p, double x) { return std::isfinite(x) && x >= p.min && x <= p.max; }
+
+/// Nothing, or what is wrong with `value` for parameter `p`.
+inline std::string complaint(const hsp_param& p, const hsp_value& value) {
+  char text[256] = "";
+  const bool numeric = p.kind == HSP_REAL || p.kind == HSP_INT || p.kind == HSP_BOOL || p.kind == HSP_ENUM;
+  if (value.kind != p.kind) {
+    std::snprintf(text, sizeof text, "%s: value of kind %u, expected kind %u", p.id, value.kind, p.kind);
+  } else if (numeric && !inRange(p, value.number)) {
+    std::snprintf(text, sizeof text, "%s: %g %s, expected %g to %g", p.id, value.number, p.unit, p.min, p.max);
+  } else if (numeric && p.kind != HSP_REAL && value.number != std::floor(value.number)) {
+    std::snprintf(text, sizeof text, "%s: %g, expected a whole number", p.id, value.number);
+  } else if (p.kind == HSP_ARRAY) {
+    const bool ragged = p.columns != 0 && value.count % p.columns != 0;
+    if (ragged || value.count < p.min_count || value.count > p.max_count || (value.count > 0 && !value.numbers))
+      std::snprintf(text, sizeof text, "%s: %u numbers, expected %u to %u in rows of %u", p.id, value.count,
+                    p.min_count, p.max_count, p.columns);
+    for (uint32_t i = 0; text[0] == '\0' && i < value.count; ++i)
+      if (!inRange(p, value.numbers[i]))
+        std::snprintf(text, sizeof text, "%s: %g %s, expected %g to %g", p.id, value.numbers[i], p.unit, p.min, p.max);
+  } else if (!numeric && value.text == nullptr) {
+    std::snprintf(text, sizeof text, "%s: no text given", p.id);
+  }
+  return text;
+}
+
+/// [rt] for numeric kinds: assigns a value that has been checked.
+template <class T>
+void assignNumber(T& object, const Field<T>& field, double number) noexcept {
+  if (auto m = std::get_if<double T::*>(&field.member)) object.**m = number;
+  if (auto m = std::get_if<int T::*>(&field.member)) object.**m = static_cast<int>(number);
+  if (auto m = std::get_if<bool T::*>(&field.member)) object.**m = number != 0;
+}
+
+/// [main] Checks and assigns one parameter.
+template <class T, size_t N>
+hsp_status assign(T& object, const std::array<Field<T>, N>& fields, const hsp_host* host, uint32_t index,
+                  const hsp_value* value) {
+  if (index >= N || value == nullptr) return HSP_E_ARG;
+  const Field<T>& field = fields[index];
+  if (const std::string wrong = complaint(field.param, *value); !wrong.empty()) {
+    logError(host, wrong);
+    return HSP_E_ARG;
+  }
+  if (auto m = std::get_if<std::string T::*>(&field.member)) {
+    object.**m = value->text;
+  } else if (auto v = std::get_if<std::vector<double> T::*>(&field.member)) {
+    (object.**v).assign(value->numbers, value->numbers + value->count);
+  } else if (auto a = std::get_if<std::array<double, 3> T::*>(&field.member)) {
+    for (size_t i = 0; i < 3; ++i) (object.**a)[i] = value->numbers[i];
+  } else {
+    assignNumber(object, field, value->number);
+  }
+  return HSP_OK;
+}
+
+/// [main] The current value of one parameter; pointers live until the object changes.
+template <class T, size_t N>
+hsp_status fetch(const T& object, const std::array<Field<T>, N>& fields, uint32_t index, hsp_value* value) {
+  if (index >= N || value == nullptr) return HSP_E_ARG;
+  const Field<T>& field = fields[index];
+  *value = hsp_value{field.param.kind, 0, 0, nullptr, nullptr};
+  if (auto m = std::get_if<double T::*>(&field.member)) value->number = object.**m;
+  if (auto m = std::get_if<int T::*>(&field.member)) value->number = object.**m;
+  if (auto m = std::get_if<bool T::*>(&field.member)) value->number = (object.**m) ? 1 : 0;
+  if (auto m = std::get_if<std::string T::*>(&field.member)) value->text = (object.**m).c_str();
+  if (auto m = std::get_if<std::vector<double> T::*>(&field.member)) {
+    value->numbers = (object.**m).data();
+    value->count = static_cast<uint32_t>((object.**m).size());
+  }
+  if (auto m = std::get_if<std::array<double, 3> T::*>(&field.member)) {
+    value->numbers = (object.**m).data();
+    value->count = 3;
+  }
+  return HSP_OK;
+}
+
+template <class T, size_t N>
+constexpr std::array<hsp_param, N> tableOf(const std::array<Field<T>, N>& fields) {
+  std::array<hsp_param, N> table{};
+  for (size_t i = 0; i < N; ++i) table[i] = fields[i].param;
+  return table;
+}
+
+}  // namespace detail
+}  // namespace hapticd

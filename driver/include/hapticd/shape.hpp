@@ -1,0 +1,144 @@
+/// A shape plugin in C++: derive from hapticd::Shape, list the parameters, write activate() and touch() (or step()),
+/// and name the class in HAPTICD_SHAPES(...). The C ABI behind it is shape.h; plugins/template shows a whole plugin.
+#pragma once
+#include <exception>
+#include <new>
+#include <span>
+
+#include "parameters.hpp"
+#include "shape.h"
+
+namespace hapticd {
+
+/// What a class says of itself before any instance exists.
+struct ShapeInfo {
+  const char* id;      ///< reverse DNS, "org.example.shape.sphere"
+  const char* name;    ///< as scenes write it, "sphere"
+  const char* version;
+  const char* license;
+  const char* doc;     ///< one or two sentences
+  uint32_t flags = 0;  ///< HSP_C_*
+};
+
+/// Base of shapes. A derived class T has
+///   static constexpr ShapeInfo kInfo;
+///   static constexpr auto fields();                            std::array<Field<T>, N>, one line a parameter
+///   void activate(const hsp_activation&, hsp_report&);         [main] may allocate, and throw std::exception
+///   hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept HSP_RT;   [rt] one probe, or
+///   hsp_status step(const hsp_step&) noexcept HSP_RT;                                    [rt] all of them
+/// and may hide the functions below.
+class Shape {
+ public:
+  void deactivate() {}                                      ///< [main] gives back what activate() took
+  void reset() noexcept HSP_RT {}                           ///< [rt] forgets history
+  const void* extension(const char* /*name*/) { return nullptr; }  ///< [main]
+  void changed() noexcept HSP_RT {}                         ///< [rt] live parameters have new values
+  const hsp_host* host() const { return host_; }
+
+ private:
+  template <class T>
+  friend struct ShapeClass;
+  const hsp_host* host_ = nullptr;
+  bool active_ = false;
+};
+
+/// The C functions of class T, and its description as constant data.
+template <class T>
+struct ShapeClass {
+  static constexpr auto kFields = T::fields();
+  static constexpr auto kParams = detail::tableOf(kFields);
+
+  static T& self(hsp_shape* shape) { return *reinterpret_cast<T*>(shape); }
+
+  static hsp_shape* create(const hsp_class*, const hsp_host* host) {
+    try {
+      T* object = new T;
+      static_cast<Shape*>(object)->host_ = host;
+      detail::applyDefaults(*object, kFields);
+      return reinterpret_cast<hsp_shape*>(object);
+    } catch (const std::exception& e) {
+      detail::logError(host, std::string(T::kInfo.name) + ": " + e.what());
+      return nullptr;
+    }
+  }
+  static void destroy(hsp_shape* shape) { delete &self(shape); }
+
+  static hsp_status set(hsp_shape* shape, uint32_t param, const hsp_value* value) {
+    if (base(shape).active_) return HSP_E_STATE;
+    return detail::assign(self(shape), kFields, base(shape).host_, param, value);
+  }
+  static hsp_status get(hsp_shape* shape, uint32_t param, hsp_value* value) {
+    return detail::fetch(self(shape), kFields, param, value);
+  }
+
+  static hsp_status activate(hsp_shape* shape, const hsp_activation* activation, hsp_report* report) {
+    if (base(shape).active_) return HSP_E_STATE;
+    try {
+      self(shape).activate(*activation, *report);
+      base(shape).active_ = true;
+      return HSP_OK;
+    } catch (const std::bad_alloc&) {
+      return HSP_E_NOMEM;
+    } catch (const std::exception& e) {
+      detail::logError(base(shape).host_, e.what());
+      return HSP_E_ARG;
+    }
+  }
+  static void deactivate(hsp_shape* shape) {
+    if (base(shape).active_) self(shape).deactivate();
+    base(shape).active_ = false;
+  }
+  static void reset(hsp_shape* shape) noexcept HSP_RT { self(shape).reset(); }
+
+  static hsp_status step(hsp_shape* shape, const hsp_step* step) noexcept HSP_RT {
+    if (!base(shape).active_) return HSP_E_STATE;
+    applyChanges(self(shape), *step);
+    if constexpr (requires(T& t, const hsp_probe& probe, hsp_contact& contact) { t.touch(probe, *step, contact); }) {
+      hsp_status worst = HSP_OK;
+      for (uint32_t i = 0; i < step->count; ++i) {
+        const hsp_status status = self(shape).touch(*HSP_AT(const hsp_probe, step->in, step->in_stride, i), *step,
+                                                    *HSP_AT(hsp_contact, step->out, step->out_stride, i));
+        if (status < 0 || (status > 0 && worst == HSP_OK)) worst = worst < 0 ? worst : status;
+      }
+      return worst;
+    } else {
+      return self(shape).step(*step);
+    }
+  }
+  static const void* extension(hsp_shape* shape, const char* name) { return self(shape).extension(name); }
+
+  static constexpr hsp_class kClass = {
+      sizeof(hsp_class), static_cast<uint32_t>(kParams.size()), T::kInfo.flags, 0, T::kInfo.id, T::kInfo.name,
+      T::kInfo.version, T::kInfo.license, T::kInfo.doc, kParams.data(), &create, &destroy, &set, &get, &activate,
+      &deactivate, &reset, &step, &extension};
+
+ private:
+  static Shape& base(hsp_shape* shape) { return self(shape); }
+
+  static void applyChanges(T& object, const hsp_step& step) noexcept HSP_RT {
+    if (step.change_count == 0) return;
+    for (uint32_t i = 0; i < step.change_count; ++i) {
+      const hsp_change& change = step.changes[i];
+      if (change.param >= kFields.size()) continue;
+      const Field<T>& field = kFields[change.param];
+      if ((field.param.flags & HSP_P_LIVE) != 0 && detail::inRange(field.param, change.value))
+        detail::assignNumber(object, field, change.value);
+    }
+    object.changed();
+  }
+};
+
+namespace detail {
+template <class... T>
+inline constexpr std::array<const hsp_class*, sizeof...(T)> kShapeClasses = {&ShapeClass<T>::kClass...};
+}
+
+}  // namespace hapticd
+
+/// Exports the shapes of this plugin: HAPTICD_SHAPES(Sphere, Box)
+#define HAPTICD_SHAPES(...)                                                                                  \
+  extern "C" {                                                                                               \
+  constinit const hsp_entry hsp_plugin_entry = {HSP_MAGIC, HSP_ABI_MAJOR, HSP_ABI_MINOR,                     \
+                                                ::hapticd::detail::kShapeClasses<__VA_ARGS__>.size(),        \
+                                                ::hapticd::detail::kShapeClasses<__VA_ARGS__>.data()};       \
+  }
