@@ -1,0 +1,45 @@
+/// Result<T>: a value, or a message made for the user. For set-up code; the servo path uses status codes instead.
+#pragma once
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace hapticd {
+
+/// What went wrong, in words for the user: what failed, the measured state, the consequence, the cure.
+struct Error {
+  std::string message;
+};
+
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : state_(std::move(value)) {}          // NOLINT: implicit by intent
+  Result(Error error) : state_(std::move(error)) {}      // NOLINT
+  explicit operator bool() const { return std::holds_alternative<T>(state_); }
+  T& operator*() & { return std::get<T>(state_); }
+  const T& operator*() const& { return std::get<T>(state_); }
+  T&& operator*() && { return std::get<T>(std::move(state_)); }
+  T* operator->() { return &std::get<T>(state_); }
+  const T* operator->() const { return &std::get<T>(state_); }
+  const std::string& error() const { return std::get<Error>(state_).message; }
+
+ private:
+  std::variant<T, Error> state_;
+};
+
+/// Success, or a message.
+template <>
+class [[nodiscard]] Result<void> {
+ public:
+  Result() = default;
+  Result(Error error) : error_(std::move(error)), failed_(true) {}  // NOLINT
+  explicit operator bool() const { return !failed_; }
+  const std::string& error() const { return error_.message; }
+
+ private:
+  Error error_;
+  bool failed_ = false;
+};
+
+}  // namespace hapticd

@@ -1,0 +1,52 @@
+/// One instance of a device module, from create to destroy. Set-up calls may fail with a message; read and write are
+/// real time.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "base/result.hpp"
+#include "hapticd/device.h"
+#include "host/library.hpp"
+#include "host/services.hpp"
+#include "scene/scene.hpp"
+
+namespace hapticd::host {
+
+class DeviceInstance {
+ public:
+  /// [main] Loads the library (once a process), creates the instance and sets the parameters of the device file.
+  static Result<std::unique_ptr<DeviceInstance>> create(const scene::Device& device, Services::Log log);
+  ~DeviceInstance();  ///< [main] stops, closes and destroys
+  DeviceInstance(const DeviceInstance&) = delete;
+  DeviceInstance& operator=(const DeviceInstance&) = delete;
+
+  Result<void> open();                          ///< [main] finds the hardware
+  Result<void> start(const hdv_start& how);     ///< [main]
+  void stop();                                  ///< [main] motors off
+
+  hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT { return class_->read(device_, now_ns, &sample); }
+  hsp_status write(uint64_t now_ns, const hdv_command& command) noexcept HSP_RT {
+    return class_->write(device_, now_ns, &command);
+  }
+
+  const std::string& name() const { return name_; }
+  const hdv_class& description() const { return *class_; }
+  const hdv_info& info() const { return info_; }                                ///< valid once open
+  const hdv_ext_kinematics& kinematics() const { return *kinematics_; }         ///< every module has it
+  const hdv_ext_calibration* calibration() const { return calibration_; }
+  hdv_device* handle() const { return device_; }
+
+ private:
+  DeviceInstance(std::shared_ptr<Library> library, const scene::Device& device, Services::Log log);
+  std::shared_ptr<Library> library_;
+  std::string name_;
+  Services services_;
+  const hdv_class* class_ = nullptr;
+  hdv_device* device_ = nullptr;
+  hdv_info info_{};
+  const hdv_ext_kinematics* kinematics_ = nullptr;
+  const hdv_ext_calibration* calibration_ = nullptr;
+  bool open_ = false, started_ = false;
+};
+
+}  // namespace hapticd::host

@@ -1,0 +1,51 @@
+/// One instance of a shape plugin, from create to destroy. Set-up calls may fail with a message; step() is real time.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "base/result.hpp"
+#include "hapticd/shape.h"
+#include "host/library.hpp"
+#include "host/services.hpp"
+#include "scene/scene.hpp"
+
+namespace hapticd::host {
+
+class ShapeInstance {
+ public:
+  /// [main] Loads the library (once a process), creates the instance and sets the parameters of the model.
+  static Result<std::unique_ptr<ShapeInstance>> create(const scene::Model& model, Services::Log log);
+  ~ShapeInstance();  ///< [main] deactivates and destroys
+  ShapeInstance(const ShapeInstance&) = delete;
+  ShapeInstance& operator=(const ShapeInstance&) = delete;
+
+  Result<void> activate(const hsp_activation& activation);  ///< [main]
+  void deactivate();                                        ///< [main]
+
+  hsp_status step(const hsp_step& step) noexcept HSP_RT { return class_->step(shape_, &step); }  ///< [rt]
+  void reset() noexcept HSP_RT { class_->reset(shape_); }                                        ///< [rt]
+
+  const std::string& name() const { return name_; }
+  const hsp_class& description() const { return *class_; }
+  const hsp_report& report() const { return report_; }                     ///< valid while active
+  const hsp_ext_surfaces* surfaces() const { return surfaces_; }           ///< nullptr: the shape traces itself
+  const hsp_ext_geometry* geometry() const { return geometry_; }
+  const hsp_ext_energy* energy() const { return energy_; }
+  hsp_shape* handle() const { return shape_; }
+  bool active() const { return active_; }
+
+ private:
+  ShapeInstance(std::shared_ptr<Library> library, const scene::Model& model, Services::Log log);
+  std::shared_ptr<Library> library_;
+  std::string name_;
+  Services services_;
+  const hsp_class* class_ = nullptr;
+  hsp_shape* shape_ = nullptr;
+  hsp_report report_{};
+  const hsp_ext_surfaces* surfaces_ = nullptr;
+  const hsp_ext_geometry* geometry_ = nullptr;
+  const hsp_ext_energy* energy_ = nullptr;
+  bool active_ = false;
+};
+
+}  // namespace hapticd::host
