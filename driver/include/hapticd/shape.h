@@ -108,15 +108,17 @@ typedef struct hsp_ext_geometry {
 
 #define HSP_EXT_SURFACES "hsp.surfaces/1" /* models of many surfaces: only those near the probe are traced */
 typedef struct hsp_near { /* an activation record */
-  uint32_t surface, reserved;
+  uint32_t surface, probe; /* probe: the finger it is for; nearby() leaves it 0 */
   double param[2], distance_m;
 } hsp_near;
 typedef struct hsp_ext_surfaces {
   uint32_t struct_size, surface_count;
   /* [sim] Global search: every surface within radius_m, nearest first. Returns how many there are, even beyond cap. */
   int64_t (*nearby)(const hsp_shape *, const double p_model[3], double radius_m, hsp_near *, uint64_t cap);
-  hsp_status (*activate)(hsp_shape *, const hsp_near *) HSP_RT;         /* [rt] start (or restart) tracing at param */
-  hsp_status (*deactivate)(hsp_shape *, uint32_t surface) HSP_RT;       /* [rt] */
+  /* [rt] Start tracing the surface at param. Where it is traced already, the record is a second candidate that the
+   * next step takes if it is nearer: so periodic searches cure a track that left the global minimum. */
+  hsp_status (*activate)(hsp_shape *, const hsp_near *) HSP_RT;
+  hsp_status (*deactivate)(hsp_shape *, uint32_t probe, uint32_t surface) HSP_RT; /* [rt] */
 } hsp_ext_surfaces;
 
 #define HSP_EXT_STATE "hsp.state/1" /* beyond parameters: deformed nodes, detent position. [main][inactive] */
