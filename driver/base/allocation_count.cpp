@@ -1,0 +1,49 @@
+#include "base/allocation_count.hpp"
+
+#include <cerrno>
+#include <cstddef>
+
+namespace {
+// Plain TLS of the executable: reading it never allocates itself.
+__thread uint64_t allocations __attribute__((tls_model("initial-exec"))) = 0;
+}  // namespace
+
+namespace hapticd {
+uint64_t allocationsOfThread() noexcept { return allocations; }
+}  // namespace hapticd
+
+#if defined(__GLIBC__) && !defined(HAPTICD_SANITIZED)
+// The sanitizers bring an allocator of their own, and catch more than these counters do.
+extern "C" {
+void* __libc_malloc(size_t);
+void* __libc_calloc(size_t, size_t);
+void* __libc_realloc(void*, size_t);
+void* __libc_memalign(size_t, size_t);
+
+__attribute__((visibility("default"))) void* malloc(size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+__attribute__((visibility("default"))) void* calloc(size_t count, size_t size) {
+  ++allocations;
+  return __libc_calloc(count, size);
+}
+__attribute__((visibility("default"))) void* realloc(void* block, size_t size) {
+  ++allocations;
+  return __libc_realloc(block, size);
+}
+__attribute__((visibility("default"))) void* memalign(size_t alignment, size_t size) {
+  ++allocations;
+  return __libc_memalign(alignment, size);
+}
+__attribute__((visibility("default"))) void* aligned_alloc(size_t alignment, size_t size) {
+  ++allocations;
+  return __libc_memalign(alignment, size);
+}
+__attribute__((visibility("default"))) int posix_memalign(void** block, size_t alignment, size_t size) {
+  ++allocations;
+  *block = __libc_memalign(alignment, size);
+  return *block == nullptr ? ENOMEM : 0;
+}
+}
+#endif

@@ -1,0 +1,155 @@
+#include "base/os.hpp"
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+namespace hapticd::os {
+
+namespace {
+
+std::error_code error(int code) { return {code, std::generic_category()}; }
+
+std::string firstLine(const char* file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
+
+/// Value of a "Name:\tvalue" line of /proc/self/status.
+std::string statusField(const std::string& name) {
+  std::ifstream in("/proc/self/status");
+  for (std::string line; std::getline(in, line);)
+    if (line.rfind(name + ":", 0) == 0) return line.substr(line.find_first_not_of(" \t", name.size() + 1));
+  return "";
+}
+
+bool hasCapability(unsigned bit) {
+  const std::string effective = statusField("CapEff");
+  return !effective.empty() && ((std::stoull(effective, nullptr, 16) >> bit) & 1u) != 0;
+}
+
+std::string limit(int resource) {
+  rlimit value{};
+  getrlimit(static_cast<__rlimit_resource>(resource), &value);
+  return value.rlim_cur == RLIM_INFINITY ? "unlimited" : std::to_string(value.rlim_cur);
+}
+
+}  // namespace
+
+std::error_code Thread::start(const std::string& name, std::function<void()> body) {
+  body_ = std::move(body);
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstacksize(&attributes, kThreadStackBytes);
+  const int code = pthread_create(&handle_, &attributes, &Thread::enter, this);
+  pthread_attr_destroy(&attributes);
+  started_ = code == 0;
+  if (started_) pthread_setname_np(handle_, name.substr(0, 15).c_str());
+  return error(code);
+}
+
+void* Thread::enter(void* self) {
+  static_cast<Thread*>(self)->body_();
+  return nullptr;
+}
+
+void Thread::join() {
+  if (started_) pthread_join(handle_, nullptr);
+  started_ = false;
+}
+
+std::error_code setFifo(int priority) {
+  sched_param parameter{};
+  parameter.sched_priority = priority;
+  return error(pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter));
+}
+
+std::error_code pinTo(int cpu) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  CPU_SET(static_cast<size_t>(cpu), &set);
+  return error(pthread_setaffinity_np(pthread_self(), sizeof set, &set));
+}
+
+void calmAllocator() {
+  mallopt(M_ARENA_MAX, 1);
+  mallopt(M_TRIM_THRESHOLD, -1);
+  mallopt(M_MMAP_MAX, 0);
+}
+
+std::error_code lockMemory() {
+  return error(mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno);
+}
+
+void prefaultStack() {
+  constexpr size_t kTouched = kThreadStackBytes / 2;
+  unsigned char stack[kTouched];
+  volatile unsigned char* touched = stack;
+  for (size_t i = 0; i < kTouched; i += 1024) touched[i] = 0;
+}
+
+DmaLatencyHold::DmaLatencyHold() : fd_(open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC)) {
+  const int32_t none = 0;
+  if (fd_ >= 0 && write(fd_, &none, sizeof none) != sizeof none) {
+    close(fd_);
+    fd_ = -1;
+  }
+}
+
+DmaLatencyHold::~DmaLatencyHold() {
+  if (fd_ >= 0) close(fd_);
+}
+
+long pageFaultsOfThread() noexcept {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_minflt + usage.ru_majflt;
+}
+
+size_t residentBytes() {
+  std::ifstream in("/proc/self/statm");
+  size_t total = 0, resident = 0;
+  in >> total >> resident;
+  return resident * static_cast<size_t>(sysconf(_SC_PAGESIZE));
+}
+
+std::string realTimeRights() {
+  constexpr unsigned kCapIpcLock = 14, kCapSysNice = 23;
+  std::ostringstream out;
+  out << "RLIMIT_RTPRIO=" << limit(RLIMIT_RTPRIO) << "  RLIMIT_MEMLOCK=" << limit(RLIMIT_MEMLOCK)
+      << "  CAP_SYS_NICE=" << (hasCapability(kCapSysNice) ? "yes" : "no")
+      << "  CAP_IPC_LOCK=" << (hasCapability(kCapIpcLock) ? "yes" : "no")
+      << "  sched_rt_runtime_us=" << firstLine("/proc/sys/kernel/sched_rt_runtime_us")
+      << "  cgroup=" << firstLine("/proc/self/cgroup");
+  return out.str();
+}
+
+bool inVirtualMachine() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);)
+    if (line.rfind("flags", 0) == 0) return line.find(" hypervisor") != std::string::npos;
+  return false;
+}
+
+void onStopSignal(void (*handler)(int)) {
+  struct sigaction action{};
+  action.sa_handler = handler;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  action.sa_handler = SIG_IGN;
+  sigaction(SIGPIPE, &action, nullptr);
+}
+
+}  // namespace hapticd::os

@@ -1,0 +1,46 @@
+/// A bounded ring between one writing and one reading thread: no lock, no allocation after construction, order kept.
+#pragma once
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <type_traits>
+#include <vector>
+
+#include "hapticd/abi.h"
+
+namespace hapticd {
+
+template <class T>
+class SpscRing {
+  static_assert(std::is_trivially_copyable_v<T>, "entries are copied by both threads");
+
+ public:
+  /// [main] @param capacity rounded up to a power of two
+  explicit SpscRing(size_t capacity) : slots_(std::bit_ceil(capacity)), mask_(slots_.size() - 1) {}
+
+  /// [rt] False: full, nothing written.
+  bool push(const T& value) noexcept HSP_RT {
+    const size_t head = head_.load(std::memory_order_relaxed);
+    if (head - tail_.load(std::memory_order_acquire) == slots_.size()) return false;
+    slots_[head & mask_] = value;
+    head_.store(head + 1, std::memory_order_release);
+    return true;
+  }
+
+  /// [rt] False: empty.
+  bool pop(T& value) noexcept HSP_RT {
+    const size_t tail = tail_.load(std::memory_order_relaxed);
+    if (tail == head_.load(std::memory_order_acquire)) return false;
+    value = slots_[tail & mask_];
+    tail_.store(tail + 1, std::memory_order_release);
+    return true;
+  }
+
+ private:
+  std::vector<T> slots_;
+  size_t mask_;
+  alignas(64) std::atomic<size_t> head_{0};
+  alignas(64) std::atomic<size_t> tail_{0};
+};
+
+}  // namespace hapticd

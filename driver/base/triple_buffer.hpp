@@ -1,0 +1,43 @@
+/// The newest value from one writing to one reading thread: the writer never waits, the reader never sees half a value,
+/// older values are lost.
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "hapticd/abi.h"
+
+namespace hapticd {
+
+template <class T>
+class TripleBuffer {
+ public:
+  /// [rt] The slot to fill before publish(); owned by the writer.
+  T& back() noexcept HSP_RT { return slots_[back_].value; }
+
+  /// [rt] Makes the back slot the newest value.
+  void publish() noexcept HSP_RT {
+    back_ = middle_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex;
+  }
+
+  /// [rt] True if a newer value than the last one has come; front() is it then.
+  bool update() noexcept HSP_RT {
+    if ((middle_.load(std::memory_order_relaxed) & kFresh) == 0) return false;
+    front_ = middle_.exchange(front_, std::memory_order_acq_rel) & kIndex;
+    return true;
+  }
+
+  /// [rt] The newest value as of the last update(); owned by the reader.
+  const T& front() const noexcept HSP_RT { return slots_[front_].value; }
+
+ private:
+  static constexpr uint32_t kFresh = 4, kIndex = 3;
+  struct alignas(64) Slot {
+    T value{};
+  };
+  std::array<Slot, 3> slots_{};
+  uint32_t back_ = 0, front_ = 1;
+  std::atomic<uint32_t> middle_{2};
+};
+
+}  // namespace hapticd

@@ -1,0 +1,96 @@
+/// `hapticd trace`: the same servo core over a prescribed probe path, in virtual time, without a device.
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "cli/probe_path.hpp"
+#include "cli/trace_writer.hpp"
+#include "servo/lockstep.hpp"
+#include "servo/probe_velocity.hpp"
+#include "servo/world.hpp"
+
+namespace hapticd::cli {
+
+namespace {
+
+struct Options {
+  std::string scene, probe, out, models;
+};
+
+/// Indices of the models to print; empty `filter`: all of them.
+Result<std::vector<uint32_t>> chosenModels(const scene::Scene& scene, const std::string& filter) {
+  std::vector<uint32_t> chosen;
+  if (filter.empty()) {
+    for (uint32_t i = 0; i < scene.models.size(); ++i) chosen.push_back(i);
+    return chosen;
+  }
+  for (const std::string& name : CLI::detail::split(filter, ',')) {
+    const auto it = std::find_if(scene.models.begin(), scene.models.end(), [&](const auto& m) { return m.name == name; });
+    if (it == scene.models.end()) return Error{"--models: the scene has no model \"" + name + "\""};
+    chosen.push_back(static_cast<uint32_t>(it - scene.models.begin()));
+  }
+  return chosen;
+}
+
+/// Runs the core over the path, a tick a row.
+Result<void> traceRows(const scene::Scene& scene, servo::World& world, const std::vector<PathRow>& rows,
+                       TraceWriter& writer) {
+  std::unique_ptr<servo::ProbeVelocity> velocity;
+  if (world.needsVelocity()) velocity = std::make_unique<servo::ProbeVelocity>(scene.servo.velocity, scene.servo.rate);
+  servo::Lockstep lockstep(world);
+  servo::Probe probe;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const double t = rows[i].t, dt = i == 0 ? 0 : t - rows[i - 1].t;
+    probe.valid = rows[i].finite();
+    if (probe.valid) {
+      probe.position = rows[i].position;
+      probe.orientation = rows[i].orientation.normalized();
+      if (velocity) probe.velocity = velocity->update(probe.position, dt);
+    } else if (velocity) {
+      velocity->reset();  // a gap in the samples: differences across it mean nothing
+    }
+    world.core().publish(t, {&probe, 1});
+    lockstep.before(t);
+    world.core().tick(t, dt, {&probe, 1});
+    if (auto written = writer.write(t, world.core(), probe.valid); !written) return written;
+  }
+  return writer.close();
+}
+
+int trace(const Options& options) {
+  auto scene = loadSceneOrReport(options.scene);
+  if (!scene) return kBadInput;
+  auto rows = readProbePath(options.probe);
+  if (!rows) return fail(kBadInput, rows.error());
+  auto models = chosenModels(*scene, options.models);
+  if (!models) return fail(kBadInput, models.error());
+  auto world = servo::World::build(*scene, {scene->servo.rate, 1, false}, logToTerminal);
+  if (!world) return fail(kFailed, world.error());
+  auto writer = TraceWriter::open(options.out, *scene, *models);
+  if (!writer) return fail(kBadInput, writer.error());
+  if (auto done = traceRows(*scene, **world, *rows, **writer); !done) return fail(kFailed, done.error());
+  return kWorked;
+}
+
+}  // namespace
+
+void addTrace(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("trace", "Run the servo core over a prescribed probe path, in virtual time.");
+  command->add_option("scene", options->scene, "scene file (YAML)")->required();
+  command->add_option("--probe", options->probe, "probe path (CSV): t,x,y,z[,qw,qx,qy,qz] in s and m, world frame; a row a tick")->required();
+  command->add_option("--out", options->out, "result (CSV): a row a tick and model; - for standard output")->required();
+  command->add_option("--models", options->models, "only these models, comma-separated");
+  command->footer(
+      "Status column: 0 good, 1 good but coarser than asked, -6 the surface or the sample was lost (no force).\n"
+      "Foot columns are nan while nothing of the model is traced.\n\n"
+      "Example:\n  hapticd trace config/scenes/teapot.yaml --probe stroke.csv --out feet.csv");
+  command->callback([options, &exit_code] { exit_code = trace(*options); });
+}
+
+}  // namespace hapticd::cli

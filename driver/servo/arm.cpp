@@ -1,0 +1,127 @@
+#include "servo/arm.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace hapticd::servo {
+
+namespace {
+
+constexpr double kStaleAfter = 0.05;  ///< [s] without a new sample: no force on yesterday's position
+
+}  // namespace
+
+Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter)
+    : device_(std::move(device)),
+      R_world_device_(described.mount.orientation.toRotationMatrix()),
+      q_world_device_(described.mount.orientation),
+      origin_world_(described.mount.position),
+      limiter_(limiter) {}
+
+Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const scene::Servo& servo,
+                                       const ArmOptions& options, const host::Services::Log& log) {
+  auto device = host::DeviceInstance::create(described, log);
+  if (!device) return Error{device.error()};
+  if (auto opened = (*device)->open(); !opened) return Error{opened.error()};
+  const Limiter limiter(described.limits, (*device)->info().max_force);
+  std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter));
+  if (options.needs_velocity || described.limits.velocity > 0)
+    arm->velocity_ = std::make_unique<ProbeVelocity>(servo.velocity, options.rate);
+  return arm;
+}
+
+Result<void> Arm::start(Nanoseconds now, const Eigen::Vector3d& gravity_world) {
+  gravity_device_ = R_world_device_.transpose() * gravity_world;
+  hdv_start how{};
+  how.struct_size = sizeof how;
+  how.rate_hz = device_->info().rate_hz;
+  how.time_ns = now;
+  Eigen::Map<Eigen::Vector3d>(how.gravity) = gravity_device_;
+  fresh_at_ = now;
+  return device_->start(how);
+}
+
+const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
+  const hsp_status status = device_->read(now, sample_);
+  probe_.valid = judge(status, now) && locate();
+  if (!probe_.valid) return probe_;
+  if (velocity_ != nullptr) {
+    probe_.velocity = velocity_->update(probe_.position, dt);
+    limiter_.watchSpeed(probe_.velocity.norm());
+  }
+  return probe_;
+}
+
+bool Arm::judge(hsp_status status, Nanoseconds now) noexcept HSP_RT {
+  if (status < 0 || (sample_.flags & HDV_S_LOST) != 0) {
+    limiter_.trip(Fault::kDeviceLost);
+    return false;
+  }
+  if ((sample_.flags & HDV_S_FAULT) != 0) limiter_.trip(Fault::kDeviceFault);
+  if ((device_->info().capabilities & HDV_C_CALIBRATION) != 0 && (sample_.flags & HDV_S_CALIBRATED) == 0)
+    limiter_.trip(Fault::kNotCalibrated);
+  if (sample_.sequence != last_sequence_) {
+    last_sequence_ = sample_.sequence;
+    fresh_at_ = now;
+  } else if (static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond > kStaleAfter) {
+    limiter_.trip(Fault::kStale);
+    return false;
+  }
+  for (uint32_t i = 0; i < device_->info().joint_count; ++i) {
+    if (std::isfinite(sample_.position[i])) continue;
+    limiter_.trip(Fault::kNotFinite);
+    return false;
+  }
+  return true;
+}
+
+bool Arm::locate() noexcept HSP_RT {
+  Eigen::Vector3d p_device;
+  std::array<double, 4> q{1, 0, 0, 0};
+  const hdv_ext_kinematics& kinematics = device_->kinematics();
+  if (kinematics.forward(device_->handle(), sample_.position, p_device.data(), q.data()) < 0 || !p_device.allFinite()) {
+    limiter_.trip(Fault::kNotFinite);
+    return false;
+  }
+  probe_.position = R_world_device_ * p_device + origin_world_;
+  probe_.orientation = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  return true;
+}
+
+void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque) noexcept HSP_RT {
+  limiter_.apply(force, torque, probe_.position - origin_world_, dt);
+  force_ = force;
+  const uint32_t joints = device_->info().joint_count;
+  const hdv_ext_kinematics& kinematics = device_->kinematics();
+  using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HDV_MAX_JOINTS>;
+  Jacobian J(6, joints);
+  hdv_command command{};
+  command.struct_size = sizeof command;
+  command.mode = HDV_OFF;
+  const bool located = std::isfinite(sample_.position[0]) &&
+                       kinematics.jacobian(device_->handle(), sample_.position, J.data()) == HSP_OK && J.allFinite();
+  if (located && !limiter_.silent()) {
+    command.mode = HDV_TORQUE;
+    Eigen::Map<Eigen::VectorXd> tau(command.torque, joints);
+    const Eigen::Vector3d force_device = R_world_device_.transpose() * force;
+    tau.noalias() = J.topRows<3>().transpose() * force_device;  // Thompson et al. 1999, Eq. 9
+    if (joints > 3) tau.noalias() += J.bottomRows<3>().transpose() * (R_world_device_.transpose() * torque);
+    scaleToMotors(command);
+    std::array<double, HDV_MAX_JOINTS> gravity{};
+    if (kinematics.gravity(device_->handle(), sample_.position, gravity_device_.data(), gravity.data()) == HSP_OK)
+      for (uint32_t i = 0; i < joints; ++i) command.torque[i] += gravity[i];
+  }
+  if (device_->write(now, command) < 0) limiter_.trip(Fault::kDeviceLost);
+}
+
+void Arm::scaleToMotors(hdv_command& command) const noexcept HSP_RT {
+  // All joints by one factor: the direction of the force on the hand stays true when a motor is at its limit.
+  double factor = 1;
+  for (uint32_t i = 0; i < device_->info().joint_count; ++i) {
+    const double most = device_->info().max_torque[i], asked = std::abs(command.torque[i]);
+    if (most > 0 && asked > most) factor = std::min(factor, most / asked);
+  }
+  for (uint32_t i = 0; i < device_->info().joint_count; ++i) command.torque[i] *= factor;
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,67 @@
+/// One arm: its device, kinematics, velocity estimate and limits. Turns samples into probes and forces into torques.
+#pragma once
+#include <Eigen/Geometry>
+#include <memory>
+
+#include "base/clock.hpp"
+#include "base/result.hpp"
+#include "host/device_instance.hpp"
+#include "scene/scene.hpp"
+#include "servo/core.hpp"
+#include "servo/limiter.hpp"
+#include "servo/probe_velocity.hpp"
+
+namespace hapticd::servo {
+
+struct ArmOptions {
+  double rate = 1000;           ///< [Hz]
+  bool needs_velocity = false;  ///< run the estimator
+};
+
+class Arm {
+ public:
+  /// [main] Loads the module and opens the device.
+  static Result<std::unique_ptr<Arm>> open(const scene::Device& device, const scene::Servo& servo,
+                                           const ArmOptions& options, const host::Services::Log& log);
+
+  /// [main] Starts reading and writing. @param now time of the first read
+  Result<void> start(Nanoseconds now, const Eigen::Vector3d& gravity_world);
+  void stop() { device_->stop(); }  ///< [main] motors off
+
+  /// [rt] The newest sample as a probe in the world frame. A bad sample gives an invalid probe and a fault.
+  const Probe& read(Nanoseconds now, double dt) noexcept HSP_RT;
+
+  /// [rt] Limits a wrench (N, N m, world frame), maps it to torques (tau = J^T W + gravity) and hands it to the device.
+  void write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque) noexcept HSP_RT;
+
+  const hdv_info& info() const { return device_->info(); }
+  host::DeviceInstance& device() { return *device_; }
+  Limiter& limiter() noexcept { return limiter_; }
+  const Limiter& limiter() const noexcept { return limiter_; }
+  const Eigen::Vector3d& force() const noexcept { return force_; }  ///< [N] world, as sent
+  const Probe& probe() const noexcept { return probe_; }
+  bool estimatesVelocity() const { return velocity_ != nullptr; }
+  bool simulated() const noexcept { return (device_->info().capabilities & HDV_C_SIMULATED) != 0; }
+  double rampOut() const noexcept { return limiter_.rampOut(); }  ///< [s]
+
+ private:
+  Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter);
+  bool judge(hsp_status status, Nanoseconds now) noexcept HSP_RT;
+  bool locate() noexcept HSP_RT;
+  void scaleToMotors(hdv_command& command) const noexcept HSP_RT;
+
+  std::unique_ptr<host::DeviceInstance> device_;
+  Eigen::Matrix3d R_world_device_;
+  Eigen::Quaterniond q_world_device_;
+  Eigen::Vector3d origin_world_;
+  Eigen::Vector3d gravity_device_ = Eigen::Vector3d::Zero();
+  std::unique_ptr<ProbeVelocity> velocity_;
+  Limiter limiter_;
+  hdv_sample sample_{};
+  uint64_t last_sequence_ = 0;
+  Nanoseconds fresh_at_ = 0;
+  Probe probe_;
+  Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace hapticd::servo

@@ -1,0 +1,250 @@
+#include "servo/core.hpp"
+
+#include <cmath>
+
+#include "base/clock.hpp"
+
+namespace hapticd::servo {
+
+namespace {
+
+using Map = Eigen::Map<Vector3d>;
+using ConstMap = Eigen::Map<const Vector3d>;
+
+bool finite(const double* values, size_t count) noexcept HSP_RT {
+  for (size_t i = 0; i < count; ++i)
+    if (!std::isfinite(values[i])) return false;
+  return true;
+}
+
+bool finite(const hsp_contact& c) noexcept HSP_RT {
+  return finite(c.force, 3) && finite(c.torque, 3) && ((c.flags & HSP_OUT_TRACED) == 0 || finite(c.point, 7));
+}
+
+}  // namespace
+
+Core::Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& scene, uint32_t probe_count,
+           const CoreSettings& settings, link::Link& link)
+    : settings_(settings),
+      link_(link),
+      probe_count_(probe_count),
+      models_(models.size()),
+      contacts_(models.size() * probe_count),
+      inputs_(probe_count),
+      outputs_(probe_count),
+      last_position_(probe_count, Vector3d::Zero()),
+      jumped_(probe_count),
+      seen_(probe_count),
+      forces_(probe_count, Vector3d::Zero()),
+      torques_(probe_count, Vector3d::Zero()) {
+  for (size_t i = 0; i < models.size(); ++i) {
+    ModelState& model = models_[i];
+    const scene::Model& described = scene.models[i];
+    model.shape = models[i];
+    Map(model.pose.position) = described.pose.position;
+    const Eigen::Quaterniond& q = described.pose.orientation;
+    model.pose.orientation[0] = q.w(), model.pose.orientation[1] = q.x();
+    model.pose.orientation[2] = q.y(), model.pose.orientation[3] = q.z();
+    model.frame = Frame::of(model.pose);
+    const bool moves_itself = (models[i]->report().flags & HSP_R_MOVES) != 0;
+    if (described.kinematic) model.path = Path(described.path);
+    model.moves = moves_itself || described.kinematic;
+    model.always = moves_itself || models[i]->surfaces() == nullptr;
+  }
+  live_.reserve(models_.size());
+  listLive();
+}
+
+void Core::publish(double t, std::span<const Probe> probes) noexcept HSP_RT {
+  link::ArmState& arm = link_.arm.back();
+  arm.time_ns = static_cast<Nanoseconds>(t * 1e9);
+  arm.probe_count = probe_count_;
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    arm.valid[i] = probes[i].valid;
+    Map(arm.position[i].data()) = probes[i].position;
+  }
+  link_.arm.publish();
+}
+
+void Core::tick(double t, double dt, std::span<const Probe> probes) noexcept HSP_RT {
+  receiveRecords();
+  wants_search_ = false;
+  transforms_ = 0;
+  budget_left_ns_ = settings_.budget_ns;
+  findJumps(dt, probes);
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    forces_[i].setZero();
+    torques_[i].setZero();
+  }
+  for (const uint32_t i : live_) {
+    ModelState& model = models_[i];
+    if (!model.path.empty()) {
+      model.path.at(t, model.pose);
+      model.frame = Frame::of(model.pose);
+    }
+    if (model.always || model.active_surfaces > 0) stepModel(i, t, dt, probes);
+    if (model.moves) sendTransform(model, i);
+  }
+}
+
+void Core::listLive() noexcept HSP_RT {
+  live_.clear();
+  for (uint32_t i = 0; i < models_.size(); ++i) {
+    if (models_[i].moves || models_[i].always || models_[i].active_surfaces > 0) {
+      live_.push_back(i);  // reserved for all of them: never allocates
+    } else {
+      clearContacts(i);
+    }
+  }
+}
+
+void Core::receiveRecords() noexcept HSP_RT {
+  // Bounded: a flood of records must not make a tick late; the rest waits for the next.
+  constexpr int kRecordsPerTick = 1024;
+  link::ActivationRecord record;
+  bool changed = false;
+  for (int i = 0; i < kRecordsPerTick && link_.records.pop(record); ++i) {
+    ModelState& model = models_[record.model];
+    const hsp_ext_surfaces& surfaces = *model.shape->surfaces();
+    if (record.order == link::ActivationRecord::Order::kStop) {
+      surfaces.deactivate(model.shape->handle(), record.near.probe, record.near.surface);
+      changed |= --model.active_surfaces == 0;
+    } else {
+      surfaces.activate(model.shape->handle(), &record.near);
+      if (record.order == link::ActivationRecord::Order::kStart) changed |= model.active_surfaces++ == 0;
+    }
+  }
+  if (changed) listLive();
+}
+
+void Core::findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT {
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    jumped_[i] = 0;
+    if (!probes[i].valid) {
+      wants_search_ = true;  // whatever comes next may be elsewhere
+      continue;
+    }
+    const double travel = (probes[i].position - last_position_[i]).norm();
+    if (seen_[i] != 0 && travel > settings_.max_probe_speed * dt) {
+      jumped_[i] = 1;
+      wants_search_ = true;
+    }
+    seen_[i] = 1;
+    last_position_[i] = probes[i].position;
+  }
+}
+
+void Core::fillProbe(const ModelState& model, const Probe& probe, uint32_t index, double t) noexcept HSP_RT {
+  hsp_probe& in = inputs_[index];
+  in = hsp_probe{};
+  in.orientation[0] = 1;
+  in.time_ns = static_cast<uint64_t>(t * 1e9);
+  if (jumped_[index] != 0) in.flags |= HSP_IN_JUMP;
+  if (!probe.valid) in.flags |= HSP_IN_INVALID;
+  const Vector3d& p_world = last_position_[index];  // the last good one
+  Map(in.position) = model.frame.pointToModel(p_world);
+  ++transforms_;
+  const uint32_t needs = model.shape->report().flags;
+  if ((needs & HSP_R_VELOCITY) != 0 && probe.valid) {
+    const Vector3d arm = p_world - ConstMap(model.pose.position);
+    const Vector3d surface = ConstMap(model.pose.linear) + ConstMap(model.pose.angular).cross(arm);
+    Map(in.velocity) = model.frame.vectorToModel(probe.velocity - surface);
+  }
+  if ((needs & HSP_R_ORIENTATION) != 0) {
+    const double* q = model.pose.orientation;
+    const Eigen::Quaterniond relative = Eigen::Quaterniond(q[0], -q[1], -q[2], -q[3]) * probe.orientation;
+    in.orientation[0] = relative.w(), in.orientation[1] = relative.x();
+    in.orientation[2] = relative.y(), in.orientation[3] = relative.z();
+  }
+}
+
+void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT {
+  ModelState& model = models_[index];
+  if (model.guard.quarantined() && model.guard.gain(false, dt) == 0) return clearContacts(index);
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    fillProbe(model, probes[i], i, t);
+    outputs_[i] = hsp_contact{};
+  }
+  hsp_pose pose = model.pose;
+  hsp_step step{};
+  step.struct_size = sizeof step;
+  step.count = probe_count_;
+  step.in = inputs_.data();
+  step.in_stride = sizeof(hsp_probe);
+  step.out = outputs_.data();
+  step.out_stride = sizeof(hsp_contact);
+  step.dt_s = dt;
+  step.budget_ns = budget_left_ns_;
+  step.pose = &pose;
+
+  const Nanoseconds before = settings_.measure ? monotonicNow() : 0;
+  model.status = model.guard.quarantined() ? HSP_E_STATE : model.shape->step(step);
+  if (settings_.measure) {
+    model.step_ns = monotonicNow() - before;
+    // a spent budget stays at 1: the next shape may still answer, but must be quick
+    if (budget_left_ns_ > 0) budget_left_ns_ = budget_left_ns_ > model.step_ns ? budget_left_ns_ - model.step_ns : 1;
+  }
+
+  bool answers_finite = true;
+  for (const hsp_contact& out : outputs_) answers_finite &= finite(out);
+  const bool moves_itself = (model.shape->report().flags & HSP_R_MOVES) != 0;
+  if (moves_itself && answers_finite) answers_finite = takePose(model, pose);
+  const Trouble trouble = model.guard.judge(model.status, answers_finite);
+  const double gain = model.guard.gain(trouble == Trouble::kNone, dt);
+  if (trouble == Trouble::kLost) {
+    model.shape->reset();
+    wants_search_ = true;
+  }
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    if (trouble == Trouble::kNone) {
+      takeContact(model, index, i, gain);
+    } else {  // fade out along the last good force
+      Contact& last = contacts_[size_t{index} * probe_count_ + i];
+      last.traced = false;
+      Map(last.world.force) *= gain;
+      Map(last.world.torque) *= gain;
+    }
+    Contact& contact = contacts_[size_t{index} * probe_count_ + i];
+    if (!probes[i].valid) {
+      contact = Contact{};
+      continue;
+    }
+    forces_[i] += ConstMap(contact.world.force);
+    torques_[i] += ConstMap(contact.world.torque);
+  }
+}
+
+bool Core::takePose(ModelState& model, const hsp_pose& pose) noexcept HSP_RT {
+  if (!finite(pose.position, 13)) return false;
+  model.pose = pose;
+  model.frame = Frame::of(pose);
+  return true;
+}
+
+void Core::takeContact(ModelState& model, uint32_t index, uint32_t probe, double gain) noexcept HSP_RT {
+  const hsp_contact& out = outputs_[probe];
+  Contact& contact = contacts_[size_t{index} * probe_count_ + probe];
+  contact.world = out;
+  contact.traced = (out.flags & HSP_OUT_TRACED) != 0;
+  const Frame& frame = model.frame;
+  Map(contact.world.force) = gain * frame.vectorToWorld(ConstMap(out.force));
+  Map(contact.world.torque) = gain * frame.vectorToWorld(ConstMap(out.torque));
+  if (!contact.traced) return;
+  Map(contact.world.point) = frame.pointToWorld(ConstMap(out.point));
+  Map(contact.world.normal) = frame.vectorToWorld(ConstMap(out.normal));
+  transforms_ += 2;
+}
+
+void Core::clearContacts(uint32_t index) noexcept HSP_RT {
+  for (uint32_t i = 0; i < probe_count_; ++i) contacts_[size_t{index} * probe_count_ + i] = Contact{};
+}
+
+void Core::sendTransform(ModelState& model, uint32_t index) noexcept HSP_RT {
+  link::ModelTransform transform;
+  transform.model = index;
+  for (size_t i = 0; i < 3; ++i) transform.position[i] = model.pose.position[i];
+  for (size_t i = 0; i < 4; ++i) transform.orientation[i] = model.pose.orientation[i];
+  link_.transforms.push(transform);  // full: the next tick sends a newer one
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,104 @@
+/// The heart of the servo: a function of (state, probes, dt). The same core runs on a real clock, in virtual time and
+/// over a recorded path; same input gives the same bits.
+#pragma once
+#include <Eigen/Geometry>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "host/shape_instance.hpp"
+#include "link/link.hpp"
+#include "scene/scene.hpp"
+#include "servo/frame.hpp"
+#include "servo/guard.hpp"
+#include "servo/path.hpp"
+
+namespace hapticd::servo {
+
+/// One arm's tip, in the world frame.
+struct Probe {
+  Vector3d position = Vector3d::Zero();  ///< [m]
+  Vector3d velocity = Vector3d::Zero();  ///< [m/s] zero unless something in the scene uses it
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  bool valid = false;  ///< a good sample; otherwise no shape pushes
+};
+
+/// What one model answered to one probe in the last tick; vectors in the world frame.
+struct Contact {
+  hsp_contact world{};
+  bool traced = false;
+};
+
+/// A model as the servo sees it.
+struct ModelState {
+  host::ShapeInstance* shape = nullptr;
+  hsp_pose pose{};
+  Frame frame;
+  Path path;                     ///< kinematic models
+  uint32_t active_surfaces = 0;  ///< over all probes
+  bool always = false;           ///< stepped every tick: it traces itself, or moves by itself
+  bool moves = false;            ///< its pose may change
+  hsp_status status = HSP_OK;
+  Guard guard;
+  uint64_t step_ns = 0;  ///< CPU time of the last step; 0 when not measured
+};
+
+struct CoreSettings {
+  uint64_t budget_ns = 0;        ///< of all shapes in a tick; 0: none
+  double max_probe_speed = 20;   ///< [m/s] faster between two samples is a jump, not a motion
+  bool measure = false;          ///< take the CPU time of each step
+};
+
+class Core {
+ public:
+  /// [main] @param models active instances in the order of the scene, with the poses they were activated at
+  Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& scene, uint32_t probe_count,
+       const CoreSettings& settings, link::Link& link);
+
+  /// [rt] One tick at time t [s], dt [s] after the last (0: the first). Fills contacts() and force().
+  void tick(double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
+
+  /// [rt] Tells the simulation side where the probes are; before tick(), so that a search in lockstep sees them.
+  void publish(double t, std::span<const Probe> probes) noexcept HSP_RT;
+
+  /// Force [N] and torque [N m] of all models on a probe, world frame.
+  const Vector3d& force(uint32_t probe) const noexcept { return forces_[probe]; }
+  const Vector3d& torque(uint32_t probe) const noexcept { return torques_[probe]; }
+  std::span<const ModelState> models() const noexcept { return models_; }
+  const Contact& contact(uint32_t model, uint32_t probe) const noexcept {
+    return contacts_[size_t{model} * probe_count_ + probe];
+  }
+  /// A jump or a lost track in the last tick: the simulation side should search at once.
+  bool wantsSearch() const noexcept { return wants_search_; }
+  /// Transforms done in the last tick: n inverse ones of probes, m points and m normals.
+  uint32_t transforms() const noexcept { return transforms_; }
+  uint32_t probeCount() const noexcept { return probe_count_; }
+
+ private:
+  void receiveRecords() noexcept HSP_RT;
+  void findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT;
+  void stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
+  void fillProbe(const ModelState& model, const Probe& probe, uint32_t index, double t) noexcept HSP_RT;
+  bool takePose(ModelState& model, const hsp_pose& pose) noexcept HSP_RT;
+  void takeContact(ModelState& model, uint32_t index, uint32_t probe, double gain) noexcept HSP_RT;
+  void clearContacts(uint32_t index) noexcept HSP_RT;
+  void listLive() noexcept HSP_RT;
+  void sendTransform(ModelState& model, uint32_t index) noexcept HSP_RT;
+
+  CoreSettings settings_;
+  link::Link& link_;
+  uint32_t probe_count_;
+  std::vector<ModelState> models_;
+  std::vector<uint32_t> live_;           // models with something to do, in scene order: the sum is always the same
+  std::vector<Contact> contacts_;        // [model * probe_count + probe]
+  std::vector<hsp_probe> inputs_;       // of the model being stepped
+  std::vector<hsp_contact> outputs_;
+  std::vector<Vector3d> last_position_;  // of the last good sample
+  std::vector<uint8_t> jumped_, seen_;
+  std::vector<Vector3d> forces_, torques_;
+  bool wants_search_ = true;
+  uint32_t transforms_ = 0;
+  uint64_t budget_left_ns_ = 0;
+};
+
+}  // namespace hapticd::servo

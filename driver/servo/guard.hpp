@@ -1,0 +1,53 @@
+/// Stands between one shape and the hand: a shape that loses its surface, answers nonsense or says so itself is faded
+/// out over a bounded time, and only what it may be trusted with again is faded in.
+#pragma once
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstdint>
+
+#include "hapticd/shape.h"
+
+namespace hapticd::servo {
+
+/// Why a shape is not felt.
+enum class Trouble : uint8_t {
+  kNone,
+  kLost,          ///< HSP_E_NUMERIC: reset and tried again
+  kNotFinite,     ///< a force or a pose that is not a number: never trusted again
+  kBadStatus      ///< a status that the ABI does not know for step: never trusted again
+};
+
+/// Fades the force of one shape. All times in seconds of the tick.
+class Guard {
+ public:
+  static constexpr double kFadeOut = 0.02;  ///< [s] within this time a failed shape is silent
+  static constexpr double kFadeIn = 0.05;   ///< [s] a surface found again must not kick
+
+  /// [rt] Judges the answer of one step.
+  Trouble judge(hsp_status status, bool finite) noexcept HSP_RT {
+    if (!finite) return enter(Trouble::kNotFinite);
+    if (status == HSP_E_NUMERIC) return enter(Trouble::kLost);
+    if (status < 0 || status > HSP_DEGRADED) return enter(Trouble::kBadStatus);
+    return Trouble::kNone;
+  }
+
+  /// [rt] The factor for the force of this tick; `good` tells whether its step was.
+  double gain(bool good, double dt) noexcept HSP_RT {
+    const double step = good ? dt / kFadeIn : -dt / kFadeOut;
+    gain_ = std::clamp(gain_ + step, 0.0, 1.0);
+    return gain_;
+  }
+
+  bool quarantined() const noexcept { return trouble_ == Trouble::kNotFinite || trouble_ == Trouble::kBadStatus; }
+  Trouble trouble() const noexcept { return trouble_; }  ///< the gravest so far
+
+ private:
+  Trouble enter(Trouble trouble) noexcept HSP_RT {
+    if (!quarantined()) trouble_ = trouble;
+    return trouble;
+  }
+  double gain_ = 1;  // the first contact of a healthy shape needs no fade: Eq. 4 starts at zero force
+  Trouble trouble_ = Trouble::kNone;
+};
+
+}  // namespace hapticd::servo

@@ -1,0 +1,92 @@
+#include "servo/loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/allocation_count.hpp"
+#include "base/os.hpp"
+
+namespace hapticd::servo {
+
+namespace {
+
+constexpr uint64_t kWarmUpTicks = 200;  ///< first touches of code and tables; faults and allocations count after them
+constexpr double kLateFault = 0.1;      ///< [s] without a tick: a hand must not be held by a force of then
+
+}  // namespace
+
+Loop::Loop(World& world, std::vector<std::unique_ptr<Arm>>& arms, Clock& clock, const LoopSettings& settings,
+           Telemetry& telemetry)
+    : world_(world),
+      arms_(arms),
+      clock_(clock),
+      settings_(settings),
+      telemetry_(telemetry),
+      lockstep_(world),
+      probes_(arms.size()) {
+  double ramp = 0;
+  for (const auto& arm : arms_) ramp = std::max(ramp, arm->rampOut());
+  ramp_ticks_ = static_cast<uint64_t>(std::ceil(ramp * 1e9 / static_cast<double>(settings_.period_ns))) + 1;
+}
+
+void Loop::run() noexcept {
+  const Nanoseconds start = clock_.now();
+  Nanoseconds deadline = start, last = start;
+  const long faults_before = os::pageFaultsOfThread();
+  long faults_warm = faults_before;
+  uint64_t allocations_warm = allocationsOfThread();
+  for (uint64_t n = 0, done = 0;; ++n) {
+    if (stop_ || (settings_.ticks != 0 && done + ramp_ticks_ >= settings_.ticks)) trip(Fault::kStopped);
+    const Nanoseconds woke = clock_.waitUntil(deadline);
+    deadline = skipMissed(deadline, woke);
+    const Nanoseconds begun = monotonicNow();
+    const double dt = static_cast<double>(deadline - last) * kSecondsPerNanosecond;
+    if (dt > kLateFault && !simulated()) trip(Fault::kLate);
+    const double t = static_cast<double>(deadline - start) * kSecondsPerNanosecond;
+    tick(deadline, t, dt);
+    telemetry_.tick(t, dt, woke - deadline, monotonicNow() - begun, world_.core(), arms_);
+    last = deadline;
+    deadline += settings_.period_ns;
+    tick_count_.store(n + 1, std::memory_order_relaxed);
+    if (n == kWarmUpTicks) {
+      faults_warm = os::pageFaultsOfThread();
+      allocations_warm = allocationsOfThread();
+    }
+    done = (last - start) / settings_.period_ns + 1;
+    if ((settings_.ticks != 0 && done >= settings_.ticks) || (stop_ && allSilent())) break;
+  }
+  telemetry_.finish(tick_count_, clock_.now() - start, os::pageFaultsOfThread() - faults_warm,
+                    allocationsOfThread() - allocations_warm);
+  finished_.store(true, std::memory_order_release);
+}
+
+void Loop::trip(Fault fault) noexcept HSP_RT {
+  for (const auto& arm : arms_) arm->limiter().trip(fault);
+}
+
+bool Loop::allSilent() const noexcept HSP_RT {
+  return std::all_of(arms_.begin(), arms_.end(), [](const auto& arm) { return arm->limiter().silent(); });
+}
+
+bool Loop::simulated() const noexcept HSP_RT {
+  return std::all_of(arms_.begin(), arms_.end(), [](const auto& arm) { return arm->simulated(); });
+}
+
+Nanoseconds Loop::skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT {
+  if (woke < deadline + settings_.period_ns) return deadline;
+  // Whole periods are skipped and the phase kept: running late ticks back to back would only make the next ones late.
+  const uint64_t missed = (woke - deadline) / settings_.period_ns;
+  telemetry_.overrun(missed);
+  return deadline + missed * settings_.period_ns;
+}
+
+void Loop::tick(Nanoseconds now, double t, double dt) noexcept HSP_RT {
+  for (size_t i = 0; i < arms_.size(); ++i) probes_[i] = arms_[i]->read(now, dt);
+  world_.core().publish(t, probes_);
+  if (settings_.lockstep) lockstep_.before(t);
+  world_.core().tick(t, dt, probes_);
+  for (uint32_t i = 0; i < arms_.size(); ++i) arms_[i]->write(now, dt, world_.core().force(i), world_.core().torque(i));
+  wants_search_.store(world_.core().wantsSearch(), std::memory_order_relaxed);
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,58 @@
+/// The servo loop: waits for a deadline, reads the arms, runs the core, writes the arms, keeps the books. The clock is an
+/// argument: the same loop runs under SCHED_FIFO and in virtual time.
+#pragma once
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "base/clock.hpp"
+#include "servo/arm.hpp"
+#include "servo/lockstep.hpp"
+#include "servo/telemetry.hpp"
+#include "servo/world.hpp"
+
+namespace hapticd::servo {
+
+struct LoopSettings {
+  Nanoseconds period_ns = 1'000'000;
+  uint64_t ticks = 0;      ///< length of the run in periods; 0: until stopped
+  bool lockstep = false;   ///< search in step with the ticks (virtual time) instead of from a thread of its own
+};
+
+class Loop {
+ public:
+  Loop(World& world, std::vector<std::unique_ptr<Arm>>& arms, Clock& clock, const LoopSettings& settings,
+       Telemetry& telemetry);
+
+  /// [rt] Runs until the ticks are done or a stop has ramped the forces down. Call once.
+  void run() noexcept;
+
+  /// [any] Asks for an end: forces ramp to zero first. Async-signal-safe.
+  void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+
+  /// [any] Ticks done so far, for watchdogs and status lines.
+  uint64_t ticks() const noexcept { return tick_count_.load(std::memory_order_relaxed); }
+  /// [any] The core lost a track or saw a jump: search now.
+  bool wantsSearch() const noexcept { return wants_search_.load(std::memory_order_relaxed); }
+  bool finished() const noexcept { return finished_.load(std::memory_order_acquire); }
+
+ private:
+  void tick(Nanoseconds now, double t, double dt) noexcept HSP_RT;
+  void trip(Fault fault) noexcept HSP_RT;
+  bool allSilent() const noexcept HSP_RT;
+  bool simulated() const noexcept HSP_RT;
+  Nanoseconds skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT;
+
+  World& world_;
+  std::vector<std::unique_ptr<Arm>>& arms_;
+  Clock& clock_;
+  LoopSettings settings_;
+  Telemetry& telemetry_;
+  Lockstep lockstep_;
+  std::vector<Probe> probes_;
+  uint64_t ramp_ticks_ = 0;
+  std::atomic<bool> stop_{false}, wants_search_{true}, finished_{false};
+  std::atomic<uint64_t> tick_count_{0};
+};
+
+}  // namespace hapticd::servo

@@ -1,0 +1,94 @@
+#include "sim/proximity.hpp"
+
+#include <algorithm>
+
+namespace hapticd::sim {
+
+using link::ActivationRecord;
+
+Proximity::Proximity(const std::vector<host::ShapeInstance*>& models, const std::vector<hsp_pose>& poses,
+                     uint32_t probe_count, const ProximitySettings& settings, link::Link& link)
+    : settings_(settings), link_(link), of_scene_(models.size(), UINT32_MAX) {
+  uint32_t most_surfaces = 0;
+  for (uint32_t i = 0; i < models.size(); ++i) {
+    const hsp_ext_surfaces* surfaces = models[i]->surfaces();
+    if (surfaces == nullptr) continue;
+    Model model{i, models[i]->handle(), surfaces, {}, {}, false, {}, {}, {}, 0};
+    if (const hsp_ext_geometry* geometry = models[i]->geometry())
+      model.has_box = geometry->bounds(models[i]->handle(), model.box_min.data(), model.box_max.data()) == HSP_OK;
+    model.position = Eigen::Vector3d(poses[i].position);
+    const double* q = poses[i].orientation;
+    model.orientation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+    model.active.assign(size_t{probe_count} * surfaces->surface_count, 0);
+    most_surfaces = std::max(most_surfaces, surfaces->surface_count);
+    of_scene_[i] = static_cast<uint32_t>(models_.size());
+    models_.push_back(std::move(model));
+  }
+  found_.resize(most_surfaces);
+  seen_.resize(most_surfaces);
+}
+
+void Proximity::search() {
+  receiveTransforms();
+  link_.arm.update();
+  const link::ArmState& arm = link_.arm.front();
+  for (uint32_t probe = 0; probe < arm.probe_count; ++probe) {
+    if (!arm.valid[probe]) continue;
+    const Eigen::Vector3d p_world(arm.position[probe].data());
+    for (Model& model : models_) searchModel(model, probe, p_world);
+  }
+}
+
+void Proximity::receiveTransforms() {
+  link::ModelTransform transform;
+  while (link_.transforms.pop(transform)) {
+    const uint32_t index = of_scene_[transform.model];
+    if (index == UINT32_MAX) continue;
+    models_[index].position = Eigen::Vector3d(transform.position.data());
+    const auto& q = transform.orientation;
+    models_[index].orientation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  }
+}
+
+void Proximity::searchModel(Model& model, uint32_t probe, const Eigen::Vector3d& p_world) {
+  const double reach = settings_.activation_radius + settings_.hysteresis;
+  const Eigen::Vector3d p_model = model.orientation.conjugate() * (p_world - model.position);
+  const Eigen::Vector3d to_box = p_model - p_model.cwiseMax(model.box_min).cwiseMin(model.box_max);
+  const bool may_be_near = !model.has_box || to_box.norm() <= reach;
+  if (!may_be_near && model.active_count == 0) return;
+
+  const uint32_t count = model.surfaces->surface_count;
+  std::fill_n(seen_.begin(), count, uint8_t{0});
+  const int64_t found =
+      may_be_near ? model.surfaces->nearby(model.shape, p_model.data(), reach, found_.data(), found_.size()) : 0;
+  uint8_t* active = &model.active[size_t{probe} * count];
+  for (int64_t i = 0; i < std::min(found, static_cast<int64_t>(found_.size())); ++i) {
+    hsp_near near = found_[static_cast<size_t>(i)];
+    near.probe = probe;
+    seen_[near.surface] = 1;
+    if (active[near.surface] != 0) {
+      send(model, ActivationRecord::Order::kOffer, near);
+    } else if (near.distance_m <= settings_.activation_radius && send(model, ActivationRecord::Order::kStart, near)) {
+      active[near.surface] = 1;
+      ++model.active_count;
+    }
+  }
+  stopLeft(model, probe);
+}
+
+void Proximity::stopLeft(Model& model, uint32_t probe) {
+  const uint32_t count = model.surfaces->surface_count;
+  uint8_t* active = &model.active[size_t{probe} * count];
+  for (uint32_t surface = 0; surface < count && model.active_count > 0; ++surface) {
+    if (active[surface] == 0 || seen_[surface] != 0) continue;
+    if (!send(model, ActivationRecord::Order::kStop, hsp_near{surface, probe, {0, 0}, 0})) return;
+    active[surface] = 0;
+    --model.active_count;
+  }
+}
+
+bool Proximity::send(const Model& model, ActivationRecord::Order order, const hsp_near& near) {
+  return link_.records.push(ActivationRecord{model.index, order, near});
+}
+
+}  // namespace hapticd::sim

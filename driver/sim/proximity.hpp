@@ -1,0 +1,59 @@
+/// The global, slow work: which surfaces are near a probe? Sends activation records to the servo and keeps a mirror of
+/// the models' transforms. (Thompson et al. 1999, section 4.2: 10 cm on, 5 cm of hysteresis, bounding boxes first.)
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "host/shape_instance.hpp"
+#include "link/link.hpp"
+
+namespace hapticd::sim {
+
+/// Period of the search: at 2 m/s a probe moves 10 mm of the 100 mm at which surfaces are activated.
+constexpr Nanoseconds kSearchPeriod = 5'000'000;
+
+struct ProximitySettings {
+  double activation_radius = 0.10;  ///< [m]
+  double hysteresis = 0.05;         ///< [m]
+};
+
+class Proximity {
+ public:
+  /// [main] @param models in the order of the scene; those that trace themselves are left alone.
+  Proximity(const std::vector<host::ShapeInstance*>& models, const std::vector<hsp_pose>& poses, uint32_t probe_count,
+            const ProximitySettings& settings, link::Link& link);
+
+  /// [sim] One search with the newest state of the arm: starts, offers and stops tracing.
+  void search();
+
+  /// Models that have surfaces to search; 0: nothing to do here at all.
+  size_t modelCount() const { return models_.size(); }
+
+ private:
+  struct Model {
+    uint32_t index;  ///< in the scene
+    const hsp_shape* shape;
+    const hsp_ext_surfaces* surfaces;
+    Eigen::Vector3d box_min, box_max;  ///< model frame; empty when unknown: always searched
+    bool has_box;
+    Eigen::Vector3d position;
+    Eigen::Quaterniond orientation;
+    std::vector<uint8_t> active;  ///< [probe * surface_count + surface]
+    uint32_t active_count = 0;
+  };
+
+  void receiveTransforms();
+  void searchModel(Model& model, uint32_t probe, const Eigen::Vector3d& p_world);
+  void stopLeft(Model& model, uint32_t probe);
+  bool send(const Model& model, link::ActivationRecord::Order order, const hsp_near& near);
+
+  ProximitySettings settings_;
+  link::Link& link_;
+  std::vector<Model> models_;
+  std::vector<uint32_t> of_scene_;  ///< scene index to index in models_
+  std::vector<hsp_near> found_;
+  std::vector<uint8_t> seen_;
+};
+
+}  // namespace hapticd::sim
