@@ -20,19 +20,21 @@ class DeviceInstance {
   DeviceInstance(const DeviceInstance&) = delete;
   DeviceInstance& operator=(const DeviceInstance&) = delete;
 
-  Result<void> open();                          ///< [main] finds the hardware
-  Result<void> start(const hdv_start& how);     ///< [main]
-  void stop();                                  ///< [main] motors off
+  Result<void> open();                       ///< [main] finds the hardware
+  Result<void> start(const hdv_start& how);  ///< [main]
+  void stop();                               ///< [main] motors off
 
-  hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT { return class_->read(device_, now_ns, &sample); }
+  hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
+    return class_->read(device_, now_ns, &sample);
+  }
   hsp_status write(uint64_t now_ns, const hdv_command& command) noexcept HSP_RT {
     return class_->write(device_, now_ns, &command);
   }
 
   const std::string& name() const { return name_; }
   const hdv_class& description() const { return *class_; }
-  const hdv_info& info() const { return info_; }                                ///< valid once open
-  const hdv_ext_kinematics& kinematics() const { return *kinematics_; }         ///< every module has it
+  const hdv_info& info() const { return info_; }                         ///< valid once open
+  const hdv_ext_kinematics& kinematics() const { return *kinematics_; }  ///< every module has it
   const hdv_ext_calibration* calibration() const { return calibration_; }
   hdv_device* handle() const { return device_; }
 

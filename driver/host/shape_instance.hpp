@@ -27,8 +27,8 @@ class ShapeInstance {
 
   const std::string& name() const { return name_; }
   const hsp_class& description() const { return *class_; }
-  const hsp_report& report() const { return report_; }                     ///< valid while active
-  const hsp_ext_surfaces* surfaces() const { return surfaces_; }           ///< nullptr: the shape traces itself
+  const hsp_report& report() const { return report_; }            ///< valid while active
+  const hsp_ext_surfaces* surfaces() const { return surfaces_; }  ///< nullptr: the shape traces itself
   const hsp_ext_geometry* geometry() const { return geometry_; }
   const hsp_ext_energy* energy() const { return energy_; }
   hsp_shape* handle() const { return shape_; }
