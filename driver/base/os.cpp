@@ -40,7 +40,7 @@ bool hasCapability(unsigned bit) {
   return !effective.empty() && ((std::stoull(effective, nullptr, 16) >> bit) & 1u) != 0;
 }
 
-std::string limit(int resource) {
+std::string limitOf(int resource) {
   rlimit value{};
   getrlimit(static_cast<__rlimit_resource>(resource), &value);
   return value.rlim_cur == RLIM_INFINITY ? "unlimited" : std::to_string(value.rlim_cur);
@@ -90,6 +90,12 @@ void calmAllocator() {
 }
 
 std::error_code lockMemory() {
+  // Below this limit mlockall succeeds and the next malloc or thread fails: say so now, with the cause.
+  constexpr rlim_t kEnough = 64u << 20;
+  constexpr unsigned kCapIpcLock = 14;
+  rlimit limit{};
+  getrlimit(RLIMIT_MEMLOCK, &limit);
+  if (limit.rlim_cur < kEnough && !hasCapability(kCapIpcLock)) return error(EPERM);
   return error(mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno);
 }
 
@@ -128,7 +134,7 @@ size_t residentBytes() {
 std::string realTimeRights() {
   constexpr unsigned kCapIpcLock = 14, kCapSysNice = 23;
   std::ostringstream out;
-  out << "RLIMIT_RTPRIO=" << limit(RLIMIT_RTPRIO) << "  RLIMIT_MEMLOCK=" << limit(RLIMIT_MEMLOCK)
+  out << "RLIMIT_RTPRIO=" << limitOf(RLIMIT_RTPRIO) << "  RLIMIT_MEMLOCK=" << limitOf(RLIMIT_MEMLOCK)
       << "  CAP_SYS_NICE=" << (hasCapability(kCapSysNice) ? "yes" : "no")
       << "  CAP_IPC_LOCK=" << (hasCapability(kCapIpcLock) ? "yes" : "no")
       << "  sched_rt_runtime_us=" << firstLine("/proc/sys/kernel/sched_rt_runtime_us")

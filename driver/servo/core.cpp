@@ -190,6 +190,7 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   const bool moves_itself = (model.shape->report().flags & HSP_R_MOVES) != 0;
   if (moves_itself && answers_finite) answers_finite = takePose(model, pose);
   const Trouble trouble = model.guard.judge(model.status, answers_finite);
+  if (trouble == Trouble::kBadStatus && model.failed_status == HSP_OK) model.failed_status = model.status;
   const double gain = model.guard.gain(trouble == Trouble::kNone, dt);
   if (trouble == Trouble::kLost) {
     model.shape->reset();

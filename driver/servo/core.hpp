@@ -39,6 +39,7 @@ struct ModelState {
   bool always = false;           ///< stepped every tick: it traces itself, or moves by itself
   bool moves = false;            ///< its pose may change
   hsp_status status = HSP_OK;
+  hsp_status failed_status = HSP_OK;  ///< the first that was no status of a step
   Guard guard;
   uint64_t step_ns = 0;  ///< CPU time of the last step; 0 when not measured
 };
@@ -72,6 +73,8 @@ class Core {
   bool wantsSearch() const noexcept { return wants_search_; }
   /// Transforms done in the last tick: n inverse ones of probes, m points and m normals.
   uint32_t transforms() const noexcept { return transforms_; }
+  /// Models that have something to do in this tick, in scene order.
+  std::span<const uint32_t> live() const noexcept { return live_; }
   uint32_t probeCount() const noexcept { return probe_count_; }
 
  private:

@@ -1,0 +1,121 @@
+/// `hapticd run`: the daemon itself, in the foreground.
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <optional>
+
+#include "base/os.hpp"
+#include "cli/command.hpp"
+#include "record/picture.hpp"
+#include "record/report.hpp"
+#include "servo/runner.hpp"
+
+namespace hapticd::cli {
+
+namespace {
+
+struct Options {
+  std::string scene, device, report, picture;
+  std::optional<double> duration, rate;
+  std::optional<int> cpu;
+  int priority = os::kServoPriority;
+  bool virtual_time = false, allow_non_rt = false;
+};
+
+servo::Runner* running = nullptr;  ///< for the signal handler; set before it is installed
+
+void onStop(int) {
+  if (running != nullptr) running->stop();
+}
+
+/// A file that cannot be written must be known before the run, not after.
+bool writable(const std::string& file) { return file.empty() || std::ofstream(file, std::ios::app).good(); }
+
+void showStatus(const servo::Runner& runner) {
+  const servo::BlackBoxRow& row = runner.telemetry().newest();
+  const double force = std::hypot(row.force[0], row.force[1], row.force[2]);
+  std::fprintf(stderr, "\r%8.1f s  late %6.1f us  tick %6.1f us  force %6.3f N  depth %7.3f mm ", row.t,
+               static_cast<double>(row.lateness_us), static_cast<double>(row.compute_us), force,
+               static_cast<double>(row.depth_m) * 1e3);
+}
+
+std::vector<record::Sample> samplesOf(const servo::Telemetry& telemetry) {
+  std::vector<record::Sample> samples;
+  for (const servo::BlackBoxRow& row : telemetry.blackBox()) {
+    record::Sample sample;
+    sample.t = row.t;
+    sample.depth_m = static_cast<double>(row.depth_m);
+    sample.force_n = std::hypot(row.force[0], row.force[1], row.force[2]);
+    sample.lateness_us = static_cast<double>(row.lateness_us);
+    sample.compute_us = static_cast<double>(row.compute_us);
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+/// Writes what was asked for and prints the summary; the run's own exit code unless a file fails.
+int conclude(const Options& options, const servo::Runner& runner) {
+  const std::vector<std::string> faults = runner.faults();
+  const record::RunReport report = runner.telemetry().report(faults);
+  std::fputs(record::summary(report).c_str(), stdout);
+  if (!options.report.empty())
+    if (auto written = record::writeJson(report, options.report); !written) return fail(kFailed, written.error());
+  if (!options.picture.empty())
+    if (auto drawn = record::drawRun(report, samplesOf(runner.telemetry()), options.picture); !drawn)
+      return fail(kFailed, drawn.error());
+  return faults.empty() ? kWorked : kFailed;
+}
+
+int run(const Options& options) {
+  for (const std::string& file : {options.report, options.picture})
+    if (!writable(file)) return fail(kBadInput, file + ": cannot be written, expected a file in a folder that you may write to");
+  auto scene = loadSceneOrReport(options.scene, options.device);
+  if (!scene) return kBadInput;
+  if (scene->devices.front().chosen_by_default)
+    std::fprintf(stderr, "no device named: using the simulated one of %s\n", scene->devices.front().file.c_str());
+  servo::RunOptions how;
+  how.rate = options.rate.value_or(scene->servo.rate);
+  how.duration = options.duration;
+  how.virtual_time = options.virtual_time;
+  how.cpu = options.cpu;
+  how.priority = options.priority;
+  how.allow_non_rt = options.allow_non_rt;
+  auto runner = servo::Runner::prepare(*scene, how, logToTerminal);
+  if (!runner) return fail(kFailed, runner.error());
+  running = runner->get();
+  os::onStopSignal(onStop);
+
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  size_t told = 0;
+  auto done = (*runner)->run([&](const servo::Runner& r) {
+    for (; told < r.warnings().size(); ++told) std::fprintf(stderr, "warning: %s\n", r.warnings()[told].c_str());
+    if (terminal) showStatus(r);
+  });
+  if (terminal) std::fputs("\r\033[K", stderr);
+  if (!done) return fail(kFailed, done.error());
+  return conclude(options, **runner);
+}
+
+}  // namespace
+
+void addRun(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("run", "The daemon: runs the servo loop on a scene and its device.");
+  command->add_option("scene", options->scene, "scene file (YAML)")->required();
+  command->add_option("--device", options->device, "device file to use instead of the scene's");
+  command->add_option("--for", options->duration, "seconds to run; without it, until stopped (Ctrl-C)")->check(CLI::Range(1e-3, 1e9));
+  command->add_flag("--virtual-time", options->virtual_time, "as fast as the processor allows, on simulated devices; same input, same bits");
+  command->add_option("--rate", options->rate, "servo rate in Hz instead of the scene's")->check(CLI::Range(1.0, 20000.0));
+  command->add_option("--cpu", options->cpu, "processor to pin the servo thread to")->check(CLI::Range(0, 1023));
+  command->add_option("--priority", options->priority, "SCHED_FIFO priority of the servo thread")->check(CLI::Range(1, 98))->capture_default_str();
+  command->add_option("--report", options->report, "write a report (JSON)");
+  command->add_option("--picture", options->picture, "write a picture of depth, force and lateness over time (SVG)");
+  command->add_flag("--allow-non-rt", options->allow_non_rt, "push with real hardware even without real-time rights");
+  command->footer("Example:\n  hapticd run config/scenes/teapot.yaml --for 10 --report report.json --picture run.svg");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,149 @@
+#include "servo/runner.hpp"
+
+#include <cmath>
+
+#include "base/os.hpp"
+#include "sim/proximity_thread.hpp"
+
+namespace hapticd::servo {
+
+namespace {
+
+constexpr Nanoseconds kStatusPeriod = 200'000'000;
+
+Nanoseconds spinFor(const scene::Servo& servo) {
+  // Spinning buys regularity on bare metal; in a virtual machine the pauses come from outside.
+  constexpr double kBareMetalSpinUs = 50;
+  const double us = servo.spin_us.value_or(os::inVirtualMachine() ? 0 : kBareMetalSpinUs);
+  return static_cast<Nanoseconds>(us * 1e3);
+}
+
+std::string noFifo(int priority, const std::error_code& code, bool hardware) {
+  return "cannot run the servo thread at FIFO " + std::to_string(priority) + ": " + code.message() + "\n  " +
+         os::realTimeRights() + "\n  " +
+         (hardware ? "without it the loop misses deadlines and the hand feels them\n"
+                   : "the run goes on at normal priority: expect late ticks when the machine is busy\n") +
+         "  fix: sudo usermod -aG haptic $USER, log in again (limits: rtprio 80, memlock 524288)";
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const RunOptions& options,
+                                                const host::Services::Log& log) {
+  std::unique_ptr<Runner> runner(new Runner(scene, options));
+  WorldOptions world_options;
+  world_options.rate = options.rate;
+  world_options.probe_count = static_cast<uint32_t>(scene.devices.size());
+  world_options.measure = true;
+  if (options.virtual_time) runner->scene_.servo.budget_us = 0;
+  auto world = World::build(runner->scene_, world_options, log);
+  if (!world) return Error{world.error()};
+  runner->world_ = std::move(*world);
+  if (auto opened = runner->openArms(log); !opened) return Error{opened.error()};
+  runner->telemetry_ = std::make_unique<Telemetry>(runner->scene_, options.rate);
+
+  LoopSettings settings;
+  settings.period_ns = static_cast<Nanoseconds>(std::llround(1e9 / options.rate));
+  settings.ticks = options.duration ? static_cast<uint64_t>(std::llround(*options.duration * options.rate)) : 0;
+  settings.lockstep = options.virtual_time;
+  if (options.virtual_time) {
+    runner->clock_ = std::make_unique<VirtualClock>();
+  } else {
+    runner->clock_ = std::make_unique<RealClock>(spinFor(scene.servo));
+  }
+  runner->loop_ =
+      std::make_unique<Loop>(*runner->world_, runner->arms_, *runner->clock_, settings, *runner->telemetry_);
+  return runner;
+}
+
+Result<void> Runner::openArms(const host::Services::Log& log) {
+  for (const scene::Device& device : scene_.devices) {
+    auto arm = Arm::open(device, scene_.servo, {options_.rate, world_->needsVelocity()}, log);
+    if (!arm) return Error{arm.error()};
+    arms_.push_back(std::move(*arm));
+  }
+  return {};
+}
+
+Result<void> Runner::run(const std::function<void(const Runner&)>& every) {
+  const Nanoseconds now = clock_->now();
+  for (const auto& arm : arms_)
+    if (auto started = arm->start(now, scene_.servo.gravity); !started) return started;
+  Result<void> done;
+  if (options_.virtual_time) {
+    loop_->run();
+  } else {
+    done = runReal(every);
+  }
+  for (const auto& arm : arms_) arm->stop();
+  return done;
+}
+
+Result<void> Runner::runReal(const std::function<void(const Runner&)>& every) {
+  sim::ProximityThread proximity(world_->proximity(), [this] { return loop_->wantsSearch(); });
+  if (world_->proximity().modelCount() > 0)
+    if (const auto code = proximity.start()) return Error{"cannot start the proximity thread: " + code.message()};
+  lockMemory();
+  const os::DmaLatencyHold awake;
+  std::atomic<bool> ready{false};
+  os::Thread servo;
+  const auto code = servo.start("hapticd-servo", [this, &ready] {
+    host::Services::markServoThread();
+    enterRealTime();
+    os::prefaultStack();
+    ready = true;
+    if (warnings_.empty() || onlySimulated() || options_.allow_non_rt) loop_->run();
+  });
+  if (code) return Error{"cannot start the servo thread: " + code.message() + "\n  " + os::realTimeRights()};
+  RealClock clock(0);
+  while (!loop_->finished()) {
+    if (ready && !warnings_.empty() && !onlySimulated() && !options_.allow_non_rt) break;
+    every(*this);
+    clock.waitUntil(clock.now() + kStatusPeriod);
+  }
+  servo.join();
+  proximity.stop();
+  if (!loop_->finished()) return Error{warnings_.back() + "\n  forces stay off (--allow-non-rt runs all the same)"};
+  return {};
+}
+
+void Runner::lockMemory() {
+  os::calmAllocator();
+  if (const auto code = os::lockMemory())
+    warnings_.push_back("cannot lock memory: " + code.message() + "\n  " + os::realTimeRights() +
+                        "\n  a page fault in a tick costs up to milliseconds\n"
+                        "  fix: raise memlock to 524288 for the group haptic in /etc/security/limits.d");
+}
+
+void Runner::enterRealTime() {
+  if (options_.cpu)
+    if (const auto code = os::pinTo(*options_.cpu))
+      warnings_.push_back("cannot pin the servo thread to CPU " + std::to_string(*options_.cpu) + ": " + code.message());
+  if (const auto code = os::setFifo(options_.priority))
+    warnings_.push_back(noFifo(options_.priority, code, !onlySimulated()));
+}
+
+bool Runner::onlySimulated() const {
+  for (const auto& arm : arms_)
+    if (!arm->simulated()) return false;
+  return true;
+}
+
+std::vector<std::string> Runner::faults() const {
+  std::vector<std::string> faults;
+  for (size_t i = 0; i < arms_.size(); ++i) {
+    const Fault fault = arms_[i]->limiter().fault();
+    if (fault != Fault::kNone && fault != Fault::kStopped)
+      faults.push_back("device " + scene_.devices[i].name + ": " + describe(fault));
+  }
+  for (const ModelState& model : world_->core().models()) {
+    if (model.guard.trouble() == Trouble::kNotFinite)
+      faults.push_back("model " + model.shape->name() + ": its plugin answered a force, pose or foot that is not a number; it was silenced");
+    if (model.guard.trouble() == Trouble::kBadStatus)
+      faults.push_back("model " + model.shape->name() + ": its plugin answered status " + std::to_string(model.failed_status) +
+                       ", which a step may not answer; it was silenced");
+  }
+  return faults;
+}
+
+}  // namespace hapticd::servo

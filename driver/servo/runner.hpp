@@ -1,0 +1,65 @@
+/// A whole run of the daemon: threads, real-time rights, the loop, and an orderly end. Called by `hapticd run`.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "scene/scene.hpp"
+#include "servo/loop.hpp"
+
+namespace hapticd::servo {
+
+struct RunOptions {
+  double rate = 1000;               ///< [Hz]
+  std::optional<double> duration;   ///< [s] none: until stopped
+  bool virtual_time = false;
+  std::optional<int> cpu;           ///< pins the servo thread
+  int priority = os::kServoPriority;
+  bool allow_non_rt = false;        ///< run real hardware without real-time rights all the same
+};
+
+class Runner {
+ public:
+  /// [main] Loads plugins and devices. Errors are for the user.
+  static Result<std::unique_ptr<Runner>> prepare(const scene::Scene& scene, const RunOptions& options,
+                                                 const host::Services::Log& log);
+
+  /// [main] Runs to the end; `every` is called about five times a second from this thread.
+  Result<void> run(const std::function<void(const Runner&)>& every);
+
+  /// [any] Asks for an end: forces ramp to zero first. Async-signal-safe.
+  void stop() noexcept { loop_->stop(); }
+
+  const Telemetry& telemetry() const { return *telemetry_; }
+  const Loop& loop() const { return *loop_; }
+  const std::vector<std::unique_ptr<Arm>>& arms() const { return arms_; }
+  const scene::Scene& scene() const { return scene_; }
+
+  /// Real time could not be had in full: four-part messages for the user.
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+  /// [main] After the run: what ended it early or took the force away, in words.
+  std::vector<std::string> faults() const;
+
+ private:
+  Runner(const scene::Scene& scene, const RunOptions& options) : scene_(scene), options_(options) {}
+  Result<void> openArms(const host::Services::Log& log);
+  Result<void> runReal(const std::function<void(const Runner&)>& every);
+  void lockMemory();
+  void enterRealTime();
+  bool onlySimulated() const;
+
+  scene::Scene scene_;
+  RunOptions options_;
+  std::unique_ptr<World> world_;
+  std::vector<std::unique_ptr<Arm>> arms_;
+  std::unique_ptr<Telemetry> telemetry_;
+  std::unique_ptr<Clock> clock_;
+  std::unique_ptr<Loop> loop_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace hapticd::servo

@@ -1,0 +1,71 @@
+#include "servo/telemetry.hpp"
+
+#include <cmath>
+
+namespace hapticd::servo {
+
+Telemetry::Telemetry(const scene::Scene& scene, double rate)
+    : rate_(rate), models_(scene.models.size()), rows_(static_cast<size_t>(std::ceil(kBlackBoxSeconds * rate))) {
+  for (const scene::Model& model : scene.models) {
+    names_.push_back(model.name);
+    plugins_.push_back(model.plugin);
+  }
+}
+
+void Telemetry::tick(double t, double dt, Nanoseconds late, Nanoseconds spent, const Core& core,
+                     const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+  BlackBoxRow row;
+  row.t = t;
+  row.lateness_us = static_cast<float>(static_cast<double>(late) * 1e-3);
+  row.compute_us = static_cast<float>(static_cast<double>(spent) * 1e-3);
+  lateness_us_.add(row.lateness_us);
+  compute_us_.add(row.compute_us);
+  bookModels(dt, core, row);
+  if (!arms.empty()) {
+    const Arm& arm = *arms.front();
+    for (int i = 0; i < 3; ++i) {
+      row.position[static_cast<size_t>(i)] = static_cast<float>(arm.probe().position[i]);
+      row.force[static_cast<size_t>(i)] = static_cast<float>(arm.force()[i]);
+    }
+    row.fault = static_cast<uint32_t>(arm.limiter().fault());
+  }
+  rows_[next_] = row;
+  next_ = next_ + 1 == rows_.size() ? 0 : next_ + 1;
+  if (row_count_ < rows_.size()) ++row_count_;
+}
+
+void Telemetry::bookModels(double dt, const Core& core, BlackBoxRow& row) noexcept HSP_RT {
+  for (const uint32_t index : core.live()) {
+    const ModelState& model = core.models()[index];
+    if (model.status < row.status) row.status = model.status;
+    double depth = -HUGE_VAL, force = 0;
+    for (uint32_t probe = 0; probe < core.probeCount(); ++probe) {
+      const Contact& contact = core.contact(index, probe);
+      if (!contact.traced) continue;
+      depth = std::max(depth, contact.world.depth_m);
+      force = std::max(force, Eigen::Map<const Vector3d>(contact.world.force).norm());
+    }
+    models_[index].add(depth > 0, depth, force, dt, model.step_ns);
+    if (depth > -HUGE_VAL && (row.model == UINT32_MAX || depth > row.depth_m)) {
+      row.depth_m = static_cast<float>(depth);
+      row.model = index;
+    }
+  }
+}
+
+void Telemetry::finish(uint64_t ticks, Nanoseconds elapsed, long page_faults, uint64_t allocations) noexcept {
+  ticks_ = ticks;
+  elapsed_ = elapsed;
+  page_faults_ = page_faults;
+  allocations_ = allocations;
+}
+
+std::vector<BlackBoxRow> Telemetry::blackBox() const {
+  std::vector<BlackBoxRow> ordered;
+  ordered.reserve(row_count_);
+  const size_t oldest = row_count_ < rows_.size() ? 0 : next_;
+  for (size_t i = 0; i < row_count_; ++i) ordered.push_back(rows_[(oldest + i) % rows_.size()]);
+  return ordered;
+}
+
+}  // namespace hapticd::servo

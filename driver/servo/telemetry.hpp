@@ -1,0 +1,73 @@
+/// The books of a run, kept in the servo thread without allocation: histograms of time, contact statistics of every
+/// model, and the black box of the last ten seconds.
+#pragma once
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/clock.hpp"
+#include "record/contact_statistics.hpp"
+#include "record/histogram.hpp"
+#include "record/report.hpp"
+#include "servo/arm.hpp"
+#include "servo/core.hpp"
+
+namespace hapticd::servo {
+
+/// One tick in the black box.
+struct BlackBoxRow {
+  double t = 0;                          ///< [s] since the start
+  float lateness_us = 0, compute_us = 0;
+  std::array<float, 3> position{};       ///< [m] first arm, world
+  std::array<float, 3> force{};          ///< [N] first arm, world, as sent
+  float depth_m = 0;                     ///< deepest contact; negative: distance of the nearest foot; 0: nothing traced
+  uint32_t model = UINT32_MAX;           ///< of that foot
+  int32_t status = 0;                    ///< worst status of the tick
+  uint32_t fault = 0;                    ///< servo::Fault of the first arm
+};
+
+class Telemetry {
+ public:
+  static constexpr double kBlackBoxSeconds = 10;
+
+  /// [main] Allocates and touches everything.
+  Telemetry(const scene::Scene& scene, double rate);
+
+  /// [rt] Books one tick.
+  void tick(double t, double dt, Nanoseconds late, Nanoseconds spent, const Core& core,
+            const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+
+  /// [rt] `missed` whole periods were skipped.
+  void overrun(uint64_t missed) noexcept HSP_RT {
+    ++overruns_;
+    missed_ += missed;
+  }
+
+  /// [rt] The end of the run, with what was counted after the warm-up.
+  void finish(uint64_t ticks, Nanoseconds elapsed, long page_faults, uint64_t allocations) noexcept;
+
+  /// [main] Everything as the report that --report writes. @param faults words for what went wrong
+  record::RunReport report(const std::vector<std::string>& faults) const;
+
+  /// [main] The black box, oldest row first.
+  std::vector<BlackBoxRow> blackBox() const;
+
+  /// [any] Newest row, for the status line; may be torn, so for eyes only.
+  const BlackBoxRow& newest() const noexcept { return rows_[(next_ + rows_.size() - 1) % rows_.size()]; }
+
+ private:
+  void bookModels(double dt, const Core& core, BlackBoxRow& row) noexcept HSP_RT;
+
+  std::vector<std::string> names_, plugins_;
+  double rate_;
+  record::Histogram lateness_us_, compute_us_;
+  std::vector<record::ContactStatistics> models_;
+  std::vector<BlackBoxRow> rows_;
+  size_t next_ = 0, row_count_ = 0;
+  uint64_t ticks_ = 0, overruns_ = 0, missed_ = 0, allocations_ = 0;
+  long page_faults_ = 0;
+  Nanoseconds elapsed_ = 0;
+};
+
+}  // namespace hapticd::servo
