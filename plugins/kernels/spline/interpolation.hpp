@@ -1,0 +1,66 @@
+/// Splines through given points, in any number of dimensions: positions alone, or with radii and material as well.
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+namespace hapticd::spline {
+
+/// A spline curve in any dimension: the control points are the rows of `control`.
+struct CurveFit {
+  int degree = 1;
+  std::vector<double> parameters;  ///< of the data points, 0 to 1
+  std::vector<double> knots;       ///< count + degree + 1
+  Eigen::MatrixXd control;
+};
+
+/// A tensor-product spline in any dimension: control point (i, j) is row i * count[1] + j.
+struct GridFit {
+  std::array<int, 2> degree{1, 1};
+  std::array<int, 2> count{0, 0};
+  std::array<std::vector<double>, 2> parameters, knots;
+  Eigen::MatrixXd control;
+};
+
+/// [main] Chord-length parameters (Piegl & Tiller 9.5), 0 to 1. Distances are those of the first `chord_dimensions`
+/// columns, so that radii or stiffnesses beside positions do not stretch the parameters; 0: all columns.
+/// @throws std::invalid_argument if two neighbours coincide or a number is not finite.
+std::vector<double> chordParameters(const Eigen::MatrixXd& data, int chord_dimensions = 3);
+
+/// [main] Knots from averaged parameters (Piegl & Tiller 9.8), clamped: with them interpolation has one solution.
+/// @throws std::invalid_argument if there are fewer than degree + 1 parameters or they do not increase.
+std::vector<double> averagedKnots(const std::vector<double>& parameters, int degree);
+
+/// The collocation matrix of a clamped spline, factored once. It is banded and totally positive, so elimination needs
+/// no pivots and stays in the band (de Boor & Pinkus 1977): n * degree^2 steps, n * degree memory.
+class Collocation {
+ public:
+  /// [main] @throws std::invalid_argument if parameters and knots leave a control point undetermined
+  /// (Schoenberg-Whitney condition).
+  Collocation(const std::vector<double>& parameters, const std::vector<double>& knots, int degree);
+
+  /// [any] Replaces data (a row a point) by control points. Allocates nothing.
+  void solve(Eigen::Ref<Eigen::MatrixXd> data) const noexcept;
+  int size() const noexcept { return static_cast<int>(band_.rows()); }
+
+ private:
+  double& at(int row, int column) noexcept { return band_(row, column - row + degree_); }
+  double at(int row, int column) const noexcept { return band_(row, column - row + degree_); }
+  void factor();
+
+  int degree_;
+  Eigen::MatrixXd band_;  ///< row i holds columns i - degree .. i + degree
+};
+
+/// [main] The spline of `degree` through all rows of `data`.
+/// @throws std::invalid_argument: too few points for the degree, coinciding neighbours, numbers that are not finite.
+CurveFit interpolateCurve(const Eigen::MatrixXd& data, int degree, int chord_dimensions = 3);
+
+/// [main] The tensor-product spline through a grid of data, row i * count[1] + j (Piegl & Tiller A9.4). Parameters are
+/// chord lengths averaged over all rows and columns of the grid; those without length (collapsed to a point) are left
+/// out of the average.
+/// @throws std::invalid_argument as interpolateCurve() does.
+GridFit interpolateGrid(const Eigen::MatrixXd& data, const std::array<int, 2>& count, const std::array<int, 2>& degree,
+                        int chord_dimensions = 3);
+
+}  // namespace hapticd::spline
