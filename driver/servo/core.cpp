@@ -191,6 +191,7 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   if (moves_itself && answers_finite) answers_finite = takePose(model, pose);
   const Trouble trouble = model.guard.judge(model.status, answers_finite);
   if (trouble == Trouble::kBadStatus && model.failed_status == HSP_OK) model.failed_status = model.status;
+  const double gain_before = model.guard.gain();
   const double gain = model.guard.gain(trouble == Trouble::kNone, dt);
   if (trouble == Trouble::kLost) {
     model.shape->reset();
@@ -202,8 +203,9 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
     } else {  // fade out along the last good force
       Contact& last = contacts_[size_t{index} * probe_count_ + i];
       last.traced = false;
-      Map(last.world.force) *= gain;
-      Map(last.world.torque) *= gain;
+      const double fade = gain_before > 0 ? gain / gain_before : 0;
+      Map(last.world.force) *= fade;
+      Map(last.world.torque) *= fade;
     }
     Contact& contact = contacts_[size_t{index} * probe_count_ + i];
     if (!probes[i].valid) {

@@ -38,6 +38,8 @@ class Guard {
     return gain_;
   }
 
+  /// The factor of the last tick.
+  double gain() const noexcept { return gain_; }
   bool quarantined() const noexcept { return trouble_ == Trouble::kNotFinite || trouble_ == Trouble::kBadStatus; }
   Trouble trouble() const noexcept { return trouble_; }  ///< the gravest so far
 

@@ -40,6 +40,8 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
   if (!world) return Error{world.error()};
   runner->world_ = std::move(*world);
   if (auto opened = runner->openArms(log); !opened) return Error{opened.error()};
+  if (options.virtual_time && !runner->onlySimulated())
+    return Error{"--virtual-time runs faster than any clock, and the scene names real hardware; expected simulated devices only"};
   runner->telemetry_ = std::make_unique<Telemetry>(runner->scene_, options.rate);
 
   LoopSettings settings;

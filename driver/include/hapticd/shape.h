@@ -53,7 +53,10 @@ typedef struct hsp_step {
   const hsp_change *changes;            /* live parameter changes since the last step */
   uint32_t change_count, viz_capacity;  /* vertices that viz_xyz holds */
   float *viz_xyz;                       /* non-NULL about 60 times a second: write the current vertices, 3 floats each */
-  hsp_pose *pose;                       /* in: where the model is now. out, only if the report said HSP_R_MOVES: after dt */
+  /* in: where the model was after the last step; the probes are given in that frame. A shape that said HSP_R_MOVES
+   * first moves by dt (pushed by the contacts of the last step), writes the pose and velocities it has then, and answers
+   * the contacts in the frame of that new pose: so that point, depth and pose of one tick belong together. */
+  hsp_pose *pose;
 } hsp_step;
 
 typedef struct hsp_activation { /* host -> plugin */

@@ -1,0 +1,77 @@
+/// Small shapes with known answers, and shapes that misbehave, for the tests of the servo.
+#include <cmath>
+#include <limits>
+
+#include "hapticd/shape.hpp"
+
+namespace {
+
+using hapticd::Fields;
+
+/// Solid half space y < 0 of the model frame: depth is -y, force stiffness * depth + damping * closing speed.
+struct Wall : hapticd::Shape {
+  double stiffness, damping;
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.wall", "wall", "1.0.0", "MIT", "A wall."};
+  static constexpr auto fields() {
+    using F = Fields<Wall>;
+    return std::array{F::real("stiffness", &Wall::stiffness, "N/m", 0, 1e6, 1000, "Stiffness.", HSP_P_LIVE),
+                      F::real("damping", &Wall::damping, "N s/m", 0, 1e3, 0, "Damping.")};
+  }
+  void activate(const hsp_activation&, hsp_report& report) {
+    report.max_stiffness = stiffness;
+    report.flags = damping > 0 ? static_cast<uint32_t>(HSP_R_VELOCITY) : 0u;
+  }
+  hsp_status touch(const hsp_probe& in, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
+    out.flags = HSP_OUT_TRACED;
+    out.depth_m = -in.position[1];
+    out.point[0] = in.position[0], out.point[2] = in.position[2];
+    out.normal[1] = 1;
+    if (out.depth_m <= 0 || (in.flags & HSP_IN_INVALID) != 0) return HSP_OK;
+    out.flags |= HSP_OUT_CONTACT;
+    out.force[1] = std::fmax(0.0, stiffness * out.depth_m - damping * in.velocity[1]);
+    return HSP_OK;
+  }
+};
+
+/// Pushes with 1 N along y until tick `after`, then answers as `how` says for `times` ticks.
+struct Misbehaving : hapticd::Shape {
+  int how, after, times;
+  int ticks = 0;
+  static constexpr const char* kHows[] = {"not_finite", "bad_status", "lost", "degraded"};
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.misbehaving", "misbehaving", "1.0.0", "MIT", "Misbehaves."};
+  static constexpr auto fields() {
+    using F = Fields<Misbehaving>;
+    return std::array{F::choice("how", &Misbehaving::how, kHows, 0, "What goes wrong."),
+                      F::integer("after", &Misbehaving::after, "", 0, 1000000, 10, "Good ticks before."),
+                      F::integer("times", &Misbehaving::times, "", 0, 1000000, 1, "Bad ticks.")};
+  }
+  void activate(const hsp_activation&, hsp_report&) {}
+  hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
+    out.force[1] = 1;
+    const bool bad = ticks >= after && ticks < after + times;
+    ++ticks;
+    if (!bad) return HSP_OK;
+    if (how == 0) out.force[0] = std::numeric_limits<double>::quiet_NaN();
+    return how == 1 ? -77 : how == 2 ? HSP_E_NUMERIC : how == 3 ? HSP_DEGRADED : HSP_OK;
+  }
+};
+
+/// A wall that falls along -x at 1 m/s, for poses and relative velocity.
+struct Sliding : hapticd::Shape {
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.sliding", "sliding", "1.0.0", "MIT", "Moves.", HSP_C_MOVES};
+  int unused;
+  static constexpr auto fields() {
+    return std::array{Fields<Sliding>::integer("unused", &Sliding::unused, "", 0, 1, 0, "Nothing.")};
+  }
+  void activate(const hsp_activation&, hsp_report& report) { report.flags = HSP_R_MOVES | HSP_R_VELOCITY; }
+  hsp_status touch(const hsp_probe& in, const hsp_step& step, hsp_contact& out) noexcept HSP_RT {
+    step.pose->position[0] -= step.dt_s;
+    step.pose->linear[0] = -1;
+    out.force[0] = in.velocity[0];  // what the shape was told, to be read by the test
+    return HSP_OK;
+  }
+};
+
+}  // namespace
+
+HAPTICD_SHAPES(Wall, Misbehaving, Sliding)
