@@ -1,0 +1,144 @@
+/// `hapticd explain`: what a scene makes the daemon load, start and compute, why, and what it costs.
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/clock.hpp"
+#include "base/os.hpp"
+#include "cli/command.hpp"
+#include "servo/lockstep.hpp"
+#include "servo/world.hpp"
+
+namespace hapticd::cli {
+
+namespace {
+
+/// One line: what, and the reason for it or against it.
+void say(const char* what, const std::string& why) { std::printf("  %-22s %s\n", what, why.c_str()); }
+
+std::string where(const scene::Place& place) {
+  return place.line > 0 ? place.file + ":" + std::to_string(place.line) : place.file;
+}
+
+std::string bytes(uint64_t count) {
+  char text[32];
+  if (count < 10240) {
+    std::snprintf(text, sizeof text, "%llu B", static_cast<unsigned long long>(count));
+  } else {
+    std::snprintf(text, sizeof text, "%.1f kB", static_cast<double>(count) / 1024);
+  }
+  return text;
+}
+
+/// Median CPU time of one step of each model [ns], with the probe resting at the middle of the model.
+std::vector<uint64_t> measureSteps(servo::World& world, const scene::Scene& scene) {
+  constexpr int kTicks = 300;
+  const double dt = 1 / scene.servo.rate;
+  std::vector<uint64_t> medians;
+  for (uint32_t index = 0; index < scene.models.size(); ++index) {
+    const host::ShapeInstance& shape = *world.shapes()[index];
+    servo::Probe probe;
+    probe.valid = true;
+    Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = low;
+    if (shape.geometry() != nullptr) shape.geometry()->bounds(shape.handle(), low.data(), high.data());
+    // Just outside the face of the box that a hand meets first.
+    const Eigen::Vector3d front(0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), high.z() + 1e-3);
+    probe.position = scene.models[index].pose.orientation * front + scene.models[index].pose.position;
+    servo::Lockstep lockstep(world);
+    std::vector<uint64_t> costs;
+    for (int i = 0; i < kTicks; ++i) {
+      world.core().publish(i * dt, {&probe, 1});
+      lockstep.before(i * dt);
+      world.core().tick(i * dt, i == 0 ? 0 : dt, {&probe, 1});
+      costs.push_back(world.core().models()[index].step_ns);
+    }
+    std::nth_element(costs.begin(), costs.begin() + kTicks / 2, costs.end());
+    medians.push_back(costs[kTicks / 2]);
+  }
+  return medians;
+}
+
+void explainModels(const scene::Scene& scene, servo::World& world, const std::vector<uint64_t>& costs) {
+  std::printf("models\n");
+  for (size_t i = 0; i < scene.models.size(); ++i) {
+    const scene::Model& model = scene.models[i];
+    const host::ShapeInstance& shape = *world.shapes()[i];
+    const hsp_report& report = shape.report();
+    std::printf("  %s  (%s, %s)\n", model.name.c_str(), model.plugin.c_str(), where(model.place).c_str());
+    const std::string surfaces =
+        shape.surfaces() != nullptr
+            ? std::to_string(shape.surfaces()->surface_count) + " surfaces, traced while within the activation radius"
+            : "traces itself, every tick";
+    say("  surfaces", surfaces);
+    say("  motion", (report.flags & HSP_R_MOVES) != 0 ? "moves by itself: integrated every tick"
+                    : model.kinematic                 ? "follows " + std::to_string(model.path.size()) + " points of a path"
+                                                      : "none: no integrator, its pose is fixed");
+    const bool identity = model.pose.position.isZero(0) && model.pose.orientation.vec().isZero(0);
+    const bool still = (report.flags & HSP_R_MOVES) == 0 && !model.kinematic;
+    say("  transform", identity && still ? "none: the model stands at the world's origin"
+                                         : "probe in, foot point and normal out, each tick that it is traced");
+    say("  velocity", (report.flags & HSP_R_VELOCITY) != 0 ? "used (damping, viscosity or friction)" : "not used");
+    say("  memory", bytes(report.locked_bytes));
+    say("  cost", std::to_string(costs[i]) + " ns a tick near the surface (median of 300)");
+  }
+}
+
+void explainServo(const scene::Scene& scene, const servo::World& world) {
+  std::printf("servo\n");
+  say("rate", std::to_string(static_cast<int>(scene.servo.rate)) + " Hz");
+  say("velocity estimator", world.needsVelocity()
+                                ? scene.servo.velocity.estimator + " (" + std::to_string(scene.servo.velocity.parameter) +
+                                      "): a model uses velocity"
+                                : "none: nothing in the scene uses velocity");
+}
+
+void explainSimulation(servo::World& world) {
+  std::printf("simulation side\n");
+  const size_t models = world.proximity().modelCount();
+  say("proximity search", models == 0 ? "none: no model has surfaces to search"
+                                      : "every 5 ms over " + std::to_string(models) + " models, on a thread of its own");
+}
+
+void explainFiles(const scene::Scene& scene) {
+  std::set<std::string> libraries;
+  for (const scene::Model& model : scene.models) libraries.insert(model.library.string());
+  for (const scene::Device& device : scene.devices) libraries.insert(device.library.string());
+  std::printf("libraries\n");
+  for (const std::string& library : libraries) std::printf("  %s\n", library.c_str());
+  std::printf("devices\n");
+  for (const scene::Device& device : scene.devices) {
+    const std::string reason = device.chosen_by_default ? "the scene names none" : where(device.place);
+    std::printf("  %s  (%s, %s)\n", device.name.c_str(), device.module.c_str(), reason.c_str());
+  }
+}
+
+int explain(const std::string& file) {
+  auto scene = loadSceneOrReport(file);
+  if (!scene) return kBadInput;
+  auto world = servo::World::build(*scene, {scene->servo.rate, 1, true}, logToTerminal);
+  if (!world) return fail(kFailed, world.error());
+  const std::vector<uint64_t> costs = measureSteps(**world, *scene);
+  explainServo(*scene, **world);
+  explainSimulation(**world);
+  explainModels(*scene, **world, costs);
+  explainFiles(*scene);
+  std::printf("memory\n");
+  say("models", bytes((*world)->lockedBytes()));
+  say("process now", bytes(os::residentBytes()));
+  return kWorked;
+}
+
+}  // namespace
+
+void addExplain(CLI::App& app, int& exit_code) {
+  auto file = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("explain", "What a scene makes the daemon load, start and compute, why, and its cost.");
+  command->add_option("scene", *file, "scene file (YAML)")->required();
+  command->footer("Example:\n  hapticd explain config/scenes/teapot.yaml");
+  command->callback([file, &exit_code] { exit_code = explain(*file); });
+}
+
+}  // namespace hapticd::cli
