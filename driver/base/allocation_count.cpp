@@ -9,7 +9,9 @@ __thread uint64_t allocations __attribute__((tls_model("initial-exec"))) = 0;
 }  // namespace
 
 namespace hapticd {
-uint64_t allocationsOfThread() noexcept { return allocations; }
+uint64_t allocationsOfThread() noexcept {
+  return allocations;
+}
 }  // namespace hapticd
 
 #if defined(__GLIBC__) && !defined(HAPTICD_SANITIZED)

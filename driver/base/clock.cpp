@@ -11,12 +11,15 @@ Nanoseconds monotonicNow() noexcept HSP_RT {
   return static_cast<Nanoseconds>(ts.tv_sec) * kNanosecondsPerSecond + static_cast<Nanoseconds>(ts.tv_nsec);
 }
 
-Nanoseconds RealClock::now() noexcept HSP_RT { return monotonicNow(); }
+Nanoseconds RealClock::now() noexcept HSP_RT {
+  return monotonicNow();
+}
 
 Nanoseconds RealClock::waitUntil(Nanoseconds deadline) noexcept HSP_RT {
   if (deadline > spin_) {
     const Nanoseconds wake = deadline - spin_;
-    const timespec ts{static_cast<time_t>(wake / kNanosecondsPerSecond), static_cast<long>(wake % kNanosecondsPerSecond)};
+    const timespec ts{static_cast<time_t>(wake / kNanosecondsPerSecond),
+                      static_cast<long>(wake % kNanosecondsPerSecond)};
     // clock_nanosleep returns its error; only an interruption by a signal is worth another try.
     while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &ts, nullptr) == EINTR) {
     }

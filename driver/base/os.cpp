@@ -18,7 +18,9 @@ namespace hapticd::os {
 
 namespace {
 
-std::error_code error(int code) { return {code, std::generic_category()}; }
+std::error_code error(int code) {
+  return {code, std::generic_category()};
+}
 
 std::string firstLine(const char* file) {
   std::ifstream in(file);
@@ -118,6 +120,10 @@ DmaLatencyHold::~DmaLatencyHold() {
   if (fd_ >= 0) close(fd_);
 }
 
+void unlockMemory() {
+  munlockall();
+}
+
 long pageFaultsOfThread() noexcept {
   rusage usage{};
   getrusage(RUSAGE_THREAD, &usage);
@@ -150,7 +156,7 @@ bool inVirtualMachine() {
 }
 
 void onStopSignal(void (*handler)(int)) {
-  struct sigaction action{};
+  struct sigaction action {};
   action.sa_handler = handler;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);

@@ -1,14 +1,14 @@
-/// Everything that the daemon asks of the operating system for real time. The only place that calls pthread_*, mlockall,
-/// getrusage and their kind; pthread calls return their error and never set errno.
+/// Everything that the daemon asks of the operating system for real time. The only place that calls pthread_*,
+/// mlockall, getrusage and their kind; pthread calls return their error and never set errno.
 #pragma once
+#include <pthread.h>
+
 #include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
 #include <system_error>
 #include <thread>
-
-#include <pthread.h>
 
 namespace hapticd::os {
 
@@ -34,6 +34,9 @@ class Thread {
   std::function<void()> body_;
   bool started_ = false;
 };
+
+/// Undoes lockMemory.
+void unlockMemory();
 
 /// Makes the calling thread SCHED_FIFO at `priority`.
 std::error_code setFifo(int priority);

@@ -16,9 +16,7 @@ class TripleBuffer {
   T& back() noexcept HSP_RT { return slots_[back_].value; }
 
   /// [rt] Makes the back slot the newest value.
-  void publish() noexcept HSP_RT {
-    back_ = middle_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex;
-  }
+  void publish() noexcept HSP_RT { back_ = middle_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex; }
 
   /// [rt] True if a newer value than the last one has come; front() is it then.
   bool update() noexcept HSP_RT {

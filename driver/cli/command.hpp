@@ -25,6 +25,7 @@ std::optional<scene::Scene> loadSceneOrReport(const std::string& file, const std
 /// Subcommands, a file each. The callback of the chosen one sets the exit code.
 void addCheck(CLI::App& app, int& exit_code);
 void addDevice(CLI::App& app, int& exit_code);
+void addDoctor(CLI::App& app, int& exit_code);
 void addExplain(CLI::App& app, int& exit_code);
 void addImport(CLI::App& app, int& exit_code);
 void addPlugin(CLI::App& app, int& exit_code);

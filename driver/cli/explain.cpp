@@ -17,7 +17,9 @@ namespace hapticd::cli {
 namespace {
 
 /// One line: what, and the reason for it or against it.
-void say(const char* what, const std::string& why) { std::printf("  %-22s %s\n", what, why.c_str()); }
+void say(const char* what, const std::string& why) {
+  std::printf("  %-22s %s\n", what, why.c_str());
+}
 
 std::string where(const scene::Place& place) {
   return place.line > 0 ? place.file + ":" + std::to_string(place.line) : place.file;
@@ -74,8 +76,8 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
             : "traces itself, every tick";
     say("  surfaces", surfaces);
     say("  motion", (report.flags & HSP_R_MOVES) != 0 ? "moves by itself: integrated every tick"
-                    : model.kinematic                 ? "follows " + std::to_string(model.path.size()) + " points of a path"
-                                                      : "none: no integrator, its pose is fixed");
+                    : model.kinematic ? "follows " + std::to_string(model.path.size()) + " points of a path"
+                                      : "none: no integrator, its pose is fixed");
     const bool identity = model.pose.position.isZero(0) && model.pose.orientation.vec().isZero(0);
     const bool still = (report.flags & HSP_R_MOVES) == 0 && !model.kinematic;
     say("  transform", identity && still ? "none: the model stands at the world's origin"
@@ -90,16 +92,17 @@ void explainServo(const scene::Scene& scene, const servo::World& world) {
   std::printf("servo\n");
   say("rate", std::to_string(static_cast<int>(scene.servo.rate)) + " Hz");
   say("velocity estimator", world.needsVelocity()
-                                ? scene.servo.velocity.estimator + " (" + std::to_string(scene.servo.velocity.parameter) +
-                                      "): a model uses velocity"
+                                ? scene.servo.velocity.estimator + " (" +
+                                      std::to_string(scene.servo.velocity.parameter) + "): a model uses velocity"
                                 : "none: nothing in the scene uses velocity");
 }
 
 void explainSimulation(servo::World& world) {
   std::printf("simulation side\n");
   const size_t models = world.proximity().modelCount();
-  say("proximity search", models == 0 ? "none: no model has surfaces to search"
-                                      : "every 5 ms over " + std::to_string(models) + " models, on a thread of its own");
+  say("proximity search", models == 0
+                              ? "none: no model has surfaces to search"
+                              : "every 5 ms over " + std::to_string(models) + " models, on a thread of its own");
 }
 
 void explainFiles(const scene::Scene& scene) {
@@ -135,7 +138,8 @@ int explain(const std::string& file) {
 
 void addExplain(CLI::App& app, int& exit_code) {
   auto file = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("explain", "What a scene makes the daemon load, start and compute, why, and its cost.");
+  CLI::App* command =
+      app.add_subcommand("explain", "What a scene makes the daemon load, start and compute, why, and its cost.");
   command->add_option("scene", *file, "scene file (YAML)")->required();
   command->footer("Example:\n  hapticd explain config/scenes/teapot.yaml");
   command->callback([file, &exit_code] { exit_code = explain(*file); });

@@ -51,8 +51,9 @@ Result<PathRow> parseRow(const std::string& file, size_t line_number, std::strin
     const size_t comma = line.find(',');
     const std::optional<double> value = number(line.substr(0, comma));
     if (!value)
-      return at(file, line_number, "column " + std::to_string(column + 1) + ": \"" + std::string(line.substr(0, comma)) +
-                                       "\" is not a number");
+      return at(
+          file, line_number,
+          "column " + std::to_string(column + 1) + ": \"" + std::string(line.substr(0, comma)) + "\" is not a number");
     values[column] = *value;
     if (comma == std::string_view::npos) break;
     line.remove_prefix(comma + 1);
@@ -92,7 +93,8 @@ Result<std::vector<PathRow>> readProbePath(const std::string& file) {
     if (!row) return Error{row.error()};
     if (!std::isfinite(row->t)) return at(file, line_number, "t is not finite");
     if (!rows.empty() && row->t <= rows.back().t)
-      return at(file, line_number, "t does not grow: " + std::to_string(row->t) + " after " + std::to_string(rows.back().t));
+      return at(file, line_number,
+                "t does not grow: " + std::to_string(row->t) + " after " + std::to_string(rows.back().t));
     rows.push_back(*row);
   }
   if (rows.empty()) return Error{file + ": no rows, expected a header t,x,y,z and at least one row"};

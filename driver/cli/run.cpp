@@ -32,7 +32,9 @@ void onStop(int) {
 }
 
 /// A file that cannot be written must be known before the run, not after.
-bool writable(const std::string& file) { return file.empty() || std::ofstream(file, std::ios::app).good(); }
+bool writable(const std::string& file) {
+  return file.empty() || std::ofstream(file, std::ios::app).good();
+}
 
 void showStatus(const servo::Runner& runner) {
   const servo::BlackBoxRow& row = runner.telemetry().newest();
@@ -71,7 +73,8 @@ int conclude(const Options& options, const servo::Runner& runner) {
 
 int run(const Options& options) {
   for (const std::string& file : {options.report, options.picture})
-    if (!writable(file)) return fail(kBadInput, file + ": cannot be written, expected a file in a folder that you may write to");
+    if (!writable(file))
+      return fail(kBadInput, file + ": cannot be written, expected a file in a folder that you may write to");
   auto scene = loadSceneOrReport(options.scene, options.device);
   if (!scene) return kBadInput;
   if (scene->devices.front().chosen_by_default)
@@ -106,11 +109,16 @@ void addRun(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", "The daemon: runs the servo loop on a scene and its device.");
   command->add_option("scene", options->scene, "scene file (YAML)")->required();
   command->add_option("--device", options->device, "device file to use instead of the scene's");
-  command->add_option("--for", options->duration, "seconds to run; without it, until stopped (Ctrl-C)")->check(CLI::Range(1e-3, 1e9));
-  command->add_flag("--virtual-time", options->virtual_time, "as fast as the processor allows, on simulated devices; same input, same bits");
-  command->add_option("--rate", options->rate, "servo rate in Hz instead of the scene's")->check(CLI::Range(1.0, 20000.0));
+  command->add_option("--for", options->duration, "seconds to run; without it, until stopped (Ctrl-C)")
+      ->check(CLI::Range(1e-3, 1e9));
+  command->add_flag("--virtual-time", options->virtual_time,
+                    "as fast as the processor allows, on simulated devices; same input, same bits");
+  command->add_option("--rate", options->rate, "servo rate in Hz instead of the scene's")
+      ->check(CLI::Range(1.0, 20000.0));
   command->add_option("--cpu", options->cpu, "processor to pin the servo thread to")->check(CLI::Range(0, 1023));
-  command->add_option("--priority", options->priority, "SCHED_FIFO priority of the servo thread")->check(CLI::Range(1, 98))->capture_default_str();
+  command->add_option("--priority", options->priority, "SCHED_FIFO priority of the servo thread")
+      ->check(CLI::Range(1, 98))
+      ->capture_default_str();
   command->add_option("--report", options->report, "write a report (JSON)");
   command->add_option("--picture", options->picture, "write a picture of depth, force and lateness over time (SVG)");
   command->add_flag("--allow-non-rt", options->allow_non_rt, "push with real hardware even without real-time rights");

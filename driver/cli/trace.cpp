@@ -1,6 +1,5 @@
 /// `hapticd trace`: the same servo core over a prescribed probe path, in virtual time, without a device.
 #include <CLI/CLI.hpp>
-
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -30,7 +29,8 @@ Result<std::vector<uint32_t>> chosenModels(const scene::Scene& scene, const std:
     return chosen;
   }
   for (const std::string& name : CLI::detail::split(filter, ',')) {
-    const auto it = std::find_if(scene.models.begin(), scene.models.end(), [&](const auto& m) { return m.name == name; });
+    const auto it =
+        std::find_if(scene.models.begin(), scene.models.end(), [&](const auto& m) { return m.name == name; });
     if (it == scene.models.end()) return Error{"--models: the scene has no model \"" + name + "\""};
     chosen.push_back(static_cast<uint32_t>(it - scene.models.begin()));
   }
@@ -83,7 +83,10 @@ void addTrace(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("trace", "Run the servo core over a prescribed probe path, in virtual time.");
   command->add_option("scene", options->scene, "scene file (YAML)")->required();
-  command->add_option("--probe", options->probe, "probe path (CSV): t,x,y,z[,qw,qx,qy,qz] in s and m, world frame; a row a tick")->required();
+  command
+      ->add_option("--probe", options->probe,
+                   "probe path (CSV): t,x,y,z[,qw,qx,qy,qz] in s and m, world frame; a row a tick")
+      ->required();
   command->add_option("--out", options->out, "result (CSV): a row a tick and model; - for standard output")->required();
   command->add_option("--models", options->models, "only these models, comma-separated");
   command->footer(

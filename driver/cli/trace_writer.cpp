@@ -42,8 +42,8 @@ TraceWriter::~TraceWriter() {
 
 void TraceWriter::number(double value) {
   char text[32];
-  const int length = std::isnan(value) ? std::snprintf(text, sizeof text, ",nan")
-                                       : std::snprintf(text, sizeof text, ",%.17g", value);
+  const int length =
+      std::isnan(value) ? std::snprintf(text, sizeof text, ",nan") : std::snprintf(text, sizeof text, ",%.17g", value);
   line_.append(text, static_cast<size_t>(length));
 }
 
@@ -51,7 +51,9 @@ void TraceWriter::numbers(const double* values, int count) {
   for (int i = 0; i < count; ++i) number(values[i]);
 }
 
-void TraceWriter::whole(long value) { line_ += "," + std::to_string(value); }
+void TraceWriter::whole(long value) {
+  line_ += "," + std::to_string(value);
+}
 
 Result<void> TraceWriter::write(double t, const servo::Core& core, bool probe_valid) {
   constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();

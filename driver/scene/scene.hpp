@@ -29,7 +29,7 @@ struct Value {
   uint32_t index = 0;  ///< in the table
   uint32_t kind = 0;   ///< HSP_REAL, ...
   double number = 0;
-  std::string text;    ///< paths are absolute
+  std::string text;  ///< paths are absolute
   std::vector<double> numbers;
   Place place;
 };
@@ -52,14 +52,14 @@ struct Model {
 
 /// Limits of one device, applied between contact and motors whatever the plugins say.
 struct Limits {
-  double force = 0;          ///< [N] 0: the device's own maximum
-  double torque = 0;         ///< [N m] on the hand; 0: no limit but the motors'
-  double slew = 2000;        ///< [N/s] largest change of force; 0: none
-  double velocity = 0;       ///< [m/s] faster than this latches a fault; 0: none
-  double workspace = 0;      ///< [m] radius about the world's origin of the device; outside forces fade; 0: none
-  double ramp_in = 0.25;     ///< [s] from zero to full force at the start and after a fault
-  double ramp_out = 0.02;    ///< [s] from full force to zero at a fault
-  bool passivity = true;     ///< passivity observer and controller
+  double force = 0;        ///< [N] 0: the device's own maximum
+  double torque = 0;       ///< [N m] on the hand; 0: no limit but the motors'
+  double slew = 2000;      ///< [N/s] largest change of force; 0: none
+  double velocity = 0;     ///< [m/s] faster than this latches a fault; 0: none
+  double workspace = 0;    ///< [m] radius about the world's origin of the device; outside forces fade; 0: none
+  double ramp_in = 0.25;   ///< [s] from zero to full force at the start and after a fault
+  double ramp_out = 0.02;  ///< [s] from full force to zero at a fault
+  bool passivity = true;   ///< passivity observer and controller
 };
 
 /// Compliance control: measured joint torque drives a virtual mass and damper, rendered as positions.
@@ -86,14 +86,14 @@ struct Velocity {
 };
 
 struct Servo {
-  double rate = 1000;               ///< [Hz]
-  double activation_radius = 0.10;  ///< [m] surfaces nearer than this are traced
-  double hysteresis = 0.05;         ///< [m] beyond the radius until they are dropped again
+  double rate = 1000;                    ///< [Hz]
+  double activation_radius = 0.10;       ///< [m] surfaces nearer than this are traced
+  double hysteresis = 0.05;              ///< [m] beyond the radius until they are dropped again
   Eigen::Vector3d gravity{0, -9.81, 0};  ///< [m/s^2] world
   Pace pace = Pace::kClock;
   Velocity velocity;
-  std::optional<double> spin_us;    ///< [us] busy wait before the deadline; none: chosen for the machine
-  double budget_us = 0;             ///< [us] of a tick for all shapes; 0: four fifths of the period
+  std::optional<double> spin_us;  ///< [us] busy wait before the deadline; none: chosen for the machine
+  double budget_us = 0;           ///< [us] of a tick for all shapes; 0: four fifths of the period
 };
 
 struct Scene {

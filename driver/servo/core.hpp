@@ -45,9 +45,9 @@ struct ModelState {
 };
 
 struct CoreSettings {
-  uint64_t budget_ns = 0;        ///< of all shapes in a tick; 0: none
-  double max_probe_speed = 20;   ///< [m/s] faster between two samples is a jump, not a motion
-  bool measure = false;          ///< take the CPU time of each step
+  uint64_t budget_ns = 0;       ///< of all shapes in a tick; 0: none
+  double max_probe_speed = 20;  ///< [m/s] faster between two samples is a jump, not a motion
+  bool measure = false;         ///< take the CPU time of each step
 };
 
 class Core {
@@ -92,9 +92,9 @@ class Core {
   link::Link& link_;
   uint32_t probe_count_;
   std::vector<ModelState> models_;
-  std::vector<uint32_t> live_;           // models with something to do, in scene order: the sum is always the same
-  std::vector<Contact> contacts_;        // [model * probe_count + probe]
-  std::vector<hsp_probe> inputs_;       // of the model being stepped
+  std::vector<uint32_t> live_;     // models with something to do, in scene order: the sum is always the same
+  std::vector<Contact> contacts_;  // [model * probe_count + probe]
+  std::vector<hsp_probe> inputs_;  // of the model being stepped
   std::vector<hsp_contact> outputs_;
   std::vector<Vector3d> last_position_;  // of the last good sample
   std::vector<uint8_t> jumped_, seen_;

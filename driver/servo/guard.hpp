@@ -12,9 +12,9 @@ namespace hapticd::servo {
 /// Why a shape is not felt.
 enum class Trouble : uint8_t {
   kNone,
-  kLost,          ///< HSP_E_NUMERIC: reset and tried again
-  kNotFinite,     ///< a force or a pose that is not a number: never trusted again
-  kBadStatus      ///< a status that the ABI does not know for step: never trusted again
+  kLost,       ///< HSP_E_NUMERIC: reset and tried again
+  kNotFinite,  ///< a force or a pose that is not a number: never trusted again
+  kBadStatus   ///< a status that the ABI does not know for step: never trusted again
 };
 
 /// Fades the force of one shape. All times in seconds of the tick.

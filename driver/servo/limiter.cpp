@@ -7,15 +7,24 @@ namespace hapticd::servo {
 
 const char* describe(Fault fault) {
   switch (fault) {
-    case Fault::kNone: return "no fault";
-    case Fault::kNotFinite: return "a force or position was not a number; restart after looking at the plugin or device named";
-    case Fault::kDeviceLost: return "the device is gone; plug it in again: hapticd device list";
-    case Fault::kDeviceFault: return "the device reports a hardware fault; switch it off and on, then: hapticd device info FILE";
-    case Fault::kStale: return "the device sent no new sample; check its cable and rate: hapticd device info FILE";
-    case Fault::kTooFast: return "the tip moved faster than limits.velocity; hold the arm, then start again";
-    case Fault::kLate: return "too many ticks were missed in a row; look for the cause with: hapticd doctor";
-    case Fault::kNotCalibrated: return "the device is not calibrated; run: hapticd device calibrate FILE";
-    case Fault::kStopped: return "stopped by the user";
+    case Fault::kNone:
+      return "no fault";
+    case Fault::kNotFinite:
+      return "a force or position was not a number; restart after looking at the plugin or device named";
+    case Fault::kDeviceLost:
+      return "the device is gone; plug it in again: hapticd device list";
+    case Fault::kDeviceFault:
+      return "the device reports a hardware fault; switch it off and on, then: hapticd device info FILE";
+    case Fault::kStale:
+      return "the device sent no new sample; check its cable and rate: hapticd device info FILE";
+    case Fault::kTooFast:
+      return "the tip moved faster than limits.velocity; hold the arm, then start again";
+    case Fault::kLate:
+      return "too many ticks were missed in a row; look for the cause with: hapticd doctor";
+    case Fault::kNotCalibrated:
+      return "the device is not calibrated; run: hapticd device calibrate FILE";
+    case Fault::kStopped:
+      return "stopped by the user";
   }
   return "unknown fault";
 }

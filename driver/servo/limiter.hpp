@@ -31,7 +31,8 @@ class Limiter {
   Limiter(const scene::Limits& limits, double device_max_force);
 
   /// [rt] Limits one wrench. @param position of the tip relative to the device's centre [m], for the workspace limit
-  void apply(Eigen::Vector3d& force, Eigen::Vector3d& torque, const Eigen::Vector3d& position, double dt) noexcept HSP_RT;
+  void apply(Eigen::Vector3d& force, Eigen::Vector3d& torque, const Eigen::Vector3d& position,
+             double dt) noexcept HSP_RT;
 
   /// [rt] Judges the speed of the tip [m/s].
   void watchSpeed(double speed) noexcept HSP_RT;
@@ -43,7 +44,7 @@ class Limiter {
   void clear() noexcept HSP_RT;
 
   Fault fault() const noexcept { return fault_; }
-  double rampOut() const noexcept { return limits_.ramp_out; }  ///< [s] from full force to none
+  double rampOut() const noexcept { return limits_.ramp_out; }                   ///< [s] from full force to none
   bool silent() const noexcept { return fault_ != Fault::kNone && fade_ == 0; }  ///< ramped all the way down
 
  private:

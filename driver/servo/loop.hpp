@@ -1,5 +1,5 @@
-/// The servo loop: waits for a deadline, reads the arms, runs the core, writes the arms, keeps the books. The clock is an
-/// argument: the same loop runs under SCHED_FIFO and in virtual time.
+/// The servo loop: waits for a deadline, reads the arms, runs the core, writes the arms, keeps the books. The clock is
+/// an argument: the same loop runs under SCHED_FIFO and in virtual time.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -15,8 +15,8 @@ namespace hapticd::servo {
 
 struct LoopSettings {
   Nanoseconds period_ns = 1'000'000;
-  uint64_t ticks = 0;      ///< length of the run in periods; 0: until stopped
-  bool lockstep = false;   ///< search in step with the ticks (virtual time) instead of from a thread of its own
+  uint64_t ticks = 0;     ///< length of the run in periods; 0: until stopped
+  bool lockstep = false;  ///< search in step with the ticks (virtual time) instead of from a thread of its own
 };
 
 class Loop {

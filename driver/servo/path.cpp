@@ -29,7 +29,8 @@ void Path::at(double t, hsp_pose& pose) noexcept {
   while (points_[segment_ + 1].t <= t) ++segment_;
   const scene::PathPoint &a = points_[segment_], &b = points_[segment_ + 1];
   const double duration = b.t - a.t, s = (t - a.t) / duration;
-  store(a.pose.position + s * (b.pose.position - a.pose.position), a.pose.orientation.slerp(s, b.pose.orientation), pose);
+  store(a.pose.position + s * (b.pose.position - a.pose.position), a.pose.orientation.slerp(s, b.pose.orientation),
+        pose);
   linear = (b.pose.position - a.pose.position) / duration;
   Eigen::Quaterniond turn = b.pose.orientation * a.pose.orientation.conjugate();
   if (turn.w() < 0) turn.coeffs() = -turn.coeffs();  // the short way, as slerp goes

@@ -41,7 +41,9 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
   runner->world_ = std::move(*world);
   if (auto opened = runner->openArms(log); !opened) return Error{opened.error()};
   if (options.virtual_time && !runner->onlySimulated())
-    return Error{"--virtual-time runs faster than any clock, and the scene names real hardware; expected simulated devices only"};
+    return Error{
+        "--virtual-time runs faster than any clock, and the scene names real hardware; expected simulated devices "
+        "only"};
   runner->telemetry_ = std::make_unique<Telemetry>(runner->scene_, options.rate);
 
   LoopSettings settings;
@@ -120,7 +122,8 @@ void Runner::lockMemory() {
 void Runner::enterRealTime() {
   if (options_.cpu)
     if (const auto code = os::pinTo(*options_.cpu))
-      warnings_.push_back("cannot pin the servo thread to CPU " + std::to_string(*options_.cpu) + ": " + code.message());
+      warnings_.push_back("cannot pin the servo thread to CPU " + std::to_string(*options_.cpu) + ": " +
+                          code.message());
   if (const auto code = os::setFifo(options_.priority))
     warnings_.push_back(noFifo(options_.priority, code, !onlySimulated()));
 }
@@ -140,10 +143,11 @@ std::vector<std::string> Runner::faults() const {
   }
   for (const ModelState& model : world_->core().models()) {
     if (model.guard.trouble() == Trouble::kNotFinite)
-      faults.push_back("model " + model.shape->name() + ": its plugin answered a force, pose or foot that is not a number; it was silenced");
+      faults.push_back("model " + model.shape->name() +
+                       ": its plugin answered a force, pose or foot that is not a number; it was silenced");
     if (model.guard.trouble() == Trouble::kBadStatus)
-      faults.push_back("model " + model.shape->name() + ": its plugin answered status " + std::to_string(model.failed_status) +
-                       ", which a step may not answer; it was silenced");
+      faults.push_back("model " + model.shape->name() + ": its plugin answered status " +
+                       std::to_string(model.failed_status) + ", which a step may not answer; it was silenced");
   }
   return faults;
 }

@@ -13,12 +13,12 @@
 namespace hapticd::servo {
 
 struct RunOptions {
-  double rate = 1000;               ///< [Hz]
-  std::optional<double> duration;   ///< [s] none: until stopped
+  double rate = 1000;              ///< [Hz]
+  std::optional<double> duration;  ///< [s] none: until stopped
   bool virtual_time = false;
-  std::optional<int> cpu;           ///< pins the servo thread
+  std::optional<int> cpu;  ///< pins the servo thread
   int priority = os::kServoPriority;
-  bool allow_non_rt = false;        ///< run real hardware without real-time rights all the same
+  bool allow_non_rt = false;  ///< run real hardware without real-time rights all the same
 };
 
 class Runner {

@@ -17,14 +17,14 @@ namespace hapticd::servo {
 
 /// One tick in the black box.
 struct BlackBoxRow {
-  double t = 0;                          ///< [s] since the start
+  double t = 0;  ///< [s] since the start
   float lateness_us = 0, compute_us = 0;
-  std::array<float, 3> position{};       ///< [m] first arm, world
-  std::array<float, 3> force{};          ///< [N] first arm, world, as sent
-  float depth_m = 0;                     ///< deepest contact; negative: distance of the nearest foot; 0: nothing traced
-  uint32_t model = UINT32_MAX;           ///< of that foot
-  int32_t status = 0;                    ///< worst status of the tick
-  uint32_t fault = 0;                    ///< servo::Fault of the first arm
+  std::array<float, 3> position{};  ///< [m] first arm, world
+  std::array<float, 3> force{};     ///< [N] first arm, world, as sent
+  float depth_m = 0;                ///< deepest contact; negative: distance of the nearest foot; 0: nothing traced
+  uint32_t model = UINT32_MAX;      ///< of that foot
+  int32_t status = 0;               ///< worst status of the tick
+  uint32_t fault = 0;               ///< servo::Fault of the first arm
 };
 
 class Telemetry {

@@ -56,8 +56,8 @@ Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const Wor
   }
   world->link_ = std::make_unique<link::Link>();
   world->proximity_ = std::make_unique<sim::Proximity>(
-      models, poses, options.probe_count,
-      sim::ProximitySettings{scene.servo.activation_radius, scene.servo.hysteresis}, *world->link_);
+      models, poses, options.probe_count, sim::ProximitySettings{scene.servo.activation_radius, scene.servo.hysteresis},
+      *world->link_);
   CoreSettings settings;
   settings.budget_ns = budget_ns;
   settings.max_probe_speed = kMaxProbeSpeed;

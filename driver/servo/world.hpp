@@ -14,9 +14,9 @@
 namespace hapticd::servo {
 
 struct WorldOptions {
-  double rate = 1000;         ///< [Hz]
+  double rate = 1000;  ///< [Hz]
   uint32_t probe_count = 1;
-  bool measure = false;       ///< take the CPU time of every step, and hand out budgets
+  bool measure = false;  ///< take the CPU time of every step, and hand out budgets
 };
 
 class World {

@@ -1,0 +1,65 @@
+/// `hapticd doctor`: everything that keeps real time or a device from working, each with the command that fixes it.
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.hpp"
+#include "cli/doctor_checks.hpp"
+
+namespace hapticd::cli {
+
+namespace {
+
+const char* word(Verdict verdict) {
+  return verdict == Verdict::kOk ? "ok" : verdict == Verdict::kWarn ? "warn" : "fail";
+}
+
+void print(const Finding& finding) {
+  std::printf("%-5s %-16s %s\n", word(finding.verdict), finding.name.c_str(), finding.state.c_str());
+  if (finding.verdict == Verdict::kOk) return;
+  std::printf("      %-16s %s\n", "", finding.consequence.c_str());
+  std::printf("      %-16s fix: %s\n", "", finding.fix.c_str());
+}
+
+/// 0: all well or warnings only, 1: something fails.
+int doctor(bool json, double seconds) {
+  std::vector<Finding> findings = checkSystem();
+  if (!json)
+    for (const Finding& finding : findings) print(finding);
+  if (seconds > 0) {
+    if (!json) std::fprintf(stderr, "measuring latency for %.0f s ...\n", seconds);
+    findings.push_back(checkLatency(seconds));
+    if (!json) print(findings.back());
+  }
+  const bool failed =
+      std::any_of(findings.begin(), findings.end(), [](const Finding& f) { return f.verdict == Verdict::kFail; });
+  if (json) {
+    nlohmann::ordered_json all = nlohmann::ordered_json::array();
+    for (const Finding& f : findings)
+      all.push_back({{"name", f.name},
+                     {"verdict", word(f.verdict)},
+                     {"state", f.state},
+                     {"consequence", f.consequence},
+                     {"fix", f.fix}});
+    std::printf("%s\n", nlohmann::ordered_json{{"ok", !failed}, {"checks", all}}.dump(2).c_str());
+  }
+  return failed ? kFailed : kWorked;
+}
+
+}  // namespace
+
+void addDoctor(CLI::App& app, int& exit_code) {
+  auto json = std::make_shared<bool>(false);
+  auto seconds = std::make_shared<double>(10);
+  CLI::App* command =
+      app.add_subcommand("doctor", "What keeps real time or a device from working, each with its cure.");
+  command->add_flag("--json", *json, "as JSON, for issue reports");
+  command->add_option("--seconds", *seconds, "length of the latency run; 0: none")
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
+  command->footer("Exit code 1 when a check fails.\n\nExample:\n  hapticd doctor --json > doctor.json");
+  command->callback([=, &exit_code] { exit_code = doctor(*json, *seconds); });
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,145 @@
+#include "scene/format.hpp"
+
+#include <array>
+
+namespace hapticd::scene {
+namespace {
+
+constexpr Range kMeters{-1e6, 1e6, "m"};
+constexpr Range kVersion{1, 1};
+
+constexpr std::string_view kPaces[] = {"clock", "device"};
+constexpr std::string_view kEstimators[] = {"window", "butterworth", "foaw", "least_squares", "kalman"};
+
+constexpr Key kPoseKeys[] = {
+    vector3<&Pose::position>("position", kMeters, "[0, 0, 0]", "Origin of the frame in its parent."),
+    quaternion<&Pose::orientation>("orientation", "[1, 0, 0, 0]", "Orientation as a unit quaternion w, x, y, z."),
+};
+constexpr Table kPose{kPoseKeys};
+
+constexpr Key kVelocityKeys[] = {
+    choice<&Velocity::estimator>("estimator", kEstimators, "window",
+                                 "How the probe's velocity is found; runs only where a shape uses it."),
+    real<&Velocity::parameter>(
+        "parameter", {1e-9, 1e9}, "3",
+        "Samples (window, foaw, least_squares), cut-off in Hz (butterworth) or process noise (kalman)."),
+};
+constexpr Table kVelocity{kVelocityKeys};
+
+constexpr Key kServoKeys[] = {
+    real<&Servo::rate>("rate", {10, 20000, "Hz"}, "1000", "Ticks a second."),
+    real<&Servo::activation_radius>("activation_radius", {1e-6, 1e3, "m"}, "0.1",
+                                    "Surfaces nearer to the probe than this are traced."),
+    real<&Servo::hysteresis>("hysteresis", {0, 1e3, "m"}, "0.05",
+                             "Beyond the radius, until a traced surface is dropped again."),
+    vector3<&Servo::gravity>("gravity", {-1000, 1000, "m/s^2"}, "[0, -9.81, 0]",
+                             "Gravity in the world frame (y is up)."),
+    choice<&Servo::pace>("pace", kPaces, "clock", "What drives the loop: the clock, or the arm's own samples."),
+    object<&Servo::velocity>("velocity", kVelocity, "The velocity estimator."),
+    real<&Servo::spin_us>("spin_us", {0, 1000, "us"}, nullptr,
+                          "Busy wait before each deadline; left out: chosen for the machine."),
+    real<&Servo::budget_us>("budget_us", {0, 1e6, "us"}, "0",
+                            "CPU time of all shapes in a tick; 0: four fifths of the period."),
+};
+constexpr Table kServo{kServoKeys};
+
+constexpr Key kModelKeys[] = {
+    required(name<&ModelText::name>("name", "Name of the model, once in a scene.")),
+    required(name<&ModelText::plugin>("plugin", "Shape plugin; `hapticd plugin list` names them.")),
+    object<&ModelText::pose>("pose", kPose, "Frame of the model in the world at the start."),
+    any<&ModelText::parameters>("parameters", "a mapping of the plugin's parameters",
+                                "Parameters of the plugin; `hapticd plugin info NAME` documents them."),
+    any<&ModelText::motion>("motion", "one of static, kinematic, dynamic",
+                            "static, kinematic (moved along `path`) or dynamic (moved by its plugin)."),
+    any<&ModelText::path>("path", "the path of a file",
+                          "CSV file t,x,y,z,qw,qx,qy,qz of a kinematic model; poses between rows are interpolated."),
+};
+
+constexpr Key kDeviceReferenceKeys[] = {
+    required(file<&DeviceReference::file>("file", "Device file.")),
+    name<&DeviceReference::name>("name", "Name in this scene instead of the file's; two arms of one kind need it."),
+    object<&DeviceReference::mount>("mount", kPose, "Frame of the device in the world instead of the file's."),
+    any<&DeviceReference::hand>("hand", "a mapping of the hand's parameters",
+                                "Settings of the simulated hand that replace the file's."),
+};
+
+constexpr Key kSceneKeys[] = {
+    required(integer<&SceneText::version>("hapticd", kVersion, nullptr, "Version of the format.")),
+    object<&SceneText::servo>("servo", kServo, "Rate and settings of the servo loop."),
+    any<&SceneText::device>("device", "the path of a device file",
+                            "Device file; with no device named, the simulated Premium 1.5 is used."),
+    any<&SceneText::devices>("devices", "a list of device files", "Several device files, each with its own probe."),
+    any<&SceneText::hand>("hand", "a mapping of the hand's parameters",
+                          "Settings of the simulated hand that replace the device file's."),
+    required(list<&SceneText::models>("models", kModelTable, {0, kMaxModels}, "What can be touched.")),
+};
+
+constexpr Key kLimitKeys[] = {
+    real<&Limits::force>("force", {0, 1000, "N"}, "0", "Largest force on the hand; 0: the device's own maximum."),
+    real<&Limits::torque>("torque", {0, 1000, "N m"}, "0", "Largest torque on the hand; 0: the motors' limit alone."),
+    real<&Limits::slew>("slew", {0, 1e6, "N/s"}, "2000", "Fastest change of force; 0: no limit."),
+    real<&Limits::velocity>("velocity", {0, 100, "m/s"}, "0", "A faster tip latches a fault; 0: no limit."),
+    real<&Limits::workspace>("workspace", {0, 100, "m"}, "0",
+                             "Forces fade outside this radius about the device's origin; 0: no limit."),
+    real<&Limits::ramp_in>("ramp_in", {0, 10, "s"}, "0.25", "From zero to full force at the start and after a fault."),
+    real<&Limits::ramp_out>("ramp_out", {0, 1, "s"}, "0.02", "From full force to zero at a fault."),
+    boolean<&Limits::passivity>("passivity", "true", "Passivity observer and controller."),
+};
+constexpr Table kLimits{kLimitKeys};
+
+constexpr Key kAdmittanceKeys[] = {
+    real<&Admittance::mass>("mass", {1e-3, 1000, "kg"}, "1", "Virtual mass that measured forces move."),
+    real<&Admittance::damping>("damping", {0, 1e4, "N s/m"}, "10", "Virtual damping."),
+};
+constexpr Table kAdmittance{kAdmittanceKeys};
+
+constexpr Key kDeviceKeys[] = {
+    required(integer<&DeviceText::version>("hapticd-device", kVersion, nullptr, "Version of the format.")),
+    required(name<&DeviceText::module>("module", "Device module; `hapticd device list` names them.")),
+    name<&DeviceText::name>("name", "Name of the device; left out: the file's name."),
+    object<&DeviceText::mount>("mount", kPose, "Frame of the device in the world."),
+    object<&DeviceText::limits>("limits", kLimits, "Limits between contact and motors, whatever the plugins say."),
+    object<&DeviceText::admittance>("admittance", kAdmittance,
+                                    "Compliance control, for arms that measure joint torques."),
+    any<&DeviceText::parameters>("parameters", "a mapping of the module's parameters", "Parameters of the module."),
+    any<&DeviceText::hand>("hand", "a mapping of the hand's parameters",
+                           "The simulated hand: the module's parameters that begin with `hand.`."),
+};
+
+constexpr Key kDaemonServoKeys[] = {
+    integer<&Daemon::cpu>("cpu", {0, 1023}, nullptr, "Processor that the servo thread is pinned to; left out: none."),
+    integer<&Daemon::priority>("priority", {1, 98}, "80", "SCHED_FIFO priority of the servo thread."),
+    real<&Daemon::rate>("rate", {10, 20000, "Hz"}, nullptr, "Ticks a second instead of the scene's."),
+};
+constexpr Table kDaemonServo{kDaemonServoKeys};
+
+constexpr Key kDaemonLimitKeys[] = {
+    real<&Daemon::force>("force", {0.01, 1000, "N"}, nullptr,
+                         "No device of this machine pushes harder, whatever its file says."),
+};
+constexpr Table kDaemonLimits{kDaemonLimitKeys};
+
+constexpr Key kDaemonKeys[] = {
+    required(integer<&DaemonText::version>("hapticd-daemon", kVersion, nullptr, "Version of the format.")),
+    any<&DaemonText::plugin_path>("plugin_path", "a list of folders",
+                                  "Folders searched for plugins and device modules before all others."),
+    object<&DaemonText::daemon>("servo", kDaemonServo, "The servo thread of this machine."),
+    object<&DaemonText::daemon>("limits", kDaemonLimits, "Limits of this machine."),
+};
+
+constexpr Format kAllFormats[] = {
+    {"hapticd", "scene", "A scene of hapticd: what can be touched, and with which arm.", &kSceneTable},
+    {"hapticd-device", "device", "An arm for hapticd: its module, calibration and limits.", &kDeviceTable},
+    {"hapticd-daemon", "daemon", "Settings of hapticd for one machine.", &kDaemonTable},
+};
+
+}  // namespace
+
+constexpr Table kModelTable{kModelKeys};
+constexpr Table kDeviceReferenceTable{kDeviceReferenceKeys};
+constexpr Table kSceneTable{kSceneKeys};
+constexpr Table kDeviceTable{kDeviceKeys};
+constexpr Table kDaemonTable{kDaemonKeys};
+constexpr std::span<const Format> kFormats{kAllFormats};
+
+}  // namespace hapticd::scene

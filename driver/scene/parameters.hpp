@@ -1,0 +1,43 @@
+/// The parameters of a model or device, checked against the table of its plugin or module.
+#pragma once
+#include <vector>
+
+#include "host/description.hpp"
+#include "scene/reader.hpp"
+#include "scene/scene.hpp"
+
+namespace hapticd::scene {
+
+class ParameterReader {
+ public:
+  ParameterReader(Reader& in, const host::ClassInfo& info) : in_(&in), info_(info) {}
+
+  /// Continues with nodes of another file: what it gives replaces what came before.
+  void overrideFrom(Reader& in);
+
+  /// Reads a mapping; nested mappings flatten to dotted ids. @param key where it stands, "models[2].parameters"
+  /// @param prefix put before each id, "hand" for a mapping that holds the hand.* parameters
+  /// @param skip an entry of the mapping that is not a parameter
+  void read(const Node& node, const std::string& key, const std::string& prefix = "", const std::string& skip = "");
+
+  /// Reads one parameter that stands by itself.
+  void readOne(const Node& node, const std::string& key, uint32_t index);
+
+  /// Reports required parameters that nobody gave. @param at where they should stand
+  void requireAll(const Node& at, const std::string& key);
+
+  std::vector<Value> take() { return std::move(values_); }
+
+ private:
+  void unknown(const Entry& entry, const std::string& key, const std::string& id);
+  bool readValue(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value);
+  bool readArray(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value);
+  bool readPath(const Node& node, const std::string& key, Value& value);
+
+  Reader* in_;
+  const host::ClassInfo& info_;
+  std::vector<Value> values_;
+  size_t replaceable_ = 0;  // values before this one come from another file
+};
+
+}  // namespace hapticd::scene

@@ -1,0 +1,24 @@
+/// What is wrong with a file, for the person who wrote it.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace hapticd::scene {
+
+struct Problem {
+  Place place;
+  std::string key;   ///< "models[2].parameters.stiffness"; "" for the file as a whole
+  std::string what;  ///< what is wrong, and what was expected
+
+  /// "scene.yaml:12:18: models[2].parameters.stiffness: -5 N/m is out of range, expected 0 to 20000 N/m"
+  std::string text() const;
+};
+
+using Problems = std::vector<Problem>;
+
+/// In the order of the files' lines, as editors list them; the order of files stays.
+void sortByPlace(Problems& problems);
+
+}  // namespace hapticd::scene
