@@ -44,7 +44,7 @@ class PathParser {
  private:
   void problem(size_t offset, const std::string& column, const std::string& what) {
     ++wrong_;
-    problems_.push_back({{file_, std::max(line_, 1), static_cast<int>(offset) + 1}, column, what});
+    report(problems_, file_, std::max(line_, 1), static_cast<int>(offset) + 1, column, what);
   }
   void header(std::string_view text) {
     std::string names;
@@ -63,7 +63,8 @@ class PathParser {
       const std::string_view field = trimmed(text.substr(start, comma - start));
       const std::optional<double> value = toNumber(field);
       if (!value || !std::isfinite(*value) || std::abs(*value) > kFarthest)
-        return problem(start, kNames[column], "\"" + std::string(field.substr(0, 40)) + "\", expected a finite number");
+        return problem(start, kNames[column],
+                       std::string(field.substr(0, 40)).append(" is not usable, expected a finite number"));
       values[column] = *value;
       start = comma + 1;
     }

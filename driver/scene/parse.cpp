@@ -113,9 +113,8 @@ class Builder final : public YAML::EventHandler {
   void addToMap(Open& map, Node node) {
     if (!map.key) {
       if (!node.isScalar() && !node.isNull()) {
-        problems_.push_back(
-            {{file_, node.line, node.column}, "", "a key that is " + describe(node) + ", expected a name"});
-        node.scalar = "?";
+        report(problems_, file_, node.line, node.column, "", "a key that is " + describe(node) + ", expected a name");
+        node.scalar.assign(1, '?');
       } else if (!map.names.insert(node.scalar).second) {
         const Entry* first = nullptr;
         for (const Entry& entry : map.node.entries)
@@ -173,9 +172,9 @@ Place placeOf(const YAML::Mark& mark, const std::string& file) {
 
 std::optional<Node> parseText(const std::string& text, const std::string& file, Problems& problems) {
   if (const size_t bad = firstBadByte(text); bad != std::string::npos) {
-    problems.push_back({placeOf(text, bad, file), "",
-                        "a byte that is not text (code " + std::to_string(static_cast<unsigned char>(text[bad])) +
-                            "), expected YAML in UTF-8"});
+    report(problems, placeOf(text, bad, file), "",
+           "a byte that is not text (code " + std::to_string(static_cast<unsigned char>(text[bad])) +
+               "), expected YAML in UTF-8");
     return std::nullopt;
   }
   Builder builder(file, problems);
@@ -183,7 +182,7 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
     std::istringstream stream(text);
     YAML::Parser parser(stream);
     if (!parser.HandleNextDocument(builder)) {
-      problems.push_back({{file, 1, 1}, "", "the file is empty"});
+      report(problems, file, 1, 1, "", "the file is empty");
       return std::nullopt;
     }
     std::optional<Node> root = builder.take();
@@ -191,23 +190,23 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
     Builder second(file, ignored);
     if (parser.HandleNextDocument(second)) {
       const std::optional<Node> next = second.take();
-      problems.push_back(
-          {{file, next ? next->line : 1, next ? next->column : 1}, "", "a second document (after ---), expected one"});
+      report(problems, file, next ? next->line : 1, next ? next->column : 1, "",
+             "a second document (after ---), expected one");
     }
     return root;
   } catch (const Refused& refused) {
-    problems.push_back({placeOf(refused.mark, file), "", refused.what});
+    report(problems, placeOf(refused.mark, file), "", refused.what);
   } catch (const YAML::Exception& error) {
-    problems.push_back({placeOf(error.mark, file), "", "not YAML: " + error.msg});
+    report(problems, placeOf(error.mark, file), "", "not YAML: " + error.msg);
   } catch (const std::exception& error) {
-    problems.push_back({{file, 1, 1}, "", std::string("not YAML: ") + error.what()});
+    report(problems, file, 1, 1, "", std::string("not YAML: ") + error.what());
   }
   return std::nullopt;
 }
 
 std::optional<std::string> readFile(const std::filesystem::path& file, size_t max_bytes, Problems& problems) {
   const auto refuse = [&](const std::string& what) {
-    problems.push_back({{file.string(), 0, 0}, "", what});
+    report(problems, file.string(), 0, 0, "", what);
     return std::nullopt;
   };
   std::error_code error;

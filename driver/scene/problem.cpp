@@ -11,6 +11,23 @@ std::string Problem::text() const {
   return where + ": " + (key.empty() ? "" : key + ": ") + what;
 }
 
+void report(Problems& problems, const Place& place, const std::string& key, const std::string& what) {
+  Problem problem;
+  problem.place = place;
+  problem.key = key;
+  problem.what = what;
+  problems.push_back(problem);
+}
+
+void report(Problems& problems, const std::string& file, int line, int column, const std::string& key,
+            const std::string& what) {
+  Place place;
+  place.file = file;
+  place.line = line;
+  place.column = column;
+  report(problems, place, key, what);
+}
+
 void sortByPlace(Problems& problems) {
   std::map<std::string, size_t> order;
   for (const Problem& problem : problems) order.emplace(problem.place.file, order.size());

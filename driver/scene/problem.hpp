@@ -18,6 +18,11 @@ struct Problem {
 
 using Problems = std::vector<Problem>;
 
+/// Adds a problem.
+void report(Problems& problems, const Place& place, const std::string& key, const std::string& what);
+void report(Problems& problems, const std::string& file, int line, int column, const std::string& key,
+            const std::string& what);
+
 /// In the order of the files' lines, as editors list them; the order of files stays.
 void sortByPlace(Problems& problems);
 

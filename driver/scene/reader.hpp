@@ -29,7 +29,7 @@ class Reader {
   Reader(std::filesystem::path file, Problems& problems) : file_(std::move(file)), problems_(problems) {}
 
   void problem(const Node& at, const std::string& key, const std::string& what) {
-    problems_.push_back({place(at), key, what});
+    report(problems_, place(at), key, what);
   }
   Place place(const Node& at) const { return {file_.string(), at.line, at.column}; }
   const std::filesystem::path& file() const { return file_; }
