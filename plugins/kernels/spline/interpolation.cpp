@@ -104,7 +104,10 @@ std::vector<double> averagedKnots(const std::vector<double>& parameters, int deg
     fail(std::to_string(count) + " data points; degree " + std::to_string(degree) + " needs at least " +
          std::to_string(degree + 1));
   }
-  if (!std::is_sorted(parameters.begin(), parameters.end(), std::less_equal<>())) fail("parameters do not increase");
+  const auto stalls = [](double a, double b) { return !(a < b); };
+  if (std::adjacent_find(parameters.begin(), parameters.end(), stalls) != parameters.end()) {
+    fail("parameters do not increase");
+  }
   std::vector<double> knots(static_cast<std::size_t>(degree) + 1, parameters.front());
   for (int j = 1; j < count - degree; ++j) {
     double sum = 0;

@@ -9,24 +9,46 @@ struct alignas(32) Quad {
   double x = 0, y = 0, z = 0, w = 0;
 };
 
-/// The control points and knots that act on one span. The knot pointers point at the low end of the span.
-struct NetWindow {
-  const double *knots_u, *knots_v;
-  const Quad* points;  ///< first control point that acts on the span
-  int degree_u, degree_v;
-  int stride;  ///< from one u row to the next
+/// Knots that act on one span of one axis.
+struct KnotWindow {
+  int degree;
+  const double* knots;        ///< points at the low end of the span
+  const double* reciprocals;  ///< 1 / (knots[r + 1] - knots[r + 1 - j]), for j = 1..degree and r = 0..j-1
 };
 
-/// Writes S, Su, Sv (18 doubles with Suu, Suv, Svv for the second-order kernels), three doubles each.
+/// Control points and knots that act on one span of a surface. A curve is a surface of degree 0 along v.
+struct NetWindow {
+  KnotWindow u, v;
+  const Quad* points;  ///< the first control point that acts on the span
+  int stride;          ///< from one u row to the next
+};
+
+/// Coefficients of one table cell: the local origin, then (size_u x size_v) coefficients of s^i t^j, i-major.
+struct TableCell {
+  const Quad* data;
+  int size_u, size_v;
+};
+
+/// Kernels write S, Su, Sv, three doubles each; those of second order write Suu, Suv, Svv after them.
 using NetKernel = void (*)(const NetWindow& net, double u, double v, double* out) noexcept;
+using TableKernel = void (*)(const TableCell& cell, double s, double t, double* out) noexcept;
+
+/// Cells of these sizes (degree + 1) have unrolled kernels; smaller degrees are padded to them with zeros.
+inline constexpr int kTableShapes = 8;
+inline constexpr int kTableSizes[kTableShapes][2] = {{2, 2}, {2, 3}, {3, 2}, {3, 3}, {4, 2}, {2, 4}, {4, 4}, {6, 6}};
 
 struct KernelSet {
-  NetKernel net[2][2];  ///< [rational][second order]
+  NetKernel net[2][2];                        ///< [rational][second order]
+  TableKernel table[kTableShapes + 1][2][2];  ///< [shape, last one for all others][rational][second order]
 };
 
-/// [any] The kernels for plain hardware.
-const KernelSet& portableKernels() noexcept;
-/// [any] The fastest kernels that this processor runs.
-const KernelSet& fastestKernels() noexcept;
+/// Which of the kernels an object uses.
+enum class Instructions : std::uint8_t {
+  kFastest,  ///< the best that this processor runs
+  kPortable  ///< plain code
+};
+
+/// [any] The kernels asked for.
+const KernelSet& kernels(Instructions instructions) noexcept;
 
 }  // namespace hapticd::spline

@@ -2,7 +2,11 @@
 
 namespace hapticd::spline {
 
-#include "kernels/spline/kernel.inl"
+#include "kernels/spline/kernel_common.inl"
+#include "kernels/spline/kernel_net.inl"
+#include "kernels/spline/kernel_table.inl"
+// After what it collects.
+#include "kernels/spline/kernel_set.inl"
 
 const KernelSet& portableKernels() noexcept {
   return kKernels;

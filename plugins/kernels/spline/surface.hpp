@@ -8,15 +8,17 @@
 #include <string>
 #include <vector>
 
+#include "kernels/spline/axis.hpp"
 #include "kernels/spline/kernel.hpp"
 #include "kernels/spline/surface_data.hpp"
+#include "kernels/spline/table.hpp"
 
 namespace hapticd::spline {
 
 /// A point of a surface and its partial derivatives [m, and m per unit of the parameters].
 struct SurfacePoint {
   Eigen::Vector3d S, Su, Sv, Suu, Suv, Svv;
-  /// In: where to look first for (u, v); out: the spans that hold them. Hand the last point in again and the look-up
+  /// In: where to look first for (u, v); out: the cells that hold them. Hand the last point in again and the look-up
   /// costs nothing while the parameters stay in their spans. Any value is allowed.
   std::array<std::int32_t, 2> span{0, 0};
 };
@@ -31,49 +33,62 @@ enum class Form : std::uint8_t {
 /// Parameters outside the domain, and those that are not a number, are moved to its boundary.
 class Surface {
  public:
+  /// [main] A surface of no extent at the origin; assign a real one before evaluation.
   Surface() = default;
   /// [main] Checks and stores a surface. `kTable` is a wish: where the power basis would lose digits (weights that
-  /// differ much within a span, high degrees) the surface keeps the net form; form() tells.
+  /// differ much within a span, some high degrees) the surface keeps the net form; form() tells.
   /// @throws std::invalid_argument as validate() does.
-  explicit Surface(const SurfaceData& data, Form form = Form::kTable);
+  explicit Surface(const SurfaceData& data, Form form = Form::kTable,
+                   Instructions instructions = Instructions::kFastest);
 
   /// [any] S, Su, Sv at (u, v); Suu, Suv, Svv are left as they are.
-  void evaluate1(double u, double v, SurfacePoint& out) const noexcept;
+  void evaluate1(double u, double v, SurfacePoint& out) const noexcept { evaluate<1>(u, v, out); }
   /// [any] S and all first and second derivatives at (u, v). At a knot: those of the span to its right.
   /// Source: Piegl & Tiller, The NURBS Book, A2.3 and A4.4 (with the mixed derivative), about a local origin.
-  void evaluate2(double u, double v, SurfacePoint& out) const noexcept;
+  void evaluate2(double u, double v, SurfacePoint& out) const noexcept { evaluate<2>(u, v, out); }
+  /// [any] Brings to the cache what the next evaluation near `point` reads.
+  void prefetch(const SurfacePoint& point) const noexcept;
 
   /// [any] Parameter range [lo, hi] along axis 0 (u) or 1 (v).
-  std::array<double, 2> domain(int axis) const noexcept {
-    return {axes_[static_cast<std::size_t>(axis)].breaks.front(), axes_[static_cast<std::size_t>(axis)].breaks.back()};
-  }
+  std::array<double, 2> domain(int axis) const noexcept { return {breaks(axis).front(), breaks(axis).back()}; }
   /// [any] The distinct knots of the domain, ascending: boundaries of the spans, smooth in between.
-  std::span<const double> breaks(int axis) const noexcept { return axes_[static_cast<std::size_t>(axis)].breaks; }
-  int degree(int axis) const noexcept { return axes_[static_cast<std::size_t>(axis)].degree; }
+  std::span<const double> breaks(int axis) const noexcept { return axes_[static_cast<std::size_t>(axis)].breaks(); }
+  int degree(int axis) const noexcept { return axes_[static_cast<std::size_t>(axis)].degree(); }
   bool rational() const noexcept { return rational_; }
   bool reversed() const noexcept { return reversed_; }
   const std::string& name() const noexcept { return name_; }
   /// [any] The form in use.
-  Form form() const noexcept { return form_; }
+  Form form() const noexcept { return table_.cells.empty() ? Form::kNet : Form::kTable; }
   /// [any] Memory behind this surface, in bytes.
   std::size_t bytes() const noexcept;
 
  private:
-  struct Axis {
-    int degree = 0;
-    std::vector<double> knots;
-    std::vector<double> breaks;            ///< distinct knots of the domain
-    std::vector<std::int32_t> first_knot;  ///< by span: index of the knot at its low end
-    std::int32_t find(double t, std::int32_t hint) const noexcept;
-  };
-  void buildNet(const SurfaceData& data);
   template <int kOrder>
-  void evaluate(double u, double v, SurfacePoint& out) const noexcept;
+  void evaluate(double u, double v, SurfacePoint& out) const noexcept {
+    const Cell& cu = axes_[0].locate(u, out.span[0]);
+    const Cell& cv = axes_[1].locate(v, out.span[1]);
+    if (table_kernel_[kOrder - 1] != nullptr) {
+      table_kernel_[kOrder - 1](tableCell(out), u - cu.origin, v - cv.origin, out.S.data());
+    } else {
+      net_kernel_[kOrder - 1](netWindow(cu, cv), u, v, out.S.data());
+    }
+    if (scale_ != 1) [[unlikely]] {
+      rescale(kOrder, out);
+    }
+  }
+  TableCell tableCell(const SurfacePoint& at) const noexcept {
+    const std::ptrdiff_t cell = at.span[0] * static_cast<std::ptrdiff_t>(axes_[1].cells().size()) + at.span[1];
+    return {table_.cells.data() + cell * table_.stride(), table_.size_u, table_.size_v};
+  }
+  NetWindow netWindow(const Cell& cu, const Cell& cv) const noexcept;
+  void rescale(int order, SurfacePoint& out) const noexcept;
 
+  std::array<TableKernel, 2> table_kernel_{};
+  std::array<NetKernel, 2> net_kernel_{};
   std::array<Axis, 2> axes_;
-  std::vector<Quad> net_;
-  double scale_ = 1;  ///< a power of two: coordinates = scale_ * stored ones
-  Form form_ = Form::kNet;
+  Table table_;
+  std::vector<Quad> net_;  ///< empty in table form
+  double scale_ = 1;       ///< a power of two: coordinates = scale_ * stored ones
   bool rational_ = false, reversed_ = false;
   std::string name_;
 };

@@ -1,0 +1,58 @@
+/// Evaluation of spline curves of any degree to 15, polynomial or rational, with first and second derivatives.
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kernels/spline/axis.hpp"
+#include "kernels/spline/curve_data.hpp"
+#include "kernels/spline/kernel.hpp"
+
+namespace hapticd::spline {
+
+/// A point of a curve and its derivatives [m, m per unit of the parameter].
+struct CurvePoint {
+  Eigen::Vector3d C, C1, C2;
+  std::int32_t span = 0;  ///< in: where to look first; out: the span that holds the parameter. Any value is allowed.
+};
+
+/// A curve ready for evaluation; constant after construction, so that all threads may share it.
+/// Parameters outside the domain, and those that are not a number, are moved to its ends.
+class Curve {
+ public:
+  /// [main] Checks and stores a curve.
+  /// @throws std::invalid_argument as validate() does.
+  explicit Curve(const CurveData& data, Instructions instructions = Instructions::kFastest);
+
+  /// [any] C and C1 at u; C2 is left as it is.
+  void evaluate1(double u, CurvePoint& out) const noexcept;
+  /// [any] C, C1 and C2 at u. At a knot: those of the span to its right.
+  /// Source: Piegl & Tiller A3.2 and A4.2, about a local origin.
+  void evaluate2(double u, CurvePoint& out) const noexcept;
+
+  /// [any] Parameter range [lo, hi].
+  std::array<double, 2> domain() const noexcept { return {axis_.breaks().front(), axis_.breaks().back()}; }
+  /// [any] The distinct knots of the domain, ascending.
+  std::span<const double> breaks() const noexcept { return axis_.breaks(); }
+  int degree() const noexcept { return axis_.degree(); }
+  bool rational() const noexcept { return rational_; }
+  const std::string& name() const noexcept { return name_; }
+  /// [any] Memory behind this curve, in bytes.
+  std::size_t bytes() const noexcept { return net_.capacity() * sizeof(Quad) + axis_.bytes(); }
+
+ private:
+  void evaluate(int order, double u, std::int32_t& span, double* out) const noexcept;
+
+  std::array<NetKernel, 2> kernel_;
+  Axis axis_;
+  std::vector<Quad> net_;
+  double scale_ = 1;
+  bool rational_ = false;
+  std::string name_;
+};
+
+}  // namespace hapticd::spline

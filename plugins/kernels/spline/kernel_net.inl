@@ -1,0 +1,142 @@
+// Evaluation from control points: Cox-de Boor. See kernel_common.inl for the rules of this file.
+namespace {
+
+inline constexpr int kOrders = 16;  // kMaxDegree + 1
+
+/// Values, first and second derivatives of the basis functions of a span.
+struct Basis {
+  double N[3][kOrders];
+};
+
+/// Row r of derivatives from those of one degree less, divided by their knot differences (Piegl & Tiller 2.7).
+inline void difference(int p, const double* parts, double* result) {
+  result[0] = -p * parts[0];
+  for (int r = 1; r < p; ++r) result[r] = p * (parts[r - 1] - parts[r]);
+  result[p] = p * parts[p - 1];
+}
+
+/// Piegl & Tiller A2.3 for up to two derivatives. kDegree 0: known at run time only.
+template <int kDegree, int kOrder>
+inline void evaluateBasis(const KnotWindow& window, double t, Basis& basis) {
+  const int p = kDegree > 0 ? kDegree : window.degree;
+  const double* knots = window.knots;
+  const double* reciprocal = window.reciprocals;
+  double* N = basis.N[0];
+  double last[kOrders], lower[kOrders];  // N_{r,p-1} and N_{r,p-2} over their knot differences
+  N[0] = 1;
+  if (p == 0) {
+    basis.N[1][0] = basis.N[2][0] = 0;
+    return;
+  }
+#pragma GCC unroll 5
+  for (int j = 1; j <= p; ++j) {
+    double saved = 0;
+#pragma GCC unroll 5
+    for (int r = 0; r < j; ++r) {
+      const double part = N[r] * *reciprocal++;
+      N[r] = saved + (knots[r + 1] - t) * part;
+      saved = (t - knots[r + 1 - j]) * part;
+      if (j == p) last[r] = part;
+      if (kOrder > 1 && j == p - 1) lower[r] = part;
+    }
+    N[j] = saved;
+  }
+  difference(p, last, basis.N[1]);
+  if constexpr (kOrder > 1) {
+    if (p == 1) {
+      basis.N[2][0] = basis.N[2][1] = 0;
+      return;
+    }
+    double slope[kOrders];  // derivatives of N_{r,p-1} over their knot differences
+    difference(p - 1, lower, slope);
+    const double* top = window.reciprocals + p * (p - 1) / 2;
+    for (int r = 0; r < p; ++r) slope[r] *= top[r];
+    difference(p, slope, basis.N[2]);
+  }
+}
+
+inline int largest(const double* values, int last) {
+  int best = 0;
+  for (int i = 1; i <= last; ++i) best = values[i] > values[best] ? i : best;
+  return best;
+}
+
+/// The control point with the largest share of the surface point. About this origin the numerator keeps all its
+/// digits: far from the model's origin, next to a pole, and beside a weight that outweighs all others.
+template <bool kRational>
+inline V4 dominantPoint(const NetWindow& net, int p, int q, const Basis& bu, const Basis& bv) {
+  const Quad* best = net.points;
+  if constexpr (kRational) {
+    double most = -1;
+    for (int i = 0; i <= p; ++i) {
+      for (int j = 0; j <= q; ++j) {
+        const Quad* point = net.points + i * net.stride + j;
+        const double share = bu.N[0][i] * bv.N[0][j] * point->w;
+        best = share > most ? point : best;
+        most = share > most ? share : most;
+      }
+    }
+  } else {
+    best += largest(bu.N[0], p) * net.stride + largest(bv.N[0], q);
+  }
+  return V4{best->x, best->y, best->z, 0};
+}
+
+/// The sum of all control points' shares, and of the derivatives of these shares.
+template <int kDegreeU, int kDegreeV, bool kRational, int kOrder>
+inline Sums contract(const NetWindow& net, int p, int q, const Basis& bu, const Basis& bv, V4 origin) {
+  const V4 zero = splat(0);
+  Sums sums{zero, zero, zero, zero, zero, zero};
+#pragma GCC unroll 4
+  for (int i = 0; i <= (kDegreeU > 0 ? kDegreeU : p); ++i) {
+    const Quad* row = net.points + i * net.stride;
+    V4 r = zero, rv = zero, rvv = zero;
+#pragma GCC unroll 4
+    for (int j = 0; j <= (kDegreeV > 0 ? kDegreeV : q); ++j) {
+      V4 point = load(row + j) - origin;
+      if constexpr (kRational) {
+        const double w = point[3];
+        point[3] = 1;
+        point *= splat(w);
+      }
+      r += splat(bv.N[0][j]) * point;
+      rv += splat(bv.N[1][j]) * point;
+      if constexpr (kOrder > 1) rvv += splat(bv.N[2][j]) * point;
+    }
+    sums.S += splat(bu.N[0][i]) * r;
+    sums.Su += splat(bu.N[1][i]) * r;
+    sums.Sv += splat(bu.N[0][i]) * rv;
+    if constexpr (kOrder > 1) {
+      sums.Suu += splat(bu.N[2][i]) * r;
+      sums.Suv += splat(bu.N[1][i]) * rv;
+      sums.Svv += splat(bu.N[0][i]) * rvv;
+    }
+  }
+  return sums;
+}
+
+template <int kDegreeU, int kDegreeV, bool kRational, int kOrder>
+inline void evaluateNetOf(const NetWindow& net, double u, double v, double* out) {
+  Basis bu, bv;
+  evaluateBasis<kDegreeU, kOrder>(net.u, u, bu);
+  evaluateBasis<kDegreeV, kOrder>(net.v, v, bv);
+  const int p = net.u.degree, q = net.v.degree;
+  const V4 origin = dominantPoint<kRational>(net, kDegreeU > 0 ? kDegreeU : p, kDegreeV > 0 ? kDegreeV : q, bu, bv);
+  Sums sums = contract<kDegreeU, kDegreeV, kRational, kOrder>(net, p, q, bu, bv, origin);
+  if constexpr (kRational) divideByWeight<kOrder>(sums);
+  storeSums<kOrder>(sums, origin, out);
+}
+
+/// The two pairs of degrees that most models are made of are unrolled.
+template <bool kRational, int kOrder>
+void evaluateNet(const NetWindow& net, double u, double v, double* out) noexcept {
+  if (net.u.degree == 3 && net.v.degree == 3) {
+    evaluateNetOf<3, 3, kRational, kOrder>(net, u, v, out);
+  } else if (net.u.degree == 2 && net.v.degree == 2) {
+    evaluateNetOf<2, 2, kRational, kOrder>(net, u, v, out);
+  } else {
+    evaluateNetOf<0, 0, kRational, kOrder>(net, u, v, out);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,47 @@
+/// Knot insertion along one axis, for all the lines of control points that run along it at once.
+#pragma once
+#include <vector>
+
+#include "kernels/spline/curve_data.hpp"
+#include "kernels/spline/surface_data.hpp"
+
+namespace hapticd::spline {
+
+/// The control points of a curve (one line) or of a surface (as many as it has points across the axis). Points are
+/// never multiplied by their weights: a step of knot insertion is a weighted mean of two points, and a mean of equal
+/// points is that point, so collapsed sides stay collapsed to the last bit.
+class LineSet {
+ public:
+  explicit LineSet(const CurveData& curve);
+  LineSet(const SurfaceData& surface, int axis);
+
+  /// Inserts knot t once. Source: Boehm's algorithm, Piegl & Tiller (5.15).
+  void insert(double t);
+  /// Raises the multiplicity of t to at least `multiplicity`.
+  void raise(double t, int multiplicity);
+  /// The part from lo to hi, clamped at both ends, with the same parameters.
+  LineSet part(double lo, double hi) const;
+
+  int degree() const noexcept { return degree_; }
+  std::array<double, 2> domain() const noexcept;
+  /// How often t stands in the knots.
+  int multiplicity(double t) const noexcept;
+  /// Distinct knots of the domain.
+  std::vector<double> breaks() const;
+
+  CurveData curve(std::string name) const;
+  /// `like` gives all that does not change: the other axis, name, side.
+  SurfaceData surface(const SurfaceData& like, int axis) const;
+
+ private:
+  LineSet() = default;
+  std::size_t count() const noexcept { return knots_.size() - static_cast<std::size_t>(degree_) - 1; }
+
+  int degree_ = 1;
+  std::size_t lines_ = 1;
+  std::vector<double> knots_;
+  std::vector<Eigen::Vector3d> points_;  ///< point i of line l at i * lines_ + l
+  std::vector<double> weights_;
+};
+
+}  // namespace hapticd::spline

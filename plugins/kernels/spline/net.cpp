@@ -1,0 +1,43 @@
+#include "kernels/spline/net.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hapticd::spline {
+namespace {
+
+/// Coordinates whose largest lies beyond these binary exponents are scaled to 1, so that no sum overflows and no
+/// product becomes subnormal. In between nothing is done and nothing costs time.
+constexpr int kLargestExponent = 200;
+constexpr int kSmallestExponent = -200;
+
+double scaleOf(const std::vector<Eigen::Vector3d>& points) {
+  double largest = 0;
+  for (const auto& point : points) largest = std::max(largest, point.cwiseAbs().maxCoeff());
+  if (largest == 0) return 1;
+  const int exponent = std::ilogb(largest);
+  return exponent > kLargestExponent || exponent < kSmallestExponent ? std::ldexp(1.0, exponent) : 1;
+}
+
+/// The exponent half-way between those of the lightest and the heaviest weight.
+int middleExponent(const std::vector<double>& weights) {
+  const auto [least, most] = std::minmax_element(weights.begin(), weights.end());
+  return (std::ilogb(*least) + std::ilogb(*most)) / 2;
+}
+
+}  // namespace
+
+Net makeNet(const std::vector<Eigen::Vector3d>& points, const std::vector<double>& weights) {
+  Net net;
+  net.scale = scaleOf(points);
+  net.rational = std::any_of(weights.begin(), weights.end(), [&](double w) { return w != weights.front(); });
+  const int middle = net.rational ? middleExponent(weights) : 0;
+  net.points.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d point = points[i] / net.scale;
+    net.points.push_back({point.x(), point.y(), point.z(), net.rational ? std::ldexp(weights[i], -middle) : 0});
+  }
+  return net;
+}
+
+}  // namespace hapticd::spline

@@ -1,0 +1,19 @@
+/// Control points as the kernels read them: scaled where coordinates are extreme, weights about 1.
+#pragma once
+#include <Eigen/Core>
+#include <vector>
+
+#include "kernels/spline/kernel.hpp"
+
+namespace hapticd::spline {
+
+struct Net {
+  std::vector<Quad> points;
+  double scale = 1;       ///< a power of two: coordinates = scale * stored ones; 1 for all but extreme coordinates
+  bool rational = false;  ///< false if there are no weights or all are equal
+};
+
+/// [main] For valid points and weights.
+Net makeNet(const std::vector<Eigen::Vector3d>& points, const std::vector<double>& weights);
+
+}  // namespace hapticd::spline

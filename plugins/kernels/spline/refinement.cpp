@@ -1,0 +1,152 @@
+#include "kernels/spline/refinement.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "kernels/spline/line_set.hpp"
+#include "kernels/spline/surface.hpp"
+
+namespace hapticd::spline {
+namespace {
+
+/// Samples a span along a knot line when looking for a crease; a crease is a polynomial of the angle and hides from
+/// none of them.
+constexpr int kCreaseSamples = 5;
+
+void checkRange(const std::string& name, const std::array<double, 2>& domain, double lo, double hi) {
+  if (lo >= domain[0] && hi <= domain[1]) return;
+  throw std::invalid_argument("'" + name + "': parameters " + std::to_string(lo) + " to " + std::to_string(hi) +
+                              " leave the domain " + std::to_string(domain[0]) + " to " + std::to_string(domain[1]));
+}
+
+void checkCut(const std::string& name, const std::array<double, 2>& domain, double lo, double hi) {
+  checkRange(name, domain, lo, hi);
+  if (!(hi - lo >= kNarrowestSpan)) {
+    throw std::invalid_argument("'" + name + "': the range from " + std::to_string(lo) + " to " + std::to_string(hi) +
+                                " is empty");
+  }
+}
+
+void insertAll(LineSet& lines, const std::string& name, std::span<const double> added) {
+  for (double t : added) {
+    checkRange(name, lines.domain(), t, t);
+    lines.insert(t);
+  }
+}
+
+/// All spans of a set of lines as clamped pieces.
+std::vector<LineSet> pieces(LineSet lines) {
+  const std::vector<double> breaks = lines.breaks();
+  for (double t : breaks) lines.raise(t, lines.degree());
+  std::vector<LineSet> result;
+  for (std::size_t i = 0; i + 1 < breaks.size(); ++i) result.push_back(lines.part(breaks[i], breaks[i + 1]));
+  return result;
+}
+
+/// True if the tangent planes of two surfaces that share (u, v) differ, or the surface folds back on itself there.
+bool creased(const Surface& left, const Surface& right, int axis, double u, double v, double smooth_angle) {
+  SurfacePoint a, b;
+  left.evaluate1(u, v, a);
+  right.evaluate1(u, v, b);
+  const Eigen::Vector3d na = a.Su.stableNormalized().cross(a.Sv.stableNormalized());
+  const Eigen::Vector3d nb = b.Su.stableNormalized().cross(b.Sv.stableNormalized());
+  const Eigen::Vector3d &ta = axis == 0 ? a.Su : a.Sv, &tb = axis == 0 ? b.Su : b.Sv;
+  if (na.isZero() || nb.isZero()) return ta.stableNormalized().dot(tb.stableNormalized()) < 0;
+  const double sine = na.normalized().cross(nb.normalized()).norm();
+  return na.dot(nb) < 0 || sine > smooth_angle;
+}
+
+bool creasedAlong(const Surface& left, const Surface& right, int axis, double knot, double smooth_angle) {
+  const auto across = left.breaks(1 - axis);
+  for (std::size_t i = 0; i + 1 < across.size(); ++i) {
+    for (int k = 0; k <= kCreaseSamples; ++k) {
+      const double t = std::lerp(across[i], across[i + 1], static_cast<double>(k) / kCreaseSamples);
+      if (creased(left, right, axis, axis == 0 ? knot : t, axis == 0 ? t : knot, smooth_angle)) return true;
+    }
+  }
+  return false;
+}
+
+/// Knots at which a surface must be parted, with both ends of the domain.
+std::vector<double> partingKnots(const SurfaceData& data, int axis, double smooth_angle) {
+  const LineSet lines(data, axis);
+  const std::vector<double> breaks = lines.breaks();
+  std::vector<double> result{breaks.front()};
+  for (std::size_t i = 1; i + 1 < breaks.size(); ++i) {
+    const int multiplicity = lines.multiplicity(breaks[i]);
+    if (multiplicity < lines.degree()) continue;
+    bool parted = multiplicity > lines.degree();
+    if (!parted) {
+      const Surface left(lines.part(breaks[i - 1], breaks[i]).surface(data, axis), Form::kNet);
+      const Surface right(lines.part(breaks[i], breaks[i + 1]).surface(data, axis), Form::kNet);
+      parted = creasedAlong(left, right, axis, breaks[i], smooth_angle);
+    }
+    if (parted) result.push_back(breaks[i]);
+  }
+  result.push_back(breaks.back());
+  return result;
+}
+
+}  // namespace
+
+CurveData refine(const CurveData& curve, std::span<const double> added) {
+  validate(curve);
+  LineSet lines(curve);
+  insertAll(lines, curve.name, added);
+  return lines.curve(curve.name);
+}
+
+SurfaceData refine(const SurfaceData& surface, int axis, std::span<const double> added) {
+  validate(surface);
+  LineSet lines(surface, axis);
+  insertAll(lines, surface.name, added);
+  return lines.surface(surface, axis);
+}
+
+CurveData cut(const CurveData& curve, double lo, double hi) {
+  validate(curve);
+  checkCut(curve.name, curve.domain(), lo, hi);
+  return LineSet(curve).part(lo, hi).curve(curve.name);
+}
+
+SurfaceData cut(const SurfaceData& surface, int axis, double lo, double hi) {
+  validate(surface);
+  checkCut(surface.name, surface.domain(axis), lo, hi);
+  return LineSet(surface, axis).part(lo, hi).surface(surface, axis);
+}
+
+std::vector<CurveData> bezierPieces(const CurveData& curve) {
+  validate(curve);
+  std::vector<CurveData> result;
+  for (const LineSet& piece : pieces(LineSet(curve))) result.push_back(piece.curve(curve.name));
+  return result;
+}
+
+std::vector<SurfaceData> bezierPieces(const SurfaceData& surface) {
+  validate(surface);
+  std::vector<SurfaceData> result;
+  for (const LineSet& strip : pieces(LineSet(surface, 0))) {
+    const SurfaceData strip_data = strip.surface(surface, 0);
+    for (const LineSet& piece : pieces(LineSet(strip_data, 1))) result.push_back(piece.surface(strip_data, 1));
+  }
+  return result;
+}
+
+std::vector<SurfaceData> splitAtCreases(const SurfaceData& surface, double smooth_angle) {
+  validate(surface);
+  const std::vector<double> us = partingKnots(surface, 0, smooth_angle);
+  const std::vector<double> vs = partingKnots(surface, 1, smooth_angle);
+  if (us.size() == 2 && vs.size() == 2) return {surface};
+  std::vector<SurfaceData> result;
+  for (std::size_t i = 0; i + 1 < us.size(); ++i) {
+    const SurfaceData strip = LineSet(surface, 0).part(us[i], us[i + 1]).surface(surface, 0);
+    for (std::size_t j = 0; j + 1 < vs.size(); ++j) {
+      result.push_back(LineSet(strip, 1).part(vs[j], vs[j + 1]).surface(strip, 1));
+    }
+  }
+  return result;
+}
+
+}  // namespace hapticd::spline

@@ -1,0 +1,203 @@
+#include "kernels/spline/table.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "kernels/spline/surface_data.hpp"
+
+namespace hapticd::spline {
+namespace {
+
+/// Coefficients are divided by powers of a span's width; within these bounds of width^degree none overflows.
+constexpr double kLeastPower = 1e-60, kMostPower = 1e60;
+
+using Real = long double;  // the table is made once; its coefficients shall be right to the last bit
+using Taylor = std::array<std::array<Real, kMaxDegree + 1>, kMaxDegree + 1>;
+
+/// Row k: the k-th Taylor coefficients, at the cell's origin, of the basis functions of its span. Each comes from the
+/// basis functions of degree p - k by k differences (Piegl & Tiller 2.9), which works at both ends of a span as well.
+Taylor taylorCoefficients(const Axis& axis, const Cell& cell) {
+  const int p = axis.degree();
+  const double* knots = axis.knots().data() + cell.knot;
+  const auto width = [knots](int r, int j) { return static_cast<Real>(knots[r + 1]) - knots[r + 1 - j]; };
+  Taylor result{};
+  for (int k = 0; k <= p; ++k) {
+    auto& N = result[static_cast<std::size_t>(k)];
+    N[0] = 1;
+    for (int j = 1; j <= p; ++j) {
+      Real saved = 0;
+      for (int r = 0; r < j; ++r) {
+        auto& value = N[static_cast<std::size_t>(r)];
+        const Real part = value / width(r, j);
+        const bool differ = j > p - k;
+        const Real falls = differ ? -part * j / (j - (p - k)) : (knots[r + 1] - static_cast<Real>(cell.origin)) * part;
+        const Real rises = differ ? -falls : (static_cast<Real>(cell.origin) - knots[r + 1 - j]) * part;
+        value = saved + falls;
+        saved = rises;
+      }
+      N[static_cast<std::size_t>(j)] = saved;
+    }
+  }
+  return result;
+}
+
+struct Term {
+  Real x = 0, y = 0, z = 0, w = 0;
+  void add(Real factor, const Term& term) {
+    x += factor * term.x, y += factor * term.y, z += factor * term.z, w += factor * term.w;
+  }
+};
+
+/// The control points of one cell about its local origin, multiplied by their weights.
+struct Window {
+  std::array<std::array<Term, kMaxDegree + 1>, kMaxDegree + 1> terms;
+  Quad origin;
+  double extent = 0;        ///< largest coordinate about the origin
+  double least_weight = 1;  ///< a lower bound of the cell's weight function
+};
+
+/// A control point near the cell's expansion point; on a collapsed side the point it collapses to.
+Quad originOf(const Net& net, const Axis& u, const Axis& v, const Cell& cu, const Cell& cv) {
+  const auto index = [](const Axis& axis, const Cell& cell) {
+    if (cell.origin == axis.breaks().front()) return cell.knot - axis.degree();
+    return cell.origin == axis.breaks().back() ? cell.knot : cell.knot - axis.degree() / 2;
+  };
+  Quad origin = net.points[static_cast<std::size_t>(index(u, cu) * v.count() + index(v, cv))];
+  origin.w = 0;
+  return origin;
+}
+
+Window windowOf(const Net& net, const Axis& u, const Axis& v, const Cell& cu, const Cell& cv) {
+  Window window;
+  window.origin = originOf(net, u, v, cu, cv);
+  if (net.rational) window.least_weight = INFINITY;
+  for (int i = 0; i <= u.degree(); ++i) {
+    for (int j = 0; j <= v.degree(); ++j) {
+      const auto at = (cu.knot - u.degree() + i) * v.count() + cv.knot - v.degree() + j;
+      const Quad& point = net.points[static_cast<std::size_t>(at)];
+      const Real weight = net.rational ? point.w : 1;
+      const Real x = static_cast<Real>(point.x) - window.origin.x, y = static_cast<Real>(point.y) - window.origin.y,
+                 z = static_cast<Real>(point.z) - window.origin.z;
+      window.terms[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = {x * weight, y * weight, z * weight,
+                                                                                net.rational ? weight : 0};
+      const double extent = static_cast<double>(std::max({std::abs(x), std::abs(y), std::abs(z)}));
+      window.extent = std::max(window.extent, extent);
+      if (net.rational) window.least_weight = std::min(window.least_weight, point.w);
+    }
+  }
+  return window;
+}
+
+/// Sums of magnitudes at the far corner of a cell.
+struct Growth {
+  Real position = 0, weight = 0;
+  void add(const Term& term, Real power) {
+    position += std::max({std::abs(term.x), std::abs(term.y), std::abs(term.z)}) * power;
+    weight += std::abs(term.w) * power;
+  }
+  bool acceptable(const Window& window) const {
+    const Real bound = static_cast<Real>(kMaxTableGrowth) * window.least_weight;
+    return position <= bound * window.extent && weight <= bound;
+  }
+};
+
+Real farthest(const Cell& cell) {
+  return std::max(cell.end - cell.origin, cell.origin - cell.lo);
+}
+
+bool powersFit(const Axis& axis) {
+  for (const Cell& cell : axis.cells()) {
+    const Real power = std::pow(farthest(cell), axis.degree());
+    if (!(power > kLeastPower && power < kMostPower)) return false;
+  }
+  return true;
+}
+
+/// Appends one cell; false if it would lose digits.
+bool appendCell(const Window& window, const Taylor& tu, const Taylor& tv, std::array<Real, 2> reach,
+                std::array<int, 2> degree, Table& table) {
+  Growth growth;
+  table.cells.push_back(window.origin);
+  Real power_u = 1;
+  for (int k = 0; k < table.size_u; ++k, power_u *= reach[0]) {
+    Real power = power_u;
+    for (int l = 0; l < table.size_v; ++l, power *= reach[1]) {
+      Term sum;
+      for (int i = 0; k <= degree[0] && i <= degree[0]; ++i) {
+        const auto a = static_cast<std::size_t>(i);
+        Term row;
+        for (int j = 0; l <= degree[1] && j <= degree[1]; ++j) {
+          const auto b = static_cast<std::size_t>(j);
+          row.add(tv[static_cast<std::size_t>(l)][b], window.terms[a][b]);
+        }
+        sum.add(tu[static_cast<std::size_t>(k)][a], row);
+      }
+      growth.add(sum, power);
+      table.cells.push_back({static_cast<double>(sum.x), static_cast<double>(sum.y), static_cast<double>(sum.z),
+                             static_cast<double>(sum.w)});
+    }
+  }
+  return growth.acceptable(window);
+}
+
+/// The smallest unrolled kernel that holds the degrees, else the one that loops.
+void chooseShape(std::array<int, 2> degree, Table& table) {
+  table.shape = kTableShapes;
+  table.size_u = degree[0] + 1;
+  table.size_v = degree[1] + 1;
+  for (int i = 0; i < kTableShapes; ++i) {
+    if (kTableSizes[i][0] < degree[0] + 1 || kTableSizes[i][1] < degree[1] + 1) continue;
+    table.shape = i;
+    table.size_u = kTableSizes[i][0];
+    table.size_v = kTableSizes[i][1];
+    return;
+  }
+}
+
+/// True if all control points of the first or last row across an axis are one point on the surface.
+bool collapsed(const Net& net, const Axis& along, int index, int step_along, int step_across) {
+  const auto point = [&](int j) { return net.points[static_cast<std::size_t>(index * step_across + j * step_along)]; };
+  for (int j = 1; j < along.count(); ++j) {
+    if (point(j).x != point(0).x || point(j).y != point(0).y || point(j).z != point(0).z) return false;
+  }
+  return true;
+}
+
+bool clamped(const Axis& axis, bool high) {
+  const auto& knots = axis.knots();
+  const auto p = static_cast<std::size_t>(axis.degree()), n = static_cast<std::size_t>(axis.count());
+  return high ? knots[n] == knots[n + p - 1] : knots[1] == knots[p];
+}
+
+}  // namespace
+
+void anchorAtCollapsedSides(const Net& net, Axis& u, Axis& v) {
+  const int count_v = v.count();
+  const bool u_low = clamped(u, false) && collapsed(net, v, 0, 1, count_v);
+  const bool u_high = clamped(u, true) && collapsed(net, v, u.count() - 1, 1, count_v);
+  const bool v_low = clamped(v, false) && collapsed(net, u, 0, count_v, 1);
+  const bool v_high = clamped(v, true) && collapsed(net, u, count_v - 1, count_v, 1);
+  u.anchor(u_low, u_high);
+  v.anchor(v_low, v_high);
+}
+
+std::optional<Table> makeTable(const Net& net, const Axis& u, const Axis& v) {
+  if (!powersFit(u) || !powersFit(v)) return std::nullopt;
+  const std::array<int, 2> degree{u.degree(), v.degree()};
+  Table table;
+  chooseShape(degree, table);
+  table.cells.reserve(u.cells().size() * v.cells().size() * static_cast<std::size_t>(table.stride()));
+  std::vector<Taylor> taylor_v;
+  for (const Cell& cell : v.cells()) taylor_v.push_back(taylorCoefficients(v, cell));
+  for (const Cell& cu : u.cells()) {
+    const Taylor tu = taylorCoefficients(u, cu);
+    for (std::size_t j = 0; j < taylor_v.size(); ++j) {
+      const Cell& cv = v.cells()[j];
+      const Window window = windowOf(net, u, v, cu, cv);
+      if (!appendCell(window, tu, taylor_v[j], {farthest(cu), farthest(cv)}, degree, table)) return std::nullopt;
+    }
+  }
+  return table;
+}
+
+}  // namespace hapticd::spline
