@@ -16,6 +16,7 @@ void Telemetry::tick(double t, double dt, Nanoseconds late, Nanoseconds spent, c
                      const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
   BlackBoxRow row;
   row.t = t;
+  simulated_seconds_ = t + 1 / rate_;
   row.lateness_us = static_cast<float>(static_cast<double>(late) * 1e-3);
   row.compute_us = static_cast<float>(static_cast<double>(spent) * 1e-3);
   lateness_us_.add(row.lateness_us);
@@ -58,6 +59,23 @@ void Telemetry::finish(uint64_t ticks, Nanoseconds elapsed, long page_faults, ui
   elapsed_ = elapsed;
   page_faults_ = page_faults;
   allocations_ = allocations;
+}
+
+record::RunReport Telemetry::report(const std::vector<std::string>& faults) const {
+  record::RunReport report;
+  report.ticks = ticks_;
+  report.wall_seconds = static_cast<double>(elapsed_) * kSecondsPerNanosecond;
+  report.seconds = simulated_seconds_;
+  report.rate_hz = simulated_seconds_ > 0 ? static_cast<double>(ticks_) / simulated_seconds_ : 0;
+  report.overruns = overruns_;
+  report.missed_ticks = missed_;
+  report.lateness_us = lateness_us_;
+  report.compute_us = compute_us_;
+  report.page_faults = page_faults_;
+  report.servo_allocations = allocations_;
+  for (size_t i = 0; i < models_.size(); ++i) report.models.push_back({names_[i], plugins_[i], models_[i]});
+  report.faults = faults;
+  return report;
 }
 
 std::vector<BlackBoxRow> Telemetry::blackBox() const {

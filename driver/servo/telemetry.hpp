@@ -60,7 +60,7 @@ class Telemetry {
   void bookModels(double dt, const Core& core, BlackBoxRow& row) noexcept HSP_RT;
 
   std::vector<std::string> names_, plugins_;
-  double rate_;
+  double rate_, simulated_seconds_ = 0;
   record::Histogram lateness_us_, compute_us_;
   std::vector<record::ContactStatistics> models_;
   std::vector<BlackBoxRow> rows_;
