@@ -1,10 +1,16 @@
 /// What the subcommands share: exit codes, messages, loading a scene.
+///
+/// A subcommand is a file of its own that defines `void addNAME(CLI::App& app, int& exit_code)`: the build finds it by
+/// that line, so a new one touches no other file. Files are called in the order of their names, so plugin_check.cpp may
+/// hang its command under app.get_subcommand("plugin").
 #pragma once
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <optional>
 #include <string>
 
-#include "scene/scene.hpp"
+#include "host/catalog.hpp"
+#include "scene/load.hpp"
 
 namespace hapticd::cli {
 
@@ -18,18 +24,22 @@ int fail(int exit_code, const std::string& message);
 /// Messages of plugins and modules, one a line, on standard error.
 void logToTerminal(int level, const std::string& who, const std::string& text);
 
-/// Loads a scene, or prints every problem as file:line:column: key: what, expected what.
-/// @param device_file replaces the scene's devices; empty: as the scene says
-std::optional<scene::Scene> loadSceneOrReport(const std::string& file, const std::string& device_file = "");
+/// --config and --plugin-path, which stand before the subcommand.
+void addGlobalOptions(CLI::App& app);
 
-/// Subcommands, a file each. The callback of the chosen one sets the exit code.
-void addCheck(CLI::App& app, int& exit_code);
-void addDevice(CLI::App& app, int& exit_code);
-void addDoctor(CLI::App& app, int& exit_code);
-void addExplain(CLI::App& app, int& exit_code);
-void addImport(CLI::App& app, int& exit_code);
-void addPlugin(CLI::App& app, int& exit_code);
-void addRun(CLI::App& app, int& exit_code);
-void addTrace(CLI::App& app, int& exit_code);
+/// The daemon file of this machine; a file with problems ends the program with exit code 2.
+const scene::Daemon& daemonSettings();
+
+/// Plugins and modules, found with the search path of options, daemon file and environment.
+host::Catalog& catalog();
+
+/// Every problem as file:line:column: key: what, expected what.
+void printProblems(const scene::Problems& problems, std::FILE* out);
+
+/// Loads a scene, or prints every problem on standard error.
+/// @param device_file replaces the scene's devices; empty: as the scene says
+/// @param default_device take the simulated arm where the scene names none; without it, devices may be empty
+std::optional<scene::Scene> loadSceneOrReport(const std::string& file, const std::string& device_file = "",
+                                              bool default_device = true);
 
 }  // namespace hapticd::cli

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/os.hpp"
 #include "base/result.hpp"
 #include "scene/scene.hpp"
 #include "servo/loop.hpp"

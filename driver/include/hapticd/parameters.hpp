@@ -6,20 +6,36 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "abi.h"
 
 namespace hapticd {
 
-/// One parameter of class T and the member that holds its value.
+/// The member of class T that holds a value: exactly one of the pointers is set.
+template <class T>
+struct Member {
+  double T::*real = nullptr;
+  int T::*integer = nullptr;
+  bool T::*boolean = nullptr;
+  std::string T::*text = nullptr;
+  std::vector<double> T::*array = nullptr;
+  std::array<double, 3> T::*vector3 = nullptr;
+
+  constexpr Member() = default;
+  constexpr Member(double T::*m) : real(m) {}                  // NOLINT: implicit by intent, a table line names a member
+  constexpr Member(int T::*m) : integer(m) {}                  // NOLINT
+  constexpr Member(bool T::*m) : boolean(m) {}                 // NOLINT
+  constexpr Member(std::string T::*m) : text(m) {}             // NOLINT
+  constexpr Member(std::vector<double> T::*m) : array(m) {}    // NOLINT
+  constexpr Member(std::array<double, 3> T::*m) : vector3(m) {}  // NOLINT
+};
+
+/// One parameter of class T and its member.
 template <class T>
 struct Field {
-  using Member = std::variant<double T::*, int T::*, bool T::*, std::string T::*, std::vector<double> T::*,
-                              std::array<double, 3> T::*>;
-  hsp_param param;
-  Member member;
+  hsp_param param{};
+  Member<T> member;
 };
 
 /// Builders of one table line each: `id` (a dot nests), member, unit, range and default, one sentence of documentation.
@@ -133,19 +149,20 @@ inline void logError(const hsp_host* host, const std::string& text) {
   if (host != nullptr && host->log != nullptr) host->log(host, HSP_LOG_ERROR, text.c_str());
 }
 
-/// [main] Puts the defaults of the table into the members of a new object.
+/// [main] Puts the defaults of the table into the members of a new object. Not inlined: g++ 12 would judge members that
+/// the object does not have by the size of the allocation it sees.
 template <class T, size_t N>
-void applyDefaults(T& object, const std::array<Field<T>, N>& fields) {
+[[gnu::noinline]] void applyDefaults(T& object, const std::array<Field<T>, N>& fields) {
   for (const Field<T>& field : fields) {
     const hsp_param& p = field.param;
-    if (auto m = std::get_if<double T::*>(&field.member)) object.**m = p.def;
-    if (auto m = std::get_if<int T::*>(&field.member)) object.**m = static_cast<int>(p.def);
-    if (auto m = std::get_if<bool T::*>(&field.member)) object.**m = p.def != 0;
-    if (auto m = std::get_if<std::string T::*>(&field.member)) object.**m = p.def_text != nullptr ? p.def_text : "";
-    if (auto m = std::get_if<std::vector<double> T::*>(&field.member)) object.**m = numbersIn(p.def_text);
-    if (auto m = std::get_if<std::array<double, 3> T::*>(&field.member)) {
+    if (const auto m = field.member.real) object.*m = p.def;
+    if (const auto m = field.member.integer) object.*m = static_cast<int>(p.def);
+    if (const auto m = field.member.boolean) object.*m = p.def != 0;
+    if (const auto m = field.member.text) object.*m = p.def_text != nullptr ? p.def_text : "";
+    if (const auto m = field.member.array) object.*m = numbersIn(p.def_text);
+    if (const auto m = field.member.vector3) {
       const std::vector<double> numbers = numbersIn(p.def_text);
-      for (size_t i = 0; i < 3; ++i) (object.**m)[i] = i < numbers.size() ? numbers[i] : 0;
+      for (size_t i = 0; i < 3; ++i) (object.*m)[i] = i < numbers.size() ? numbers[i] : 0;
     }
   }
 }
@@ -179,9 +196,9 @@ inline std::string complaint(const hsp_param& p, const hsp_value& value) {
 /// [rt] for numeric kinds: assigns a value that has been checked.
 template <class T>
 void assignNumber(T& object, const Field<T>& field, double number) noexcept {
-  if (auto m = std::get_if<double T::*>(&field.member)) object.**m = number;
-  if (auto m = std::get_if<int T::*>(&field.member)) object.**m = static_cast<int>(number);
-  if (auto m = std::get_if<bool T::*>(&field.member)) object.**m = number != 0;
+  if (const auto m = field.member.real) object.*m = number;
+  if (const auto m = field.member.integer) object.*m = static_cast<int>(number);
+  if (const auto m = field.member.boolean) object.*m = number != 0;
 }
 
 /// [main] Checks and assigns one parameter.
@@ -194,12 +211,12 @@ hsp_status assign(T& object, const std::array<Field<T>, N>& fields, const hsp_ho
     logError(host, wrong);
     return HSP_E_ARG;
   }
-  if (auto m = std::get_if<std::string T::*>(&field.member)) {
-    object.**m = value->text;
-  } else if (auto v = std::get_if<std::vector<double> T::*>(&field.member)) {
-    (object.**v).assign(value->numbers, value->numbers + value->count);
-  } else if (auto a = std::get_if<std::array<double, 3> T::*>(&field.member)) {
-    for (size_t i = 0; i < 3; ++i) (object.**a)[i] = value->numbers[i];
+  if (const auto m = field.member.text) {
+    object.*m = value->text;
+  } else if (const auto v = field.member.array) {
+    (object.*v).assign(value->numbers, value->numbers + value->count);
+  } else if (const auto a = field.member.vector3) {
+    for (size_t i = 0; i < 3; ++i) (object.*a)[i] = value->numbers[i];
   } else {
     assignNumber(object, field, value->number);
   }
@@ -212,16 +229,16 @@ hsp_status fetch(const T& object, const std::array<Field<T>, N>& fields, uint32_
   if (index >= N || value == nullptr) return HSP_E_ARG;
   const Field<T>& field = fields[index];
   *value = hsp_value{field.param.kind, 0, 0, nullptr, nullptr};
-  if (auto m = std::get_if<double T::*>(&field.member)) value->number = object.**m;
-  if (auto m = std::get_if<int T::*>(&field.member)) value->number = object.**m;
-  if (auto m = std::get_if<bool T::*>(&field.member)) value->number = (object.**m) ? 1 : 0;
-  if (auto m = std::get_if<std::string T::*>(&field.member)) value->text = (object.**m).c_str();
-  if (auto m = std::get_if<std::vector<double> T::*>(&field.member)) {
-    value->numbers = (object.**m).data();
-    value->count = static_cast<uint32_t>((object.**m).size());
+  if (const auto m = field.member.real) value->number = object.*m;
+  if (const auto m = field.member.integer) value->number = object.*m;
+  if (const auto m = field.member.boolean) value->number = (object.*m) ? 1 : 0;
+  if (const auto m = field.member.text) value->text = (object.*m).c_str();
+  if (const auto m = field.member.array) {
+    value->numbers = (object.*m).data();
+    value->count = static_cast<uint32_t>((object.*m).size());
   }
-  if (auto m = std::get_if<std::array<double, 3> T::*>(&field.member)) {
-    value->numbers = (object.**m).data();
+  if (const auto m = field.member.vector3) {
+    value->numbers = (object.*m).data();
     value->count = 3;
   }
   return HSP_OK;

@@ -30,13 +30,13 @@ void Axis::anchor(bool low, bool high) {
   if (high) cells_.back().origin = breaks_.back();
 }
 
-const Cell& Axis::search(double& t, std::int32_t& hint) const noexcept {
+double Axis::search(double t, std::int32_t& hint) const noexcept {
   if (!(t > breaks_.front())) t = breaks_.front();
   if (t > breaks_.back()) t = breaks_.back();
   const auto above = std::upper_bound(cells_.begin() + 1, cells_.end(), t,
                                       [](double value, const Cell& cell) { return value < cell.lo; });
   hint = static_cast<std::int32_t>(above - cells_.begin()) - 1;
-  return *(above - 1);
+  return t;
 }
 
 std::size_t Axis::bytes() const noexcept {

@@ -24,15 +24,16 @@ class Axis {
   /// [main] For valid knots.
   Axis(int degree, const std::vector<double>& knots);
 
-  /// [any] The cell that holds t, tried first at `hint` (any value). Moves t into the domain; not-a-number to its low
-  /// end.
-  const Cell& locate(double& t, std::int32_t& hint) const noexcept {
+  /// [any] Puts into `hint` the index of the cell that holds t, looked for first where it says (any value), and
+  /// returns t moved into the domain; not-a-number goes to its low end.
+  double locate(double t, std::int32_t& hint) const noexcept {
     const auto h = static_cast<std::size_t>(static_cast<std::uint32_t>(hint));
     if (h < cells_.size() && cells_[h].lo <= t && t < cells_[h].end) [[likely]] {
-      return cells_[h];
+      return t;
     }
     return search(t, hint);
   }
+  const Cell& cell(std::int32_t index) const noexcept { return cells_[static_cast<std::size_t>(index)]; }
   KnotWindow window(const Cell& cell) const noexcept {
     return {degree_, knots_.data() + cell.knot, reciprocals_.data() + cell.span * (degree_ * (degree_ + 1) / 2)};
   }
@@ -49,7 +50,7 @@ class Axis {
   void anchor(bool low, bool high);
 
  private:
-  const Cell& search(double& t, std::int32_t& hint) const noexcept;
+  double search(double t, std::int32_t& hint) const noexcept;
 
   int degree_ = 0;
   std::vector<Cell> cells_;

@@ -23,15 +23,10 @@ struct NetWindow {
   int stride;          ///< from one u row to the next
 };
 
-/// Coefficients of one table cell: the local origin, then (size_u x size_v) coefficients of s^i t^j, i-major.
-struct TableCell {
-  const Quad* data;
-  int size_u, size_v;
-};
-
 /// Kernels write S, Su, Sv, three doubles each; those of second order write Suu, Suv, Svv after them.
 using NetKernel = void (*)(const NetWindow& net, double u, double v, double* out) noexcept;
-using TableKernel = void (*)(const TableCell& cell, double s, double t, double* out) noexcept;
+/// `cell`: the local origin, then size_u x size_v coefficients of s^i t^j, i-major.
+using TableKernel = void (*)(const Quad* cell, int size_u, int size_v, double s, double t, double* out) noexcept;
 
 /// Cells of these sizes (degree + 1) have unrolled kernels; smaller degrees are padded to them with zeros.
 inline constexpr int kTableShapes = 8;

@@ -10,9 +10,10 @@ inline V4 load(const Quad* q) {
 inline V4 splat(double a) {
   return V4{a, a, a, a};
 }
+/// Two plain stores: what reads a vector of three next then gets it straight from the store buffer.
 inline void store3(double* out, V4 a) {
-  out[0] = a[0];
-  out[1] = a[1];
+  typedef double V2 __attribute__((vector_size(16), aligned(8), may_alias));
+  *reinterpret_cast<V2*>(out) = V2{a[0], a[1]};
   out[2] = a[2];
 }
 
@@ -21,19 +22,20 @@ struct Sums {
   V4 S, Su, Sv, Suu, Suv, Svv;
 };
 
-/// Piegl & Tiller A4.4 written out: derivatives of the quotient of numerator and weight.
+/// Piegl & Tiller A4.4 written out: derivatives of the quotient of numerator and weight. Everything is divided by the
+/// weight first, so that the one division is the only long step.
 template <int kOrder>
 inline void divideByWeight(Sums& a) {
   const V4 reciprocal = splat(1 / a.S[3]);
-  const V4 wu = splat(a.Su[3]), wv = splat(a.Sv[3]);
-  const V4 wuu = splat(a.Suu[3]), wuv = splat(a.Suv[3]), wvv = splat(a.Svv[3]);
+  const V4 wu = splat(a.Su[3]) * reciprocal, wv = splat(a.Sv[3]) * reciprocal;
   a.S *= reciprocal;
-  a.Su = (a.Su - wu * a.S) * reciprocal;
-  a.Sv = (a.Sv - wv * a.S) * reciprocal;
+  a.Su = a.Su * reciprocal - wu * a.S;
+  a.Sv = a.Sv * reciprocal - wv * a.S;
   if constexpr (kOrder > 1) {
-    a.Suu = (a.Suu - 2 * wu * a.Su - wuu * a.S) * reciprocal;
-    a.Suv = (a.Suv - wu * a.Sv - wv * a.Su - wuv * a.S) * reciprocal;
-    a.Svv = (a.Svv - 2 * wv * a.Sv - wvv * a.S) * reciprocal;
+    const V4 wuu = splat(a.Suu[3]) * reciprocal, wuv = splat(a.Suv[3]) * reciprocal, wvv = splat(a.Svv[3]) * reciprocal;
+    a.Suu = a.Suu * reciprocal - 2 * wu * a.Su - wuu * a.S;
+    a.Suv = a.Suv * reciprocal - wu * a.Sv - wv * a.Su - wuv * a.S;
+    a.Svv = a.Svv * reciprocal - 2 * wv * a.Sv - wvv * a.S;
   }
 }
 

@@ -47,8 +47,8 @@ void Surface::prefetch(const SurfacePoint& point) const noexcept {
     __builtin_prefetch(&axes_[a].cells()[static_cast<std::size_t>(point.span[a])]);
   }
   if (form() == Form::kTable) {
-    const Quad* first = tableCell(point).data;
-    for (std::ptrdiff_t i = 0; i < table_.stride(); i += kQuadsALine) __builtin_prefetch(first + i);
+    const Quad* first = tableCell(point);
+    for (std::ptrdiff_t i = 0; i < table_.stride; i += kQuadsALine) __builtin_prefetch(first + i);
     return;
   }
   const NetWindow net = netWindow(axes_[0].cells()[static_cast<std::size_t>(point.span[0])],

@@ -65,10 +65,12 @@ class Surface {
  private:
   template <int kOrder>
   void evaluate(double u, double v, SurfacePoint& out) const noexcept {
-    const Cell& cu = axes_[0].locate(u, out.span[0]);
-    const Cell& cv = axes_[1].locate(v, out.span[1]);
+    u = axes_[0].locate(u, out.span[0]);
+    v = axes_[1].locate(v, out.span[1]);
+    const Cell &cu = axes_[0].cell(out.span[0]), &cv = axes_[1].cell(out.span[1]);
     if (table_kernel_[kOrder - 1] != nullptr) {
-      table_kernel_[kOrder - 1](tableCell(out), u - cu.origin, v - cv.origin, out.S.data());
+      table_kernel_[kOrder - 1](tableCell(out), table_.size_u, table_.size_v, u - cu.origin, v - cv.origin,
+                                out.S.data());
     } else {
       net_kernel_[kOrder - 1](netWindow(cu, cv), u, v, out.S.data());
     }
@@ -76,9 +78,8 @@ class Surface {
       rescale(kOrder, out);
     }
   }
-  TableCell tableCell(const SurfacePoint& at) const noexcept {
-    const std::ptrdiff_t cell = at.span[0] * static_cast<std::ptrdiff_t>(axes_[1].cells().size()) + at.span[1];
-    return {table_.cells.data() + cell * table_.stride(), table_.size_u, table_.size_v};
+  const Quad* tableCell(const SurfacePoint& at) const noexcept {
+    return table_.cells.data() + at.span[0] * table_.row_stride + at.span[1] * table_.stride;
   }
   NetWindow netWindow(const Cell& cu, const Cell& cv) const noexcept;
   void rescale(int order, SurfacePoint& out) const noexcept;

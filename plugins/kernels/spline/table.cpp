@@ -186,7 +186,9 @@ std::optional<Table> makeTable(const Net& net, const Axis& u, const Axis& v) {
   const std::array<int, 2> degree{u.degree(), v.degree()};
   Table table;
   chooseShape(degree, table);
-  table.cells.reserve(u.cells().size() * v.cells().size() * static_cast<std::size_t>(table.stride()));
+  table.stride = 1 + static_cast<std::ptrdiff_t>(table.size_u) * table.size_v;
+  table.row_stride = table.stride * static_cast<std::ptrdiff_t>(v.cells().size());
+  table.cells.reserve(u.cells().size() * static_cast<std::size_t>(table.row_stride));
   std::vector<Taylor> taylor_v;
   for (const Cell& cell : v.cells()) taylor_v.push_back(taylorCoefficients(v, cell));
   for (const Cell& cu : u.cells()) {

@@ -1,5 +1,6 @@
 /// Power-basis coefficients of a surface, a cell a span: the fast form of evaluation.
 #pragma once
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -15,9 +16,9 @@ inline constexpr double kMaxTableGrowth = 100;
 struct Table {
   std::vector<Quad> cells;  ///< u-major; each: local origin, then coefficients
   int size_u = 0, size_v = 0;
-  int shape = 0;  ///< index into KernelSet::table
-  /// [any] Quads of a cell.
-  int stride() const noexcept { return 1 + size_u * size_v; }
+  int shape = 0;                  ///< index into KernelSet::table
+  std::ptrdiff_t stride = 0;      ///< from a cell to the next along v, in quads
+  std::ptrdiff_t row_stride = 0;  ///< and along u
 };
 
 /// [main] Moves expansion points to collapsed sides, so that tangents next to a pole keep their relative precision.
