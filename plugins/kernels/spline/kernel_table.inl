@@ -31,7 +31,8 @@ inline Row horner(int count, V4 x, Coefficient coefficient) {
   return row;
 }
 
-/// As many multiplications as Horner's rule in two thirds of its depth.
+/// As many multiplications as Horner's rule in two thirds of its depth: for the last step, which has nothing beside it
+/// to fill the processor with. (For the rows before, four at once, it only costs registers.)
 template <int kOrder, class Coefficient>
 inline Row cubic(const Powers& t, Coefficient coefficient) {
   const V4 a = coefficient(0), b = coefficient(1), c = coefficient(2), d = coefficient(3);
@@ -41,7 +42,7 @@ inline Row cubic(const Powers& t, Coefficient coefficient) {
   return row;
 }
 
-/// kSize 0: known at run time only.
+/// kSize 0, here and below: known at run time only.
 template <int kSize, int kOrder, class Coefficient>
 inline Row polynomial(int size, const Powers& t, Coefficient coefficient) {
   if constexpr (kSize == 4) return cubic<kOrder>(t, coefficient);
@@ -52,17 +53,18 @@ template <int kSizeU, int kSizeV, bool kRational, int kOrder>
 void evaluateTable(const Quad* cell, int run_size_u, int run_size_v, double s, double t, double* out) noexcept {
   const int size_u = kSizeU > 0 ? kSizeU : run_size_u, size_v = kSizeV > 0 ? kSizeV : run_size_v;
   const Quad* c = cell + 1;
-  const Powers powers_u(s), powers_v(t);
+  const Powers powers(s);
+  const V4 x = splat(t);
   Row rows[kSizeU > 0 ? kSizeU : kMaxTableSize];
 #pragma GCC unroll 6
   for (int i = 0; i < size_u; ++i) {
-    rows[i] = polynomial<kSizeV, kOrder>(size_v, powers_v, [=](int j) { return load(c + i * size_v + j); });
+    rows[i] = horner<kOrder>(size_v, x, [=](int j) { return load(c + i * size_v + j); });
   }
-  const Row f = polynomial<kSizeU, kOrder>(size_u, powers_u, [&](int i) { return rows[i].f; });
-  const Row g = polynomial<kSizeU, kOrder - 1>(size_u, powers_u, [&](int i) { return rows[i].g; });
+  const Row f = polynomial<kSizeU, kOrder>(size_u, powers, [&](int i) { return rows[i].f; });
+  const Row g = polynomial<kSizeU, kOrder - 1>(size_u, powers, [&](int i) { return rows[i].g; });
   Sums sums{f.f, f.g, g.f, f.h + f.h, g.g, splat(0)};
   if constexpr (kOrder > 1) {
-    const Row h = polynomial<kSizeU, 0>(size_u, powers_u, [&](int i) { return rows[i].h; });
+    const Row h = polynomial<kSizeU, 0>(size_u, powers, [&](int i) { return rows[i].h; });
     sums.Svv = h.f + h.f;
   }
   if constexpr (kRational) divideByWeight<kOrder>(sums);
