@@ -63,7 +63,7 @@ Result<void> traceRows(const scene::Scene& scene, servo::World& world, const std
 }
 
 int trace(const Options& options) {
-  auto scene = loadSceneOrReport(options.scene);
+  auto scene = loadSceneOrReport(options.scene, "", false);
   if (!scene) return kBadInput;
   auto rows = readProbePath(options.probe);
   if (!rows) return fail(kBadInput, rows.error());

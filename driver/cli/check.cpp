@@ -1,0 +1,56 @@
+/// `hapticd check`: validates files and prints every problem; also prints the JSON Schema of a format.
+#include <memory>
+#include <vector>
+
+#include "cli/command.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> files;
+  std::string schema;
+  bool quiet = false;
+};
+
+int printSchema(const std::string& format) {
+  std::fputs(scene::jsonSchema(format, &catalog()).c_str(), stdout);
+  return kWorked;
+}
+
+int check(const Options& options) {
+  if (!options.schema.empty()) return printSchema(options.schema);
+  if (options.files.empty()) return fail(kBadInput, "no file given, expected `hapticd check FILE...`");
+  size_t problems = 0, bad_files = 0;
+  for (const std::string& file : options.files) {
+    const scene::Problems found = scene::checkFile(file, catalog());
+    printProblems(found, stdout);
+    if (found.empty() && !options.quiet) std::printf("%s: ok\n", file.c_str());
+    problems += found.size();
+    bad_files += found.empty() ? 0 : 1;
+  }
+  if (problems == 0) return kWorked;
+  std::fflush(stdout);
+  std::fprintf(stderr, "%zu problem%s in %zu of %zu file%s\n", problems, problems == 1 ? "" : "s", bad_files,
+               options.files.size(), options.files.size() == 1 ? "" : "s");
+  return kBadInput;
+}
+
+}  // namespace
+
+void addCheck(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("check", "Validate scene, device and daemon files; print every problem.");
+  command->add_option("files", options->files, "files to check");
+  command->add_option("--schema", options->schema, "print the JSON Schema of a format instead, for editors")
+      ->check(CLI::IsMember({"scene", "device", "daemon"}));
+  command->add_flag("--quiet,-q", options->quiet, "say nothing about files that are good");
+  command->footer(
+      "Each problem is a line: file:line:column: key: what is wrong, and what was expected.\n"
+      "Exit code 2 if there is any.\n\n"
+      "Example:\n  hapticd check config/scenes/teapot.yaml config/devices/simulated-premium15.yaml\n"
+      "  hapticd check --schema scene > scene.schema.json");
+  command->callback([options, &exit_code] { exit_code = check(*options); });
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,94 @@
+#include "cli/command.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "hapticd/abi.h"
+
+namespace hapticd::cli {
+namespace {
+
+struct Settings {
+  std::string config_file;
+  std::vector<std::filesystem::path> plugin_path;
+};
+
+Settings& settings() {
+  static Settings instance;
+  return instance;
+}
+
+/// The daemon file in force, or "" where the defaults hold.
+std::filesystem::path daemonFile() {
+  if (!settings().config_file.empty()) return settings().config_file;
+  if (const char* named = std::getenv("HAPTICD_CONFIG"); named != nullptr && named[0] != '\0') return named;
+  std::error_code error;
+  constexpr const char* kSystem = "/etc/hapticd/hapticd.yaml";
+  if (std::filesystem::exists(kSystem, error)) return kSystem;
+  return host::shippedFile("hapticd.yaml").value_or("");
+}
+
+/// What holds for this machine holds for every scene.
+void applyDaemon(const scene::Daemon& daemon, scene::Scene& scene) {
+  if (daemon.rate) scene.servo.rate = *daemon.rate;
+  for (scene::Device& device : scene.devices)
+    if (daemon.force && (device.limits.force == 0 || device.limits.force > *daemon.force))
+      device.limits.force = *daemon.force;
+}
+
+}  // namespace
+
+int fail(int exit_code, const std::string& message) {
+  std::fprintf(stderr, "error: %s\n", message.c_str());
+  return exit_code;
+}
+
+void logToTerminal(int level, const std::string& who, const std::string& text) {
+  if (level < HSP_LOG_INFO) return;
+  const char* word = level == HSP_LOG_INFO ? "info" : level == HSP_LOG_WARNING ? "warning" : "error";
+  std::fprintf(stderr, "%s: %s: %s\n", word, who.c_str(), text.c_str());
+}
+
+void addGlobalOptions(CLI::App& app) {
+  app.add_option("--config", settings().config_file,
+                 "daemon file; without it $HAPTICD_CONFIG, /etc/hapticd/hapticd.yaml or the one shipped");
+  app.add_option("--plugin-path", settings().plugin_path,
+                 "folders searched for plugins and device modules before all others")
+      ->delimiter(':');
+}
+
+const scene::Daemon& daemonSettings() {
+  static const scene::Daemon daemon = [] {
+    const std::filesystem::path file = daemonFile();
+    if (file.empty()) return scene::Daemon{};
+    const scene::LoadedDaemon loaded = scene::loadDaemon(file);
+    printProblems(loaded.problems, stderr);
+    if (!loaded.daemon) std::exit(fail(kBadInput, "the daemon file has problems; see above"));
+    return *loaded.daemon;
+  }();
+  return daemon;
+}
+
+host::Catalog& catalog() {
+  static host::Catalog instance = [] {
+    host::SearchPath path = host::SearchPath::standard();
+    path.prepend(daemonSettings().plugin_path);
+    path.prepend(settings().plugin_path);
+    return host::Catalog(path);
+  }();
+  return instance;
+}
+
+void printProblems(const scene::Problems& problems, std::FILE* out) {
+  for (const scene::Problem& problem : problems) std::fprintf(out, "%s\n", problem.text().c_str());
+}
+
+std::optional<scene::Scene> loadSceneOrReport(const std::string& file, const std::string& device_file,
+                                              bool default_device) {
+  scene::Loaded loaded = scene::load(file, catalog(), {default_device, device_file});
+  printProblems(loaded.problems, stderr);
+  if (loaded.scene) applyDaemon(daemonSettings(), *loaded.scene);
+  return std::move(loaded.scene);
+}
+
+}  // namespace hapticd::cli
