@@ -53,7 +53,7 @@ void TraceWriter::numbers(const double* values, int count) {
 }
 
 void TraceWriter::whole(long value) {
-  line_ += "," + std::to_string(value);
+  (line_ += ',') += std::to_string(value);
 }
 
 Result<void> TraceWriter::write(double t, const servo::Core& core, bool probe_valid) {
@@ -65,7 +65,7 @@ Result<void> TraceWriter::write(double t, const servo::Core& core, bool probe_va
     char time[32];
     std::snprintf(time, sizeof time, "%.17g", t);
     line_ = time;
-    line_ += "," + names_[index];
+    (line_ += ',') += names_[index];
     if (contact.traced) {
       whole(c.feature);
       numbers(c.param, 2);
