@@ -9,8 +9,13 @@ function(_hapticd_add_module name kind)
                         VISIBILITY_INLINES_HIDDEN ON POSITION_INDEPENDENT_CODE ON)
   target_compile_features(${name} PRIVATE cxx_std_20)
   target_link_libraries(${name} PRIVATE hapticd::abi ${arg_LIBRARIES})
-  if(TARGET hapticd_options) # inside the tree
-    target_link_libraries(${name} PRIVATE hapticd_options)
+  if(NOT TARGET hapticd_options) # outside the tree
+    return()
+  endif()
+  target_link_libraries(${name} PRIVATE hapticd_options)
+  if(CMAKE_CURRENT_SOURCE_DIR MATCHES "^${PROJECT_SOURCE_DIR}/tests/") # never found by a user's daemon, nor installed
+    set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests/${kind})
+  else()
     set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${HAPTICD_MODULE_DIR}/${kind})
     install(TARGETS ${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/hapticd/${kind})
   endif()

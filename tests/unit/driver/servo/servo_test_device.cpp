@@ -1,0 +1,85 @@
+/// A gantry of three sliding joints for the tests of the loop: it presses into y < 0, and fails when it is told to.
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "hapticd/device.hpp"
+
+namespace {
+
+using hapticd::Fields;
+
+/// What the arm was told and asked, for the test to read (the module is loaded into the test's own process).
+struct Log {
+  double force[3];
+  uint32_t mode;
+  int reads, writes;
+};
+
+struct Gantry : hapticd::Device {
+  double depth, fail_at;
+  int failure;
+  Log log{};
+  static constexpr const char* kFailures[] = {"none", "lost", "not_finite", "stale", "fault", "uncalibrated"};
+  static constexpr hapticd::DeviceInfo kInfo{"org.hapticd.test.gantry", "gantry", "1.0.0", "MIT", "A gantry."};
+  static constexpr auto fields() {
+    using F = Fields<Gantry>;
+    return std::array{F::real("depth", &Gantry::depth, "m", -1, 1, 0.002, "Depth below y = 0."),
+                      F::real("fail_at", &Gantry::fail_at, "s", 0, 1e9, 0.05, "When it fails."),
+                      F::choice("failure", &Gantry::failure, kFailures, 0, "How it fails.")};
+  }
+
+  void open(hdv_info& info) {
+    info.joint_count = 3;
+    info.rate_hz = 1000;
+    info.max_force = 8.5;
+    info.capabilities = HDV_C_SIMULATED | (failure == 5 ? static_cast<uint32_t>(HDV_C_CALIBRATION) : 0u);
+  }
+  void start(const hdv_start& how) { start_ns_ = how.time_ns; }
+  hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
+    const bool failed = static_cast<double>(now_ns - start_ns_) * 1e-9 >= fail_at;
+    sample.position[1] = -depth;
+    sample.flags = failure == 5 ? 0u : static_cast<uint32_t>(HDV_S_CALIBRATED);
+    if (failed && failure == 1) return HSP_E_IO;
+    if (failed && failure == 2) sample.position[0] = std::numeric_limits<double>::quiet_NaN();
+    if (failed && failure == 4) sample.flags |= HDV_S_FAULT;
+    if (!failed || failure != 3) ++sample.sequence;
+    ++log.reads;
+    return HSP_OK;
+  }
+  hsp_status write(uint64_t, const hdv_command& command) noexcept HSP_RT {
+    std::memcpy(log.force, command.torque, sizeof log.force);
+    log.mode = command.mode;
+    ++log.writes;
+    return HSP_OK;
+  }
+  const void* extension(const char* name) {
+    if (std::strcmp(name, "test.log") == 0) return &log;
+    return std::strcmp(name, HDV_EXT_KINEMATICS) == 0 ? &kKinematics : nullptr;
+  }
+
+  static hsp_status forward(const hdv_device*, const double* q, double position[3], double orientation[4]) noexcept HSP_RT {
+    for (int i = 0; i < 3; ++i) position[i] = q[i];
+    orientation[0] = 1, orientation[1] = orientation[2] = orientation[3] = 0;
+    return HSP_OK;
+  }
+  static hsp_status jacobian(const hdv_device*, const double*, double* J) noexcept HSP_RT {
+    for (int i = 0; i < 18; ++i) J[i] = i % 4 == 0 && i < 9 ? 1 : 0;
+    return HSP_OK;
+  }
+  static hsp_status gravity(const hdv_device*, const double*, const double*, double*) noexcept HSP_RT {
+    return HSP_E_UNSUPPORTED;
+  }
+  static hsp_status inverse(const hdv_device*, const double position[3], double* q) noexcept HSP_RT {
+    for (int i = 0; i < 3; ++i) q[i] = position[i];
+    return HSP_OK;
+  }
+  static constexpr hdv_ext_kinematics kKinematics{sizeof(hdv_ext_kinematics), 3, &forward, &jacobian, &gravity, &inverse};
+
+ private:
+  uint64_t start_ns_ = 0;
+};
+
+}  // namespace
+
+HAPTICD_DEVICES(Gantry)
