@@ -1,0 +1,33 @@
+#include "kernels/contact/wall.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hapticd::contact {
+
+namespace {
+
+/// (x/x0)^n, with the exponents in common use exact and cheap; the roots are taken apart so that the smallest depths
+/// do not lose their digits in the quotient.
+double shape(const WallLaw& law, double depth) noexcept {
+  if (law.exponent == 1) return depth / law.depth_scale;
+  if (law.exponent == 0.5) return std::sqrt(depth) / std::sqrt(law.depth_scale);
+  return std::pow(depth / law.depth_scale, law.exponent);
+}
+
+}  // namespace
+
+WallForce wallForce(const WallLaw& law, double depth, double closing_speed) noexcept {
+  if (!(depth > 0)) return {};
+  const double at_scale = law.stiffness * law.depth_scale + law.damping * closing_speed;
+  const double force = at_scale * shape(law, depth);
+  return {std::max(0.0, force), law.exponent * force / depth};
+}
+
+double wallEnergy(const WallLaw& law, double depth) noexcept {
+  if (!(depth > 0)) return 0;
+  const double elastic = law.stiffness * law.depth_scale * shape(law, depth);
+  return elastic * depth / (law.exponent + 1);
+}
+
+}  // namespace hapticd::contact
