@@ -1,0 +1,86 @@
+/// Which side of the model the probe is on, decided where the nearest foot lies: on a face, an edge or a corner.
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "kernels/trace/tracer.hpp"
+
+namespace hapticd::trace {
+namespace {
+
+using Eigen::Array2d;
+using Eigen::Vector3d;
+
+/// [m] Nearer to an edge than this, the direction from the foot to the probe is rounding; the force there is nothing.
+constexpr double kTouching = 1e-7;
+
+}  // namespace
+
+Vector3d Tracer::surfaceNormal(int patch) const noexcept {
+  constexpr double kVanishing = 1e-9;  // sine of the angle of the tangents, or their ratio: a pole or a cusp
+  const Patch& piece = model_.patch(patch);
+  const LocalFoot& foot = track(patch).foot;
+  const Vector3d n = foot.Su.cross(foot.Sv);
+  const double length = n.norm();
+  if (length > kVanishing * (foot.Su.squaredNorm() + foot.Sv.squaredNorm())) return n * (piece.sign / length);
+  return piece.normalAt(foot.uv);
+}
+
+/// Pseudonormal of the edge or corner that holds the foot: a probe in its direction is outside (Baerentzen & Aanaes).
+Vector3d Tracer::edgeNormal(int patch) const noexcept {
+  const Patch& piece = model_.patch(patch);
+  const LocalFoot& foot = track(patch).foot;
+  int only = -1;
+  bool corner = false;
+  for (int side = 0; side < kSides; ++side) {
+    if (!(foot.sides & bit(side))) continue;
+    corner = corner || only >= 0 || piece.sides[static_cast<std::size_t>(side)].kind == SideKind::kPole;
+    only = side;
+  }
+  if (corner) {
+    const int at = (foot.uv[0] == piece.hi[0] ? 1 : 0) + (foot.uv[1] == piece.hi[1] ? 2 : 0);
+    const Vector3d& n = model_.vertexNormal(piece.corners[static_cast<std::size_t>(at)]);
+    if (n.squaredNorm() > 0) return n;
+  }
+  const Side& edge = piece.sides[static_cast<std::size_t>(only)];
+  const Vector3d n = surfaceNormal(patch);
+  if (edge.kind != SideKind::kJoined) return n;
+  const double fraction = piece.fractionOn(only, foot.uv);
+  const Patch& next = model_.patch(edge.patch);
+  const Vector3d sum = n + next.normalAt(next.onSide(edge.side, edge.flipped ? 1 - fraction : fraction));
+  return sum.squaredNorm() > 0 ? Vector3d(sum.normalized()) : n;
+}
+
+Foot Tracer::describe(int patch, const Vector3d& p) const noexcept {
+  const Patch& piece = model_.patch(patch);
+  const LocalFoot& local = track(patch).foot;
+  Foot foot;
+  foot.point = local.S;
+  foot.u = local.uv[0];
+  foot.v = local.uv[1];
+  foot.surface = piece.source;
+  foot.residual = local.residual;
+  foot.status = local.converged ? TraceStatus::kOk : TraceStatus::kDegraded;
+  foot.on_edge = local.sides != 0;
+  const Vector3d r = p - local.S;
+  if (local.sides == 0) {
+    foot.normal = surfaceNormal(patch);
+    foot.depth = -r.dot(foot.normal);
+    return foot;
+  }
+  bool open = false;
+  for (int side = 0; side < kSides; ++side)
+    open = open || ((local.sides & bit(side)) && piece.sides[static_cast<std::size_t>(side)].kind == SideKind::kFree);
+  foot.normal = open ? surfaceNormal(patch) : edgeNormal(patch);
+  const double behind = -r.dot(foot.normal);
+  if (open) {
+    // The solid behind an open surface ends in a bevel of 45 degrees: the force fades out as the probe slides off.
+    const double aside = (r + behind * foot.normal).norm();
+    foot.depth = behind > aside ? behind - aside : -local.distance;
+    return foot;
+  }
+  foot.depth = behind > 0 ? local.distance : -local.distance;
+  if (local.distance > kTouching) foot.normal = r * (-1 / foot.depth);
+  return foot;
+}
+
+}  // namespace hapticd::trace

@@ -1,0 +1,269 @@
+#include "kernels/trace/newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hapticd::trace {
+namespace {
+
+using Eigen::Array2d;
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// 1 + depth * curvature of the distance function must exceed this for a pure Newton step: below it the probe is near
+/// a centre of curvature and the step would be noise.
+constexpr double kMinCurvature = 1e-3;
+/// Tangents shorter than this share of the longer one (or this close to parallel) span no plane: a pole or a cusp.
+constexpr double kFlatTangent = 1e-12;
+
+/// Quadratic model of f = |S - p|^2 / 2 about an evaluated point.
+struct QuadraticModel {
+  Vector2d g;             ///< gradient
+  Matrix2d H;             ///< positive definite
+  bool saddle = false;    ///< the true Hessian is not: this point is no foot, whatever the gradient says
+  Vector2d escape{0, 0};  ///< direction of negative curvature, unit length in space
+};
+
+/// Orthonormal frame of the tangent plane: (Su Sv) = Q L^T with L lower triangular (Gram-Schmidt), so that curvatures
+/// come out per metre and an ill-scaled or sheared parameterisation does not matter.
+struct TangentFrame {
+  double l11, l21, l22;
+};
+
+TangentFrame tangentFrame(const Vector3d& Su, const Vector3d& Sv) noexcept {
+  TangentFrame L;
+  L.l11 = Su.norm();
+  const Vector3d e1 = L.l11 > 0 ? Vector3d(Su / L.l11) : Vector3d::Zero();
+  L.l21 = e1.dot(Sv);
+  L.l22 = (Sv - L.l21 * e1).norm();
+  return L;
+}
+
+/// First-order model (Gauss-Newton) with enough damping to be regular where tangents vanish.
+Matrix2d damped(const spline::SurfacePoint& E) noexcept {
+  Matrix2d G;
+  G << E.Su.squaredNorm(), E.Su.dot(E.Sv), 0, E.Sv.squaredNorm();
+  G(1, 0) = G(0, 1);
+  const double floor = 1e-10 * std::max(G(0, 0), G(1, 1)) + std::numeric_limits<double>::min();
+  G(0, 0) += floor;
+  G(1, 1) += floor;
+  return G;
+}
+
+QuadraticModel modelOf(const spline::SurfacePoint& E, const Vector3d& r) noexcept {
+  QuadraticModel m;
+  m.g = {r.dot(E.Su), r.dot(E.Sv)};
+  const TangentFrame L = tangentFrame(E.Su, E.Sv);
+  const double longer = std::max(L.l11, E.Sv.norm());
+  if (!(L.l11 > kFlatTangent * longer) || !(L.l22 > kFlatTangent * longer)) {
+    m.H = damped(E);
+    return m;
+  }
+  Matrix2d B;
+  B << r.dot(E.Suu), r.dot(E.Suv), 0, r.dot(E.Svv);
+  // A = I + L^-1 B L^-T: the Hessian per metre of surface; its eigenvalues are 1 + depth * principal curvature.
+  const double i11 = 1 / L.l11, i22 = 1 / L.l22, i21 = -L.l21 * i11 * i22;
+  const double b11 = B(0, 0), b12 = B(0, 1), b22 = B(1, 1);
+  const double a11 = 1 + i11 * i11 * b11;
+  const double a12 = i11 * (i21 * b11 + i22 * b12);
+  const double a22 = 1 + i21 * i21 * b11 + 2 * i21 * i22 * b12 + i22 * i22 * b22;
+  const double mean = 0.5 * (a11 + a22), half = std::hypot(0.5 * (a11 - a22), a12);
+  if (mean - half > kMinCurvature) {
+    m.H << L.l11 * L.l11 + b11, L.l11 * L.l21 + b12, 0, L.l21 * L.l21 + L.l22 * L.l22 + b22;
+    m.H(1, 0) = m.H(0, 1);
+    return m;
+  }
+  // |A|: same axes, positive curvatures, so that the step descends and leaves a saddle or a maximum.
+  constexpr double kFloor = 0.05;
+  const double angle = 0.5 * std::atan2(2 * a12, a11 - a22);
+  const Vector2d major(std::cos(angle), std::sin(angle)), minor(-major.y(), major.x());
+  const double low = std::max(std::abs(mean - half), kFloor), high = std::max(std::abs(mean + half), kFloor);
+  const Matrix2d A = high * major * major.transpose() + low * minor * minor.transpose();
+  Matrix2d lower;
+  lower << L.l11, 0, L.l21, L.l22;
+  m.H = lower * A * lower.transpose();
+  m.saddle = mean - half < -kMinCurvature;
+  m.escape = {i11 * minor.x() + i21 * minor.y(), i22 * minor.y()};
+  return m;
+}
+
+struct Step {
+  Vector2d d{0, 0};
+  SideMask sides = 0;  ///< bounds that the step ends on
+};
+
+double modelValue(const QuadraticModel& m, const Vector2d& d) noexcept {
+  return m.g.dot(d) + 0.5 * d.dot(m.H * d);
+}
+
+/// Minimum of the quadratic model inside the box lo <= d <= hi: inside, on one of the four sides, or in a corner.
+Step boxMinimum(const QuadraticModel& m, const Vector2d& lo, const Vector2d& hi) noexcept {
+  const double det = m.H(0, 0) * m.H(1, 1) - m.H(0, 1) * m.H(0, 1);
+  Step best;
+  if (det > 0) {
+    best.d = {(-m.g[0] * m.H(1, 1) + m.g[1] * m.H(0, 1)) / det, (-m.g[1] * m.H(0, 0) + m.g[0] * m.H(0, 1)) / det};
+    if ((best.d.array() > lo.array()).all() && (best.d.array() < hi.array()).all()) return best;
+  }
+  double lowest = std::numeric_limits<double>::infinity();
+  for (int side = 0; side < kSides; ++side) {
+    const int axis = Patch::axisOf(side), along = 1 - axis;
+    Vector2d d;
+    d[axis] = side % 2 == 0 ? lo[axis] : hi[axis];
+    const double free = -(m.g[along] + m.H(0, 1) * d[axis]) / m.H(along, along);
+    d[along] = std::clamp(free, lo[along], hi[along]);
+    const double value = modelValue(m, d);
+    if (!(value < lowest)) continue;
+    lowest = value;
+    best.d = d;
+    best.sides = bit(side);
+    if (d[along] == lo[along]) best.sides |= bit(2 * along);
+    if (d[along] == hi[along]) best.sides |= bit(2 * along + 1);
+  }
+  return best;
+}
+
+/// The step from an evaluated point: the box minimum, no longer than twice the distance (the new foot is no farther
+/// from the probe than this one, so it lies within that), and out of a saddle where the gradient vanishes.
+Step stepFrom(const Patch& patch, const Array2d& uv, const spline::SurfacePoint& E, const Vector3d& r) noexcept {
+  constexpr double kVanishingGradient = 1e-6;
+  const QuadraticModel m = modelOf(E, r);
+  const Vector2d lo = patch.lo - uv, hi = patch.hi - uv;
+  Step step = boxMinimum(m, lo, hi);
+  const double distance = r.norm();
+  const double length = (E.Su * step.d[0] + E.Sv * step.d[1]).norm();
+  if (m.saddle && step.sides == 0 && length < kVanishingGradient * distance) {
+    const double along = m.g.dot(m.escape) > 0 ? -0.5 : 0.5;
+    step.d = (along * distance * m.escape).array().max(lo.array()).min(hi.array());
+    return step;
+  }
+  if (length > 2 * distance && length > 0) {
+    step.d *= 2 * distance / length;
+    step.sides = 0;
+  }
+  return step;
+}
+
+/// S and tangents at uv + d by Taylor expansion about the evaluated point, for a step too small to be worth evaluating.
+void moveTo(LocalFoot& foot, const Patch& patch, const Iterate& at, const Step& step) noexcept {
+  const spline::SurfacePoint& E = at.E;
+  const double du = step.d[0], dv = step.d[1];
+  foot.Su = E.Su + du * E.Suu + dv * E.Suv;
+  foot.Sv = E.Sv + du * E.Suv + dv * E.Svv;
+  foot.S = E.S + 0.5 * (du * (E.Su + foot.Su) + dv * (E.Sv + foot.Sv));
+  foot.uv = (at.uv + step.d.array()).max(patch.lo).min(patch.hi);
+  for (int side = 0; side < kSides; ++side)
+    if (step.sides & bit(side)) foot.uv[Patch::axisOf(side)] = side % 2 == 0 ? patch.lo[side / 2] : patch.hi[side / 2];
+  foot.sides = step.sides;
+}
+
+void evaluate(const Patch& patch, const Array2d& uv, Iterate& at) noexcept {
+  at.uv = uv.max(patch.lo).min(patch.hi);
+  patch.surface.evaluate2(at.uv[0], at.uv[1], at.E);
+  at.valid = true;
+}
+
+SideMask sidesAt(const Patch& patch, const Array2d& uv) noexcept {
+  SideMask sides = 0;
+  for (int axis = 0; axis < 2; ++axis) {
+    if (uv[axis] == patch.lo[axis]) sides |= bit(2 * axis);
+    if (uv[axis] == patch.hi[axis]) sides |= bit(2 * axis + 1);
+  }
+  return sides;
+}
+
+}  // namespace
+
+LocalFoot newtonFoot(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance,
+                     int max_evaluations) noexcept {
+  LocalFoot foot;
+  if (!at.valid) {
+    evaluate(patch, at.uv, at);
+    foot.evaluations = 1;
+  }
+  Vector3d r = at.E.S - p;
+  double f = 0.5 * r.squaredNorm();
+  const double rounding = 8 * kEpsilon * (p.norm() + at.E.S.norm());  // [m] of S and of r
+  const double enough = std::max(tolerance, rounding);
+  double last_length = std::numeric_limits<double>::infinity();
+  bool fresh = foot.evaluations > 0;  // E was evaluated for this probe or proved good for it
+  Step step;
+  double length = 0;
+  for (;;) {
+    step = stepFrom(patch, at.uv, at.E, r);
+    length = (at.E.Su * step.d[0] + at.E.Sv * step.d[1]).norm();
+    // Newton squares the error: the next step would be about length^2 * (length / last_length^2).
+    const double next = length * (length / last_length) * (length / last_length);
+    if (length <= enough || (fresh && length < 0.1 * last_length && 10 * next <= enough)) {
+      foot.converged = true;
+      break;
+    }
+    bool accepted = false;
+    double shrink = 1;
+    while (foot.evaluations < max_evaluations) {
+      Iterate trial;
+      trial.E.span = at.E.span;
+      Array2d target = at.uv + shrink * step.d.array();
+      if (shrink == 1)
+        for (int axis = 0; axis < 2; ++axis) {
+          if (step.sides & bit(2 * axis)) target[axis] = patch.lo[axis];
+          if (step.sides & bit(2 * axis + 1)) target[axis] = patch.hi[axis];
+        }
+      evaluate(patch, target, trial);
+      ++foot.evaluations;
+      const Vector3d r_trial = trial.E.S - p;
+      const double f_trial = 0.5 * r_trial.squaredNorm();
+      if (f_trial <= f + rounding * std::sqrt(2 * f)) {
+        at = trial;
+        r = r_trial;
+        f = f_trial;
+        accepted = true;
+        break;
+      }
+      const double slope = shrink * Vector2d(r.dot(at.E.Su), r.dot(at.E.Sv)).dot(step.d);
+      shrink *= std::clamp(-0.5 * slope / (f_trial - f - slope), 0.1, 0.5);
+    }
+    if (!accepted) break;
+    last_length = shrink * length;
+    fresh = true;
+  }
+  if (foot.converged) {
+    moveTo(foot, patch, at, step);
+  } else {
+    moveTo(foot, patch, at, Step{{0, 0}, sidesAt(patch, at.uv)});
+  }
+  foot.residual = foot.converged ? std::min(length, enough) : length;
+  foot.distance = (foot.S - p).norm();
+  return foot;
+}
+
+LocalFoot directFoot(const Patch& patch, const Vector3d& p, Iterate& at, int steps) noexcept {
+  LocalFoot foot;
+  if (!at.valid) {
+    evaluate(patch, at.uv, at);
+    ++foot.evaluations;
+  }
+  Vector2d d{0, 0};
+  for (int i = 0; i < steps; ++i) {
+    const Vector3d psi = p - at.E.S;
+    const Matrix2d G = damped(at.E);
+    const double det = G(0, 0) * G(1, 1) - G(0, 1) * G(0, 1);
+    const double a = psi.dot(at.E.Su), b = psi.dot(at.E.Sv);
+    d = {(a * G(1, 1) - b * G(0, 1)) / det, (b * G(0, 0) - a * G(0, 1)) / det};
+    evaluate(patch, at.uv + d.array(), at);
+    ++foot.evaluations;
+  }
+  foot.uv = at.uv;
+  foot.S = at.E.S;
+  foot.Su = at.E.Su;
+  foot.Sv = at.E.Sv;
+  foot.distance = (foot.S - p).norm();
+  foot.residual = std::abs(d[0]) * foot.Su.norm() + std::abs(d[1]) * foot.Sv.norm();
+  foot.sides = sidesAt(patch, at.uv);
+  foot.converged = true;
+  return foot;
+}
+
+}  // namespace hapticd::trace

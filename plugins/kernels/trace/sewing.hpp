@@ -1,0 +1,44 @@
+/// Finds what adjoins what in a model: vertices, seams, common edges, poles, shells.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "kernels/trace/model.hpp"
+
+namespace hapticd::trace {
+
+/// Fills the topology of a Model under construction. Used once, by Model.
+class Sewing {
+ public:
+  Sewing(Model& model, const ModelOptions& options);
+  /// [main] Adjacency that the options state, then the rest by geometry: sides that run within the tolerance of each
+  /// other, in either direction. What cannot be joined (T-junctions, a third surface at an edge) becomes a warning.
+  void run();
+
+ private:
+  static constexpr int kSamples = 5;  ///< points compared along a side
+  struct SideCurve {
+    int patch, side;
+    std::array<Eigen::Vector3d, kSamples> points;
+    bool used = false;
+  };
+
+  void findVertices();
+  void findPoles();
+  void collectCurves();
+  void joinStated();
+  void joinByGeometry();
+  void join(SideCurve& a, SideCurve& b, bool flipped);
+  bool runsAlong(const SideCurve& a, const SideCurve& b, bool flipped) const;
+  void reportTJunctions();
+  void findShells();
+  void findVertexNormals();
+  std::string describe(int patch, int side) const;
+
+  Model& model_;
+  const ModelOptions& options_;
+  double tolerance_;
+  std::vector<SideCurve> curves_;
+};
+
+}  // namespace hapticd::trace
