@@ -1,0 +1,109 @@
+#include "cli/class_info.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "hapticd/shape.h"
+#include "host/nearest.hpp"
+#include "scene/reader.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+std::string typeText(const host::ParamInfo& p) {
+  switch (p.kind) {
+    case HSP_REAL:
+      return "number";
+    case HSP_INT:
+      return "whole number";
+    case HSP_BOOL:
+      return "true or false";
+    case HSP_ENUM:
+      return "one of " + host::listed(p.choices, 40);
+    case HSP_PATH:
+      return "path of a file";
+    case HSP_TEXT:
+      return "text";
+    case HSP_DATA:
+      return "any structure";
+    case HSP_ARRAY:
+      return p.columns > 1 ? "list of rows of " + std::to_string(p.columns) : "list of numbers";
+    default:
+      return "";
+  }
+}
+
+std::string countText(const host::ParamInfo& p) {
+  if (p.min_count == p.max_count) return std::to_string(p.min_count) + " numbers";
+  if (p.max_count == UINT32_MAX) return std::to_string(p.min_count) + " numbers or more";
+  return std::to_string(p.min_count) + " to " + std::to_string(p.max_count) + " numbers";
+}
+
+std::string defaultText(const host::ParamInfo& p) {
+  const auto choice = static_cast<size_t>(std::max(p.def, 0.0));
+  switch (p.kind) {
+    case HSP_REAL:
+    case HSP_INT:
+      return scene::numberText(p.def);
+    case HSP_BOOL:
+      return p.def != 0 ? "true" : "false";
+    case HSP_ENUM:
+      return choice < p.choices.size() ? p.choices[choice] : "";
+    default:
+      return p.def_text.value_or("");
+  }
+}
+
+void printParam(const host::ParamInfo& p) {
+  std::string facts = typeText(p);
+  const bool ranged = p.kind == HSP_REAL || p.kind == HSP_INT || p.kind == HSP_ARRAY;
+  if (p.kind == HSP_ARRAY) facts += ", " + countText(p);
+  if (ranged) facts += ", " + scene::expectedOf({p.min, p.max, p.unit.c_str()});
+  const bool is_required = (p.flags & HSP_P_REQUIRED) != 0;
+  const std::string def = defaultText(p);
+  facts += is_required ? "; required" : def.empty() ? "" : "; default " + def;
+  if ((p.flags & HSP_P_LIVE) != 0) facts += "; may change while running";
+  if ((p.flags & HSP_P_ACCURACY) != 0) facts += "; trades speed for accuracy";
+  std::printf("  %-20s %s\n  %-20s %s\n", p.id.c_str(), facts.c_str(), "", p.doc.c_str());
+}
+
+}  // namespace
+
+void printClasses(const std::vector<const host::CatalogFile*>& files, host::Kind kind, bool details) {
+  std::map<std::string, std::string> first;  // name to the file that wins
+  for (const host::CatalogFile* file : files) {
+    for (const host::ClassInfo& info : file->classes) {
+      if (info.kind != kind) continue;
+      const auto [winner, is_first] = first.emplace(info.name, file->path.string());
+      const std::string note = is_first ? "" : " (hidden by " + winner->second + ")";
+      std::printf("%-18s %-8s %s%s\n", info.name.c_str(), info.version.c_str(), info.doc.c_str(), note.c_str());
+      if (details)
+        std::printf("%-18s %-8s %s, %s, %s\n", "", "", info.id.c_str(), info.license.c_str(), file->path.c_str());
+    }
+  }
+}
+
+void printUnusable(const std::vector<const host::CatalogFile*>& files) {
+  for (const host::CatalogFile* file : files)
+    if (!file->error.empty()) std::printf("not usable: %s\n", file->error.c_str());
+}
+
+void printClass(const host::ClassInfo& info) {
+  std::printf("%s %s (%s)\n%s\n\n", info.name.c_str(), info.version.c_str(), info.id.c_str(), info.doc.c_str());
+  std::printf("  file     %s\n  licence  %s\n  ABI      %u.%u\n", info.file.c_str(), info.license.c_str(),
+              HSP_ABI_MAJOR, info.abi_minor);
+  if (info.kind == host::Kind::kShape)
+    std::printf("  moves    %s\n  deforms  %s\n", (info.flags & HSP_C_MOVES) != 0 ? "may" : "no",
+                (info.flags & HSP_C_DEFORMS) != 0 ? "may" : "no");
+  std::printf("\nparameters%s\n", info.params.empty() ? ": none" : "");
+  for (const host::ParamInfo& param : info.params) printParam(param);
+}
+
+std::string searchedText(const std::vector<std::filesystem::path>& dirs) {
+  std::string text = "  searched:";
+  for (const auto& dir : dirs) text += "\n    " + dir.string();
+  return text + "\n  fix: build or install one, or add its folder to HAPTICD_PLUGIN_PATH";
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,141 @@
+/// `hapticd device list|info`: modules, device files, what is plugged in, and the facts of one arm.
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "cli/class_info.hpp"
+#include "cli/command.hpp"
+#include "cli/device_bus.hpp"
+#include "host/device_instance.hpp"
+#include "scene/reader.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+void printShippedFiles() {
+  const auto one = host::shippedFile(scene::kDefaultDevice);
+  if (!one) return;
+  std::printf("\ndevice files in %s\n", one->parent_path().c_str());
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(one->parent_path()))
+    if (entry.path().extension() == ".yaml") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  for (const auto& file : files) {
+    const scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
+    if (loaded.device)
+      std::printf("  %-28s %s, module %s\n", file.filename().c_str(), loaded.device->name.c_str(),
+                  loaded.device->module.c_str());
+    else
+      std::printf("  %-28s has problems: hapticd check %s\n", file.filename().c_str(), file.c_str());
+  }
+}
+
+void printBuses() {
+  std::printf("\nplugged in\n");
+  const std::vector<BusDevice> found = scanBuses();
+  for (const BusDevice& device : found) {
+    std::printf("  %-14s %-10s %s%s%s\n", device.bus.c_str(), device.id.c_str(), device.product.c_str(),
+                device.module.empty() ? "" : ", module ", device.module.c_str());
+    if (!device.module.empty() && !device.may_open)
+      std::printf(
+          "    you may not open %s\n    fix: install the udev rules (udev/70-hapticd.rules) and plug it in again; "
+          "hapticd doctor tells more\n",
+          device.node.c_str());
+  }
+  if (found.empty()) std::printf("  no known haptic device (USB and VME scanned)\n");
+}
+
+int list() {
+  const auto files = catalog().files(host::Kind::kDevice);
+  std::printf("modules\n");
+  printClasses(files, host::Kind::kDevice, false);
+  printUnusable(files);
+  if (files.empty()) std::printf("  none\n%s\n", searchedText(catalog().searchPath().devices).c_str());
+  printShippedFiles();
+  printBuses();
+  return kWorked;
+}
+
+void printLimits(const scene::Limits& limits) {
+  const auto text = [](double value, const char* unit, const char* none) {
+    return value == 0 ? std::string(none) : scene::numberText(value) + " " + unit;
+  };
+  std::printf("limits\n  force      %s\n  torque     %s\n  slew       %s\n  velocity   %s\n  workspace  %s\n",
+              text(limits.force, "N", "the device's own").c_str(), text(limits.torque, "N m", "the motors'").c_str(),
+              text(limits.slew, "N/s", "none").c_str(), text(limits.velocity, "m/s", "none").c_str(),
+              text(limits.workspace, "m", "none").c_str());
+  std::printf("  ramps      %g s in, %g s out\n  passivity  %s\n", limits.ramp_in, limits.ramp_out,
+              limits.passivity ? "guarded" : "not guarded");
+}
+
+void printCapabilities(uint32_t flags) {
+  static constexpr struct {
+    uint32_t flag;
+    const char* text;
+  } kTexts[] = {{HDV_C_VELOCITY, "measures joint velocities"},
+                {HDV_C_TORQUE, "measures joint torques"},
+                {HDV_C_POSITION, "takes position references"},
+                {HDV_C_PACING, "can pace the servo loop"},
+                {HDV_C_WATCHDOG, "hardware watchdog cuts its motors"},
+                {HDV_C_SIMULATED, "simulated"},
+                {HDV_C_CALIBRATION, "must be calibrated: hapticd device calibrate FILE"},
+                {HDV_C_UNVERIFIED, "description not tried on hardware"}};
+  for (const auto& capability : kTexts)
+    if ((flags & capability.flag) != 0) std::printf("  %s\n", capability.text);
+}
+
+void printHardware(host::DeviceInstance& device) {
+  auto opened = device.open();
+  if (!opened) return (void)std::printf("hardware: not available\n  %s\n", opened.error().c_str());
+  const hdv_info& info = device.info();
+  std::printf("hardware: %s serial \"%s\" firmware \"%s\"\n", info.product, info.serial, info.firmware);
+  std::printf("  rate %g Hz, force %g N (%g N continuous), stiffness up to %g N/m\n", info.rate_hz, info.max_force,
+              info.continuous_force, info.max_stiffness);
+  std::printf("  resolution %g m, felt mass %g kg, damping %g N s/m, %u buttons\n", info.resolution_m, info.mass_kg,
+              info.damping, info.buttons);
+  printCapabilities(info.capabilities);
+  for (uint32_t i = 0; i < info.joint_count; ++i)
+    std::printf("  joint %u: %g to %g, motor %g\n", i + 1, info.position_min[i], info.position_max[i],
+                info.max_torque[i]);
+}
+
+int info(const std::string& file) {
+  const scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
+  printProblems(loaded.problems, stderr);
+  if (!loaded.device) return kBadInput;
+  const scene::Device& description = *loaded.device;
+  auto device = host::DeviceInstance::create(description, logToTerminal);
+  if (!device) return fail(kFailed, device.error());
+  const hdv_class& module = (*device)->description();
+  std::printf("%s\n  file    %s\n  module  %s %s (%s)\n  %s\n  joints  %u\n", description.name.c_str(),
+              description.file.c_str(), module.name, module.version, description.library.c_str(), module.doc,
+              (*device)->kinematics().joint_count);
+  const Eigen::Vector3d& p = description.mount.position;
+  const Eigen::Quaterniond& q = description.mount.orientation;
+  std::printf("  mount   position [%g, %g, %g] m, orientation [%g, %g, %g, %g]\n", p.x(), p.y(), p.z(), q.w(), q.x(),
+              q.y(), q.z());
+  printLimits(description.limits);
+  printHardware(**device);
+  return kWorked;
+}
+
+}  // namespace
+
+void addDevice(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("device", "Arms: modules, what is plugged in, facts, kinematics.");
+  command->require_subcommand(1);
+  command->footer("Example:\n  hapticd device info config/devices/simulated-premium15.yaml");
+
+  CLI::App* list_command =
+      command->add_subcommand("list", "Device modules, device files, and known devices on the buses.");
+  list_command->footer("Example:\n  hapticd device list");
+  list_command->callback([&exit_code] { exit_code = list(); });
+
+  auto file = std::make_shared<std::string>();
+  CLI::App* info_command = command->add_subcommand("info", "Facts of one arm; opens it if it is there, moves nothing.");
+  info_command->add_option("file", *file, "device file (YAML)")->required();
+  info_command->footer("Example:\n  hapticd device info config/devices/simulated-premium15.yaml");
+  info_command->callback([file, &exit_code] { exit_code = info(*file); });
+}
+
+}  // namespace hapticd::cli

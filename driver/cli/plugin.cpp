@@ -1,0 +1,49 @@
+/// `hapticd plugin list|info`: what is there, and the documentation that its parameter table holds.
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "cli/class_info.hpp"
+#include "cli/command.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+int list(bool details) {
+  const auto files = catalog().files(host::Kind::kShape);
+  printClasses(files, host::Kind::kShape, details);
+  printUnusable(files);
+  if (files.empty()) return fail(kFailed, "no plugin found\n" + searchedText(catalog().searchPath().plugins));
+  return kWorked;
+}
+
+int info(const std::string& name) {
+  auto found = catalog().shape(name);
+  if (!found) return fail(kBadInput, found.error());
+  printClass(**found);
+  return kWorked;
+}
+
+}  // namespace
+
+void addPlugin(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("plugin", "Shape plugins: find them, read their documentation, make a new one.");
+  command->require_subcommand(1);
+  command->footer("Example:\n  hapticd plugin info nurbs_rigid");
+
+  auto details = std::make_shared<bool>(false);
+  CLI::App* list_command =
+      command->add_subcommand("list", "Every plugin that a scene can name, and every file that cannot be used.");
+  list_command->add_flag("--files", *details, "show the file and licence of each");
+  list_command->footer("Example:\n  HAPTICD_PLUGIN_PATH=~/my-plugins/build hapticd plugin list --files");
+  list_command->callback([details, &exit_code] { exit_code = list(*details); });
+
+  auto name = std::make_shared<std::string>();
+  CLI::App* info_command = command->add_subcommand("info", "A plugin's parameters with unit, range and default.");
+  info_command->add_option("name", *name, "name or id of the plugin")->required();
+  info_command->footer("Example:\n  hapticd plugin info nurbs_rigid");
+  info_command->callback([name, &exit_code] { exit_code = info(*name); });
+}
+
+}  // namespace hapticd::cli

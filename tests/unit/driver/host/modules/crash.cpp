@@ -1,0 +1,8 @@
+/// Crashes as soon as it is loaded.
+#include <csignal>
+
+namespace {
+struct Crash {
+  Crash() { std::raise(SIGSEGV); }
+} crash;
+}  // namespace
