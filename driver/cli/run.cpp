@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/clock.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
 #include "record/picture.hpp"
@@ -24,6 +25,8 @@ struct Options {
   int priority = os::kServoPriority;
   bool virtual_time = false, allow_non_rt = false;
 };
+
+const Nanoseconds program_start = monotonicNow();  ///< when the libraries were loaded
 
 servo::Runner* running = nullptr;  ///< for the signal handler; set before it is installed
 
@@ -61,7 +64,12 @@ std::vector<record::Sample> samplesOf(const servo::Telemetry& telemetry) {
 /// Writes what was asked for and prints the summary; the run's own exit code unless a file fails.
 int conclude(const Options& options, const servo::Runner& runner) {
   const std::vector<std::string> faults = runner.faults();
-  const record::RunReport report = runner.telemetry().report(faults);
+  record::RunReport report = runner.telemetry().report(faults);
+  report.scene = options.scene;
+  report.virtual_time = options.virtual_time;
+  report.wall_seconds = static_cast<double>(runner.wallTime()) * kSecondsPerNanosecond;
+  report.start_ms = static_cast<double>(runner.loop().firstTick() - program_start) * 1e-6;
+  report.resident_bytes = runner.residentBytes();
   std::fputs(record::summary(report).c_str(), stdout);
   if (!options.report.empty())
     if (auto written = record::writeJson(report, options.report); !written) return fail(kFailed, written.error());

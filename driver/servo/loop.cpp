@@ -33,6 +33,7 @@ void Loop::run() noexcept {
   const Nanoseconds start = clock_.now();
   Nanoseconds deadline = start, last = start;
   const long faults_before = os::pageFaultsOfThread();
+  first_tick_ = monotonicNow();
   long faults_warm = faults_before;
   uint64_t allocations_warm = allocationsOfThread();
   for (uint64_t n = 0, done = 0;; ++n) {

@@ -34,6 +34,8 @@ class Loop {
   uint64_t ticks() const noexcept { return tick_count_.load(std::memory_order_relaxed); }
   /// [any] The core lost a track or saw a jump: search now.
   bool wantsSearch() const noexcept { return wants_search_.load(std::memory_order_relaxed); }
+  /// [any] CLOCK_MONOTONIC of the first tick, once there was one.
+  Nanoseconds firstTick() const noexcept { return first_tick_.load(std::memory_order_relaxed); }
   bool finished() const noexcept { return finished_.load(std::memory_order_acquire); }
 
  private:
@@ -53,6 +55,7 @@ class Loop {
   uint64_t ramp_ticks_ = 0;
   std::atomic<bool> stop_{false}, wants_search_{true}, finished_{false};
   std::atomic<uint64_t> tick_count_{0};
+  std::atomic<Nanoseconds> first_tick_{0};
 };
 
 }  // namespace hapticd::servo

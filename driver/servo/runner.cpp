@@ -74,11 +74,14 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every) {
   for (const auto& arm : arms_)
     if (auto started = arm->start(now, scene_.servo.gravity); !started) return started;
   Result<void> done;
+  const Nanoseconds begun = monotonicNow();
   if (options_.virtual_time) {
     loop_->run();
   } else {
     done = runReal(every);
   }
+  wall_time_ = monotonicNow() - begun;
+  resident_bytes_ = os::residentBytes();
   for (const auto& arm : arms_) arm->stop();
   return done;
 }

@@ -36,6 +36,8 @@ class Runner {
 
   const Telemetry& telemetry() const { return *telemetry_; }
   const Loop& loop() const { return *loop_; }
+  Nanoseconds wallTime() const { return wall_time_; }        ///< [main] that the loop took
+  size_t residentBytes() const { return resident_bytes_; }   ///< [main] at the end of the loop
   const std::vector<std::unique_ptr<Arm>>& arms() const { return arms_; }
   const scene::Scene& scene() const { return scene_; }
 
@@ -61,6 +63,8 @@ class Runner {
   std::unique_ptr<Clock> clock_;
   std::unique_ptr<Loop> loop_;
   std::vector<std::string> warnings_;
+  Nanoseconds wall_time_ = 0;
+  size_t resident_bytes_ = 0;
 };
 
 }  // namespace hapticd::servo
