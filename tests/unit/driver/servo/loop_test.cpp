@@ -36,9 +36,9 @@ class LateClock final : public Clock {
 /// A wall, a gantry 2 mm inside it, and a loop.
 struct Rig {
   explicit Rig(int failure, std::function<Nanoseconds(Nanoseconds)> lateness = [](Nanoseconds) { return 0; },
-               uint64_t ticks = 300)
+               uint64_t ticks = 300, const char* shape = "wall")
       : clock(std::move(lateness)) {
-    scene.models.push_back(testModel("wall"));
+    scene.models.push_back(testModel(shape));
     scene.devices.resize(1);
     scene.devices[0].name = scene.devices[0].module = "gantry";
     scene.devices[0].library = TEST_DEVICE;
@@ -135,6 +135,23 @@ TEST(Loop, StopRampsTheForceDownBeforeItEnds) {
   }
   EXPECT_EQ(last, 0);
 }
+
+/// Ticks after the warm-up; the report counts from there.
+constexpr uint64_t kEnoughTicks = 1000;
+
+TEST(Loop, ServoPathAllocatesNothing) {
+  Rig rig(0, [](Nanoseconds) { return Nanoseconds{0}; }, kEnoughTicks);
+  rig.loop->run();
+  EXPECT_EQ(rig.telemetry->report({}).servo_allocations, 0u);
+}
+
+#ifndef HAPTICD_SANITIZED  // the sanitizers have an allocator of their own, which is not counted
+TEST(Loop, CountsEveryAllocationOfAPlugin) {
+  Rig rig(0, [](Nanoseconds) { return Nanoseconds{0}; }, kEnoughTicks, "allocating");
+  rig.loop->run();
+  EXPECT_GE(rig.telemetry->report({}).servo_allocations, kEnoughTicks / 2);
+}
+#endif
 
 }  // namespace
 }  // namespace hapticd::servo

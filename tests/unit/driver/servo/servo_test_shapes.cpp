@@ -72,6 +72,20 @@ struct Sliding : hapticd::Shape {
   }
 };
 
+/// Does in step what a shape must never do, for the proof that the guard sees it.
+struct Allocating : hapticd::Shape {
+  int unused;
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.allocating", "allocating", "1.0.0", "MIT", "Allocates."};
+  static constexpr auto fields() {
+    return std::array{Fields<Allocating>::integer("unused", &Allocating::unused, "", 0, 1, 0, "Nothing.")};
+  }
+  void activate(const hsp_activation&, hsp_report&) {}
+  hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact& out) noexcept {
+    delete[] static_cast<volatile char*>(new char[static_cast<size_t>(64 + out.iterations)]);
+    return HSP_OK;
+  }
+};
+
 }  // namespace
 
-HAPTICD_SHAPES(Wall, Misbehaving, Sliding)
+HAPTICD_SHAPES(Wall, Misbehaving, Sliding, Allocating)
