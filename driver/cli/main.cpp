@@ -1,8 +1,28 @@
 /// `hapticd`: one program, a subcommand a file.
 #include <exception>
+#include <vector>
 
 #include "cli/command.hpp"
 #include "cli/commands.hpp"  // made by the build: a declaration and a table entry for each subcommand
+#include "host/nearest.hpp"
+
+namespace {
+
+/// The first word that is neither an option nor a subcommand, where a subcommand should stand; "" if there is none.
+std::string unknownCommand(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return "";
+  for (const CLI::App* command : app.get_subcommands(nullptr))
+    if (command->get_name() == argv[1]) return "";
+  return argv[1];
+}
+
+std::vector<std::string> commandNames(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
+  return names;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   using namespace hapticd::cli;
@@ -18,6 +38,10 @@ int main(int argc, char** argv) {
       "Exit codes: 0 worked, 1 failed while running, 2 bad input or usage.");
   addGlobalOptions(app);
   for (const auto add : kCommands) add(app, exit_code);
+  if (const std::string word = unknownCommand(app, argc, argv); !word.empty())
+    return fail(kBadInput, "there is no subcommand \"" + word + "\", expected one of " +
+                               hapticd::host::listed(commandNames(app), 30) +
+                               hapticd::host::suggestion(word, commandNames(app)));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -61,25 +61,26 @@ Foot Tracer::describe(int patch, const Vector3d& p) const noexcept {
   foot.residual = local.residual;
   foot.status = local.converged ? TraceStatus::kOk : TraceStatus::kDegraded;
   foot.on_edge = local.sides != 0;
+  foot.distance = local.distance;
   const Vector3d r = p - local.S;
   if (local.sides == 0) {
     foot.normal = surfaceNormal(patch);
-    foot.depth = -r.dot(foot.normal);
+    foot.depth = foot.behind = -r.dot(foot.normal);
     return foot;
   }
   bool open = false;
   for (int side = 0; side < kSides; ++side)
     open = open || ((local.sides & bit(side)) && piece.sides[static_cast<std::size_t>(side)].kind == SideKind::kFree);
   foot.normal = open ? surfaceNormal(patch) : edgeNormal(patch);
-  const double behind = -r.dot(foot.normal);
+  foot.behind = -r.dot(foot.normal);
   if (open) {
     // The solid behind an open surface ends in a bevel of 45 degrees: the force fades out as the probe slides off.
-    const double aside = (r + behind * foot.normal).norm();
-    foot.depth = behind > aside ? behind - aside : -local.distance;
+    foot.aside = (r + foot.behind * foot.normal).norm();
+    foot.depth = foot.behind > foot.aside ? foot.behind - foot.aside : -foot.distance;
     return foot;
   }
-  foot.depth = behind > 0 ? local.distance : -local.distance;
-  if (local.distance > kTouching) foot.normal = r * (-1 / foot.depth);
+  foot.depth = foot.behind = foot.behind > 0 ? foot.distance : -foot.distance;
+  if (foot.distance > kTouching) foot.normal = r * (-1 / foot.depth);
   return foot;
 }
 

@@ -32,6 +32,9 @@ struct Foot {
   Eigen::Vector3d point{0, 0, 0};
   Eigen::Vector3d normal{0, 0, 1};  ///< outward, unit
   double depth = 0;                 ///< [m] > 0 inside, minus the distance outside
+  double distance = 0;           ///< [m] from the probe to the point
+  double behind = 0;  ///< [m] how far the probe is behind the surface, negative in front of it
+  double aside = 0;   ///< [m] how far it is beside a free edge that holds the foot
   double u = 0, v = 0;              ///< parameters of the model file
   double residual = 0;              ///< [m] estimated error of the foot
   int surface = -1;                 ///< index in the model file

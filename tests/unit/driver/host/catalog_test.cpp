@@ -58,7 +58,7 @@ TEST(Catalog, SuggestsTheNearestNameAndShowsTheSearchPath) {
   ASSERT_FALSE(found);
   EXPECT_TRUE(has(found.error(), "did you mean \"test_shape\"?")) << found.error();
   EXPECT_TRUE(has(found.error(), kGood.string())) << found.error();
-  EXPECT_TRUE(has(found.error(), "/nowhere/at/all (not a directory)")) << found.error();
+  EXPECT_TRUE(has(found.error(), "/nowhere/at/all (No such file or directory)")) << found.error();
 }
 
 TEST(Catalog, KeepsPluginsAndModulesApart) {

@@ -80,8 +80,10 @@ struct Allocating : hapticd::Shape {
     return std::array{Fields<Allocating>::integer("unused", &Allocating::unused, "", 0, 1, 0, "Nothing.")};
   }
   void activate(const hsp_activation&, hsp_report&) {}
-  hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact& out) noexcept {
-    delete[] static_cast<volatile char*>(new char[static_cast<size_t>(64 + out.iterations)]);
+  hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept {
+    char* block = new char[64];
+    asm volatile("" : : "r"(block) : "memory");  // a pair of new and delete may be optimised away
+    delete[] block;
     return HSP_OK;
   }
 };
