@@ -155,5 +155,18 @@ TEST(Loop, CountsEveryAllocationOfAPlugin) {
 }
 #endif
 
+#if defined(__has_feature)
+#if __has_feature(realtime_sanitizer)
+TEST(LoopDeathTest, RealTimeSanitizerStopsAPluginThatAllocates) {
+  EXPECT_DEATH(
+      {
+        Rig rig(0, [](Nanoseconds) { return Nanoseconds{0}; }, 10, "allocating");
+        rig.loop->run();
+      },
+      "RealtimeSanitizer");
+}
+#endif
+#endif
+
 }  // namespace
 }  // namespace hapticd::servo
