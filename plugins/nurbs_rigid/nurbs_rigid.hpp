@@ -1,0 +1,43 @@
+/// A rigid model of NURBS surfaces with the feel of a material: wall, friction, viscosity, texture, pop-through.
+#pragma once
+#include <array>
+
+#include "kernels/contact/wall.hpp"
+#include "traced_shape/traced_shape.hpp"
+
+namespace hapticd {
+
+class NurbsRigid final : public TracedShape {
+ public:
+  static constexpr ShapeInfo kInfo = {"org.hapticd.shape.nurbs_rigid", "nurbs_rigid", "1.0", "MIT",
+                                      "A rigid model of NURBS surfaces, traced exactly by its parameters."};
+  static constexpr auto fields() {
+    using F = Fields<NurbsRigid>;
+    return join(
+        tracingFields<NurbsRigid>(),
+        std::array{
+            F::real("stiffness", &NurbsRigid::stiffness_, "N/m", 0, 1e5, 800, "k of Eq. 4: force is k x0 at depth x0",
+                    HSP_P_LIVE | HSP_P_SAFETY),
+            F::real("damping", &NurbsRigid::damping_, "N s/m", 0, 1e3, 0, "of the closing speed, grows with depth",
+                    HSP_P_SAFETY),
+            F::real("exponent", &NurbsRigid::exponent_, "", 0.25, 3, 1, "n of Eq. 4; 1: linear wall", HSP_P_SAFETY),
+            F::real("depth_scale", &NurbsRigid::depth_scale_, "m", 1e-6, 1, 1e-3, "x0 of Eq. 4", HSP_P_SAFETY),
+            F::real("viscosity", &NurbsRigid::viscosity_, "N s/m", 0, 100, 0, "drag along the surface in contact"),
+            F::real("texture.amplitude", &NurbsRigid::texture_amplitude_, "m", 0, 1e-2, 0,
+                    "height of ridges along u and v; 0: smooth", HSP_P_LIVE),
+            F::real("texture.wavelength", &NurbsRigid::texture_wavelength_, "m", 1e-5, 1, 2e-3,
+                    "length of a ridge along the surface", HSP_P_LIVE),
+            F::real("pop_through", &NurbsRigid::pop_through_, "N", 0, 1e3, 0,
+                    "a shell (sides: both) gives way above this force; 0: never")});
+  }
+
+  void activate(const hsp_activation& activation, hsp_report& report);
+  hsp_status touch(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT;
+  const void* extension(const char* name) { return tracedExtension<NurbsRigid>(name); }
+
+ private:
+  double stiffness_ = 800, damping_ = 0, exponent_ = 1, depth_scale_ = 1e-3;
+  double viscosity_ = 0, texture_amplitude_ = 0, texture_wavelength_ = 2e-3, pop_through_ = 0;
+};
+
+}  // namespace hapticd

@@ -1,0 +1,223 @@
+#include "model_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <initializer_list>
+#include <iterator>
+#include <optional>
+
+#include "document.hpp"
+
+namespace hapticd {
+namespace {
+
+using Json = nlohmann::json;
+constexpr std::size_t kMostSurfaces = 1'000'000;
+constexpr std::size_t kMostBytes = 1u << 30;
+
+Path operator/(Path path, const char* key) {
+  path.push_back({key, 0});
+  return path;
+}
+Path operator/(Path path, std::size_t index) {
+  path.push_back({"", index});
+  return path;
+}
+
+/// Reads the tree of one file; every wrong value becomes a problem and reading goes on.
+class Reader {
+ public:
+  explicit Reader(Problems& problems) : problems_(problems) {}
+
+  ModelFile read(const Json& root) {
+    ModelFile file;
+    if (!root.is_object()) {
+      problems_.add({}, "expected a mapping with format and surfaces");
+      return file;
+    }
+    checkKeys(root, {}, {"format", "name", "credit", "surfaces", "edges", "medial"});
+    if (const auto format = root.find("format"); format == root.end() || *format != "hapticd-model/1")
+      problems_.add({PathStep{"format", 0}}, "expected hapticd-model/1");
+    const Path at = Path{} / "surfaces";
+    const auto surfaces = root.find("surfaces");
+    if (surfaces == root.end() || !surfaces->is_array() || surfaces->empty() || surfaces->size() > kMostSurfaces) {
+      problems_.add(at, "expected a list of one to " + std::to_string(kMostSurfaces) + " surfaces");
+      return file;
+    }
+    file.surfaces.reserve(surfaces->size());
+    for (std::size_t i = 0; i < surfaces->size() && !problems_.full(); ++i)
+      file.surfaces.push_back(surface((*surfaces)[i], at / i));
+    if (const auto edges = root.find("edges"); edges != root.end()) readEdges(*edges, Path{} / "edges", file);
+    return file;
+  }
+
+ private:
+  spline::SurfaceData surface(const Json& json, const Path& at) {
+    spline::SurfaceData data;
+    if (!json.is_object()) {
+      problems_.add(at, "expected a mapping with degree, knots and points");
+      return data;
+    }
+    checkKeys(json, at, {"name", "degree", "knots", "points", "weights", "outward"});
+    const bool had = problems_.any();
+    if (const Json* name = member(json, "name"))
+      data.name = name->is_string() ? name->get<std::string>() : name->dump();
+    readDegree(json, at / "degree", data);
+    readKnots(json, at / "knots", data);
+    readPoints(json, at / "points", data);
+    if (const Json* weights = member(json, "weights"); weights && !weights->is_null())
+      data.weights = numbers(*weights, at / "weights");
+    if (const Json* outward = member(json, "outward")) {
+      if (*outward != "reversed" && *outward != "forward")
+        problems_.add(at / "outward", "expected reversed or forward");
+      data.reversed = *outward == "reversed";
+    }
+    if (!had && !problems_.any()) checkWhole(data, at);
+    return data;
+  }
+
+  void checkWhole(const spline::SurfaceData& data, const Path& at) {
+    try {
+      spline::validate(data);
+    } catch (const std::exception& e) {
+      problems_.add(at, e.what());
+    }
+  }
+
+  void readDegree(const Json& json, const Path& at, spline::SurfaceData& data) {
+    const Json* degree = member(json, "degree");
+    if (degree == nullptr || !degree->is_array() || degree->size() != 2)
+      return problems_.add(at, "expected two whole numbers, for u and v");
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const Json& value = (*degree)[axis];
+      const double number = value.is_number() ? value.get<double>() : 0;
+      if (!(number >= 1 && number <= spline::kMaxDegree) || number != std::floor(number))
+        return problems_.add(at / axis, "expected a whole number from 1 to " + std::to_string(spline::kMaxDegree));
+      data.degree[axis] = static_cast<int>(number);
+    }
+  }
+
+  void readKnots(const Json& json, const Path& at, spline::SurfaceData& data) {
+    const Json* knots = member(json, "knots");
+    if (knots == nullptr || !knots->is_array() || knots->size() != 2)
+      return problems_.add(at, "expected two lists of numbers, for u and v");
+    for (std::size_t axis = 0; axis < 2; ++axis) data.knots[axis] = numbers((*knots)[axis], at / axis);
+  }
+
+  void readPoints(const Json& json, const Path& at, spline::SurfaceData& data) {
+    const Json* points = member(json, "points");
+    if (points == nullptr || !points->is_array()) return problems_.add(at, "expected a list of [x, y, z] in m");
+    data.points.reserve(points->size());
+    for (std::size_t i = 0; i < points->size() && !problems_.full(); ++i) {
+      const Json& point = (*points)[i];
+      if (!point.is_array() || point.size() != 3) {
+        problems_.add(at / i, "expected [x, y, z] in m");
+        continue;
+      }
+      Eigen::Vector3d p;
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        p[static_cast<Eigen::Index>(axis)] = number(point[axis], at / i / axis);
+      data.points.push_back(p);
+    }
+  }
+
+  void readEdges(const Json& json, const Path& at, ModelFile& file) {
+    if (json.is_null()) return;
+    if (!json.is_array()) return problems_.add(at, "expected a list of {sides: [[surface, side], [surface, side]]}");
+    for (std::size_t i = 0; i < json.size() && !problems_.full(); ++i) {
+      const Json* sides = json[i].is_object() ? member(json[i], "sides") : nullptr;
+      if (sides == nullptr || !sides->is_array() || sides->size() != 2) {
+        problems_.add(at / i, "expected sides: [[surface, side], [surface, side]]");
+        continue;
+      }
+      checkKeys(json[i], at / i, {"sides", "flipped"});
+      const auto a = edgeEnd((*sides)[0], at / i / "sides" / std::size_t{0}, file);
+      const auto b = edgeEnd((*sides)[1], at / i / "sides" / std::size_t{1}, file);
+      const Json* flipped = member(json[i], "flipped");
+      if (flipped != nullptr && !flipped->is_boolean()) problems_.add(at / i / "flipped", "expected true or false");
+      if (a && b) file.edges.push_back({*a, *b, flipped != nullptr && flipped->is_boolean() && flipped->get<bool>()});
+    }
+  }
+
+  std::optional<trace::EdgeEnd> edgeEnd(const Json& json, const Path& at, const ModelFile& file) {
+    static constexpr std::array<const char*, trace::kSides> kSideNames = {"u0", "u1", "v0", "v1"};
+    if (json.is_array() && json.size() == 2 && json[1].is_string()) {
+      int surface = -1;
+      for (std::size_t i = 0; i < file.surfaces.size(); ++i)
+        if ((json[0].is_string() && json[0] == file.surfaces[i].name) ||
+            (json[0].is_number() && json[0].get<double>() == static_cast<double>(i)))
+          surface = static_cast<int>(i);
+      for (int side = 0; side < trace::kSides; ++side)
+        if (surface >= 0 && json[1] == kSideNames[static_cast<std::size_t>(side)]) return trace::EdgeEnd{surface, side};
+    }
+    problems_.add(at, "expected [surface, side]: a name or index of a surface, and u0, u1, v0 or v1");
+    return std::nullopt;
+  }
+
+  static const Json* member(const Json& json, const char* key) {
+    const auto found = json.find(key);
+    return found == json.end() ? nullptr : &*found;
+  }
+
+  double number(const Json& json, const Path& at) {
+    const double value = json.is_number() ? json.get<double>() : NAN;
+    if (!std::isfinite(value)) problems_.add(at, "expected a finite number");
+    return value;
+  }
+
+  std::vector<double> numbers(const Json& json, const Path& at) {
+    std::vector<double> all;
+    if (!json.is_array()) {
+      problems_.add(at, "expected a list of numbers");
+      return all;
+    }
+    all.reserve(json.size());
+    for (std::size_t i = 0; i < json.size() && !problems_.full(); ++i) {
+      const Json& value = json[i];
+      if (value.is_number() && std::isfinite(value.get<double>())) {
+        all.push_back(value.get<double>());
+      } else {
+        all.push_back(number(value, at / i));
+      }
+    }
+    return all;
+  }
+
+  void checkKeys(const Json& json, const Path& at, std::initializer_list<const char*> known) {
+    for (const auto& [key, value] : json.items()) {
+      if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+      std::string expected;
+      for (const char* name : known) expected += (expected.empty() ? "" : ", ") + std::string(name);
+      problems_.add(at / key.c_str(), "unknown key, expected one of " + expected);
+    }
+  }
+
+  Problems& problems_;
+};
+
+std::string textOf(const std::string& path) {
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) throw ModelFileError(path + ":1:1: cannot be read, expected a model file (format hapticd-model/1)");
+  const std::streamoff size = in.tellg();
+  if (size < 0 || static_cast<std::size_t>(size) > kMostBytes)
+    throw ModelFileError(path + ":1:1: not a regular file of at most 1 GiB, expected a model file");
+  std::string text(static_cast<std::size_t>(size), '\0');
+  in.seekg(0);
+  in.read(text.data(), size);
+  if (!in) throw ModelFileError(path + ":1:1: cannot be read, expected a model file (format hapticd-model/1)");
+  return text;
+}
+
+}  // namespace
+
+ModelFile readModelFile(const std::string& path) {
+  const std::string text = textOf(path);
+  const Json root = parseDocument(text, path);
+  Problems problems(path, text);
+  ModelFile file = Reader(problems).read(root);
+  problems.throwIfAny();
+  return file;
+}
+
+}  // namespace hapticd

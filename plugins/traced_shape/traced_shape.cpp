@@ -1,0 +1,140 @@
+#include "traced_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model_file.hpp"
+
+namespace hapticd {
+namespace {
+
+constexpr double kFarthestMesh = 1e-6;  // [m] finer meshes are for files, not for drawing
+
+}  // namespace
+
+void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
+  ModelFile file = readModelFile(geometry_);
+  trace::ModelOptions options;
+  options.edges = std::move(file.edges);
+  model_ = std::make_unique<trace::Model>(file.surfaces, options);
+  if (host() != nullptr && host()->log != nullptr)
+    for (const std::string& warning : model_->warnings())
+      host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": " + warning).c_str());
+  const uint32_t probes = std::max(activation.max_probes, 1u);
+  tracers_.clear();
+  tracers_.reserve(probes);
+  for (uint32_t i = 0; i < probes; ++i) tracers_.emplace_back(*model_);
+  entered_.assign(probes, 0);
+  report.size_m = model_->bounds().diagonal().norm();
+  report.locked_bytes = model_->bytes();
+}
+
+void TracedShape::deactivate() {
+  tracers_.clear();
+  model_.reset();
+}
+
+void TracedShape::reset() noexcept HSP_RT {
+  for (trace::Tracer& tracer : tracers_) tracer.reset();
+  std::fill(entered_.begin(), entered_.end(), 0);
+}
+
+trace::TraceOptions TracedShape::optionsOf(const hsp_step& step) const noexcept HSP_RT {
+  trace::TraceOptions options;
+  options.method = method_ == 0 || step.order == 1 ? trace::Method::kDirect : trace::Method::kNewton;
+  options.iterations = iterations_;
+  options.tolerance = step.tolerance_m > 0 ? step.tolerance_m : tolerance_;
+  if (step.max_iterations > 0)
+    options.max_evaluations = static_cast<int>(std::min<uint32_t>(step.max_iterations, options.max_evaluations));
+  return options;
+}
+
+Touch TracedShape::trace(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT {
+  Touch touch;
+  const uint32_t index = indexOf(probe, step);
+  if (index >= tracers_.size()) {
+    touch.status = HSP_E_ARG;
+    return touch;
+  }
+  if ((probe.flags & HSP_IN_INVALID) != 0) return touch;
+  touch.foot = tracers_[index].step(Eigen::Vector3d(probe.position), optionsOf(step));
+  if (touch.foot.status == trace::TraceStatus::kInvalid) touch.status = HSP_E_NUMERIC;
+  if (touch.foot.status == trace::TraceStatus::kDegraded) touch.status = HSP_DEGRADED;
+  if (touch.foot.surface < 0) return touch;
+  double outward = 1;
+  touch.depth = felt(touch.foot, index, outward);
+  touch.normal = outward * touch.foot.normal;
+  touch.traced = true;
+  Eigen::Map<Eigen::Vector3d>(contact.point) = touch.foot.point;
+  Eigen::Map<Eigen::Vector3d>(contact.normal) = touch.normal;
+  contact.depth_m = touch.depth;
+  contact.param[0] = touch.foot.u;
+  contact.param[1] = touch.foot.v;
+  contact.residual_m = touch.foot.residual;
+  contact.feature = static_cast<uint32_t>(touch.foot.surface);
+  contact.iterations = static_cast<uint32_t>(touch.foot.evaluations);
+  contact.flags = HSP_OUT_TRACED;
+  if (touch.depth > 0) contact.flags |= HSP_OUT_CONTACT;
+  if (touch.foot.on_edge) contact.flags |= HSP_OUT_EDGE;
+  return touch;
+}
+
+/// Depth on the side that is felt, and the sign that turns the surface's outward normal to that side.
+double TracedShape::felt(const trace::Foot& foot, uint32_t probe, double& outward) noexcept HSP_RT {
+  if (sides_ == kFront) return foot.depth;
+  double& side = entered_[probe];
+  if (sides_ == kBack) {
+    side = -1;
+  } else if (side == 0 || foot.aside > std::abs(foot.behind)) {
+    side = foot.behind > 0 ? -1 : 1;  // free to choose: it has just come, or goes round an open edge
+  }
+  outward = side;
+  const double depth = side * foot.behind - foot.aside;
+  return depth > 0 ? depth : -foot.distance;
+}
+
+void TracedShape::popThrough(uint32_t probe) noexcept HSP_RT {
+  if (sides_ == kBoth && probe < entered_.size()) entered_[probe] = -entered_[probe];
+}
+
+int64_t TracedShape::nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const {
+  std::vector<trace::Near> found(static_cast<std::size_t>(std::min<uint64_t>(cap, model_->surfaceCount())));
+  const int64_t count = model_->nearby(Eigen::Vector3d(p_model), radius, found.data(), found.size());
+  for (std::size_t i = 0; i < found.size() && static_cast<int64_t>(i) < count; ++i)
+    out[i] = {static_cast<uint32_t>(found[i].surface), 0, {found[i].u, found[i].v}, found[i].distance};
+  return count;
+}
+
+hsp_status TracedShape::start(const hsp_near& near) noexcept HSP_RT {
+  if (near.probe >= tracers_.size() || near.surface >= static_cast<uint32_t>(model_->surfaceCount())) return HSP_E_ARG;
+  tracers_[near.probe].activate(static_cast<int>(near.surface), near.param[0], near.param[1], near.distance_m);
+  return HSP_OK;
+}
+
+hsp_status TracedShape::stop(uint32_t probe, uint32_t surface) noexcept HSP_RT {
+  if (probe >= tracers_.size() || surface >= static_cast<uint32_t>(model_->surfaceCount())) return HSP_E_ARG;
+  tracers_[probe].deactivate(static_cast<int>(surface));
+  if (tracers_[probe].activeCount() == 0) entered_[probe] = 0;
+  return HSP_OK;
+}
+
+hsp_status TracedShape::mesh(double chord_error, hsp_mesh& out) {
+  if (!model_) return HSP_E_STATE;
+  if (!(chord_error > 0)) return HSP_E_ARG;
+  mesh_ = tessellate(*model_, std::max(chord_error, kFarthestMesh));
+  out.vertex_count = static_cast<uint32_t>(mesh_.xyz.size() / 3);
+  out.triangle_count = static_cast<uint32_t>(mesh_.indices.size() / 3);
+  out.xyz = mesh_.xyz.data();
+  out.normals = mesh_.normals.data();
+  out.indices = mesh_.indices.data();
+  return HSP_OK;
+}
+
+hsp_status TracedShape::bounds(double min[3], double max[3]) const {
+  if (!model_) return HSP_E_STATE;
+  Eigen::Map<Eigen::Vector3d>(min, 3) = model_->bounds().min();
+  Eigen::Map<Eigen::Vector3d>(max, 3) = model_->bounds().max();
+  return HSP_OK;
+}
+
+}  // namespace hapticd

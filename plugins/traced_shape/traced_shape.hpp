@@ -1,0 +1,135 @@
+/// Base of shapes that trace NURBS models: geometry and tracing parameters, the tracers, the surfaces and geometry
+/// extensions. A derived class adds what happens at contact.
+#pragma once
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hapticd/shape.hpp"
+#include "kernels/trace/tracer.hpp"
+
+namespace hapticd {
+
+/// Where a probe is against a model, seen from the side that is felt.
+struct Touch {
+  trace::Foot foot;
+  Eigen::Vector3d normal{0, 0, 1};  ///< unit, away from the solid
+  double depth = 0;                 ///< [m] > 0 inside
+  bool traced = false;              ///< foot is valid
+  hsp_status status = HSP_OK;       ///< what step() answers for this probe
+};
+
+/// Vertices, normals and triangles of a model, for drawing.
+struct Mesh {
+  std::vector<float> xyz, normals;
+  std::vector<uint32_t> indices;
+};
+/// [main] Triangles within `chord_error` [m] of the surfaces.
+Mesh tessellate(const trace::Model& model, double chord_error);
+
+/// T derives from TracedShape, calls load() in activate() and trace() for each probe, and joins tracingFields<T>() into
+/// its table of parameters.
+class TracedShape : public Shape {
+ public:
+  template <class T>
+  static constexpr auto tracingFields() {
+    using F = Fields<T>;
+    return std::array{
+        F::path("geometry", &TracedShape::geometry_, "model file (format hapticd-model/1), YAML or JSON",
+                HSP_P_REQUIRED),
+        F::choice("sides", &TracedShape::sides_, kSideNames, 0,
+                  "front: solid behind the outward normal; back: before it; both: a shell that pushes back to the side "
+                  "it was entered from"),
+        F::choice("method", &TracedShape::method_, kMethodNames, 1,
+                  "dpt: the first-order step of Thompson et al.; newton: safeguarded Newton to tolerance",
+                  HSP_P_ACCURACY),
+        F::integer("iterations", &TracedShape::iterations_, "", 1, 4, 1, "steps a tick of method dpt", HSP_P_ACCURACY),
+        F::real("tolerance", &TracedShape::tolerance_, "m", 1e-12, 1e-3, 1e-9,
+                "error of the foot point at which method newton stops", HSP_P_ACCURACY | HSP_P_LIVE)};
+  }
+
+  void deactivate();
+  void reset() noexcept HSP_RT;
+
+ protected:
+  enum Sides { kFront = 0, kBack = 1, kBoth = 2 };
+
+  /// [main] Reads and prepares the model, one tracer a probe. Logs the model's warnings; fills size and memory of the
+  /// report. @throws std::exception for the user.
+  void load(const hsp_activation& activation, hsp_report& report);
+  /// [rt] Traces one probe and fills point, normal, depth, parameters and flags of its contact; forces stay zero.
+  Touch trace(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT;
+  /// [rt] The number of a probe of this step.
+  static uint32_t indexOf(const hsp_probe& probe, const hsp_step& step) noexcept HSP_RT {
+    const auto offset = reinterpret_cast<const char*>(&probe) - reinterpret_cast<const char*>(step.in);
+    return step.in_stride == 0 ? 0 : static_cast<uint32_t>(offset / static_cast<std::ptrdiff_t>(step.in_stride));
+  }
+  /// [rt] A shell that was pushed through: from now on the other side of it is felt by this probe.
+  void popThrough(uint32_t probe) noexcept HSP_RT;
+  const trace::Model& model() const noexcept { return *model_; }
+
+  /// [main] Extensions of a T; call from T's extension().
+  template <class T>
+  const void* tracedExtension(const char* name);
+
+  std::string geometry_;
+  int sides_ = kFront, method_ = 1, iterations_ = 1;
+  double tolerance_ = 1e-9;
+
+ private:
+  static constexpr const char* kSideNames[] = {"front", "back", "both"};
+  static constexpr const char* kMethodNames[] = {"dpt", "newton"};
+
+  trace::TraceOptions optionsOf(const hsp_step& step) const noexcept HSP_RT;
+  int64_t nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const;
+  hsp_status start(const hsp_near& near) noexcept HSP_RT;
+  hsp_status stop(uint32_t probe, uint32_t surface) noexcept HSP_RT;
+  hsp_status mesh(double chord_error, hsp_mesh& out);
+  hsp_status bounds(double min[3], double max[3]) const;
+  double felt(const trace::Foot& foot, uint32_t probe, double& outward) noexcept HSP_RT;
+
+  std::unique_ptr<trace::Model> model_;
+  std::vector<trace::Tracer> tracers_;  ///< one a probe
+  std::vector<double> entered_;         ///< by probe, sides both: +1 the front is felt, -1 the back, 0 not known yet
+  Mesh mesh_;
+  hsp_ext_surfaces surfaces_extension_{};
+  hsp_ext_geometry geometry_extension_{};
+};
+
+template <class T>
+const void* TracedShape::tracedExtension(const char* name) {
+  const std::string_view wanted = name;
+  if (wanted == HSP_EXT_SURFACES && model_) {
+    surfaces_extension_ = {
+        sizeof(hsp_ext_surfaces), static_cast<uint32_t>(model_->surfaceCount()),
+        [](const hsp_shape* shape, const double p_model[3], double radius, hsp_near* out, uint64_t cap) -> int64_t {
+          const TracedShape& self = *reinterpret_cast<const T*>(shape);
+          return self.nearby(p_model, radius, out, cap);
+        },
+        [](hsp_shape* shape, const hsp_near* near) HSP_RT -> hsp_status {
+          TracedShape& self = *reinterpret_cast<T*>(shape);
+          return self.start(*near);
+        },
+        [](hsp_shape* shape, uint32_t probe, uint32_t surface) HSP_RT -> hsp_status {
+          TracedShape& self = *reinterpret_cast<T*>(shape);
+          return self.stop(probe, surface);
+        }};
+    return &surfaces_extension_;
+  }
+  if (wanted == HSP_EXT_GEOMETRY && model_) {
+    geometry_extension_ = {sizeof(hsp_ext_geometry), 0,
+                           [](hsp_shape* shape, double chord_error, hsp_mesh* out) -> hsp_status {
+                             TracedShape& self = *reinterpret_cast<T*>(shape);
+                             return self.mesh(chord_error, *out);
+                           },
+                           [](hsp_shape* shape, double min[3], double max[3]) -> hsp_status {
+                             const TracedShape& self = *reinterpret_cast<T*>(shape);
+                             return self.bounds(min, max);
+                           }};
+    return &geometry_extension_;
+  }
+  return nullptr;
+}
+
+}  // namespace hapticd
