@@ -29,7 +29,7 @@ std::string countText(const host::ParamInfo& p) {
 
 void ParameterReader::overrideFrom(Reader& in) {
   in_ = &in;
-  replaceable_ = values_.size();
+  given_.assign(given_.size(), 0);
 }
 
 void ParameterReader::read(const Node& node, const std::string& key, const std::string& prefix,
@@ -59,21 +59,19 @@ void ParameterReader::unknown(const Entry& entry, const std::string& key, const 
 
 void ParameterReader::readOne(const Node& node, const std::string& key, uint32_t index) {
   const host::ParamInfo& param = info_.params[index];
-  size_t at = 0;
-  while (at < values_.size() && values_[at].index != index) ++at;
-  if (at < values_.size() && at >= replaceable_)
-    return in_->problem(node, key,
-                        "given twice (first in line " + std::to_string(values_[at].place.line) + "), expected once");
+  if (given_[index] != 0)
+    return in_->problem(node, key, "given twice (first in line " + std::to_string(given_[index]) + "), expected once");
+  given_[index] = node.line;
+  seen_[index] = true;
   Value value;
   value.id = param.id;
   value.index = index;
   value.kind = param.kind;
   value.place = in_->place(node);
   if (!readValue(node, key, param, value)) return;
-  if (at < values_.size())
-    values_[at] = std::move(value);
-  else
-    values_.push_back(std::move(value));
+  for (Value& before : values_)
+    if (before.index == index) return (void)(before = std::move(value));
+  values_.push_back(std::move(value));
 }
 
 bool ParameterReader::readValue(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value) {
@@ -155,9 +153,7 @@ void ParameterReader::requireAll(const Node& at, const std::string& key) {
   for (uint32_t i = 0; i < info_.params.size(); ++i) {
     const host::ParamInfo& param = info_.params[i];
     if ((param.flags & HSP_P_REQUIRED) == 0) continue;
-    bool given = false;
-    for (const Value& value : values_) given = given || value.index == i;
-    if (!given) in_->problem(at, joined(key, param.id), "missing, " + info_.name + " needs it: " + param.doc);
+    if (!seen_[i]) in_->problem(at, joined(key, param.id), "missing, " + info_.name + " needs it: " + param.doc);
   }
 }
 

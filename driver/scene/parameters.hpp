@@ -10,7 +10,8 @@ namespace hapticd::scene {
 
 class ParameterReader {
  public:
-  ParameterReader(Reader& in, const host::ClassInfo& info) : in_(&in), info_(info) {}
+  ParameterReader(Reader& in, const host::ClassInfo& info)
+      : in_(&in), info_(info), given_(info.params.size()), seen_(info.params.size()) {}
 
   /// Continues with nodes of another file: what it gives replaces what came before.
   void overrideFrom(Reader& in);
@@ -37,7 +38,8 @@ class ParameterReader {
   Reader* in_;
   const host::ClassInfo& info_;
   std::vector<Value> values_;
-  size_t replaceable_ = 0;  // values before this one come from another file
+  std::vector<int> given_;  // line of each parameter in the file being read, good or not; 0: not given
+  std::vector<bool> seen_;  // in any file
 };
 
 }  // namespace hapticd::scene

@@ -39,7 +39,7 @@ std::string Key::expected() const {
     case Type::kObject:
       return "a mapping with " + host::listed(table->names());
     case Type::kList:
-      return "a list of mappings with " + host::listed(table->names());
+      return "a list of at most " + numberText(range.max) + " mappings with " + host::listed(table->names());
     case Type::kAny:
       return shape;
   }

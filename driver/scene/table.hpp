@@ -239,7 +239,7 @@ constexpr Key list(const char* name, const Table& table, Range count, const char
               return in.problem(
                   node, path,
                   (node.isSequence() ? "a list of " + std::to_string(node.items.size()) : describe(node)) +
-                      ", expected a list of at most " + std::to_string(most));
+                      ", expected " + key.expected());
             target.reserve(node.items.size());
             for (size_t i = 0; i < node.items.size(); ++i) {
               auto& item = target.emplace_back();

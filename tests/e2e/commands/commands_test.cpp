@@ -1,0 +1,196 @@
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "run_program.hpp"
+
+namespace hapticd::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of its own for each test.
+class Commands : public testing::Test {
+ protected:
+  void SetUp() override {
+    dir_ = fs::temp_directory_path() / ("hapticd-commands-" + std::to_string(::getpid()));
+    fs::create_directories(dir_);
+  }
+  void TearDown() override { fs::remove_all(dir_); }
+  std::string put(const std::string& name, const std::string& text) {
+    std::ofstream(dir_ / name) << text;
+    return (dir_ / name).string();
+  }
+  std::string get(const std::string& name) {
+    std::stringstream text;
+    text << std::ifstream(dir_ / name).rdbuf();
+    return text.str();
+  }
+  fs::path dir_;
+};
+
+constexpr const char* kScene =
+    "hapticd: 1\n"
+    "servo: {rate: 2000}\n"
+    "device: arm.yaml\n"
+    "hand: {mass: 0.3}\n"
+    "models:\n"
+    "  - name: ball\n"
+    "    plugin: test_shape\n"
+    "    pose: {orientation: [1.0005, 0, 0, 0]}\n"
+    "    parameters: {radius: 0.05, detent: [[0, 1], [2, 3]], inner: {mass: 2}}\n";
+constexpr const char* kArm = "hapticd-device: 1\nmodule: test_device\nhand: {mass: 0.2}\n";
+
+TEST_F(Commands, EverySubcommandHasHelpWithAnExample) {
+  for (const char* command :
+       {"", "check", "run", "trace", "explain", "doctor", "import", "plugin", "plugin list", "plugin info",
+        "plugin new", "device", "device list", "device info", "device kinematics"}) {
+    const Outcome outcome = run(std::string(command) + " --help");
+    EXPECT_EQ(outcome.exit_code, 0) << command << outcome.text;
+    EXPECT_TRUE(has(outcome.text, "Example")) << command << outcome.text;
+  }
+}
+
+TEST_F(Commands, BadUsageEndsWithTwo) {
+  for (const char* command :
+       {"", "frobnicate", "check", "check --nonsense x", "run", "run nowhere.yaml --for -1", "plugin", "plugin info",
+        "device kinematics x.yaml", "import x.bpt", "check --schema opera"})
+    EXPECT_EQ(run(command).exit_code, 2) << command;
+  EXPECT_TRUE(has(run("chekc x.yaml").text, "did you mean \"check\"?"));
+}
+
+TEST_F(Commands, VersionIsOneLine) {
+  const Outcome outcome = run("--version");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.text.rfind("hapticd ", 0), 0u) << outcome.text;
+}
+
+TEST_F(Commands, CheckAcceptsAGoodSceneAndDevice) {
+  const std::string arm = put("arm.yaml", kArm), scene = put("scene.yaml", kScene);
+  const Outcome outcome = run("check " + scene + " " + arm);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
+  EXPECT_EQ(outcome.text, scene + ": ok\n" + arm + ": ok\n");
+}
+
+TEST_F(Commands, CheckPrintsTheProblemsOfEveryFileAndGoesOn) {
+  const std::string good = put("arm.yaml", kArm), bad = put("bad.yaml", "hapticd: 1\nmodels: 3\nx: 1\n");
+  const Outcome outcome = run("check " + bad + " " + (dir_ / "missing.yaml").string() + " " + good);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_TRUE(has(outcome.text, bad + ":2:9: models: ")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, bad + ":3:1: x: unknown key")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "missing.yaml:1:1: there is no such file")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, good + ": ok")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "3 problems in 2 of 3 files")) << outcome.text;
+}
+
+TEST_F(Commands, SchemasAreJsonWithThePluginsParameters) {
+  const Outcome scene = run("check --schema scene");
+  EXPECT_EQ(scene.exit_code, 0);
+  EXPECT_TRUE(has(scene.text, "\"test_shape\"")) << scene.text;
+  EXPECT_TRUE(has(scene.text, "Wall stiffness. [N/m]"));
+  EXPECT_TRUE(has(run("check --schema device").text, "\"test_device\""));
+  EXPECT_TRUE(has(run("check --schema daemon").text, "plugin_path"));
+}
+
+TEST_F(Commands, TenThousandModelsAreReadInOneGo) {
+  std::string text = "hapticd: 1\nmodels:\n";
+  for (int i = 0; i < 10000; ++i)
+    text += "  - {name: m" + std::to_string(i) + ", plugin: test_shape, parameters: {radius: 0.05}}\n";
+  EXPECT_EQ(run("check -q " + put("many.yaml", text)).exit_code, 0);
+  const Outcome refused = run("check " + put("wrong.yaml", text + "  - {name: m0, plugin: test_shape}\n"));
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_TRUE(
+      has(refused.text, "wrong.yaml:10003:12: models[10000].name: \"m0\" is the name of another model (line 3)"));
+}
+
+TEST_F(Commands, TenThousandModelsOfAnUnknownPluginGiveShortMessages) {
+  std::string text = "hapticd: 1\nmodels:\n";
+  for (int i = 0; i < 10000; ++i) text += "  - {name: m" + std::to_string(i) + ", plugin: nothing}\n";
+  const Outcome outcome = run("check " + put("unknown.yaml", text));
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_LT(outcome.text.size(), 3'000'000u);
+  EXPECT_TRUE(has(outcome.text, "as said of line 3"));
+}
+
+TEST_F(Commands, PluginListShowsGoodAndBadFiles) {
+  const Outcome outcome = run("plugin list --files");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_TRUE(has(outcome.text, "test_shape         1.2.3    One parameter of every kind.")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "crash.so: while it was loaded it crashed: Segmentation fault")) << outcome.text;
+}
+
+TEST_F(Commands, PluginInfoDocumentsUnitRangeAndDefault) {
+  const Outcome outcome = run("plugin info test_shape");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_TRUE(has(outcome.text, "number, 0 to 20000 N/m; default 500")) << outcome.text;
+  const Outcome unknown = run("plugin info test_shap");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_TRUE(has(unknown.text, "did you mean \"test_shape\"?")) << unknown.text;
+  EXPECT_TRUE(has(unknown.text, "searched:")) << unknown.text;
+}
+
+TEST_F(Commands, DeviceListAndInfoTellTheFacts) {
+  EXPECT_TRUE(has(run("device list").text, "test_device        0.1.0"));
+  const Outcome outcome = run("device info " + put("arm.yaml", kArm));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "joints  2")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "hardware: test arm")) << outcome.text;
+  const Outcome absent =
+      run("device info " + put("absent.yaml", "hapticd-device: 1\nmodule: test_device\nparameters: {gain: 0}\n"));
+  EXPECT_EQ(absent.exit_code, 0) << absent.text;
+  EXPECT_TRUE(has(absent.text, "no arm on the bus")) << absent.text;
+}
+
+TEST_F(Commands, KinematicsGivesPoseJacobianAndTorques) {
+  const std::string arm = put("arm.yaml", kArm), joints = put("joints.csv", "q1,q2,fx,fy,fz\n0.25,-0.5,3,4,5\n");
+  const Outcome outcome =
+      run("device kinematics " + arm + " --joints " + joints + " -o " + (dir_ / "out.csv").string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
+  EXPECT_EQ(get("out.csv"),
+            "q1,q2,x,y,z,qw,qx,qy,qz,J1_1,J1_2,J2_1,J2_2,J3_1,J3_2,J4_1,J4_2,J5_1,J5_2,J6_1,J6_2,gravity1,gravity2,"
+            "tau1,tau2\n"
+            "0.25,-0.5,0.25,-0.5,0,1,0,0,0,1,0,0,1,0,0,0,0,0,0,0,0,-0,9.8100000000000005,3,4\n");
+  const Outcome wrong = run("device kinematics " + arm + " --joints " + put("wrong.csv", "q1,q2\n0,nan\n"));
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_TRUE(has(wrong.text, "wrong.csv:2:1: column 2")) << wrong.text;
+}
+
+TEST_F(Commands, ImportScalesCentresAndKeepsTheCredit) {
+  const std::string patch = put("patch.bpt", "# By somebody\n1\n1 1\n0 0 0\n0 0 2\n4 0 0\n4 0 2\n");
+  const Outcome outcome = run("import " + patch + " --scale 0.5 --center -o " + (dir_ / "model.yaml").string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
+  EXPECT_EQ(get("model.yaml"),
+            "# By somebody\nformat: hapticd-model/1\nsurfaces:\n  - name: patch0\n    degree: [1, 1]\n"
+            "    knots: [[0, 0, 1, 1], [0, 0, 1, 1]]\n"
+            "    points: [[-1, 0, -0.5], [-1, 0, 0.5],\n             [1, 0, -0.5], [1, 0, 0.5]]\n");
+  EXPECT_EQ(run("import " + patch + " -o /nowhere/at/all.yaml").exit_code, 1);
+}
+
+TEST_F(Commands, ImportSaysWhereAPatchFileIsWrong) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"", "ends early, expected the number of patches"},
+      {"1\n3 3\n0 0 0\n", "ends early, expected a coordinate"},
+      {"1\n99 3\n", "bad.bpt:2:1: 99, expected a degree"},
+      {"1\n1 1\n0 0 0\n0 x 2\n", "bad.bpt:4:3: x, expected a coordinate"},
+      {"1\n1 1\n0 0 0\n0 0 2\n4 0 0\n4 0 2\n7\n", "bad.bpt:7:1: 7, expected the end"},
+      {"999999999\n", "expected the number of patches, 1 to 100000"},
+  };
+  for (const auto& [text, reason] : cases) {
+    const Outcome outcome = run("import " + put("bad.bpt", text) + " -o " + (dir_ / "x.yaml").string());
+    EXPECT_EQ(outcome.exit_code, 2) << text;
+    EXPECT_TRUE(has(outcome.text, reason)) << outcome.text;
+  }
+}
+
+TEST_F(Commands, DaemonFileIsCheckedBeforeAnythingRuns) {
+  const std::string daemon = put("daemon.yaml", "hapticd-daemon: 1\nservo: {priority: 200}\n");
+  const Outcome outcome = run("--config " + daemon + " plugin list");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_TRUE(has(outcome.text, "daemon.yaml:2:19: servo.priority: 200 is out of range")) << outcome.text;
+}
+
+}  // namespace
+}  // namespace hapticd::test
