@@ -10,7 +10,8 @@ namespace {
 
 constexpr int kInverseSteps = 200;           ///< damped least squares converges in 5 to 30 away from the limits
 constexpr double kInverseTolerance = 1e-14;  ///< [m]: rounding of a reach of a metre is 1e-16
-constexpr double kAcceptedError = 1e-12;     ///< [m]
+constexpr int kInverseStarts = 10;
+constexpr double kAcceptedError = 1e-12;  ///< [m]
 
 /// cos and sin of a link twist. Tables say 1.5708 or pi / 2: a right angle is meant, and cos(pi/2) = 6e-17 would tilt
 /// it.
@@ -132,33 +133,66 @@ JointVector Chain::neutral() const noexcept {
   return 0.5 * (limits_.min + limits_.max);
 }
 
-bool Chain::inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept {
-  JointVector x = q.cwiseMax(limits_.min).cwiseMin(limits_.max);
+JointVector Chain::stepTowards(const Jacobian& J, const Eigen::Vector3d& error, double lambda,
+                               const JointVector& q) const noexcept {
+  // A joint at its limit that the step would push further takes no part: clamping it afterwards instead would let the
+  // others stop short of the point they can reach without it.
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMaxJoints> free = J.topRows<3>();
+  JointVector trial = q;
+  for (int round = 0; round <= count_; ++round) {
+    Eigen::Matrix3d A = free * free.transpose();
+    A.diagonal().array() += lambda * (A.trace() + 1e-300);
+    trial = q + free.transpose() * A.ldlt().solve(error);
+    bool blocked = false;
+    for (int i = 0; i < count_; ++i) {
+      const bool low = q[i] <= limits_.min[i] && trial[i] < q[i], high = q[i] >= limits_.max[i] && trial[i] > q[i];
+      if (low || high) {
+        free.col(i).setZero();
+        blocked = true;
+      }
+    }
+    if (!blocked) break;
+  }
+  return trial.cwiseMax(limits_.min).cwiseMin(limits_.max);
+}
+
+bool Chain::reach(const Eigen::Vector3d& position, JointVector& q) const noexcept {
   ChainFrames at;
-  frames(x, at);
+  frames(q, at);
   Eigen::Vector3d error = position - tipOf(at);
   double lambda = 1e-6;
   for (int step = 0; step < kInverseSteps && error.norm() > kInverseTolerance; ++step) {
-    const Jacobian J = jacobianAt(at, tipOf(at), count_);
-    Eigen::Matrix3d A = J.topRows<3>() * J.topRows<3>().transpose();
-    A.diagonal().array() += lambda * (A.trace() + 1e-300);
-    const JointVector dx = J.topRows<3>().transpose() * A.ldlt().solve(error);
-    const JointVector trial = (x + dx).cwiseMax(limits_.min).cwiseMin(limits_.max);
-    frames(trial, at);
-    const Eigen::Vector3d trial_error = position - tipOf(at);
+    const JointVector trial = stepTowards(jacobianAt(at, tipOf(at), count_), error, lambda, q);
+    ChainFrames at_trial;
+    frames(trial, at_trial);
+    const Eigen::Vector3d trial_error = position - tipOf(at_trial);
     if (trial_error.norm() < error.norm()) {
-      x = trial;
+      q = trial;
+      at = at_trial;
       error = trial_error;
       lambda = std::max(lambda * 0.1, 1e-15);
     } else {
       if (lambda > 1e6) break;
       lambda *= 10;
-      frames(x, at);
     }
   }
-  if (!(error.norm() <= kAcceptedError)) return false;
-  q = x;
-  return true;
+  return error.norm() <= kAcceptedError;
+}
+
+bool Chain::inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept {
+  if (!position.allFinite() || !q.allFinite()) return false;
+  // From where the arm is; then, if limits stand in the way, from the middle and from bent poses to either side.
+  for (int attempt = 0; attempt < kInverseStarts; ++attempt) {
+    JointVector x = attempt == 0 ? q : neutral();
+    if (attempt > 1)
+      for (int i = 0; i < count_; ++i)
+        x[i] += ((attempt >> (i % 3)) % 2 == 0 ? 0.25 : -0.25) * (limits_.max[i] - limits_.min[i]);
+    x = x.cwiseMax(limits_.min).cwiseMin(limits_.max);
+    if (!reach(position, x)) continue;
+    q = x;
+    return true;
+  }
+  return false;
 }
 
 }  // namespace hapticd::kinematics

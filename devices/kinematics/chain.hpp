@@ -54,6 +54,9 @@ class Chain : public Arm {
   Jacobian jacobianAt(const ChainFrames& at, const Eigen::Vector3d& point, int moving) const noexcept;
 
  private:
+  bool reach(const Eigen::Vector3d& position, JointVector& q) const noexcept;
+  JointVector stepTowards(const Jacobian& J, const Eigen::Vector3d& error, double lambda,
+                          const JointVector& q) const noexcept;
   Eigen::Vector3d tipOf(const ChainFrames& at) const noexcept;
   std::array<ChainLink, kMaxJoints> links_{};
   std::array<double, kMaxJoints> cos_alpha_{}, sin_alpha_{};  ///< exact for multiples of a right angle

@@ -1,0 +1,63 @@
+/// Family jacobian_torque: wrench, Jacobian and torques of an arm with a spherical wrist (Thompson et al. 1999, Eq.
+/// 7-9).
+#include "kinematics/chain.hpp"
+#include "kinematics/statics.hpp"
+#include "verify.hpp"
+
+namespace hapticd::verify {
+namespace {
+
+using namespace hapticd::kinematics;
+
+std::vector<double> numbers(const Json& values) {
+  std::vector<double> all;
+  for (const Json& value : values) all.push_back(number(value));
+  return all;
+}
+
+Eigen::Vector3d vector3(const Json& values) {
+  const std::vector<double> all = numbers(values);
+  return {all.at(0), all.at(1), all.at(2)};
+}
+
+Chain chainOf(const Json& input) {
+  const auto twists = numbers(input["alpha_over_half_pi"]), d = numbers(input["d"]), a = numbers(input["a"]);
+  ChainGeometry geometry;
+  for (size_t i = 0; i < twists.size(); ++i) {
+    ChainLink link;
+    link.alpha = twists[i] * M_PI / 2;
+    link.d = d.at(i);
+    link.a = a.at(i);
+    geometry.links.push_back(link);
+  }
+  return Chain(geometry);
+}
+
+void jacobianTorque(const Case& test, Check& check) {
+  constexpr size_t kWristJoint = 5;  // the first whose axis passes through the wrist (b = 0 from here on)
+  const Chain chain = chainOf(test.input);
+  const auto q = numbers(test.input["q"]);
+  const double tolerance = number(test.tol["abs"]);
+  ChainFrames at;
+  chain.frames(Eigen::Map<const Eigen::VectorXd>(q.data(), static_cast<Eigen::Index>(q.size())), at);
+  const Eigen::Vector3d wrist = at.o[std::min(kWristJoint, q.size())];
+  const Jacobian J = chain.jacobianAt(at, wrist, chain.jointCount());
+  const Wrench W = wrenchAt(vector3(test.input["force"]), vector3(test.input["finger_offset_world"]));
+  const JointVector tau = jointTorques(J, W);
+
+  check.nearVector("wrist", wrist, test.expect["wrist"], tolerance);
+  for (int row = 0; row < 6; ++row)
+    check.nearVector("J[" + std::to_string(row) + "]", Eigen::VectorXd(J.row(row).transpose()),
+                     test.expect["J"][static_cast<size_t>(row)], tolerance);
+  check.nearVector("wrench", W, test.expect["wrench"], tolerance);
+  check.nearVector("tau", tau, test.expect["tau"], tolerance);
+  // The wrench felt is the one sent: the load-cell map undoes J^T wherever all six directions can be felt.
+  if (conditioning(J).rank < 6) return;
+  const WrenchEstimate felt = wrenchFromTorques(J, tau);
+  check.isTrue("wrench from torques", (jointTorques(J, felt.W) - tau).norm() <= tolerance * std::max(1.0, tau.norm()));
+}
+
+}  // namespace
+}  // namespace hapticd::verify
+
+HAPTICD_VERIFY(jacobian_torque, hapticd::verify::jacobianTorque)
