@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+"""`hapticd trace` against closed forms: spheres, a plane and a box, standing, turned, and moving on a path.
+
+Usage: trace_truth.py HAPTICD     prints a line a case; exit 1 when one is off.
+Each case writes a scene, a model and a probe path, runs the program as a user would, and compares every row.
+"""
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+
+HAPTICD = sys.argv[1]
+failures = 0
+
+
+def sphere(radius):
+    """Nine by five points, rational, poles on y; the textbook surface of revolution."""
+    s = math.sqrt(0.5)
+    circle = [(1, 0, 1), (1, 1, s), (0, 1, 1), (-1, 1, s), (-1, 0, 1), (-1, -1, s), (0, -1, 1), (1, -1, s), (1, 0, 1)]
+    meridian = [(0, -1, 1), (1, -1, s), (1, 0, 1), (1, 1, s), (0, 1, 1)]
+    points, weights = [], []
+    for cz, cx, wu in circle:  # u turns about y so that Su x Sv points outward
+        for rho, y, wv in meridian:
+            points.append([radius * rho * cx, radius * y, radius * rho * cz])
+            weights.append(wu * wv)
+    return {"name": "sphere", "degree": [2, 2], "knots": [[0, 0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 4], [0, 0, 0, 1, 1, 2, 2, 2]],
+            "points": points, "weights": weights}
+
+
+def quad(corner, side_u, side_v, name):
+    add = lambda a, b: [x + y for x, y in zip(a, b)]
+    return {"name": name, "degree": [1, 1], "knots": [[0, 0, 1, 1], [0, 0, 1, 1]],
+            "points": [corner, add(corner, side_v), add(corner, side_u), add(add(corner, side_u), side_v)]}
+
+
+def box(half):
+    h, d = half, 2 * half
+    return [quad([-h, -h, h], [d, 0, 0], [0, d, 0], "front"), quad([h, -h, -h], [-d, 0, 0], [0, d, 0], "back"),
+            quad([h, -h, h], [0, 0, -d], [0, d, 0], "right"), quad([-h, -h, -h], [0, 0, d], [0, d, 0], "left"),
+            quad([-h, h, h], [d, 0, 0], [0, 0, -d], "top"), quad([-h, -h, -h], [d, 0, 0], [0, 0, d], "bottom")]
+
+
+def trace(surfaces, rows, parameters=None, model_keys=None, servo=None):
+    with tempfile.TemporaryDirectory() as folder:
+        join = lambda name: os.path.join(folder, name)
+        json.dump({"format": "hapticd-model/1", "surfaces": surfaces}, open(join("model.json"), "w"))
+        model = {"name": "thing", "plugin": "nurbs_rigid",
+                 "parameters": {"geometry": "model.json", "stiffness": 1000, "damping": 0, **(parameters or {})}}
+        keys = dict(model_keys or {})
+        if "path_rows" in keys:
+            open(join("path.csv"), "w").write("t,x,y,z,qw,qx,qy,qz\n" + "\n".join(",".join(map(repr, r)) for r in keys.pop("path_rows")))
+            model.update(motion="kinematic", path="path.csv")
+        model.update(keys)
+        json.dump({"hapticd": 1, "servo": servo or {}, "models": [model]}, open(join("scene.yaml"), "w"))
+        with open(join("probe.csv"), "w") as out:
+            out.write("t,x,y,z\n")
+            out.writelines(",".join(map(repr, row)) + "\n" for row in rows)
+        done = subprocess.run([HAPTICD, "trace", join("scene.yaml"), "--probe", join("probe.csv"), "--out", join("out.csv")],
+                              capture_output=True, text=True)
+        if done.returncode != 0:
+            raise RuntimeError(f"exit {done.returncode}: {done.stderr}")
+        result = [{k: (v if k == "model" else float(v)) for k, v in row.items()} for row in csv.DictReader(open(join("out.csv")))]
+        assert len(result) == len(rows), f"{len(result)} rows for {len(rows)} samples"
+        return result
+
+
+def vec(row, prefix):
+    return [row[prefix + axis] for axis in "xyz"]
+
+
+def norm(v):
+    return math.sqrt(sum(x * x for x in v))
+
+
+def report(name, worst, tolerance):
+    global failures
+    bad = not worst <= tolerance
+    failures += bad
+    print(f"{'FAILED' if bad else 'ok':6} {name:58} worst {worst:.3g} m, allowed {tolerance:.3g}")
+
+
+def walk(radius_of, ticks=3000, dt=1e-3):
+    """A path that winds over a sphere, at a distance given by time."""
+    for i in range(ticks):
+        t = i * dt
+        a, b, r = 2.1 * t + 0.3, 1.2 * math.sin(1.7 * t), radius_of(t)
+        yield [t, r * math.cos(b) * math.sin(a), r * math.sin(b), r * math.cos(b) * math.cos(a)]
+
+
+def worst_of(values):
+    """The largest, or not-a-number if any is: max() alone would lose it."""
+    values = list(values)
+    return math.nan if any(math.isnan(v) for v in values) else max(values)
+
+
+def check_sphere(name, radius, rows, result, tolerance, center=lambda t: (0, 0, 0)):
+    errors = []
+    for sample, row in zip(rows, result):
+        rel = [p - c for p, c in zip(sample[1:], center(sample[0]))]
+        r = norm(rel)
+        depth = radius - r
+        n = [x / r for x in rel]
+        foot = [c + radius * x for c, x in zip(center(sample[0]), n)]
+        errors.append(abs(row["depth"] - depth))
+        errors.append(norm([a - b for a, b in zip(vec(row, "p"), foot)]))
+        errors.append(norm([a - b for a, b in zip(vec(row, "n"), n)]) * radius)
+        force = [1000 * max(depth, 0) * x for x in n]
+        errors.append(norm([a - b for a, b in zip(vec(row, "f"), force)]) / 1000)
+        errors.append(0 if row["contact"] == (1 if depth > 0 else 0) or abs(depth) < 1e-9 else math.inf)
+    report(name, worst_of(errors), tolerance)
+
+
+def main():
+    R = 0.05
+    rows = list(walk(lambda t: R - 0.001 + 0.0015 * math.sin(9 * t)))
+    check_sphere("sphere, in and out of contact", R, rows, trace([sphere(R)], rows), 1e-9)
+
+    rows = list(walk(lambda t: R + 0.03 * (1 + math.sin(2 * t))))
+    check_sphere("sphere from up to 60 mm outside", R, rows, trace([sphere(R)], rows), 1e-6)
+
+    rows = [[i * 1e-3, 0, 0.0495, -0.02 + i * 4e-5] for i in range(1000)]
+    check_sphere("straight across the pole", R, rows, trace([sphere(R)], rows), 1e-6)
+
+    center = (0.2, -0.1, 0.05)
+    rows = [[r[0]] + [x + c for x, c in zip(r[1:], center)] for r in walk(lambda t: R - 0.001)]
+    q = [0.5, -0.5, 0.5, 0.5]
+    moved = trace([sphere(R)], rows, model_keys={"pose": {"position": list(center), "orientation": q}})
+    check_sphere("sphere moved and turned", R, rows, moved, 1e-9, lambda t: center)
+
+    at = lambda t: (0.1 * t, 0.05 * t, 0)
+    rows = [[r[0]] + [x + c for x, c in zip(r[1:], at(r[0]))] for r in walk(lambda t: R - 0.001)]
+    path = [[0, 0, 0, 0, 1, 0, 0, 0], [4, 0.4, 0.2, 0, math.cos(1), 0, math.sin(1), 0]]
+    moving = trace([sphere(R)], rows, model_keys={"path_rows": path})
+    check_sphere("sphere moving and turning on a path", R, rows, moving, 1e-9, at)
+
+    rows = list(walk(lambda t: R - 0.001))
+    for bad in (700, 701, 1500):
+        rows[bad] = [rows[bad][0], math.nan, 0, math.inf]
+    result = trace([sphere(R)], rows)
+    quiet = all(norm(vec(result[i], "f")) == 0 and result[i]["status"] < 0 for i in (700, 701, 1500))
+    report("not-a-number samples give no force and a status", 0 if quiet else math.inf, 0)
+    good = [i for i in range(len(rows)) if i not in (700, 701, 1500)]
+    check_sphere("and every other sample is traced", R, [rows[i] for i in good], [result[i] for i in good], 1e-9)
+
+    rows = list(walk(lambda t: R - 0.001, 400)) + [[0.4 + i * 1e-3, 0, 0, -0.0495] for i in range(200)]
+    result = trace([sphere(R)], rows)
+    check_sphere("found again within 5 ms of a teleport", R, rows[406:], result[406:], 1e-9)
+
+    h = 0.04
+    rows = [[i * 1e-3, 0.03 * math.sin(i * 5e-3), 0.03 * math.cos(i * 3.3e-3), h - 0.001] for i in range(2000)]
+    result = trace(box(h), rows)
+    report("box face: depth and straight force", worst_of(abs(r["depth"] - 0.001) + norm([a - b for a, b in zip(vec(r, "f"), [0, 0, 1.0])]) / 1000 for r in result), 1e-9)
+
+    def outside(p):
+        return norm([max(abs(x) - h, 0) for x in p])
+    rows = [[i * 1e-3, (h + 0.004) * math.cos(i * 4e-3) * 1.2, (h + 0.004) * math.sin(i * 4e-3) * 1.2, 0.01] for i in range(3140)]
+    result = trace(box(h), rows)
+    errors = [abs(outside(s[1:]) + r["depth"]) for s, r in zip(rows, result) if outside(s[1:]) > 1e-6]
+    report("round the outside of a box, over its edges", worst_of(errors), 1e-6)
+    jumps = [norm([x - y for x, y in zip(vec(a, "f"), vec(b, "f"))]) for a, b in zip(result, result[1:])]
+    report("and its force never jumps by more than 10 %", worst_of(jumps) / 1000, 0.1 * 0.008)
+    sys.exit(1 if failures else 0)
+
+
+main()
