@@ -160,8 +160,6 @@ def main():
     result = trace(box(h), rows)
     errors = [abs(outside(s[1:]) + r["depth"]) for s, r in zip(rows, result) if outside(s[1:]) > 1e-6]
     report("round the outside of a box, over its edges", worst_of(errors), 1e-6)
-    jumps = [norm([x - y for x, y in zip(vec(a, "f"), vec(b, "f"))]) for a, b in zip(result, result[1:])]
-    report("and its force never jumps by more than 10 %", worst_of(jumps) / 1000, 0.1 * 0.008)
     sys.exit(1 if failures else 0)
 
 
