@@ -196,7 +196,7 @@ LocalFoot newtonFoot(const Patch& patch, const Vector3d& p, Iterate& at, double 
     length = (at.E.Su * step.d[0] + at.E.Sv * step.d[1]).norm();
     // Newton squares the error: the next step would be about length^2 * (length / last_length^2).
     const double next = length * (length / last_length) * (length / last_length);
-    if (length <= enough || (fresh && length < 0.1 * last_length && 10 * next <= enough)) {
+    if (length <= enough || (fresh && std::isfinite(last_length) && length < 0.1 * last_length && 10 * next <= enough)) {
       foot.converged = true;
       break;
     }
