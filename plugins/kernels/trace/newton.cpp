@@ -187,16 +187,15 @@ LocalFoot newtonFoot(const Patch& patch, const Vector3d& p, Iterate& at, double 
   double f = 0.5 * r.squaredNorm();
   const double rounding = 8 * kEpsilon * (p.norm() + at.E.S.norm());  // [m] of S and of r
   const double enough = std::max(tolerance, rounding);
-  double last_length = std::numeric_limits<double>::infinity();
-  bool fresh = foot.evaluations > 0;  // E was evaluated for this probe or proved good for it
+  double last_length = 0;  // of the step that led to this point, 0: none
   Step step;
   double length = 0;
   for (;;) {
     step = stepFrom(patch, at.uv, at.E, r);
     length = (at.E.Su * step.d[0] + at.E.Sv * step.d[1]).norm();
-    // Newton squares the error: the next step would be about length^2 * (length / last_length^2).
-    const double next = length * (length / last_length) * (length / last_length);
-    if (length <= enough || (fresh && std::isfinite(last_length) && length < 0.1 * last_length && 10 * next <= enough)) {
+    // Newton squares the error: the next step would be about length * (length / last_length)^2.
+    const double ratio = length / last_length;
+    if (length <= enough || (ratio < 0.1 && 10 * length * ratio * ratio <= enough)) {
       foot.converged = true;
       break;
     }
@@ -227,7 +226,6 @@ LocalFoot newtonFoot(const Patch& patch, const Vector3d& p, Iterate& at, double 
     }
     if (!accepted) break;
     last_length = shrink * length;
-    fresh = true;
   }
   if (foot.converged) {
     moveTo(foot, patch, at, step);
