@@ -32,9 +32,9 @@ struct Range {
   }
 };
 
-/// The largest of 1, 2, 5 times a power of ten that divides `span` into at most five parts... or a little more.
+/// The largest of 1, 2, 5 times a power of ten near a sixth of `span`.
 double niceStep(double span) {
-  const double raw = span / 4, power = std::pow(10, std::floor(std::log10(raw)));
+  const double raw = span / 6, power = std::pow(10, std::floor(std::log10(raw)));
   for (const double factor : {1.0, 2.0, 5.0})
     if (raw <= factor * power) return factor * power;
   return 10 * power;

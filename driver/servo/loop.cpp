@@ -41,15 +41,17 @@ void Loop::run() noexcept {
     const Nanoseconds woke = clock_.waitUntil(deadline);
     deadline = skipMissed(deadline, woke);
     const Nanoseconds begun = monotonicNow();
+    search_time_ = 0;
     const double dt = static_cast<double>(deadline - last) * kSecondsPerNanosecond;
     if (dt > kLateFault && !simulated()) trip(Fault::kLate);
     const double t = static_cast<double>(deadline - start) * kSecondsPerNanosecond;
     tick(deadline, t, dt);
-    telemetry_.tick(t, dt, woke - deadline, monotonicNow() - begun, world_.core(), arms_);
+    telemetry_.tick(t, dt, woke - deadline, monotonicNow() - begun - search_time_, world_.core(), arms_);
     last = deadline;
     deadline += settings_.period_ns;
     tick_count_.store(n + 1, std::memory_order_relaxed);
     if (n == kWarmUpTicks) {
+      search_allocations_ = 0;
       faults_warm = os::pageFaultsOfThread();
       allocations_warm = allocationsOfThread();
     }
@@ -57,7 +59,7 @@ void Loop::run() noexcept {
     if ((settings_.ticks != 0 && done >= settings_.ticks) || (stop_ && allSilent())) break;
   }
   telemetry_.finish(tick_count_, clock_.now() - start, os::pageFaultsOfThread() - faults_warm,
-                    allocationsOfThread() - allocations_warm);
+                    allocationsOfThread() - allocations_warm - search_allocations_);
   finished_.store(true, std::memory_order_release);
 }
 
@@ -73,6 +75,14 @@ bool Loop::simulated() const noexcept HSP_RT {
   return std::all_of(arms_.begin(), arms_.end(), [](const auto& arm) { return arm->simulated(); });
 }
 
+void Loop::search(double t) noexcept {
+  const Nanoseconds begun = monotonicNow();
+  const uint64_t allocations = allocationsOfThread();
+  lockstep_.before(t);
+  search_allocations_ += allocationsOfThread() - allocations;
+  search_time_ = monotonicNow() - begun;
+}
+
 Nanoseconds Loop::skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT {
   if (woke < deadline + settings_.period_ns) return deadline;
   // Whole periods are skipped and the phase kept: running late ticks back to back would only make the next ones late.
@@ -84,7 +94,7 @@ Nanoseconds Loop::skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HS
 void Loop::tick(Nanoseconds now, double t, double dt) noexcept HSP_RT {
   for (size_t i = 0; i < arms_.size(); ++i) probes_[i] = arms_[i]->read(now, dt);
   world_.core().publish(t, probes_);
-  if (settings_.lockstep) lockstep_.before(t);
+  if (settings_.lockstep) search(t);
   world_.core().tick(t, dt, probes_);
   for (uint32_t i = 0; i < arms_.size(); ++i) arms_[i]->write(now, dt, world_.core().force(i), world_.core().torque(i));
   wants_search_.store(world_.core().wantsSearch(), std::memory_order_relaxed);

@@ -40,6 +40,7 @@ class Loop {
 
  private:
   void tick(Nanoseconds now, double t, double dt) noexcept HSP_RT;
+  void search(double t) noexcept;
   void trip(Fault fault) noexcept HSP_RT;
   bool allSilent() const noexcept HSP_RT;
   bool simulated() const noexcept HSP_RT;
@@ -53,6 +54,9 @@ class Loop {
   Lockstep lockstep_;
   std::vector<Probe> probes_;
   uint64_t ramp_ticks_ = 0;
+  // In virtual time the simulation side works in this thread too; what it takes is not the servo's.
+  Nanoseconds search_time_ = 0;
+  uint64_t search_allocations_ = 0;
   std::atomic<bool> stop_{false}, wants_search_{true}, finished_{false};
   std::atomic<uint64_t> tick_count_{0};
   std::atomic<Nanoseconds> first_tick_{0};
