@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -130,6 +131,25 @@ TEST_F(Commands, PluginInfoDocumentsUnitRangeAndDefault) {
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_TRUE(has(unknown.text, "did you mean \"test_shape\"?")) << unknown.text;
   EXPECT_TRUE(has(unknown.text, "searched:")) << unknown.text;
+}
+
+TEST_F(Commands, PluginNewMakesAPluginThatBuildsUnderItsName) {
+  const std::string folder = (dir_ / "my_ball").string();
+  const Outcome made = run("plugin new my_ball --dir " + folder);
+  ASSERT_EQ(made.exit_code, 0) << made.text;
+  const std::string command = std::string(HAPTICD_CXX) +
+                              " -std=c++20 -shared -fPIC -I" HAPTICD_SOURCE_DIR "/driver/include " + folder +
+                              "/my_ball.cpp -o " + folder + "/my_ball.so";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const Outcome info = run("--plugin-path " + folder + " plugin info my_ball");
+  EXPECT_EQ(info.exit_code, 0) << info.text;
+  EXPECT_TRUE(has(info.text, "org.example.shape.my_ball")) << info.text;
+  const Outcome check = run("--plugin-path " + folder + " check " + folder + "/scene.yaml");
+  EXPECT_EQ(check.exit_code, 0) << check.text;
+  EXPECT_FALSE(has(get("my_ball/my_ball.cpp") + get("my_ball/CMakeLists.txt"), "emplate"));
+  EXPECT_EQ(run("plugin new my_ball --dir " + folder).exit_code, 2);
+  for (const char* name : {"My", "a-b", "../x", "1a", "template"})
+    EXPECT_EQ(run(std::string("plugin new ") + name).exit_code, 2) << name;
 }
 
 TEST_F(Commands, DeviceListAndInfoTellTheFacts) {

@@ -1,0 +1,104 @@
+/// `hapticd plugin new`: a plugin to start from, made of the template under another name.
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+
+#include "cli/command.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string name, folder;
+};
+
+/// Names become files, C++ identifiers and CMake targets.
+bool usable(const std::string& name) {
+  if (name.empty() || name.size() > 40 || !std::islower(static_cast<unsigned char>(name[0]))) return false;
+  for (const char c : name)
+    if (!std::islower(static_cast<unsigned char>(c)) && !std::isdigit(static_cast<unsigned char>(c)) && c != '_')
+      return false;
+  return name != "template";
+}
+
+/// "push_button" to "PushButton".
+std::string camelCase(const std::string& name) {
+  std::string text;
+  bool upper = true;
+  for (const char c : name) {
+    if (c != '_') text += upper ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+    upper = c == '_';
+  }
+  return text;
+}
+
+void replaceAll(std::string& text, const std::string& from, const std::string& to) {
+  for (size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+}
+
+std::string renamed(std::string text, const std::string& name) {
+  replaceAll(text, "TemplateBall", camelCase(name));
+  replaceAll(text, "org.hapticd.shape.template", "org.example.shape." + name);
+  replaceAll(text, "`hapticd plugin new NAME` copies it under another name.", "Made with `hapticd plugin new`.");
+  replaceAll(text, "`hapticd plugin new NAME` copies this folder under another name.",
+             "Made with `hapticd plugin new`.");
+  replaceAll(text, "template", name);  // the template file uses no C++ template
+  return text;
+}
+
+std::optional<fs::path> templateFolder() {
+  if (const auto installed = host::shippedFile("template")) return installed;
+  std::error_code error;
+  const fs::path source = HAPTICD_TEMPLATE_DIR;
+  return fs::is_directory(source, error) ? std::optional(source) : std::nullopt;
+}
+
+int makeNew(const Options& options) {
+  if (!usable(options.name))
+    return fail(kBadInput, "\"" + options.name +
+                               "\" is not usable as the name of a plugin, expected lower-case letters, "
+                               "digits and _, beginning with a letter: my_shape");
+  const fs::path target = options.folder.empty() ? fs::path(options.name) : fs::path(options.folder);
+  std::error_code error;
+  if (fs::exists(target, error))
+    return fail(kBadInput, target.string() + " exists already, expected a folder to be made");
+  const auto source = templateFolder();
+  if (!source)
+    return fail(kFailed, "the template is not installed beside this program; expected share/hapticd/template");
+  if (!fs::create_directories(target, error))
+    return fail(kFailed, target.string() + " cannot be made: " + error.message());
+  for (const auto& entry : fs::directory_iterator(*source)) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream in(entry.path(), std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(in), {});
+    const fs::path file = target / renamed(entry.path().filename().string(), options.name);
+    std::ofstream out(file, std::ios::binary);
+    out << renamed(text, options.name) << std::flush;
+    if (!out) return fail(kFailed, file.string() + " cannot be written");
+    std::printf("%s\n", file.c_str());
+  }
+  std::printf("\nbuild it:  cmake -S %s -B %s/build && cmake --build %s/build\n", target.c_str(), target.c_str(),
+              target.c_str());
+  std::printf("touch it:  HAPTICD_PLUGIN_PATH=%s/build hapticd run %s/scene.yaml\n", target.c_str(), target.c_str());
+  return kWorked;
+}
+
+}  // namespace
+
+void addPluginNew(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.get_subcommand("plugin")->add_subcommand(
+      "new", "Make a new plugin from the template: source, build file, scene.");
+  command->add_option("name", options->name, "name of the plugin: lower-case letters, digits and _")->required();
+  command->add_option("--dir", options->folder, "folder to make; without it, one of that name here");
+  command->footer(
+      "Example:\n  hapticd plugin new my_shape && cmake -S my_shape -B my_shape/build && cmake --build my_shape/build");
+  command->callback([options, &exit_code] { exit_code = makeNew(*options); });
+}
+
+}  // namespace hapticd::cli
