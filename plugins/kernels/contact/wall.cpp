@@ -19,6 +19,7 @@ double shape(const WallLaw& law, double depth) noexcept {
 
 WallForce wallForce(const WallLaw& law, double depth, double closing_speed) noexcept {
   if (!(depth > 0)) return {};
+  if (!std::isfinite(closing_speed)) closing_speed = 0;  // the spring alone is known
   const double at_scale = law.stiffness * law.depth_scale + law.damping * closing_speed;
   const double force = at_scale * shape(law, depth);
   return {std::max(0.0, force), law.exponent * force / depth};

@@ -14,8 +14,9 @@ struct WallLaw {
 };
 
 struct WallForce {
-  double force = 0;      ///< [N] along the outward normal, never negative: a wall does not pull
-  double stiffness = 0;  ///< [N/m] dF/dx before the clamp, at this speed; infinite slope at 0 for n < 1
+  double force = 0;  ///< [N] along the outward normal, never negative: a wall does not pull
+  double stiffness =
+      0;  ///< [N/m] dF/dx before the clamp, at this speed; for n < 1 it grows beyond bounds toward depth 0
 };
 
 /// [rt] Force at `depth` x [m] (> 0 inside) with `closing_speed` v [m/s] (> 0 going deeper), both relative to the wall:
