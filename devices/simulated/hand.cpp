@@ -1,51 +1,120 @@
 #include "hand.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 namespace hapticd::simulated {
 
 using Eigen::Vector3d;
 
-Vector3d Hand::where(double t) const noexcept {
-  constexpr double kApproach = 0.5;  // [s] from the neutral pose to the script
-  const double phase = 2 * M_PI * settings_.rate * t;
-  Vector3d wanted = settings_.center;
-  switch (settings_.script) {
-    case Script::kHold: break;
+namespace {
+
+/// SplitMix64 (Steele, Lea & Flood 2014): the same numbers on every machine and library.
+class Random {
+ public:
+  explicit Random(uint64_t seed) : state_(seed) {}
+  double uniform() {  ///< [0, 1)
+    uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+  }
+
+ private:
+  uint64_t state_;
+};
+
+Vector3d unit(const Vector3d& direction, const char* what) {
+  if (!(direction.norm() > 1e-9)) throw std::invalid_argument(std::string(what) + " is zero, expected a direction");
+  return direction.normalized();
+}
+
+}  // namespace
+
+Unrest::Unrest(double rms, double low_hz, double high_hz, uint64_t seed)
+    : amplitude_(rms * std::sqrt(2.0 / static_cast<double>(kTones))) {
+  Random random(seed);
+  for (size_t axis = 0; axis < 3; ++axis)
+    for (size_t tone = 0; tone < kTones; ++tone) {
+      // One tone in each part of the band: no two beat slowly against each other.
+      const double place = (static_cast<double>(tone) + random.uniform()) / static_cast<double>(kTones);
+      rate_[axis][tone] = 2 * M_PI * (low_hz + place * (high_hz - low_hz));
+      phase_[axis][tone] = 2 * M_PI * random.uniform();
+    }
+}
+
+Vector3d Unrest::at(double t) const noexcept {
+  Vector3d sum = Vector3d::Zero();
+  if (amplitude_ == 0) return sum;
+  for (size_t axis = 0; axis < 3; ++axis)
+    for (size_t tone = 0; tone < kTones; ++tone)
+      sum[static_cast<int>(axis)] += std::sin(rate_[axis][tone] * t + phase_[axis][tone]);
+  return amplitude_ * sum;
+}
+
+Hand::Hand(const HandSettings& settings, HandPath path)
+    : settings_(settings),
+      path_(std::move(path)),
+      tremor_(settings.tremor, 8, 12, settings.seed),
+      wander_(settings.wander, 0.2, 1, ~settings.seed) {
+  settings_.normal = unit(settings.normal, "hand.normal");
+  settings_.axis = unit(settings.axis, "hand.axis");
+  side_ = settings_.axis.cross(settings_.normal);
+  if (!(side_.norm() > 1e-3))
+    throw std::invalid_argument("hand.axis is parallel to hand.normal, expected two different directions");
+  side_.normalize();
+  settings_.axis = settings_.normal.cross(side_);
+  if (settings_.script == Script::kPath && path_.empty())
+    throw std::invalid_argument("hand.script is path, but hand.path names no file; expected a CSV file t,x,y,z");
+}
+
+void Hand::script(double t, Vector3d& position, Vector3d& velocity) const noexcept {
+  const HandSettings& s = settings_;
+  const double rate = 2 * M_PI * s.rate, phase = rate * t;
+  velocity.setZero();
+  position = s.center + s.radius * s.normal;
+  switch (s.script) {
     case Script::kStroke: {
-      const double angle = settings_.sweep * std::sin(phase);
-      wanted += Vector3d(settings_.radius * std::sin(angle), settings_.rise * std::sin(0.31 * phase),
-                         settings_.radius * std::cos(angle));
+      constexpr double kRiseRatio = 0.31;  // irrational enough: the strokes cover an area, not one line
+      const double angle = s.sweep * std::sin(phase), angle_rate = s.sweep * rate * std::cos(phase);
+      position = s.center + s.radius * onArc(angle) + s.rise * std::sin(kRiseRatio * phase) * s.axis;
+      velocity = s.radius * angle_rate * onArc(angle + M_PI / 2) +
+                 s.rise * kRiseRatio * rate * std::cos(kRiseRatio * phase) * s.axis;
       break;
     }
-    case Script::kPress: wanted.z() += settings_.radius - settings_.rise * 0.5 * (1 - std::cos(phase)); break;
-    case Script::kTap: wanted.z() += settings_.radius - settings_.rise * std::sin(phase); break;
     case Script::kCircle:
-      wanted += Vector3d(settings_.radius * std::sin(phase), 0, settings_.radius * std::cos(phase));
+      position = s.center + s.radius * onArc(phase);
+      velocity = s.radius * rate * onArc(phase + M_PI / 2);
+      break;
+    case Script::kPress:  // in and out again, smoothly: 0 to `rise` deep
+      position -= s.rise * 0.5 * (1 - std::cos(phase)) * s.normal;
+      velocity = -s.rise * 0.5 * rate * std::sin(phase) * s.normal;
+      break;
+    case Script::kTap:  // as far out as in
+      position -= s.rise * std::sin(phase) * s.normal;
+      velocity = -s.rise * rate * std::cos(phase) * s.normal;
+      break;
+    case Script::kPath:
+      path_.at(t, position, velocity);
+      break;
+    case Script::kHold:
+    case Script::kNone:
       break;
   }
-  const double s = std::clamp(t / kApproach, 0.0, 1.0);
-  return wanted * (s * s * (3 - 2 * s));
 }
 
-void Hand::target(double t, Vector3d& position, Vector3d& velocity) const noexcept {
-  constexpr double kStep = 1e-5;  // [s] the scripts are smooth: differences are exact enough for a damper
-  position = where(t);
-  velocity = (where(t + kStep) - where(t - kStep)) / (2 * kStep);
-}
-
-void Hand::drawTremor(double dt) noexcept {
-  constexpr double kCorner = 2 * M_PI * 10;  // [rad/s] physiological tremor lies near 10 Hz
-  const double keep = std::exp(-kCorner * dt), gain = settings_.tremor * std::sqrt(1 - keep * keep);
-  std::normal_distribution<double> normal;
-  for (int i = 0; i < 3; ++i) tremor_[i] = keep * tremor_[i] + gain * normal(random_);
-}
-
-Vector3d Hand::force(double t, const Vector3d& position, const Vector3d& velocity) const noexcept {
-  Vector3d wanted, wanted_velocity;
-  target(t, wanted, wanted_velocity);
-  return settings_.stiffness * (wanted - position) + settings_.damping * (wanted_velocity - velocity) + tremor_;
+HandTarget Hand::at(double t) const noexcept {
+  HandTarget target;
+  script(t, target.position, target.velocity);
+  target.force = tremor_.at(t) + wander_.at(t);
+  if (settings_.script == Script::kPath || t >= settings_.lead_in) return target;
+  const double s = std::max(t, 0.0) / settings_.lead_in;
+  target.position += settings_.approach * (1 - s * s * (3 - 2 * s)) * settings_.normal;
+  target.velocity -= settings_.approach * 6 * s * (1 - s) / settings_.lead_in * settings_.normal;
+  return target;
 }
 
 }  // namespace hapticd::simulated

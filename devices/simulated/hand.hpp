@@ -1,43 +1,68 @@
-/// A simulated hand: a mass at the tip, held by a spring and damper to a target that follows a script.
+/// The simulated hand: a mass on a spring and damper whose other end follows a script, with a seeded tremor. Everything
+/// it wants is a function of time alone, so that a run does not depend on how time was cut into steps.
 #pragma once
 #include <Eigen/Core>
-#include <random>
+#include <array>
+#include <cstdint>
+
+#include "hand_path.hpp"
 
 namespace hapticd::simulated {
 
-enum class Script { kHold, kStroke, kPress, kTap, kCircle };
+enum class Script { kHold, kStroke, kPress, kTap, kCircle, kPath, kNone };
 
+/// Lengths in m, device frame.
 struct HandSettings {
-  double mass = 0.2, stiffness = 300, damping = 6;  ///< [kg], [N/m], [N s/m]
   Script script = Script::kStroke;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< [m] device frame
-  double radius = 0.05;      ///< [m] of the arc or circle about the vertical through the centre
-  double sweep = 1.0;        ///< [rad] to either side of an arc
-  double rise = 0.01;        ///< [m] up and down along an arc; depth of a tap or press
-  double rate = 0.3;         ///< [Hz]
-  double tremor = 0.05;      ///< [N] rms of the hand's own noise
+  double mass = 0.2, stiffness = 500, damping = 5;    ///< [kg], [N/m], [N s/m]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< of the object to be touched
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< from the centre to where the hand is
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();    ///< strokes and circles turn about it
+  double radius = 0.045, sweep = 0.9, rise = 0.008;   ///< [m], [rad], [m]
+  double rate = 0.3;                                  ///< [Hz]
+  double approach = 0.02, lead_in = 0.5;              ///< [m], [s]
+  double tremor = 0.05, wander = 0.1;                 ///< [N] rms at 8 to 12 Hz, at 0.2 to 1 Hz
+  uint64_t seed = 1;
+};
+
+struct HandTarget {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero(), velocity = Eigen::Vector3d::Zero();  ///< [m], [m/s]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();                                         ///< [N] tremor and wander
+};
+
+/// A narrow-band random force of given rms: a sum of sinusoids whose frequencies and phases are drawn once.
+class Unrest {
+ public:
+  Unrest(double rms, double low_hz, double high_hz, uint64_t seed);
+  Eigen::Vector3d at(double t) const noexcept;  ///< [rt] [N]
+
+ private:
+  static constexpr size_t kTones = 4;
+  double amplitude_;
+  std::array<std::array<double, kTones>, 3> rate_{}, phase_{};
 };
 
 class Hand {
  public:
-  Hand(const HandSettings& settings, unsigned seed) : settings_(settings), random_(seed) {}
+  /// Throws std::invalid_argument with a message for the user.
+  Hand(const HandSettings& settings, HandPath path);
 
-  /// [rt] Where the script wants the tip at time t [s], and how fast.
-  void target(double t, Eigen::Vector3d& position, Eigen::Vector3d& velocity) const noexcept;
+  /// [rt] What the hand wants `t` seconds after the start.
+  HandTarget at(double t) const noexcept;
 
-  /// [rt] Draws the tremor of the next tick [N]; low-pass filtered to the band of a hand.
-  void drawTremor(double dt) noexcept;
-
-  /// [rt] Force [N] on the tip at a position and velocity.
-  Eigen::Vector3d force(double t, const Eigen::Vector3d& position, const Eigen::Vector3d& velocity) const noexcept;
-
-  double mass() const noexcept { return settings_.mass; }
+  bool holds() const noexcept { return settings_.script != Script::kNone; }
+  const HandSettings& settings() const noexcept { return settings_; }
 
  private:
-  Eigen::Vector3d where(double t) const noexcept;
+  void script(double t, Eigen::Vector3d& position, Eigen::Vector3d& velocity) const noexcept;
+  Eigen::Vector3d onArc(double angle) const noexcept {
+    return std::sin(angle) * side_ + std::cos(angle) * settings_.normal;
+  }
+
   HandSettings settings_;
-  std::mt19937_64 random_;
-  Eigen::Vector3d tremor_ = Eigen::Vector3d::Zero();
+  HandPath path_;
+  Eigen::Vector3d side_;  ///< completes axis and normal
+  Unrest tremor_, wander_;
 };
 
 }  // namespace hapticd::simulated

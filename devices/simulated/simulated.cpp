@@ -1,176 +1,174 @@
-/// The simulated PHANToM Premium 1.5 and the hand that holds it, at torque level.
-#include <algorithm>
+/// The device module `simulated`: an arm at torque level and the hand that holds it, driven by the time it is given.
 #include <cmath>
 #include <cstring>
-#include <memory>
+#include <stdexcept>
 
-#include <Eigen/LU>
-
-#include "hand.hpp"
-#include "hapticd/device.hpp"
-#include "premium15.hpp"
+#include "kinematics/extension.hpp"
+#include "kinematics/statics.hpp"
+#include "parameter_table.hpp"
 
 namespace hapticd::simulated {
-
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using Map = Eigen::Map<Vector3d>;
-using ConstMap = Eigen::Map<const Vector3d>;
 
-const Vector3d kGear(13.3, 11.2, 11.2);        ///< motor turns a joint turn
-constexpr double kCountsPerTurn = 4096;         ///< HEDM-5500, 1024 lines, four edges each
-constexpr double kStallTorque = 0.129;          ///< [N m] at the motor
-constexpr double kJointDamping = 0.0005;        ///< [N m s/rad]
-constexpr double kJointFriction = 0.01;         ///< [N m]
+constexpr int kMaxSubsteps = 5000;  ///< a read: one second at the default substep. A longer gap is left out.
 
-class SimulatedArm : public Device {
+class SimulatedArm : public Device, public Parameters {
  public:
-  static constexpr DeviceInfo kInfo{"org.hapticd.device.simulated", "simulated", "1.0.0", "MIT",
-                                    "A PHANToM Premium 1.5 simulated at torque level, and the hand that holds it."};
-  static constexpr const char* kScripts[] = {"hold", "stroke", "press", "tap", "circle"};
+  static constexpr DeviceInfo kInfo{
+      "org.hapticd.device.simulated", "simulated", "1.0.0", "MIT",
+      "An arm simulated at torque level (PHANToM Premium 1.5 or any serial chain), and the hand that holds it."};
   static constexpr auto fields() {
-    using F = Fields<SimulatedArm>;
-    return std::array{
-        F::integer("seed", &SimulatedArm::seed_, "", 0, 1000000000, 1, "Seed of the hand's tremor: same seed, same bits."),
-        F::integer("substeps", &SimulatedArm::substeps_, "", 1, 100, 8, "Integration steps in a servo tick."),
-        F::choice("hand.script", &SimulatedArm::script_, kScripts, 1, "What the hand does."),
-        F::real("hand.mass", &SimulatedArm::mass_, "kg", 0.01, 10, 0.2, "Mass of the hand at the tip."),
-        F::real("hand.stiffness", &SimulatedArm::stiffness_, "N/m", 0, 5000, 300, "Spring to the target."),
-        F::real("hand.damping", &SimulatedArm::damping_, "N s/m", 0, 200, 6, "Damper to the target."),
-        F::vector3("hand.center", &SimulatedArm::center_, "m", -1, 1, "[0, 0, 0]", "Centre of the script, device frame."),
-        F::real("hand.radius", &SimulatedArm::radius_, "m", 0, 1, 0.05, "Radius of the arc or circle, or distance of a tap."),
-        F::real("hand.sweep", &SimulatedArm::sweep_, "rad", 0, 3.2, 1.0, "Angle of the stroke to either side."),
-        F::real("hand.rise", &SimulatedArm::rise_, "m", 0, 0.2, 0.01, "Rise and fall of a stroke; depth of a tap or press."),
-        F::real("hand.rate", &SimulatedArm::rate_, "Hz", 0.001, 20, 0.3, "Rate of the script."),
-        F::real("hand.tremor", &SimulatedArm::tremor_, "N", 0, 2, 0.05, "Tremor of the hand, rms.")};
+    using Table = ParameterTable<SimulatedArm>;
+    return join(Table::arm(), Table::joint(), Table::hand());
   }
 
   void open(hdv_info& info) {
-    info.joint_count = 3;
-    info.capabilities = HDV_C_SIMULATED;
-    info.rate_hz = 1000;
-    info.max_force = 8.5;
-    info.continuous_force = 1.5;
-    info.max_stiffness = 3500;
-    info.resolution_m = 0.00003;
-    info.damping = 0.1;
-    info.mass_kg = 0.075;
-    for (int i = 0; i < 3; ++i) info.max_torque[i] = kStallTorque * kGear[i];
-    const double low[] = {-90, -124, -29}, high[] = {90, 119, 214};
-    for (int i = 0; i < 3; ++i) {
-      info.position_min[i] = low[i] * M_PI / 180;
-      info.position_max[i] = high[i] * M_PI / 180;
-    }
-    std::strcpy(info.product, "simulated PHANToM Premium 1.5");
+    arm_ = makeArm(*this);
+    joints_ = jointsOf(*this, arm_->jointCount());
+    hand_ = std::make_unique<Hand>(handOf(*this), path.empty() ? HandPath{} : HandPath::read(path));
+    describe(info);
   }
 
   void start(const hdv_start& how) {
-    HandSettings settings;
-    settings.mass = mass_, settings.stiffness = stiffness_, settings.damping = damping_;
-    settings.script = static_cast<Script>(script_);
-    settings.center = Vector3d(center_.data());
-    settings.radius = radius_, settings.sweep = sweep_, settings.rise = rise_, settings.rate = rate_;
-    settings.tremor = tremor_;
-    hand_ = std::make_unique<Hand>(settings, static_cast<unsigned>(seed_));
+    plant_ = makePlant(*this, joints_, Vector3d(how.gravity[0], how.gravity[1], how.gravity[2]));
     start_ns_ = now_ns_ = how.time_ns;
-    gravity_ = -how.gravity[1];
-    q_.setZero();
-    qd_.setZero();
-    torque_.setZero();
+    sequence_ = 0;
+    noise_ = static_cast<uint64_t>(seed);
+    written_ = 0;
+    const JointVector off = JointVector::Zero(arm_->jointCount());
+    drives_.fill({false, off, off});
+    target_ = hand_->at(0);
+    JointVector q = arm_->neutral();
+    if (hand_->holds() && !arm_->inverse(target_.position, q)) throw std::invalid_argument(unreachable());
+    plant_->reset(q);
   }
 
   hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
-    if (now_ns > now_ns_) advance(static_cast<double>(now_ns - now_ns_) * 1e-9);
-    now_ns_ = now_ns;
-    sample.time_ns = now_ns;
-    sample.sequence = ++sequence_;
-    sample.flags = HDV_S_CALIBRATED;
-    for (int i = 0; i < 3; ++i) {
-      const double counts = std::floor(q_[i] * kGear[i] * kCountsPerTurn / (2 * M_PI));
-      sample.position[i] = counts * (2 * M_PI) / (kGear[i] * kCountsPerTurn);
+    if (now_ns > now_ns_ || sequence_ == 0) ++sequence_;
+    if (now_ns > now_ns_) advance(now_ns);
+    sample.time_ns = now_ns_;
+    sample.sequence = sequence_;
+    sample.flags = HDV_S_CALIBRATED | (torque_sensors ? uint32_t{HDV_S_TORQUE} : 0u);
+    sample.buttons = 0;
+    const JointVector q = plant_->position(), tau = plant_->transmitted();
+    for (int i = 0; i < q.size(); ++i) {
+      const double step = joints_.step[i];
+      sample.position[i] = step > 0 ? std::round(q[i] / step) * step : q[i];
+      sample.torque[i] = torque_sensors ? tau[i] + torque_noise * noise() : 0;
     }
     return HSP_OK;
   }
 
   hsp_status write(uint64_t, const hdv_command& command) noexcept HSP_RT {
-    torque_.setZero();
-    if (command.mode != HDV_TORQUE) return HSP_OK;
-    for (int i = 0; i < 3; ++i) {
-      const double most = kStallTorque * kGear[i];
-      torque_[i] = std::isfinite(command.torque[i]) ? std::clamp(command.torque[i], -most, most) : 0;
+    Drive& drive = drives_[++written_ % drives_.size()];
+    drive.position_mode = command.mode == HDV_POSITION && joints_.stiffness.size() > 0;
+    for (int i = 0; i < arm_->jointCount(); ++i) {
+      const bool on = command.mode != HDV_OFF && std::isfinite(command.torque[i]);
+      drive.torque[i] = on ? std::clamp(command.torque[i], -joints_.max_torque[i], joints_.max_torque[i]) : 0;
+      drive.reference[i] = command.position[i];
+      drive.position_mode = drive.position_mode && std::isfinite(command.position[i]);
     }
     return HSP_OK;
   }
 
   const void* extension(const char* name) {
-    return std::strcmp(name, HDV_EXT_KINEMATICS) == 0 ? &kKinematics : nullptr;
-  }
-
- private:
-  void advance(double dt) noexcept {
-    constexpr double kMostStep = 2.5e-4;  // [s] stable with the stiffest hand whatever was missed
-    const int steps = std::max(substeps_, static_cast<int>(std::ceil(dt / kMostStep)));
-    const double h = dt / std::min(steps, 100000);
-    hand_->drawTremor(dt);
-    const double t = static_cast<double>(now_ns_ - start_ns_) * 1e-9;
-    for (int i = 0; i < std::min(steps, 100000); ++i) integrate(t + (i + 1) * h, h);
-  }
-
-  /// Semi-implicit Euler of (M + m J^T J) q'' = tau + J^T F_hand - C - G - friction - m J^T (dJ/dt) q'.
-  void integrate(double t, double h) noexcept {
-    const Matrix3d J = arm_.jacobian(q_);
-    const Vector3d tip = arm_.forward(q_), tip_velocity = J * qd_;
-    const Vector3d pull = hand_->force(t, tip, tip_velocity) - hand_->mass() * arm_.velocityProduct(q_, qd_);
-    const Vector3d friction = kJointDamping * qd_ + kJointFriction * (10 * qd_).array().tanh().matrix();
-    const Vector3d tau = torque_ + J.transpose() * pull - inertia_.coriolis(q_, qd_) - inertia_.gravity(q_, gravity_) - friction;
-    const Matrix3d M = inertia_.mass(q_) + hand_->mass() * J.transpose() * J;
-    qd_ += h * M.inverse() * tau;
-    q_ += h * qd_;
-    for (int i = 0; i < 3; ++i) {  // end stops take the speed away
-      const double low[] = {-1.57, -2.16, -0.5}, high[] = {1.57, 2.07, 3.73};
-      if (q_[i] < low[i] || q_[i] > high[i]) qd_[i] = 0;
-      q_[i] = std::clamp(q_[i], low[i], high[i]);
+    if (std::strcmp(name, HDV_EXT_KINEMATICS) != 0) return nullptr;
+    try {
+      arm_ = makeArm(*this);
+      extension_ = kinematics::Extension<SimulatedArm>::of(*arm_);
+      return &extension_;
+    } catch (const std::exception& e) {
+      detail::logError(host(), e.what());
+      return nullptr;
     }
   }
 
-  static const SimulatedArm& self(const hdv_device* device) { return *reinterpret_cast<const SimulatedArm*>(device); }
-  static hsp_status forward(const hdv_device* device, const double* q, double position[3], double orientation[4]) noexcept HSP_RT {
-    Map tip(position);
-    tip = self(device).arm_.forward(ConstMap(q));
-    orientation[0] = 1, orientation[1] = orientation[2] = orientation[3] = 0;
-    return HSP_OK;
-  }
-  static hsp_status jacobian(const hdv_device* device, const double* q, double* J) noexcept HSP_RT {
-    Eigen::Map<Eigen::Matrix<double, 6, 3, Eigen::RowMajor>> all(J);
-    all.setZero();
-    all.topRows<3>() = self(device).arm_.jacobian(ConstMap(q));
-    return HSP_OK;
-  }
-  static hsp_status gravity(const hdv_device* device, const double* q, const double g[3], double* tau) noexcept HSP_RT {
-    Map torques(tau);
-    torques = self(device).inertia_.gravity(ConstMap(q), -g[1]);
-    return HSP_OK;
-  }
-  static hsp_status inverse(const hdv_device* device, const double position[3], double* q) noexcept HSP_RT {
-    Vector3d joints;
-    if (!self(device).arm_.inverse(ConstMap(position), joints)) return HSP_E_NUMERIC;
-    Map out(q);
-    out = joints;
-    return HSP_OK;
-  }
-  static constexpr hdv_ext_kinematics kKinematics{sizeof(hdv_ext_kinematics), 3, &forward, &jacobian, &gravity, &inverse};
+  const kinematics::Arm& kinematics() const { return *arm_; }
 
-  int seed_, substeps_, script_;
-  double mass_, stiffness_, damping_, radius_, sweep_, rise_, rate_, tremor_;
-  std::array<double, 3> center_;
-  Phantom arm_;
-  PhantomInertia inertia_;
+ private:
+  /// What the arm says of itself; what it does not publish follows from its own kinematics at the neutral pose.
+  void describe(hdv_info& info) const {
+    const int count = arm_->jointCount();
+    info.joint_count = static_cast<uint32_t>(count);
+    info.capabilities = HDV_C_SIMULATED | (torque_sensors ? uint32_t{HDV_C_TORQUE} : 0u) |
+                        (joints_.stiffness.size() > 0 ? uint32_t{HDV_C_POSITION} : 0u);
+    info.rate_hz = rate;
+    info.max_force = max_force;
+    info.continuous_force = continuous_force;
+    info.max_stiffness = max_stiffness;
+    for (int i = 0; i < count; ++i) {
+      info.max_torque[i] = joints_.max_torque[i];
+      info.position_min[i] = arm_->limits().min[i];
+      info.position_max[i] = arm_->limits().max[i];
+    }
+    kinematics::Jacobian J;
+    if (arm_->jacobian(arm_->neutral(), J)) {
+      double least = HUGE_VAL;
+      for (int i = 0; i < count; ++i) {
+        const double lever = J.col(i).head<3>().norm();
+        info.resolution_m = std::max(info.resolution_m, joints_.step[i] * lever);
+        if (lever > 1e-6) least = std::min(least, joints_.damping[i] / (lever * lever));
+      }
+      info.damping = std::isfinite(least) ? least : 0;
+    }
+    std::snprintf(info.product, sizeof info.product, "simulated %s",
+                  arm() == Kind::kPremium15 ? "PHANToM Premium 1.5" : "serial arm");
+    std::snprintf(info.serial, sizeof info.serial, "seed %d", seed);
+  }
+
+  std::string unreachable() const {
+    const Vector3d& p = target_.position;
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "the hand starts at (%.3f, %.3f, %.3f) m in the device frame, which the arm cannot reach; expected a "
+                  "script within its workspace",
+                  p.x(), p.y(), p.z());
+    return text;
+  }
+
+  void advance(uint64_t now_ns) noexcept {
+    const double seconds = static_cast<double>(now_ns - now_ns_) * 1e-9;
+    const double wanted = std::ceil(seconds / substep * (1 - 1e-9));
+    const int steps = static_cast<int>(std::clamp(wanted, 1.0, double{kMaxSubsteps}));
+    const double h = std::min(seconds / steps, substep);
+    const HandTarget before = target_;
+    target_ = hand_->at(static_cast<double>(now_ns - start_ns_) * 1e-9);
+    now_ns_ = now_ns;
+    const auto late = static_cast<uint64_t>(delay);
+    const Drive& drive = drives_[(written_ + drives_.size() - late) % drives_.size()];
+    const bool holds = hand_->holds();
+    Pull pull;
+    pull.stiffness = holds ? hand_->settings().stiffness : 0;
+    pull.damping = holds ? hand_->settings().damping : 0;
+    for (int i = 0; i < steps; ++i) {
+      const double s = (i + 1.0) / steps;
+      pull.target = before.position + s * (target_.position - before.position);
+      pull.velocity = before.velocity + s * (target_.velocity - before.velocity);
+      pull.force = holds ? Vector3d(before.force + s * (target_.force - before.force)) : Vector3d::Zero();
+      plant_->step(h, drive, pull);
+    }
+  }
+
+  /// Unit variance; the sum of uniform numbers is near enough to normal for a sensor.
+  double noise() noexcept {
+    double sum = 0;
+    for (int i = 0; i < 4; ++i) {
+      noise_ = noise_ * 6364136223846793005u + 1442695040888963407u;
+      sum += static_cast<double>(noise_ >> 11) * 0x1p-53 - 0.5;
+    }
+    return sum * std::sqrt(3.0);
+  }
+
+  std::unique_ptr<kinematics::Arm> arm_;
+  std::unique_ptr<Plant> plant_;
   std::unique_ptr<Hand> hand_;
-  uint64_t start_ns_ = 0, now_ns_ = 0, sequence_ = 0;
-  double gravity_ = 9.81;
-  Vector3d q_ = Vector3d::Zero(), qd_ = Vector3d::Zero(), torque_ = Vector3d::Zero();
+  hdv_ext_kinematics extension_{};
+  JointSettings joints_;
+  HandTarget target_;
+  std::array<Drive, kMaxDelay + 1> drives_;  ///< the newest is at written_
+  uint64_t written_ = 0, start_ns_ = 0, now_ns_ = 0, sequence_ = 0, noise_ = 1;
 };
 
 }  // namespace

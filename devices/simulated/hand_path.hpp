@@ -1,0 +1,26 @@
+/// A path for the hand from a CSV file with the columns t,x,y,z (s, m, device frame).
+#pragma once
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace hapticd::simulated {
+
+class HandPath {
+ public:
+  HandPath() = default;
+  /// [main] Reads a file. Throws std::runtime_error with file, line and what was expected.
+  static HandPath read(const std::string& file);
+  /// [main] The same from text; `name` stands in messages.
+  static HandPath parse(const std::string& text, const std::string& name);
+
+  /// [rt] Straight lines between the rows; before the first and after the last the hand rests there.
+  void at(double t, Eigen::Vector3d& position, Eigen::Vector3d& velocity) const noexcept;
+  bool empty() const noexcept { return times_.empty(); }
+
+ private:
+  std::vector<double> times_;
+  std::vector<Eigen::Vector3d> points_;
+};
+
+}  // namespace hapticd::simulated

@@ -1,0 +1,73 @@
+/// The mechanisms that the simulation knows: the PHANToM's parallelogram and serial chains.
+#pragma once
+#include "kinematics/chain_dynamics.hpp"
+#include "kinematics/phantom_dynamics.hpp"
+
+namespace hapticd::simulated {
+
+/// PHANToM with a hand's mass at the tip.
+class PhantomMechanism {
+ public:
+  using Vector = Eigen::Vector3d;
+  using Matrix = Eigen::Matrix3d;
+
+  PhantomMechanism(const kinematics::Phantom& arm, const kinematics::PhantomInertia& inertia, double hand_mass,
+                   const Eigen::Vector3d& gravity)
+      : arm_(arm), dynamics_(arm.geometry(), inertia), hand_mass_(hand_mass), gravity_(gravity) {}
+
+  void evaluate(const Vector& q, const Vector& qd) noexcept;
+
+  template <class Add>
+  void stops(const Vector& q, const Add& add) const noexcept {
+    for (int i = 0; i < 3; ++i) {
+      if (q[i] > arm_.limits().max[i]) add(Vector::Unit(i), q[i] - arm_.limits().max[i]);
+      if (q[i] < arm_.limits().min[i]) add(Vector::Unit(i), q[i] - arm_.limits().min[i]);
+    }
+    const double opening = q[2] - q[1];
+    const Vector both(0, -1, 1);
+    if (opening > arm_.largestOpening()) add(both, opening - arm_.largestOpening());
+    if (opening < -arm_.largestClosing()) add(both, opening + arm_.largestClosing());
+  }
+
+  Matrix M, J;
+  Vector bias, tip;
+
+ private:
+  kinematics::Phantom arm_;
+  kinematics::PhantomDynamics dynamics_;
+  double hand_mass_;
+  Eigen::Vector3d gravity_;
+};
+
+/// Serial chain; the hand's mass is a part of its last link.
+class ChainMechanism {
+ public:
+  using Vector = kinematics::JointVector;
+  using Matrix = kinematics::MassMatrix;
+
+  /// @param rotor inertia that each motor adds to its joint [kg m^2]
+  ChainMechanism(const kinematics::ChainGeometry& geometry, const Vector& rotor, double hand_mass,
+                 const Eigen::Vector3d& gravity);
+
+  void evaluate(const Vector& q, const Vector& qd) noexcept;
+
+  template <class Add>
+  void stops(const Vector& q, const Add& add) const noexcept {
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      if (q[i] > arm_.limits().max[i]) add(Vector::Unit(q.size(), i), q[i] - arm_.limits().max[i]);
+      if (q[i] < arm_.limits().min[i]) add(Vector::Unit(q.size(), i), q[i] - arm_.limits().min[i]);
+    }
+  }
+
+  Matrix M;
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kinematics::kMaxJoints> J;
+  Vector bias;
+  Eigen::Vector3d tip;
+
+ private:
+  kinematics::Chain arm_, loaded_;  ///< without and with the hand
+  Vector rotor_;
+  Eigen::Vector3d gravity_, tool_;
+};
+
+}  // namespace hapticd::simulated

@@ -1,0 +1,99 @@
+/// The parameter table of the simulated arm: what device files may say, with unit, range, default and documentation.
+#pragma once
+#include "hapticd/device.hpp"
+#include "parameters.hpp"
+
+namespace hapticd::simulated {
+
+inline constexpr const char* kKinds[] = {"premium15", "chain"};
+inline constexpr const char* kScripts[] = {"hold", "stroke", "press", "tap", "circle", "path", "none"};
+inline constexpr int kMaxDelay = 16;
+
+/// Lines for a device class T that derives from Parameters.
+template <class T>
+struct ParameterTable {
+  using F = Fields<T>;
+
+  static constexpr auto arm() {
+    return std::array{
+        F::choice("arm.kind", &T::kind, kKinds, 0, "The mechanism: a PHANToM Premium 1.5, or the chain of arm.dh."),
+        F::vector3("arm.origin", &T::origin, "m", -1, 1, "[0, 0, 0]",
+                   "premium15: where the tip of the neutral pose lies in the device frame."),
+        F::array("arm.dh", &T::dh, "m, rad, m, rad", 4, 0, 64, -10, 10, "[]",
+                 "chain: a row a, alpha, d, theta a joint (standard Denavit-Hartenberg)."),
+        F::array("arm.limits", &T::limits, "rad", 2, 0, 32, -100, 100, "[]",
+                 "chain: a row least, greatest angle a joint; left out: half a turn to either side."),
+        F::array("arm.masses", &T::masses, "kg", 1, 0, 16, 0, 1000, "[]", "chain: mass of each link."),
+        F::array("arm.centers", &T::centers, "m", 3, 0, 48, -10, 10, "[]",
+                 "chain: centre of mass of each link, in the frame after its joint."),
+        F::array("arm.inertias", &T::inertias, "kg m^2", 3, 0, 48, 0, 1000, "[]",
+                 "chain: inertia of each link about the axes of that frame through its centre."),
+        F::vector3("arm.base_position", &T::base_position, "m", -10, 10, "[0, 0, 0]",
+                   "chain: where its first frame lies in the device frame."),
+        F::array("arm.base_orientation", &T::base_orientation, "", 4, 0, 4, -1.001, 1.001, "[]",
+                 "chain: how its first frame is turned in the device frame, a unit quaternion w, x, y, z."),
+        F::vector3("arm.tool_position", &T::tool_position, "m", -10, 10, "[0, 0, 0]",
+                   "chain: the tip in the frame of the last link."),
+        F::real("device.rate", &T::rate, "Hz", 1, 100000, 1000, "Natural rate that the arm reports."),
+        F::real("device.max_force", &T::max_force, "N", 0, 10000, 8.5, "Largest force that the arm reports."),
+        F::real("device.continuous_force", &T::continuous_force, "N", 0, 10000, 1.4,
+                "Force that it reports for any length of time."),
+        F::real("device.max_stiffness", &T::max_stiffness, "N/m", 0, 1e6, 3500, "Stiffness that it reports as stable."),
+        F::integer("delay", &T::delay, "", 0, kMaxDelay, 0, "Commands act this many reads late."),
+        F::real("substep", &T::substep, "s", 1e-6, 1e-2, 2e-4, "Longest step of the integration.", HSP_P_ACCURACY),
+        F::integer("seed", &T::seed, "", 0, 1000000000, 1, "Seed of tremor and noise: same seed, same bits.")};
+  }
+
+  static constexpr auto joint() {
+    return std::array{
+        F::array("joint.gear", &T::gear, "", 1, 0, 16, 0.001, 1e4, "[]",
+                 "Motor turns a joint turn. All joint lists: one number for all joints or a number each; left out: "
+                 "published numbers for premium15."),
+        F::array("joint.counts", &T::counts, "", 1, 0, 16, 0, 1e9, "[]",
+                 "Encoder counts a motor turn; 0: positions are exact."),
+        F::array("joint.damping", &T::damping, "N m s/rad", 1, 0, 16, 0, 1e4, "[]", "Viscous friction."),
+        F::array("joint.friction", &T::friction, "N m", 1, 0, 16, 0, 1e4, "[]", "Coulomb friction."),
+        F::real("joint.friction_speed", &T::friction_speed, "rad/s", 1e-4, 100, 0.1,
+                "Coulomb friction is friction * tanh(rate / friction_speed)."),
+        F::array("joint.max_torque", &T::max_torque, "N m", 1, 0, 16, 0, 1e5, "[]",
+                 "Largest torque of the motor, before the gear."),
+        F::array("joint.rotor", &T::rotor, "kg m^2", 1, 0, 16, 0, 100, "[]", "Inertia of the motor, before the gear."),
+        F::real("joint.motor_lag", &T::motor_lag, "s", 0, 1, 1.09e-4,
+                "Electrical time constant of the motors (RE25: 0.238 mH / 2.18 ohm)."),
+        F::array("joint.stiffness", &T::stiffness, "N m/rad", 1, 0, 16, 0, 1e6, "[]",
+                 "Stiffness of the arm's own position loop; left out: it takes torques alone."),
+        F::array("joint.rate_damping", &T::rate_damping, "N m s/rad", 1, 0, 16, 0, 1e5, "[]",
+                 "Damping of the arm's own position loop."),
+        F::boolean("joint.torque_sensors", &T::torque_sensors, false,
+                   "Samples carry the torque that passes from motor to link, friction taken off."),
+        F::real("joint.torque_noise", &T::torque_noise, "N m", 0, 100, 0, "White noise of the torque sensors, rms.")};
+  }
+
+  static constexpr auto hand() {
+    return std::array{
+        F::choice("hand.script", &T::script, kScripts, 1,
+                  "What the hand wants: hold still, stroke round the object, press into it and out again, tap on it, "
+                  "circle round it, follow a path file, or none: the hand is away."),
+        F::real("hand.mass", &T::mass, "kg", 0, 100, 0.2, "Mass of the hand at the tip."),
+        F::real("hand.stiffness", &T::hand_stiffness, "N/m", 0, 1e5, 500,
+                "Spring from the tip to where the hand wants it."),
+        F::real("hand.damping", &T::hand_damping, "N s/m", 0, 1e4, 5, "Damper beside that spring."),
+        F::vector3("hand.center", &T::center, "m", -10, 10, "[0, 0, 0]",
+                   "Centre of the object to touch, device frame."),
+        F::vector3("hand.normal", &T::normal, "", -1, 1, "[0, 0, 1]", "Direction from the centre to the hand."),
+        F::vector3("hand.axis", &T::axis, "", -1, 1, "[0, 1, 0]", "Axis that strokes and circles turn about."),
+        F::real("hand.radius", &T::radius, "m", 0, 10, 0.045,
+                "Distance of the wanted point from the centre or axis: less than the object's, for the hand to press."),
+        F::real("hand.sweep", &T::sweep, "rad", 0, 100, 0.9, "Angle of a stroke to either side."),
+        F::real("hand.rise", &T::rise, "m", 0, 1, 0.008,
+                "Stroke: rise and fall along the axis. Press, tap: depth beyond the radius."),
+        F::real("hand.rate", &T::hand_rate, "Hz", 0, 100, 0.3, "Strokes, presses, taps or circles a second."),
+        F::real("hand.approach", &T::approach, "m", 0, 1, 0.02, "How far outside its script the hand starts."),
+        F::real("hand.lead_in", &T::lead_in, "s", 0.001, 100, 0.5, "Time in which it comes in from there."),
+        F::real("hand.tremor", &T::tremor, "N", 0, 100, 0.05, "Tremor of 8 to 12 Hz, rms a direction."),
+        F::real("hand.wander", &T::wander, "N", 0, 100, 0.1, "Slow unrest of 0.2 to 1 Hz, rms a direction."),
+        F::path("hand.path", &T::path, "CSV file t,x,y,z (s, m, device frame) for script path.")};
+  }
+};
+
+}  // namespace hapticd::simulated

@@ -1,0 +1,135 @@
+#include "parameters.hpp"
+
+#include <stdexcept>
+
+#include "mechanisms.hpp"
+
+namespace hapticd::simulated {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Published figures of the Premium 1.5: gear ratios of its capstans, RE25 motors and HEDM-5500 encoders.
+const Vector3d kPremiumGear(13.3, 11.2, 11.2);
+constexpr double kPremiumCounts = 4096;     ///< a motor turn: 1024 lines, four edges each
+constexpr double kPremiumStall = 0.129;     ///< [N m] at the motor
+constexpr double kPremiumRotor = 1.08e-6;   ///< [kg m^2]
+constexpr double kPremiumDamping = 0.0005;  ///< [N m s/rad]
+constexpr double kPremiumFriction = 0.01;   ///< [N m]
+
+Vector3d vector(const std::array<double, 3>& from) {
+  return {from[0], from[1], from[2]};
+}
+
+/// One number for all joints, a number each, or none at all: then `fallback`.
+JointVector perJoint(const std::vector<double>& from, int count, double fallback, const char* id) {
+  if (from.empty()) return JointVector::Constant(count, fallback);
+  if (from.size() == 1) return JointVector::Constant(count, from[0]);
+  if (from.size() != static_cast<size_t>(count))
+    throw std::invalid_argument(std::string(id) + ": " + std::to_string(from.size()) + " numbers, expected 1 or " +
+                                std::to_string(count) + ", one a joint");
+  return Eigen::Map<const JointVector>(from.data(), count);
+}
+
+/// Row `joint` of a list with `columns` numbers a joint; nothing if the list is left out.
+const double* rowOf(const std::vector<double>& from, size_t columns, size_t joint, size_t joints, const char* id) {
+  if (from.empty()) return nullptr;
+  if (from.size() != columns * joints)
+    throw std::invalid_argument(std::string(id) + ": " + std::to_string(from.size() / columns) + " rows, expected " +
+                                std::to_string(joints) + ", one a row of arm.dh");
+  return &from[columns * joint];
+}
+
+Eigen::Quaterniond baseOrientation(const std::vector<double>& q) {
+  if (q.empty()) return Eigen::Quaterniond::Identity();
+  const Eigen::Quaterniond base(q.at(0), q.at(1), q.at(2), q.at(3));
+  if (!(std::abs(base.norm() - 1) <= 1e-3))
+    throw std::invalid_argument("arm.base_orientation: norm " + std::to_string(base.norm()) +
+                                ", expected a unit quaternion w, x, y, z");
+  return base.normalized();
+}
+
+}  // namespace
+
+kinematics::ChainGeometry chainOf(const Parameters& p) {
+  kinematics::ChainGeometry geometry;
+  geometry.base.position = vector(p.base_position);
+  geometry.base.orientation = baseOrientation(p.base_orientation);
+  geometry.tool.position = vector(p.tool_position);
+  const size_t count = p.dh.size() / 4;
+  if (count == 0)
+    throw std::invalid_argument("arm.dh is empty, expected a row a, alpha, d, theta for each joint of a chain");
+  for (size_t i = 0; i < count; ++i) {
+    kinematics::ChainLink link;
+    link.a = p.dh[4 * i], link.alpha = p.dh[4 * i + 1], link.d = p.dh[4 * i + 2], link.theta = p.dh[4 * i + 3];
+    if (const double* limit = rowOf(p.limits, 2, i, count, "arm.limits")) link.min = limit[0], link.max = limit[1];
+    if (const double* mass = rowOf(p.masses, 1, i, count, "arm.masses")) link.mass = *mass;
+    if (const double* center = rowOf(p.centers, 3, i, count, "arm.centers"))
+      link.center = Vector3d(center[0], center[1], center[2]);
+    if (const double* principal = rowOf(p.inertias, 3, i, count, "arm.inertias"))
+      link.inertia = Vector3d(principal[0], principal[1], principal[2]).asDiagonal();
+    geometry.links.push_back(link);
+  }
+  return geometry;
+}
+
+kinematics::PhantomGeometry phantomOf(const Parameters& p) {
+  kinematics::PhantomGeometry geometry;
+  geometry.origin = vector(p.origin);
+  return geometry;
+}
+
+JointSettings jointsOf(const Parameters& p, int count) {
+  const bool premium = p.arm() == Kind::kPremium15;
+  JointVector gear = perJoint(p.gear, count, 1, "joint.gear");
+  if (premium && p.gear.empty()) gear = kPremiumGear;
+  JointSettings joints;
+  const JointVector counts = perJoint(p.counts, count, premium ? kPremiumCounts : 0, "joint.counts");
+  const JointVector rotor = perJoint(p.rotor, count, premium ? kPremiumRotor : 0, "joint.rotor");
+  const JointVector torque = perJoint(p.max_torque, count, premium ? kPremiumStall : 100, "joint.max_torque");
+  joints.step = joints.rotor = joints.max_torque = JointVector::Zero(count);
+  for (int i = 0; i < count; ++i) {
+    joints.step[i] = counts[i] > 0 ? 2 * M_PI / (counts[i] * gear[i]) : 0;
+    joints.rotor[i] = rotor[i] * gear[i] * gear[i];
+    joints.max_torque[i] = torque[i] * gear[i];
+  }
+  joints.damping = perJoint(p.damping, count, premium ? kPremiumDamping : 0, "joint.damping");
+  joints.friction = perJoint(p.friction, count, premium ? kPremiumFriction : 0, "joint.friction");
+  if (!p.stiffness.empty()) {
+    joints.stiffness = perJoint(p.stiffness, count, 0, "joint.stiffness");
+    joints.rate_damping = perJoint(p.rate_damping, count, 0, "joint.rate_damping");
+  }
+  joints.motor_lag = p.motor_lag;
+  joints.friction_speed = p.friction_speed;
+  return joints;
+}
+
+HandSettings handOf(const Parameters& p) {
+  HandSettings hand;
+  hand.script = static_cast<Script>(p.script);
+  hand.mass = p.mass, hand.stiffness = p.hand_stiffness, hand.damping = p.hand_damping;
+  hand.center = vector(p.center), hand.normal = vector(p.normal), hand.axis = vector(p.axis);
+  hand.radius = p.radius, hand.sweep = p.sweep, hand.rise = p.rise, hand.rate = p.hand_rate;
+  hand.approach = p.approach, hand.lead_in = p.lead_in;
+  hand.tremor = p.tremor, hand.wander = p.wander;
+  hand.seed = static_cast<uint64_t>(p.seed);
+  return hand;
+}
+
+std::unique_ptr<kinematics::Arm> makeArm(const Parameters& p) {
+  if (p.arm() == Kind::kPremium15) return std::make_unique<kinematics::Phantom>(phantomOf(p));
+  return std::make_unique<kinematics::Chain>(chainOf(p));
+}
+
+std::unique_ptr<Plant> makePlant(const Parameters& p, const JointSettings& joints, const Vector3d& gravity) {
+  const double mass = static_cast<Script>(p.script) == Script::kNone ? 0 : p.mass;
+  if (p.arm() == Kind::kPremium15) {
+    kinematics::PhantomInertia inertia;
+    inertia.rotor = joints.rotor;
+    const kinematics::Phantom arm(phantomOf(p));
+    return std::make_unique<PlantOf<PhantomMechanism>>(joints, PhantomMechanism(arm, inertia, mass, gravity));
+  }
+  return std::make_unique<PlantOf<ChainMechanism>>(joints, ChainMechanism(chainOf(p), joints.rotor, mass, gravity));
+}
+
+}  // namespace hapticd::simulated

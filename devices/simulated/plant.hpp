@@ -1,0 +1,122 @@
+/// A rigid arm that is driven by its motors and pulled by a hand, integrated in small steps.
+///
+/// The integrator is linearly implicit Euler: springs, dampers, friction and end stops enter with their derivatives, so
+/// a step is stable however stiff the hand or hard the stop; mass, Coriolis and motor torques enter explicitly. Its
+/// error is of the order of the step, and what error there is takes energy away.
+#pragma once
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "settings.hpp"
+
+namespace hapticd::simulated {
+
+inline constexpr double kMaxJointRate = 500;  ///< [rad/s] no motor reaches it; keeps every state finite
+
+/// State and step of any arm, whatever its mechanism.
+class Plant {
+ public:
+  explicit Plant(const JointSettings& joints) : joints_(joints) {}
+  virtual ~Plant() = default;
+
+  /// [main] At rest at q, with motors off.
+  virtual void reset(const JointVector& q) = 0;
+  /// [rt] One step of h seconds.
+  virtual void step(double h, const Drive& drive, const Pull& pull) noexcept = 0;
+  virtual JointVector position() const noexcept = 0;  ///< [rt] [rad]
+  virtual JointVector velocity() const noexcept = 0;  ///< [rt] [rad/s]
+  /// [rt] Torque [N m] that passes from motors to links, friction taken off: what a load cell behind the gear reads.
+  virtual JointVector transmitted() const noexcept = 0;
+
+ protected:
+  JointSettings joints_;
+};
+
+/// Mechanism has: Vector, Matrix (n, n x n), TipJacobian (3 x n);
+///   void evaluate(q, qd)                      fills the members below
+///   Matrix M; Vector bias;                    mass with the hand's at the tip; torques of velocity and weight
+///   TipJacobian J; Eigen::Vector3d tip;       of the hand's grip
+///   template <class Add> void stops(q, Add)   Add(row, excess): joints beyond a limit, row a unit of that limit
+template <class Mechanism>
+class PlantOf final : public Plant {
+ public:
+  using Vector = typename Mechanism::Vector;
+  using Matrix = typename Mechanism::Matrix;
+
+  PlantOf(const JointSettings& joints, const Mechanism& mechanism) : Plant(joints), mechanism_(mechanism) {}
+
+  void reset(const JointVector& q) override {
+    q_ = q;
+    qd_ = Vector::Zero(q.size());
+    motor_ = Vector::Zero(q.size());
+    transmitted_ = Vector::Zero(q.size());
+  }
+
+  void step(double h, const Drive& drive, const Pull& pull) noexcept override {
+    mechanism_.evaluate(q_, qd_);
+    const Eigen::Vector3d tip_velocity = mechanism_.J * qd_;
+    const Eigen::Vector3d force =
+        pull.stiffness * (pull.target - mechanism_.tip) + pull.damping * (pull.velocity - tip_velocity) + pull.force;
+    A_.noalias() = mechanism_.J.transpose() * mechanism_.J;
+    K_ = pull.stiffness * A_;
+    D_ = pull.damping * A_;
+    tau_ = mechanism_.J.transpose() * force - mechanism_.bias;
+    addMotors(h, drive);
+    addFriction();
+    addStops();
+    A_ = mechanism_.M + h * D_ + (h * h) * K_;
+    tau_ -= h * (K_ * qd_);
+    qd_ += h * A_.ldlt().solve(tau_);
+    qd_ = qd_.cwiseMax(-kMaxJointRate).cwiseMin(kMaxJointRate);
+    q_ += h * qd_;
+  }
+
+  JointVector position() const noexcept override { return q_; }
+  JointVector velocity() const noexcept override { return qd_; }
+  JointVector transmitted() const noexcept override { return transmitted_; }
+
+ private:
+  void addMotors(double h, const Drive& drive) noexcept {
+    const double keep = joints_.motor_lag > 0 ? std::exp(-h / joints_.motor_lag) : 0;
+    for (Eigen::Index i = 0; i < q_.size(); ++i) {
+      double wanted = drive.torque[i];
+      if (drive.position_mode && joints_.stiffness.size() > 0) {
+        wanted += joints_.stiffness[i] * (drive.reference[i] - q_[i]) - joints_.rate_damping[i] * qd_[i];
+        if (std::abs(wanted) < joints_.max_torque[i]) {  // saturated, the loop is open
+          K_(i, i) += joints_.stiffness[i];
+          D_(i, i) += joints_.rate_damping[i];
+        }
+      }
+      wanted = std::clamp(wanted, -joints_.max_torque[i], joints_.max_torque[i]);
+      motor_[i] = wanted + keep * (motor_[i] - wanted);
+      transmitted_[i] = motor_[i];
+      tau_[i] += motor_[i];
+    }
+  }
+
+  void addFriction() noexcept {
+    for (Eigen::Index i = 0; i < q_.size(); ++i) {
+      const double shape = std::tanh(qd_[i] / joints_.friction_speed);
+      const double lost = joints_.damping[i] * qd_[i] + joints_.friction[i] * shape;
+      D_(i, i) += joints_.damping[i] + joints_.friction[i] / joints_.friction_speed * (1 - shape * shape);
+      transmitted_[i] -= lost;
+      tau_[i] -= lost;
+    }
+  }
+
+  void addStops() noexcept {
+    mechanism_.stops(q_, [&](const Vector& row, double excess) {
+      const double rate = row.dot(qd_);
+      tau_ -= row * (joints_.stop_stiffness * excess + joints_.stop_damping * rate);
+      K_ += joints_.stop_stiffness * row * row.transpose();
+      D_ += joints_.stop_damping * row * row.transpose();
+    });
+  }
+
+  Mechanism mechanism_;
+  Vector q_, qd_, motor_, transmitted_, tau_;
+  Matrix A_, K_, D_;
+};
+
+}  // namespace hapticd::simulated
