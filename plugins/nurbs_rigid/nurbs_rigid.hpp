@@ -1,7 +1,9 @@
 /// A rigid model of NURBS surfaces with the feel of a material: wall, friction, viscosity, texture, pop-through.
 #pragma once
 #include <array>
+#include <vector>
 
+#include "kernels/contact/friction.hpp"
 #include "kernels/contact/wall.hpp"
 #include "traced_shape/traced_shape.hpp"
 
@@ -22,22 +24,34 @@ class NurbsRigid final : public TracedShape {
                     HSP_P_SAFETY),
             F::real("exponent", &NurbsRigid::exponent_, "", 0.25, 3, 1, "n of Eq. 4; 1: linear wall", HSP_P_SAFETY),
             F::real("depth_scale", &NurbsRigid::depth_scale_, "m", 1e-6, 1, 1e-3, "x0 of Eq. 4", HSP_P_SAFETY),
+            F::real("friction_static", &NurbsRigid::friction_static_, "", 0, 10, 0,
+                    "mu_s: force along the surface over "
+                    "wall force that a stuck probe must overcome"),
+            F::real("friction_dynamic", &NurbsRigid::friction_dynamic_, "", 0, 10, 0,
+                    "mu_d: the same for a sliding probe, at most friction_static"),
             F::real("viscosity", &NurbsRigid::viscosity_, "N s/m", 0, 100, 0, "drag along the surface in contact"),
             F::real("texture.amplitude", &NurbsRigid::texture_amplitude_, "m", 0, 1e-2, 0,
-                    "height of ridges along u and v; 0: smooth", HSP_P_LIVE),
+                    "height of bumps on the surface; 0: smooth", HSP_P_LIVE),
             F::real("texture.wavelength", &NurbsRigid::texture_wavelength_, "m", 1e-5, 1, 2e-3,
-                    "length of a ridge along the surface", HSP_P_LIVE),
+                    "length of a bump along the model's axes", HSP_P_LIVE),
             F::real("pop_through", &NurbsRigid::pop_through_, "N", 0, 1e3, 0,
                     "a shell (sides: both) gives way above this force; 0: never")});
   }
 
   void activate(const hsp_activation& activation, hsp_report& report);
+  void reset() noexcept HSP_RT;
   hsp_status touch(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT;
   const void* extension(const char* name) { return tracedExtension<NurbsRigid>(name); }
 
  private:
+  Eigen::Vector3d along(const Touch& touch, const Eigen::Vector3d& velocity, double wall_force,
+                        contact::Friction& friction) const noexcept HSP_RT;
+  double texture(const trace::Foot& foot) const noexcept HSP_RT;
+
   double stiffness_ = 800, damping_ = 0, exponent_ = 1, depth_scale_ = 1e-3;
+  double friction_static_ = 0, friction_dynamic_ = 0;
   double viscosity_ = 0, texture_amplitude_ = 0, texture_wavelength_ = 2e-3, pop_through_ = 0;
+  std::vector<contact::Friction> friction_;  ///< one a probe, empty if nothing rubs
 };
 
 }  // namespace hapticd

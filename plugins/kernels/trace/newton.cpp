@@ -1,5 +1,6 @@
 #include "kernels/trace/newton.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -92,7 +93,8 @@ QuadraticModel modelOf(const spline::SurfacePoint& E, const Vector3d& r) noexcep
 
 struct Step {
   Vector2d d{0, 0};
-  SideMask sides = 0;  ///< bounds that the step ends on
+  SideMask sides = 0;       ///< bounds that the step ends on
+  Vector2d straight{0, 0};  ///< d before it was bent
 };
 
 double modelValue(const QuadraticModel& m, const Vector2d& d) noexcept {
@@ -125,6 +127,27 @@ Step boxMinimum(const QuadraticModel& m, const Vector2d& lo, const Vector2d& hi)
   return best;
 }
 
+/// Bends a long step along the parameterisation, which is far from linear around a heavy weight: to second order the
+/// bent step reaches the point of the surface that the straight one aims at (geodesic acceleration, Transtrum & Sethna
+/// 2012). Near convergence the bend vanishes and the step is Newton's.
+Vector2d bent(const spline::SurfacePoint& E, const Vector2d& d, const Vector2d& lo, const Vector2d& hi) noexcept {
+  constexpr double kStraight = 0.1, kTooBent = 0.75;
+  constexpr double kPole = 0.01;  // near a collapsed side the second-order model of the map is worth nothing
+  const Vector3d along_u = (hi[0] - lo[0]) * E.Su, along_v = (hi[1] - lo[1]) * E.Sv;
+  if (along_u.cross(along_v).norm() < kPole * std::max(along_u.squaredNorm(), along_v.squaredNorm())) return d;
+  const Vector3d acceleration = d[0] * d[0] * E.Suu + 2 * d[0] * d[1] * E.Suv + d[1] * d[1] * E.Svv;
+  const Matrix2d G = damped(E);
+  const double det = G(0, 0) * G(1, 1) - G(0, 1) * G(0, 1);
+  const double a = -0.5 * E.Su.dot(acceleration), b = -0.5 * E.Sv.dot(acceleration);
+  const Vector2d bend((a * G(1, 1) - b * G(0, 1)) / det, (b * G(0, 0) - a * G(0, 1)) / det);
+  const double ratio = (E.Su * bend[0] + E.Sv * bend[1]).norm() / (E.Su * d[0] + E.Sv * d[1]).norm();
+  if (!(ratio > kStraight)) return d;
+  const double t = std::min(1.0, kTooBent / ratio);
+  const Vector2d curved = t * d + t * t * bend;
+  const bool inside = (curved.array() > lo.array()).all() && (curved.array() < hi.array()).all();
+  return inside ? curved : d;
+}
+
 /// The step from an evaluated point: the box minimum, no longer than twice the distance (the new foot is no farther
 /// from the probe than this one, so it lies within that), and out of a saddle where the gradient vanishes.
 Step stepFrom(const Patch& patch, const Array2d& uv, const spline::SurfacePoint& E, const Vector3d& r) noexcept {
@@ -136,13 +159,15 @@ Step stepFrom(const Patch& patch, const Array2d& uv, const spline::SurfacePoint&
   const double length = (E.Su * step.d[0] + E.Sv * step.d[1]).norm();
   if (m.saddle && step.sides == 0 && length < kVanishingGradient * distance) {
     const double along = m.g.dot(m.escape) > 0 ? -0.5 : 0.5;
-    step.d = (along * distance * m.escape).array().max(lo.array()).min(hi.array());
+    step.d = step.straight = (along * distance * m.escape).array().max(lo.array()).min(hi.array());
     return step;
   }
   if (length > 2 * distance && length > 0) {
     step.d *= 2 * distance / length;
     step.sides = 0;
   }
+  step.straight = step.d;
+  if (step.sides == 0) step.d = bent(E, step.d, lo, hi);
   return step;
 }
 
@@ -220,6 +245,10 @@ LocalFoot newtonFoot(const Patch& patch, const Vector3d& p, Iterate& at, double 
         f = f_trial;
         accepted = true;
         break;
+      }
+      if (step.d != step.straight) {
+        step.d = step.straight;
+        continue;
       }
       const double slope = shrink * Vector2d(r.dot(at.E.Su), r.dot(at.E.Sv)).dot(step.d);
       shrink *= std::clamp(-0.5 * slope / (f_trial - f - slope), 0.1, 0.5);

@@ -72,6 +72,13 @@ Case readCase(const fs::path& file) {
   return c;
 }
 
+/// Paths on which the nearest point truly jumps: two feet are equally near, and the tracked one becomes the worse.
+bool isBifurcation(const Case& c) {
+  for (const char* word : {"through cylinder axis", "centre", "concave"})
+    if (c.name.find(word) != std::string::npos) return true;
+  return false;
+}
+
 struct Outcome {
   double worst_excess = 0;  // [m]
   int bad_ticks = 0, longest_bad = 0;
@@ -79,8 +86,9 @@ struct Outcome {
   bool poisoned = false;  // a good sample without a finite foot
   bool lost = false;      // wrong in the last tick
 
-  bool ok(double rate) const {
-    return !poisoned && !lost && worst_evaluations <= kMostEvaluations && longest_bad <= kRecovery * rate;
+  bool ok(const Case& c) const {
+    const double allowed = isBifurcation(c) ? kRecovery * c.rate : 0;
+    return !poisoned && !lost && worst_evaluations <= kMostEvaluations && longest_bad <= allowed;
   }
 };
 
@@ -130,7 +138,7 @@ bool runFolder(const fs::path& folder) {
     try {
       const Case c = readCase(file);
       const Outcome out = run(c);
-      const bool ok = out.ok(c.rate);
+      const bool ok = out.ok(c);
       all_ok = all_ok && ok;
       fmt::print("| {} | {:.1e} | {} | {:.1f} | {} | {} |\n", c.name, 1e3 * out.worst_excess, out.bad_ticks,
                  1e3 * out.longest_bad / c.rate, out.worst_evaluations,
