@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/trial.hpp"
 
 namespace hapticd::cli {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 struct Options {
   std::vector<std::string> files;
   std::string schema;
-  bool quiet = false;
+  bool quiet = false, files_only = false;
 };
 
 int printSchema(const std::string& format) {
@@ -23,7 +24,9 @@ int check(const Options& options) {
   if (options.files.empty()) return fail(kBadInput, "no file given, expected `hapticd check FILE...`");
   size_t problems = 0, bad_files = 0;
   for (const std::string& file : options.files) {
-    const scene::Problems found = scene::checkFile(file, catalog());
+    std::optional<scene::Scene> scene;
+    scene::Problems found = scene::checkFile(file, catalog(), &scene);
+    if (scene && !options.files_only) found = tryModels(*scene);
     printProblems(found, stdout);
     if (found.empty() && !options.quiet) std::printf("%s: ok\n", file.c_str());
     problems += found.size();
@@ -45,9 +48,12 @@ void addCheck(CLI::App& app, int& exit_code) {
   command->add_option("--schema", options->schema, "print the JSON Schema of a format instead, for editors")
       ->check(CLI::IsMember({"scene", "device", "daemon"}));
   command->add_flag("--quiet,-q", options->quiet, "say nothing about files that are good");
+  command->add_flag("--files-only", options->files_only,
+                    "do not set up the models of a good scene, only read its files");
   command->footer(
       "Each problem is a line: file:line:column: key: what is wrong, and what was expected.\n"
-      "Exit code 2 if there is any.\n\n"
+      "Exit code 2 if there is any. The models of a scene without problems are set up once, so that\n"
+      "what only a plugin can judge, such as a geometry file, is judged too.\n\n"
       "Example:\n  hapticd check config/scenes/teapot.yaml config/devices/simulated-premium15.yaml\n"
       "  hapticd check --schema scene > scene.schema.json");
   command->callback([options, &exit_code] { exit_code = check(*options); });

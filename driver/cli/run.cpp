@@ -22,7 +22,7 @@ struct Options {
   std::string scene, device, report, picture;
   std::optional<double> duration, rate;
   std::optional<int> cpu;
-  int priority = os::kServoPriority;
+  std::optional<int> priority;
   bool virtual_time = false, allow_non_rt = false;
 };
 
@@ -91,8 +91,8 @@ int run(const Options& options) {
   how.rate = options.rate.value_or(scene->servo.rate);
   how.duration = options.duration;
   how.virtual_time = options.virtual_time;
-  how.cpu = options.cpu;
-  how.priority = options.priority;
+  how.cpu = options.cpu ? options.cpu : daemonSettings().cpu;
+  how.priority = options.priority.value_or(daemonSettings().priority.value_or(os::kServoPriority));
   how.allow_non_rt = options.allow_non_rt;
   auto runner = servo::Runner::prepare(*scene, how, logToTerminal);
   if (!runner) return fail(kFailed, runner.error());
@@ -124,9 +124,10 @@ void addRun(CLI::App& app, int& exit_code) {
   command->add_option("--rate", options->rate, "servo rate in Hz instead of the scene's")
       ->check(CLI::Range(1.0, 20000.0));
   command->add_option("--cpu", options->cpu, "processor to pin the servo thread to")->check(CLI::Range(0, 1023));
-  command->add_option("--priority", options->priority, "SCHED_FIFO priority of the servo thread")
-      ->check(CLI::Range(1, 98))
-      ->capture_default_str();
+  command
+      ->add_option("--priority", options->priority,
+                   "SCHED_FIFO priority of the servo thread; without it the daemon file's, or 80")
+      ->check(CLI::Range(1, 98));
   command->add_option("--report", options->report, "write a report (JSON)");
   command->add_option("--picture", options->picture, "write a picture of depth, force and lateness over time (SVG)");
   command->add_flag("--allow-non-rt", options->allow_non_rt, "push with real hardware even without real-time rights");

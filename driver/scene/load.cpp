@@ -6,12 +6,13 @@
 namespace hapticd::scene {
 namespace {
 
-void checkRoot(const Node& root, Reader& in, host::Catalog& catalog) {
+void checkRoot(const Node& root, Reader& in, host::Catalog& catalog, std::optional<Scene>* scene) {
   const Format* format = detail::formatOf(root);
   if (format == nullptr) {
     detail::hasFormat(root, nullptr, in);
   } else if (format->table == &kSceneTable) {
-    detail::loadScene(root, in, catalog, {.default_device = false, .device_file = {}});
+    std::optional<Scene> loaded = detail::loadScene(root, in, catalog, {.default_device = false, .device_file = {}});
+    if (scene != nullptr) *scene = std::move(loaded);
   } else if (format->table == &kDeviceTable) {
     detail::loadDevice(root, in, {in.file(), "", {}, nullptr}, catalog, nullptr, nullptr, nullptr);
   } else {
@@ -87,17 +88,19 @@ LoadedDaemon loadDaemon(const std::filesystem::path& file) {
   return loaded;
 }
 
-Problems checkFile(const std::filesystem::path& file, host::Catalog& catalog) {
+Problems checkFile(const std::filesystem::path& file, host::Catalog& catalog, std::optional<Scene>* scene) {
   Problems problems;
   const auto text = readFile(file, kMaxFileBytes, problems);
-  return text ? checkText(*text, file, catalog) : problems;
+  return text ? checkText(*text, file, catalog, scene) : problems;
 }
 
-Problems checkText(const std::string& text, const std::filesystem::path& file, host::Catalog& catalog) {
+Problems checkText(const std::string& text, const std::filesystem::path& file, host::Catalog& catalog,
+                   std::optional<Scene>* scene) {
   Problems problems;
   Reader in(file, problems);
   const auto root = parseText(text, file.string(), problems);
-  if (root) checkRoot(*root, in, catalog);
+  if (root) checkRoot(*root, in, catalog, scene);
+  if (scene != nullptr && !problems.empty()) scene->reset();
   sortByPlace(problems);
   return problems;
 }

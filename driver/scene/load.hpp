@@ -42,10 +42,12 @@ LoadedDevice loadDevice(const std::filesystem::path& file, host::Catalog& catalo
 LoadedDaemon loadDaemon(const std::filesystem::path& file);
 
 /// [main] Any of the three, told apart by their first key. Used by `hapticd check`.
-Problems checkFile(const std::filesystem::path& file, host::Catalog& catalog);
+/// @param scene where a scene without problems goes; nullptr: not wanted
+Problems checkFile(const std::filesystem::path& file, host::Catalog& catalog, std::optional<Scene>* scene = nullptr);
 
 /// [main] The same for a text; `file` gives messages their name and paths their folder. Entry point for fuzzing.
-Problems checkText(const std::string& text, const std::filesystem::path& file, host::Catalog& catalog);
+Problems checkText(const std::string& text, const std::filesystem::path& file, host::Catalog& catalog,
+                   std::optional<Scene>* scene = nullptr);
 
 /// [main] JSON Schema of a format ("scene", "device", "daemon"), for editors; "" for any other name.
 /// With a catalog, the parameters of every plugin found are part of it.

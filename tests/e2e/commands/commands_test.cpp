@@ -87,6 +87,18 @@ TEST_F(Commands, CheckPrintsTheProblemsOfEveryFileAndGoesOn) {
   EXPECT_TRUE(has(outcome.text, "3 problems in 2 of 3 files")) << outcome.text;
 }
 
+TEST_F(Commands, CheckTellsWhatOnlyThePluginKnows) {
+  const std::string scene = put("scene.yaml",
+                                "hapticd: 1\nmodels:\n  - {name: a, plugin: test_shape, parameters: {radius: 0.05}}\n"
+                                "  - {name: b, plugin: test_shape, parameters: {radius: 0.05, label: refuse}}\n"
+                                "  - {name: c, plugin: test_shape, parameters: {radius: 0.05, label: nonsense}}\n");
+  const Outcome outcome = run("check " + scene);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_TRUE(has(outcome.text, scene + ":4:5: models[1]: model 'b': cannot be set up: the label is")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, scene + ":5:5: models[2]: model 'c': its report claims")) << outcome.text;
+  EXPECT_EQ(run("check --files-only " + scene).exit_code, 0);
+}
+
 TEST_F(Commands, SchemasAreJsonWithThePluginsParameters) {
   const Outcome scene = run("check --schema scene");
   EXPECT_EQ(scene.exit_code, 0);

@@ -1,0 +1,12 @@
+/// Trying a scene's models: what only a plugin can judge, such as the content of a geometry file.
+#pragma once
+#include "scene/problem.hpp"
+#include "scene/scene.hpp"
+
+namespace hapticd::cli {
+
+/// [main] Creates and activates every model in a child process, one after the other, and collects what the plugins
+/// object to. A crash or a hang becomes a problem too.
+scene::Problems tryModels(const scene::Scene& scene);
+
+}  // namespace hapticd::cli
