@@ -1,0 +1,59 @@
+/// What the parts of bench_trace share: surfaces, clock, solvers of one closest point a tick.
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "kernels/spline/surface.hpp"
+
+namespace hapticd::bench {
+
+/// The surfaces of the tables: bicubic sheet, rational sphere and torus, degree 5, finely ridged sheet. About 0.2 m.
+std::vector<spline::SurfaceData> surfaces();
+
+/// A probe that keeps contact: each true foot is known because the probe is built from it.
+struct Path {
+  std::vector<Eigen::Vector3d> probe, foot;
+  std::vector<std::array<double, 2>> uv;
+};
+/// `step` [m] a tick along the surface, up to `depth` [m] to either side of it.
+Path contactPath(const spline::SurfaceData& data, double step, double depth, int ticks);
+
+/// One way to find the closest point near the last one.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  virtual std::string name() const = 0;
+  virtual void start(double u, double v) = 0;
+  virtual Eigen::Vector3d step(const Eigen::Vector3d& probe) = 0;
+  /// Most evaluations in any tick so far; 0 where the solver does not say.
+  virtual int worstEvaluations() const { return 0; }
+  virtual std::size_t bytes() const { return 0; }
+};
+
+std::vector<std::unique_ptr<Solver>> ourSolvers(const spline::SurfaceData& data);
+std::vector<std::unique_ptr<Solver>> occtSolvers(const spline::SurfaceData& data);
+std::vector<std::unique_ptr<Solver>> sislSolvers(const spline::SurfaceData& data);
+
+void printEvaluations();
+void printTicks();
+
+/// Nanoseconds of `work()`, divided by `count`.
+template <class Work>
+double nanoseconds(int count, Work work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - begin;
+  return time.count() / count;
+}
+
+/// Keeps a result alive without storing it.
+template <class T>
+void keep(const T& value) {
+  asm volatile("" : : "r,m"(value) : "memory");
+}
+
+}  // namespace hapticd::bench
