@@ -1,0 +1,24 @@
+# What is installed beside the program and its modules. Component `dev`: what building a plugin outside this tree needs.
+include(CMakePackageConfigHelpers)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/hapticd)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/driver/include/hapticd DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
+install(TARGETS hapticd_abi EXPORT hapticdTargets)
+install(EXPORT hapticdTargets NAMESPACE hapticd:: DESTINATION ${package_dir} COMPONENT dev)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/hapticdConfigVersion.cmake COMPATIBILITY SameMajorVersion
+                                 ARCH_INDEPENDENT)
+install(FILES ${PROJECT_SOURCE_DIR}/driver/cmake/hapticdConfig.cmake ${PROJECT_SOURCE_DIR}/driver/cmake/HapticdPlugin.cmake
+              ${PROJECT_BINARY_DIR}/hapticdConfigVersion.cmake
+        DESTINATION ${package_dir} COMPONENT dev)
+
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+        DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# The unit names the program, wherever it is installed.
+configure_file(${PROJECT_SOURCE_DIR}/config/systemd/hapticd.service.in ${PROJECT_BINARY_DIR}/hapticd.service @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/hapticd.service DESTINATION lib/systemd/system)
+install(FILES ${PROJECT_SOURCE_DIR}/config/systemd/hapticd.sysusers DESTINATION lib/sysusers.d RENAME hapticd.conf)
+install(FILES ${PROJECT_SOURCE_DIR}/config/systemd/70-hapticd.limits DESTINATION ${CMAKE_INSTALL_SYSCONFDIR}/security/limits.d
+        RENAME 70-hapticd.conf)
+file(GLOB udev_rules CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/udev/*.rules)
+install(FILES ${udev_rules} DESTINATION lib/udev/rules.d)
