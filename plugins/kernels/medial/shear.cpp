@@ -1,0 +1,25 @@
+#include "kernels/medial/shear.hpp"
+
+#include <cmath>
+
+namespace hapticd::medial {
+
+Eigen::Vector3d pressForce(const Eigen::Vector3d& probe, const Eigen::Vector3d& surface, const Eigen::Vector3d& normal,
+                           double stiffness, double depth, std::span<const ShearSpring> springs) noexcept {
+  Eigen::Vector3d force = stiffness * depth * normal;
+  for (const ShearSpring& spring : springs) {
+    const Eigen::Vector3d chord = spring.anchor - probe;
+    const double length = chord.norm(), rest = (spring.anchor - surface).norm();
+    if (length > 0) force += spring.stiffness * (1 - rest / length) * chord;  // pulls when stretched, pushes when short
+  }
+  return force;
+}
+
+Monotonicity monotonicity(double angle, double stiffness, double shear_stiffness) noexcept {
+  Monotonicity result;
+  result.ratio = 1 / std::cos(angle / 2);
+  result.limit = shear_stiffness > 0 ? 1 + stiffness / (4 * shear_stiffness) : HUGE_VAL;
+  return result;
+}
+
+}  // namespace hapticd::medial
