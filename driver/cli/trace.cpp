@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,8 +41,12 @@ Result<std::vector<uint32_t>> chosenModels(const scene::Scene& scene, const std:
 /// Runs the core over the path, a tick a row.
 Result<void> traceRows(const scene::Scene& scene, servo::World& world, const std::vector<PathRow>& rows,
                        TraceWriter& writer) {
-  std::unique_ptr<servo::ProbeVelocity> velocity;
-  if (world.needsVelocity()) velocity = std::make_unique<servo::ProbeVelocity>(scene.servo.velocity, scene.servo.rate);
+  std::optional<servo::VelocityEstimator> velocity;
+  if (world.needsVelocity()) {
+    auto estimator = servo::makeEstimator(scene.servo.velocity, scene.servo.rate);
+    if (!estimator) return Error{estimator.error()};
+    velocity = *estimator;
+  }
   servo::Lockstep lockstep(world);
   servo::Probe probe;
   for (size_t i = 0; i < rows.size(); ++i) {

@@ -25,8 +25,11 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   if (auto opened = (*device)->open(); !opened) return Error{opened.error()};
   const Limiter limiter(described.limits, (*device)->info().max_force);
   std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter));
-  if (options.needs_velocity || described.limits.velocity > 0)
-    arm->velocity_ = std::make_unique<ProbeVelocity>(servo.velocity, options.rate);
+  if (options.needs_velocity || described.limits.velocity > 0) {
+    auto estimator = makeEstimator(servo.velocity, options.rate, arm->info().resolution_m);
+    if (!estimator) return Error{estimator.error()};
+    arm->velocity_ = *estimator;
+  }
   return arm;
 }
 
@@ -45,7 +48,7 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
   const hsp_status status = device_->read(now, sample_);
   probe_.valid = judge(status, now) && locate();
   if (!probe_.valid) return probe_;
-  if (velocity_ != nullptr) {
+  if (velocity_) {
     probe_.velocity = velocity_->update(probe_.position, dt);
     limiter_.watchSpeed(probe_.velocity.norm());
   }

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <memory>
+#include <optional>
 
 #include "base/clock.hpp"
 #include "base/result.hpp"
@@ -40,7 +41,7 @@ class Arm {
   const Limiter& limiter() const noexcept { return limiter_; }
   const Eigen::Vector3d& force() const noexcept { return force_; }  ///< [N] world, as sent
   const Probe& probe() const noexcept { return probe_; }
-  bool estimatesVelocity() const { return velocity_ != nullptr; }
+  bool estimatesVelocity() const { return velocity_.has_value(); }
   bool simulated() const noexcept { return (device_->info().capabilities & HDV_C_SIMULATED) != 0; }
   double rampOut() const noexcept { return limiter_.rampOut(); }  ///< [s]
 
@@ -55,7 +56,7 @@ class Arm {
   Eigen::Quaterniond q_world_device_;
   Eigen::Vector3d origin_world_;
   Eigen::Vector3d gravity_device_ = Eigen::Vector3d::Zero();
-  std::unique_ptr<ProbeVelocity> velocity_;
+  std::optional<VelocityEstimator> velocity_;
   Limiter limiter_;
   hdv_sample sample_{};
   uint64_t last_sequence_ = 0;
