@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kStaleAfter = 0.05;  ///< [s] without a new sample: no force on yesterday's position
 
+constexpr double kAssumedMass = 0.05;   ///< [kg] of a light arm: the damping that the passivity controller may add stays small
+
 }  // namespace
 
 Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter)
@@ -25,6 +27,10 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   if (auto opened = (*device)->open(); !opened) return Error{opened.error()};
   const Limiter limiter(described.limits, (*device)->info().max_force);
   std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter));
+  if (described.limits.passivity && (arm->info().capabilities & HDV_C_UNVERIFIED) != 0) {
+    const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
+    arm->passivity_.emplace(mass * options.rate / 2);
+  }
   if (options.needs_velocity || described.limits.velocity > 0) {
     auto estimator = makeEstimator(servo.velocity, options.rate, arm->info().resolution_m);
     if (!estimator) return Error{estimator.error()};
@@ -92,6 +98,7 @@ bool Arm::locate() noexcept HSP_RT {
 }
 
 void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque) noexcept HSP_RT {
+  if (passivity_ && probe_.valid) force = passivity_->update(probe_.position, force, dt);
   limiter_.apply(force, torque, probe_.position - origin_world_, dt);
   force_ = force;
   const uint32_t joints = device_->info().joint_count;

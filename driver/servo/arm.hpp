@@ -10,6 +10,7 @@
 #include "scene/scene.hpp"
 #include "servo/core.hpp"
 #include "servo/limiter.hpp"
+#include "servo/passivity/controller.hpp"
 #include "servo/probe_velocity.hpp"
 
 namespace hapticd::servo {
@@ -57,6 +58,7 @@ class Arm {
   Eigen::Vector3d origin_world_;
   Eigen::Vector3d gravity_device_ = Eigen::Vector3d::Zero();
   std::optional<VelocityEstimator> velocity_;
+  std::optional<passivity::PassivityController> passivity_;
   Limiter limiter_;
   hdv_sample sample_{};
   uint64_t last_sequence_ = 0;

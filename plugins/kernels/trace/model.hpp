@@ -40,8 +40,9 @@ class Model {
   /// @throws std::invalid_argument that names the surface and says what was expected.
   explicit Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOptions& options = {});
 
-  /// [sim] Global search: every surface within `radius` [m] of `p` (model frame), nearest first, each with its own
-  /// global foot. Writes at most `cap` records and returns how many surfaces there are, even beyond cap.
+  /// [sim] Global search: every surface within `radius` [m] of `p` (model frame), nearest first. The nearest, and those
+  /// at most 20 mm farther, come with their global foot; the others with a lower bound of the distance and a parameter
+  /// to start from. Writes at most `cap` records and returns how many surfaces there are, even beyond cap.
   std::int64_t nearby(const Eigen::Vector3d& p, double radius, Near* out, std::size_t cap) const;
 
   /// [any] Number of surfaces in the model file; a surface with creases holds several patches.
