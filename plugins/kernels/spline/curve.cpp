@@ -17,8 +17,8 @@ Curve::Curve(const CurveData& data, Instructions instructions) : name_(data.name
   Net net = makeNet(data.points, data.weights);
   net_ = std::move(net.points);
   scale_ = net.scale;
-  rational_ = net.rational;
-  const auto& pair = kernels(instructions).net[rational_];
+  rational_ = net.rational();
+  const auto& pair = kernels(instructions).net[static_cast<std::size_t>(net.weights)];
   kernel_ = {pair[0], pair[1]};
 }
 

@@ -32,8 +32,15 @@ using TableKernel = void (*)(const Quad* cell, int size_u, int size_v, double s,
 inline constexpr int kTableShapes = 8;
 inline constexpr int kTableSizes[kTableShapes][2] = {{2, 2}, {2, 3}, {3, 2}, {3, 3}, {4, 2}, {2, 4}, {4, 4}, {6, 6}};
 
+/// What the weights of a net ask for.
+enum class Weights : std::uint8_t {
+  kNone,   ///< polynomial
+  kMild,   ///< rational
+  kSevere  ///< rational, and one weight of a span may outweigh all others together
+};
+
 struct KernelSet {
-  NetKernel net[2][2];                        ///< [rational][second order]
+  NetKernel net[3][2];                        ///< [Weights][second order]
   TableKernel table[kTableShapes + 1][2][2];  ///< [shape, last one for all others][rational][second order]
 };
 

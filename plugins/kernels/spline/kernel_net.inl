@@ -55,31 +55,29 @@ inline void evaluateBasis(const KnotWindow& window, double t, Basis& basis) {
   }
 }
 
-inline int largest(const double* values, int last) {
-  int best = 0;
-  for (int i = 1; i <= last; ++i) best = values[i] > values[best] ? i : best;
-  return best;
+/// Control points enter as differences from a local origin: then far from the model's origin, and next to a collapsed
+/// side, no digits are lost. A collapsed side is the first or the last row, so the corner on this side of the span's
+/// middle will do; it is known before the basis functions are.
+inline const Quad* nearestCorner(const NetWindow& net, int p, int q, double u, double v) {
+  const int i = p > 0 && u - net.u.knots[0] > net.u.knots[1] - u ? p : 0;
+  const int j = q > 0 && v - net.v.knots[0] > net.v.knots[1] - v ? q : 0;
+  return net.points + i * net.stride + j;
 }
 
-/// The control point with the largest share of the surface point. About this origin the numerator keeps all its
-/// digits: far from the model's origin, next to a pole, and beside a weight that outweighs all others.
-template <bool kRational>
-inline V4 dominantPoint(const NetWindow& net, int p, int q, const Basis& bu, const Basis& bv) {
+/// The control point with the largest share of the surface point: the origin where one weight may outweigh all others,
+/// which then leaves the sums to the others.
+inline const Quad* dominantPoint(const NetWindow& net, int p, int q, const Basis& bu, const Basis& bv) {
   const Quad* best = net.points;
-  if constexpr (kRational) {
-    double most = -1;
-    for (int i = 0; i <= p; ++i) {
-      for (int j = 0; j <= q; ++j) {
-        const Quad* point = net.points + i * net.stride + j;
-        const double share = bu.N[0][i] * bv.N[0][j] * point->w;
-        best = share > most ? point : best;
-        most = share > most ? share : most;
-      }
+  double most = -1;
+  for (int i = 0; i <= p; ++i) {
+    for (int j = 0; j <= q; ++j) {
+      const Quad* point = net.points + i * net.stride + j;
+      const double share = bu.N[0][i] * bv.N[0][j] * point->w;
+      best = share > most ? point : best;
+      most = share > most ? share : most;
     }
-  } else {
-    best += largest(bu.N[0], p) * net.stride + largest(bv.N[0], q);
   }
-  return V4{best->x, best->y, best->z, 0};
+  return best;
 }
 
 /// The sum of all control points' shares, and of the derivatives of these shares.
@@ -115,27 +113,29 @@ inline Sums contract(const NetWindow& net, int p, int q, const Basis& bu, const 
   return sums;
 }
 
-template <int kDegreeU, int kDegreeV, bool kRational, int kOrder>
+template <int kDegreeU, int kDegreeV, Weights kWeights, int kOrder>
 inline void evaluateNetOf(const NetWindow& net, double u, double v, double* out) {
+  constexpr bool kRational = kWeights != Weights::kNone;
+  const int p = kDegreeU > 0 ? kDegreeU : net.u.degree, q = kDegreeV > 0 ? kDegreeV : net.v.degree;
   Basis bu, bv;
   evaluateBasis<kDegreeU, kOrder>(net.u, u, bu);
   evaluateBasis<kDegreeV, kOrder>(net.v, v, bv);
-  const int p = net.u.degree, q = net.v.degree;
-  const V4 origin = dominantPoint<kRational>(net, kDegreeU > 0 ? kDegreeU : p, kDegreeV > 0 ? kDegreeV : q, bu, bv);
+  const Quad* at = kWeights == Weights::kSevere ? dominantPoint(net, p, q, bu, bv) : nearestCorner(net, p, q, u, v);
+  const V4 origin{at->x, at->y, at->z, 0};
   Sums sums = contract<kDegreeU, kDegreeV, kRational, kOrder>(net, p, q, bu, bv, origin);
   if constexpr (kRational) divideByWeight<kOrder>(sums);
   storeSums<kOrder>(sums, origin, out);
 }
 
-/// The two pairs of degrees that most models are made of are unrolled.
-template <bool kRational, int kOrder>
+/// The pairs of degrees that most models are made of are unrolled.
+template <Weights kWeights, int kOrder>
 void evaluateNet(const NetWindow& net, double u, double v, double* out) noexcept {
   if (net.u.degree == 3 && net.v.degree == 3) {
-    evaluateNetOf<3, 3, kRational, kOrder>(net, u, v, out);
+    evaluateNetOf<3, 3, kWeights, kOrder>(net, u, v, out);
   } else if (net.u.degree == 2 && net.v.degree == 2) {
-    evaluateNetOf<2, 2, kRational, kOrder>(net, u, v, out);
+    evaluateNetOf<2, 2, kWeights, kOrder>(net, u, v, out);
   } else {
-    evaluateNetOf<0, 0, kRational, kOrder>(net, u, v, out);
+    evaluateNetOf<0, 0, kWeights, kOrder>(net, u, v, out);
   }
 }
 

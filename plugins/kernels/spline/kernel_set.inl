@@ -9,7 +9,9 @@
 namespace {
 
 constexpr KernelSet kKernels = {
-    {{evaluateNet<false, 1>, evaluateNet<false, 2>}, {evaluateNet<true, 1>, evaluateNet<true, 2>}},
+    {{evaluateNet<Weights::kNone, 1>, evaluateNet<Weights::kNone, 2>},
+     {evaluateNet<Weights::kMild, 1>, evaluateNet<Weights::kMild, 2>},
+     {evaluateNet<Weights::kSevere, 1>, evaluateNet<Weights::kSevere, 2>}},
     {HAPTICD_TABLE_KERNELS(2, 2), HAPTICD_TABLE_KERNELS(2, 3), HAPTICD_TABLE_KERNELS(3, 2), HAPTICD_TABLE_KERNELS(3, 3),
      HAPTICD_TABLE_KERNELS(4, 2), HAPTICD_TABLE_KERNELS(2, 4), HAPTICD_TABLE_KERNELS(4, 4), HAPTICD_TABLE_KERNELS(6, 6),
      HAPTICD_TABLE_KERNELS(0, 0)}};

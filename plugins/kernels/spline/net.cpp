@@ -11,6 +11,16 @@ namespace {
 constexpr int kLargestExponent = 200;
 constexpr int kSmallestExponent = -200;
 
+/// A weight that outweighs others by more costs their part of the surface more than two digits.
+constexpr double kMildRatio = 100;
+
+Weights kindOf(const std::vector<double>& weights) {
+  if (weights.empty()) return Weights::kNone;
+  const auto [least, most] = std::minmax_element(weights.begin(), weights.end());
+  if (*least == *most) return Weights::kNone;
+  return *most / kMildRatio <= *least ? Weights::kMild : Weights::kSevere;
+}
+
 double scaleOf(const std::vector<Eigen::Vector3d>& points) {
   double largest = 0;
   for (const auto& point : points) largest = std::max(largest, point.cwiseAbs().maxCoeff());
@@ -30,12 +40,12 @@ int middleExponent(const std::vector<double>& weights) {
 Net makeNet(const std::vector<Eigen::Vector3d>& points, const std::vector<double>& weights) {
   Net net;
   net.scale = scaleOf(points);
-  net.rational = std::any_of(weights.begin(), weights.end(), [&](double w) { return w != weights.front(); });
-  const int middle = net.rational ? middleExponent(weights) : 0;
+  net.weights = kindOf(weights);
+  const int middle = net.rational() ? middleExponent(weights) : 0;
   net.points.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3d point = points[i] / net.scale;
-    net.points.push_back({point.x(), point.y(), point.z(), net.rational ? std::ldexp(weights[i], -middle) : 0});
+    net.points.push_back({point.x(), point.y(), point.z(), net.rational() ? std::ldexp(weights[i], -middle) : 0});
   }
   return net;
 }

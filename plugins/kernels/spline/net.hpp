@@ -9,8 +9,9 @@ namespace hapticd::spline {
 
 struct Net {
   std::vector<Quad> points;
-  double scale = 1;       ///< a power of two: coordinates = scale * stored ones; 1 for all but extreme coordinates
-  bool rational = false;  ///< false if there are no weights or all are equal
+  double scale = 1;  ///< a power of two: coordinates = scale * stored ones; 1 for all but extreme coordinates
+  Weights weights = Weights::kNone;  ///< kNone also if all weights are equal
+  bool rational() const noexcept { return weights != Weights::kNone; }
 };
 
 /// [main] For valid points and weights.

@@ -11,7 +11,7 @@ Surface::Surface(const SurfaceData& data, Form form, Instructions instructions) 
   axes_ = {Axis(data.degree[0], data.knots[0]), Axis(data.degree[1], data.knots[1])};
   Net net = makeNet(data.points, data.weights);
   scale_ = net.scale;
-  rational_ = net.rational;
+  rational_ = net.rational();
   reversed_ = data.reversed;
   name_ = data.name;
   const KernelSet& set = kernels(instructions);
@@ -25,7 +25,8 @@ Surface::Surface(const SurfaceData& data, Form form, Instructions instructions) 
     }
   }
   net_ = std::move(net.points);
-  net_kernel_ = {set.net[rational_][0], set.net[rational_][1]};
+  const auto& pair = set.net[static_cast<std::size_t>(net.weights)];
+  net_kernel_ = {pair[0], pair[1]};
 }
 
 NetWindow Surface::netWindow(const Cell& cu, const Cell& cv) const noexcept {

@@ -70,19 +70,19 @@ Quad originOf(const Net& net, const Axis& u, const Axis& v, const Cell& cu, cons
 Window windowOf(const Net& net, const Axis& u, const Axis& v, const Cell& cu, const Cell& cv) {
   Window window;
   window.origin = originOf(net, u, v, cu, cv);
-  if (net.rational) window.least_weight = INFINITY;
+  if (net.rational()) window.least_weight = INFINITY;
   for (int i = 0; i <= u.degree(); ++i) {
     for (int j = 0; j <= v.degree(); ++j) {
       const auto at = (cu.knot - u.degree() + i) * v.count() + cv.knot - v.degree() + j;
       const Quad& point = net.points[static_cast<std::size_t>(at)];
-      const Real weight = net.rational ? point.w : 1;
+      const Real weight = net.rational() ? point.w : 1;
       const Real x = static_cast<Real>(point.x) - window.origin.x, y = static_cast<Real>(point.y) - window.origin.y,
                  z = static_cast<Real>(point.z) - window.origin.z;
       window.terms[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = {x * weight, y * weight, z * weight,
-                                                                                net.rational ? weight : 0};
+                                                                                net.rational() ? weight : 0};
       const double extent = static_cast<double>(std::max({std::abs(x), std::abs(y), std::abs(z)}));
       window.extent = std::max(window.extent, extent);
-      if (net.rational) window.least_weight = std::min(window.least_weight, point.w);
+      if (net.rational()) window.least_weight = std::min(window.least_weight, point.w);
     }
   }
   return window;
