@@ -1,0 +1,84 @@
+#include "kernels/dynamics/pendulum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace hapticd::dynamics {
+namespace {
+
+constexpr double kLargestPhase = 0.02;  // [rad] of the linear swing in a substep: error 1e-12 of the amplitude
+constexpr int kMaxSubsteps = 64;        // bounds the time of a tick
+
+PendulumState rungeKutta(double w2, double drive, PendulumState s, double h) noexcept {
+  const auto acceleration = [&](double angle) { return drive - w2 * std::sin(angle); };
+  const double v1 = s.rate, a1 = acceleration(s.angle);
+  const double v2 = s.rate + h / 2 * a1, a2 = acceleration(s.angle + h / 2 * v1);
+  const double v3 = s.rate + h / 2 * a2, a3 = acceleration(s.angle + h / 2 * v2);
+  const double v4 = s.rate + h * a3, a4 = acceleration(s.angle + h * v3);
+  return {s.angle + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), s.rate + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)};
+}
+
+/// The same with damping: fourth order while it is weak against the step, and otherwise an exponential step, whose
+/// stiff part cannot grow.
+PendulumState dampedStep(double w2, double c, double drive, PendulumState s, double h) noexcept {
+  if (c == 0) return rungeKutta(w2, drive, s, h);
+  if (c * h > 0.05) {  // angle hardly moves in the step: v' = a - c v exactly, with the angle of the midpoint
+    const double decay = std::exp(-c * h), phi = -std::expm1(-c * h) / c;
+    const double half_phi = -std::expm1(-c * h / 2) / c;
+    const double half_drift = (h / 2 - half_phi) / c, drift = (h - phi) / c;
+    const double middle = s.angle + half_phi * s.rate + half_drift * (drive - w2 * std::sin(s.angle));
+    const double a = drive - w2 * std::sin(middle);
+    return {s.angle + phi * s.rate + drift * a, decay * s.rate + phi * a};
+  }
+  const auto acceleration = [&](double angle, double rate) { return drive - w2 * std::sin(angle) - c * rate; };
+  const double v1 = s.rate, a1 = acceleration(s.angle, v1);
+  const double v2 = s.rate + h / 2 * a1, a2 = acceleration(s.angle + h / 2 * v1, v2);
+  const double v3 = s.rate + h / 2 * a2, a3 = acceleration(s.angle + h / 2 * v2, v3);
+  const double v4 = s.rate + h * a3, a4 = acceleration(s.angle + h * v3, v4);
+  return {s.angle + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), s.rate + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)};
+}
+
+}  // namespace
+
+void validate(const PendulumLaw& law) {
+  const bool finite = std::isfinite(law.mass) && std::isfinite(law.inertia) && std::isfinite(law.length) &&
+                      std::isfinite(law.damping) && std::isfinite(law.gravity);
+  if (!finite || !(law.mass > 0) || !(law.inertia > 0) || law.length < 0 || law.damping < 0)
+    throw std::invalid_argument(
+        "pendulum: expected mass and inertia above 0, length and damping not below 0, all finite");
+}
+
+PendulumState advance(const PendulumLaw& law, PendulumState state, double torque, double dt) noexcept {
+  if (!(dt > 0) || !std::isfinite(dt) || !std::isfinite(torque)) return state;
+  const double w2 = law.frequencySquared();
+  const double drive = torque / law.inertia;
+  const double fastest = std::max(std::sqrt(std::fabs(w2)), std::fabs(state.rate));
+  const int steps =
+      std::clamp(static_cast<int>(std::ceil(std::min(fastest * dt / kLargestPhase, 1e6))), 1, kMaxSubsteps);
+  const double h = dt / steps;
+  for (int i = 0; i < steps; ++i) state = dampedStep(w2, law.damping / law.inertia, drive, state, h);
+  return state;
+}
+
+double energy(const PendulumLaw& law, const PendulumState& state) noexcept {
+  const double half = std::sin(state.angle / 2);
+  return 0.5 * law.inertia * state.rate * state.rate + 2 * law.mass * law.gravity * law.length * half * half;
+}
+
+double period(const PendulumLaw& law, double amplitude) noexcept {
+  double a = 1, b = std::fabs(std::cos(amplitude / 2));
+  constexpr int kRounds = 40;  // converges quadratically; the rest is for amplitudes next to pi
+  for (int i = 0; i < kRounds && std::fabs(a - b) > 1e-16 * a; ++i) {
+    const double mean = (a + b) / 2;
+    b = std::sqrt(a * b);
+    a = mean;
+  }
+  return 2 * M_PI / (a * std::sqrt(law.frequencySquared()));
+}
+
+double separatrixRate(const PendulumLaw& law) noexcept {
+  return 2 * std::sqrt(law.frequencySquared());
+}
+
+}  // namespace hapticd::dynamics

@@ -1,0 +1,37 @@
+/// A pendulum: one angle about a fixed axis, I theta'' = -m g L sin(theta) - c theta' + torque.
+#pragma once
+
+namespace hapticd::dynamics {
+
+struct PendulumLaw {
+  double mass = 1;        ///< [kg]
+  double inertia = 1;     ///< about the pivot [kg m^2]
+  double length = 1;      ///< pivot to centre of mass [m]
+  double damping = 0;     ///< [N m s/rad]
+  double gravity = 9.81;  ///< part of it that acts in the plane of motion [m/s^2]
+
+  double frequencySquared() const noexcept { return mass * gravity * length / inertia; }  ///< [1/s^2]
+};
+
+struct PendulumState {
+  double angle = 0;  ///< [rad] from hanging down
+  double rate = 0;   ///< [rad/s]
+};
+
+/// [any] @throws std::invalid_argument unless all is finite, mass and inertia above 0, length and damping not below 0.
+void validate(const PendulumLaw& law);
+
+/// [rt] One step of dt [s] with a constant torque of the user [N m], split where the motion is faster than the step.
+/// Kutta-Nystrom of fourth order with the damping taken exactly, so no damping however strong is unstable.
+PendulumState advance(const PendulumLaw& law, PendulumState state, double torque, double dt) noexcept;
+
+/// [any] Kinetic and potential energy [J], zero hanging at rest.
+double energy(const PendulumLaw& law, const PendulumState& state) noexcept;
+
+/// [any] Period [s] of free swinging from rest at `amplitude` [rad], by the arithmetic-geometric mean.
+double period(const PendulumLaw& law, double amplitude) noexcept;
+
+/// [any] Rate at the bottom [rad/s] above which it goes round.
+double separatrixRate(const PendulumLaw& law) noexcept;
+
+}  // namespace hapticd::dynamics

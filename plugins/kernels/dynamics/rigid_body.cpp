@@ -1,0 +1,175 @@
+#include "kernels/dynamics/rigid_body.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "kernels/dynamics/oscillator.hpp"
+
+namespace hapticd::dynamics {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr double kLargestTurn = 1e-3;  // [rad] of a substep: energy then drifts by 1e-17 of itself a tick
+constexpr int kMaxSubsteps = 32;       // bounds the time of a tick; faster bodies stay bounded but lose digits
+
+/// One coordinate under a constant force: x'' = (force - b x' - k x)/m, exactly.
+void drive(double mass, double damping, double stiffness, const Vector3d& force, double dt, Vector3d& x, Vector3d& v) {
+  if (stiffness > 0) {
+    const Vector3d rest = force / stiffness;
+    Vector3d from_rest = x - rest;
+    advance(oscillatorStepUnchecked(mass, damping, stiffness, dt), from_rest, v);
+    x = rest + from_rest;
+    return;
+  }
+  const double c = damping / mass;
+  const double phi = c * dt > 1e-12 ? -std::expm1(-c * dt) / c : dt;
+  const double drift = c * dt > 1e-4 ? (dt - phi) / c : dt * dt / 2 * (1 - c * dt / 3);
+  x += phi * v + drift / mass * force;
+  v += phi * (force / mass - c * v);
+}
+
+void validate(const RigidBodyLaw& law) {
+  if (!(law.mass > 0) || !std::isfinite(law.mass)) throw std::invalid_argument("mass: expected above 0 kg");
+  if (!law.center.allFinite()) throw std::invalid_argument("center: expected finite numbers");
+  if (!law.inertia.allFinite() || !law.inertia.isApprox(law.inertia.transpose(), 1e-9))
+    throw std::invalid_argument("inertia: expected a symmetric matrix of finite numbers");
+  if (!(law.damping >= 0) || !(law.angular_damping >= 0) || !(law.tether >= 0))
+    throw std::invalid_argument("damping, angular damping and tether: expected 0 or more");
+  if (law.joint != Joint::kFree && !(law.axis.norm() > 0))
+    throw std::invalid_argument("axis: expected a length above 0");
+}
+
+}  // namespace
+
+RigidBody::RigidBody(const RigidBodyLaw& law, const Vector3d& position, const Quaterniond& orientation,
+                     const Vector3d& gravity)
+    : law_(law), gravity_(gravity) {
+  validate(law);
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(law.inertia);
+  principal_ = solver.eigenvalues();
+  Matrix3d axes = solver.eigenvectors();
+  if (law.inertia.isDiagonal(0)) {  // axes as the user named them
+    principal_ = law.inertia.diagonal();
+    axes.setIdentity();
+  }
+  if (!(principal_.minCoeff() > 0)) throw std::invalid_argument("inertia: expected moments above 0 kg m^2");
+  if (axes.determinant() < 0) axes.col(0) *= -1;
+  from_axes_ = Quaterniond(axes);
+  const Quaterniond model = orientation.normalized();
+  turn_.set(model * from_axes_);
+  x_ = start_ = position + model * law.center;
+  pivot_world_ = position + model * law.pivot;
+  axis_world_ = law.joint == Joint::kFree ? Vector3d::UnitY() : Vector3d(model * law.axis.normalized());
+  if (law.joint == Joint::kHinge) {
+    const Vector3d axis = law.axis.normalized();
+    hinge_inertia_ = axis.dot(law.inertia * axis) + law.mass * axis.cross(law.center - law.pivot).squaredNorm();
+  }
+}
+
+void RigidBody::step(const Vector3d& force, const Vector3d& torque, double dt) noexcept {
+  if (!(dt > 0) || !std::isfinite(dt)) return;
+  const Vector3d f = (force.allFinite() ? force : Vector3d::Zero().eval()) + law_.mass * gravity_;
+  const Vector3d t = torque.allFinite() ? torque : Vector3d::Zero().eval();
+  if (law_.joint == Joint::kHinge) return swing(f, t, dt);
+  if (law_.joint == Joint::kSlider) {
+    const Vector3d axis = worldAxis();
+    return translate(axis * axis.dot(f), dt);
+  }
+  translate(f, dt);
+  rotate(t, dt);
+}
+
+void RigidBody::translate(const Vector3d& force, double dt) noexcept {
+  Vector3d away = x_ - start_;
+  drive(law_.mass, law_.damping, law_.tether, force, dt, away, v_);
+  x_ = start_ + away;
+}
+
+void RigidBody::rotate(const Vector3d& torque, double dt) noexcept {
+  const double rate = std::max(bodyRate().norm(), torque.norm() * dt / principal_.minCoeff());
+  const int steps = std::clamp(static_cast<int>(std::ceil(std::min(rate * dt / kLargestTurn, 1e6))), 1, kMaxSubsteps);
+  for (int i = 0; i < steps; ++i) rotateOnce(torque, dt / steps);
+}
+
+void RigidBody::rotateOnce(const Vector3d& torque, double h) noexcept {
+  const Quaterniond to_body = turn_.quaternion().conjugate();
+  if (law_.angular_damping > 0) {  // each principal axis decays by itself
+    const Vector3d decay = (-law_.angular_damping * h * principal_.cwiseInverse()).array().exp();
+    l_ = turn_.quaternion() * decay.cwiseProduct(to_body * l_);
+  }
+  const Vector3d l0 = to_body * l_, push = to_body * torque;
+  const auto rate = [&](const Vector3d& u, double time) {
+    const Vector3d w = (rotationBy(-u) * (l0 + time * push)).cwiseQuotient(principal_);
+    const Vector3d bracket = u.cross(w);
+    return Vector3d(w + bracket / 2 + u.cross(bracket) / 12);
+  };
+  const Vector3d k1 = rate(Vector3d::Zero(), 0);
+  const Vector3d k2 = rate(h / 2 * k1, h / 2);
+  const Vector3d k3 = rate(h / 2 * k2, h / 2);
+  const Vector3d k4 = rate(h * k3, h);
+  turn_.turnBody(h / 6 * (k1 + 2 * k2 + 2 * k3 + k4));
+  l_ += h * torque;
+}
+
+void RigidBody::swing(const Vector3d& force, const Vector3d& torque, double dt) noexcept {
+  const Vector3d axis = worldAxis();
+  // the lever turns within the step: half a step of motion first makes it of second order and free of drift in energy
+  const auto turnBy = [&](double angle) {
+    turn_.turnWorld(angle * axis);
+    x_ = pivot_world_ + rotationBy(angle * axis) * (x_ - pivot_world_);
+  };
+  turnBy(hinge_rate_ * dt / 2);
+  const Vector3d lever = x_ - pivot_world_;
+  const double moment = axis.dot(torque + lever.cross(force - law_.tether * (x_ - start_)));
+  // b about the pivot: drag of the centre on its circle, and the joint's own
+  const double drag = law_.angular_damping + law_.damping * axis.cross(lever).squaredNorm();
+  const double c = drag / hinge_inertia_;
+  const double phi = c * dt > 1e-12 ? -std::expm1(-c * dt) / c : dt;
+  hinge_rate_ += phi * (moment / hinge_inertia_ - c * hinge_rate_);
+  turnBy(hinge_rate_ * dt / 2);
+  v_ = hinge_rate_ * axis.cross(x_ - pivot_world_);
+  l_ = turn_.quaternion() * principal_.cwiseProduct(turn_.quaternion().conjugate() * (hinge_rate_ * axis));
+}
+
+Quaterniond RigidBody::orientation() const noexcept {
+  return (turn_.quaternion() * from_axes_.conjugate()).normalized();
+}
+
+Vector3d RigidBody::position() const noexcept {
+  return x_ - orientation() * law_.center;
+}
+
+Vector3d RigidBody::angular() const noexcept {
+  const Quaterniond& q = turn_.quaternion();
+  return q * (q.conjugate() * l_).cwiseQuotient(principal_);
+}
+
+Vector3d RigidBody::linear() const noexcept {
+  return v_ - angular().cross(orientation() * law_.center);
+}
+
+Vector3d RigidBody::bodyRate() const noexcept {
+  return from_axes_ * (turn_.quaternion().conjugate() * l_).cwiseQuotient(principal_);
+}
+
+double RigidBody::energy() const noexcept {
+  const Vector3d away = x_ - start_;
+  return 0.5 * law_.mass * v_.squaredNorm() + 0.5 * l_.dot(angular()) + 0.5 * law_.tether * away.squaredNorm() -
+         law_.mass * gravity_.dot(away);
+}
+
+void RigidBody::setVelocity(const Vector3d& center_velocity, const Vector3d& body_rate) noexcept {
+  v_ = center_velocity;
+  l_ = turn_.quaternion() * principal_.cwiseProduct(from_axes_.conjugate() * body_rate);
+}
+
+double smallestStableMass(double stiffness, double damping, double period) noexcept {
+  return 2.5 * stiffness * period * period + 4.5 * damping * period;
+}
+
+}  // namespace hapticd::dynamics

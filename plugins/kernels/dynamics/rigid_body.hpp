@@ -1,0 +1,74 @@
+/// A rigid body with its full inertia, free or on a joint to the world.
+#pragma once
+#include <Eigen/Core>
+
+#include "kernels/dynamics/rotation.hpp"
+
+namespace hapticd::dynamics {
+
+enum class Joint {
+  kFree,
+  kHinge,  ///< turns about an axis through a pivot
+  kSlider  ///< moves along an axis, does not turn
+};
+
+/// What a body is. Centre, inertia, pivot and axis are in the model's frame.
+struct RigidBodyLaw {
+  double mass = 1;                                               ///< [kg]
+  Eigen::Vector3d center{0, 0, 0};                               ///< of mass [m]
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity() * 1e-3;  ///< about the centre [kg m^2]
+  double damping = 0;                                            ///< [N s/m] drag against translation
+  double angular_damping = 0;                                    ///< [N m s/rad]
+  double tether = 0;                                             ///< [N/m] spring from the centre to where it started
+  Joint joint = Joint::kFree;
+  Eigen::Vector3d pivot{0, 0, 0};  ///< hinge [m]
+  Eigen::Vector3d axis{0, 1, 0};   ///< hinge, slider
+};
+
+/// Translation is exact under a force that is constant in the step (parabola, decay, or the oscillator's exponential).
+/// Rotation keeps the angular momentum in the world, which no integrator then can change, and turns the body by a
+/// Lie-group Runge-Kutta method of fourth order (Munthe-Kaas 1999) in its principal axes.
+class RigidBody {
+ public:
+  /// [main] @param position, orientation of the model's frame in the world  @param gravity world [m/s^2]
+  /// @throws std::invalid_argument: mass or inertia no body has, axis of no length.
+  RigidBody(const RigidBodyLaw& law, const Eigen::Vector3d& position, const Eigen::Quaterniond& orientation,
+            const Eigen::Vector3d& gravity);
+
+  /// [rt] One step of dt [s] under a force [N] and a torque about the centre of mass [N m], world frame, both constant
+  /// in the step. Not-a-number counts as nothing.
+  void step(const Eigen::Vector3d& force, const Eigen::Vector3d& torque, double dt) noexcept;
+
+  Eigen::Vector3d position() const noexcept;                       ///< [rt] of the model's frame, world [m]
+  Eigen::Quaterniond orientation() const noexcept;                 ///< [rt]
+  Eigen::Vector3d linear() const noexcept;                         ///< [rt] velocity of the frame's origin, world [m/s]
+  Eigen::Vector3d angular() const noexcept;                        ///< [rt] world [rad/s]
+  const Eigen::Vector3d& center() const noexcept { return x_; }    ///< [rt] of mass, world [m]
+  const Eigen::Vector3d& momentum() const noexcept { return l_; }  ///< [rt] angular, about the centre, world
+  Eigen::Vector3d bodyRate() const noexcept;  ///< [rt] angular velocity in the model's frame [rad/s]
+  double energy() const noexcept;             ///< [rt] kinetic, tether, and gravity from the start [J]
+
+  void setVelocity(const Eigen::Vector3d& center_velocity, const Eigen::Vector3d& body_rate) noexcept;  ///< [rt]
+
+ private:
+  void translate(const Eigen::Vector3d& force, double dt) noexcept;
+  void rotate(const Eigen::Vector3d& torque, double dt) noexcept;
+  void rotateOnce(const Eigen::Vector3d& torque, double h) noexcept;
+  void swing(const Eigen::Vector3d& force, const Eigen::Vector3d& torque, double dt) noexcept;
+  Eigen::Vector3d worldAxis() const noexcept { return axis_world_; }
+
+  RigidBodyLaw law_;
+  Eigen::Vector3d gravity_, start_, pivot_world_, axis_world_;
+  Eigen::Vector3d principal_;     // moments of inertia
+  Eigen::Quaterniond from_axes_;  // principal axes to the model's frame
+  double hinge_inertia_ = 1;
+  Rotation turn_;  // principal axes to the world
+  Eigen::Vector3d x_{0, 0, 0}, v_{0, 0, 0}, l_{0, 0, 0};
+  double hinge_rate_ = 0;
+};
+
+/// [any] Smallest mass [kg] that stays stable when a sampled wall of `stiffness` and `damping` pushes it, its force
+/// held for a period [s]: 2.5 k T^2 + 4.5 B T, from simulations of bodies between a wall and a hand.
+double smallestStableMass(double stiffness, double damping, double period) noexcept;
+
+}  // namespace hapticd::dynamics
