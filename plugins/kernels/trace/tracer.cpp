@@ -89,7 +89,7 @@ bool Tracer::active(int surface) const noexcept {
 
 Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
   Foot foot;
-  if (!(p.cwiseAbs().maxCoeff() <= kFarthest)) {  // also false for not-a-number
+  if (!(p.array().abs() <= kFarthest).all()) {  // also false for not-a-number
     foot.status = TraceStatus::kInvalid;
     return foot;
   }

@@ -1,0 +1,97 @@
+#include "kernels/trace/model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "kernels/trace/newton.hpp"
+#include "shapes.hpp"
+
+namespace hapticd::trace {
+namespace {
+
+using Eigen::Array2d;
+using Eigen::Vector3d;
+
+/// Nearest distance by Newton from every node of a dense grid.
+double bruteForce(const Patch& patch, const Vector3d& p, int cells) {
+  double best = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= cells; ++i)
+    for (int j = 0; j <= cells; ++j) {
+      Iterate at;
+      at.uv = patch.lo + (patch.hi - patch.lo) * Array2d(i, j) / cells;
+      best = std::min(best, newtonFoot(patch, p, at, 1e-13, 60).distance);
+    }
+  return best;
+}
+
+TEST(Model, GlobalSearchIsExactAgainstBruteForce) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> place(-0.03, 0.13), height(-0.06, 0.06);
+  for (int surface = 0; surface < 6; ++surface) {
+    const Model model({randomPatch(random, 8, surface % 2 == 1)});
+    for (int probe = 0; probe < 20; ++probe) {
+      const Vector3d p(place(random), place(random), height(random));
+      Near near;
+      ASSERT_EQ(model.nearby(p, 1, &near, 1), 1);
+      EXPECT_NEAR(near.distance, bruteForce(model.patch(0), p, 40), 1e-9);
+      spline::SurfacePoint E;
+      model.patch(0).surface.evaluate1(near.u, near.v, E);
+      EXPECT_NEAR((E.S - p).norm(), near.distance, 1e-12);  // (u, v) belong to the distance
+    }
+  }
+}
+
+TEST(Model, NearbyListsEverySurfaceWithinTheRadiusNearestFirst) {
+  const Model model = solid("teapot");
+  std::vector<Near> near(32), all(32);
+  const Vector3d p(0.05, 0.01, 0.01);
+  ASSERT_EQ(model.nearby(p, 10, all.data(), all.size()), 32);
+  const std::int64_t count = model.nearby(p, 0.03, near.data(), near.size());
+  ASSERT_GT(count, 1);
+  for (std::int64_t i = 0; i < 32; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    EXPECT_EQ(i < count, all[at].distance <= 0.03);
+    if (i < count) {
+      EXPECT_EQ(near[at].surface, all[at].surface);
+    }
+    if (i > 0) {
+      EXPECT_GE(all[at].distance, all[at - 1].distance);
+    }
+  }
+  EXPECT_EQ(model.nearby(p, 0.03, near.data(), 1), count);
+}
+
+TEST(Model, SolidsAreSewnIntoOneClosedShell) {
+  for (const char* name : {"box", "cylinder", "torus", "sphere", "goblet"}) {
+    const Model model = solid(name);
+    EXPECT_EQ(model.shellCount(), 1) << name;
+    EXPECT_TRUE(model.closed(0)) << name;
+    EXPECT_TRUE(model.warnings().empty()) << name;
+  }
+}
+
+TEST(Model, ReportsATJunction) {
+  const auto square = [](double x0, double x1, double y0, double y1) {
+    spline::SurfaceData data;
+    data.knots = {{{0, 0, 1, 1}, {0, 0, 1, 1}}};
+    data.points = {{x0, y0, 0}, {x0, y1, 0}, {x1, y0, 0}, {x1, y1, 0}};
+    return data;
+  };
+  const Model model({square(0, 1, 0, 1), square(1, 2, 0, 0.5), square(1, 2, 0.5, 1)});
+  EXPECT_EQ(model.shellCount(), 2);
+  ASSERT_FALSE(model.warnings().empty());
+  EXPECT_NE(model.warnings().front().find("T-junction"), std::string::npos);
+}
+
+TEST(Model, AnEmptyModelIsRefused) {
+  EXPECT_THROW(Model({}), std::invalid_argument);
+}
+
+TEST(Model, NotANumberIsNearNothing) {
+  Near near;
+  EXPECT_EQ(solid("sphere").nearby(Vector3d::Constant(NAN), 1, &near, 1), 0);
+}
+
+}  // namespace
+}  // namespace hapticd::trace

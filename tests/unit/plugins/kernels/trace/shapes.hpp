@@ -1,0 +1,50 @@
+/// Models of config/models and their closed forms, and random patches.
+#pragma once
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "kernels/trace/model.hpp"
+#include "traced_shape/model_file.hpp"
+
+namespace hapticd::trace {
+
+inline Model solid(const std::string& name) {
+  const ModelFile file = readModelFile(HAPTICD_SOURCE_DIR "/config/models/" + name + ".yaml");
+  ModelOptions options;
+  options.edges = file.edges;
+  return Model(file.surfaces, options);
+}
+
+/// Signed distance [m] of the solid `name`, positive outside.
+inline double signedDistance(const std::string& name, const Eigen::Vector3d& p) {
+  const double r = std::hypot(p.x(), p.z());
+  if (name == "sphere") return p.norm() - 0.05;
+  if (name == "torus") return std::hypot(r - 0.05, p.y()) - 0.02;
+  if (name == "box") {
+    const Eigen::Vector3d q = p.cwiseAbs() - Eigen::Vector3d::Constant(0.05);
+    return q.cwiseMax(0).norm() + std::min(q.maxCoeff(), 0.0);
+  }
+  const double aside = r - 0.04, above = std::abs(p.y()) - 0.05;  // cylinder
+  return std::hypot(std::max(aside, 0.0), std::max(above, 0.0)) + std::min(std::max(aside, above), 0.0);
+}
+
+/// A bicubic patch of 100 mm with random bumps, on a random knot vector.
+inline spline::SurfaceData randomPatch(std::mt19937& random, int count = 8, bool rational = false) {
+  std::uniform_real_distribution<double> bump(-0.008, 0.008), span(0.5, 1.5), weight(0.5, 2);
+  spline::SurfaceData data;
+  data.degree = {3, 3};
+  for (auto& knots : data.knots) {
+    knots.assign(4, 0);
+    for (int i = 4; i < count; ++i) knots.push_back(knots.back() + span(random));
+    knots.insert(knots.end(), 4, knots.back() + span(random));
+  }
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < count; ++j) {
+      data.points.emplace_back(0.1 * i / (count - 1), 0.1 * j / (count - 1), bump(random));
+      if (rational) data.weights.push_back(weight(random));
+    }
+  return data;
+}
+
+}  // namespace hapticd::trace

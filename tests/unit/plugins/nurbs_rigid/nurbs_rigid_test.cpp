@@ -1,0 +1,173 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "hapticd/shape.h"
+
+namespace {
+
+/// The plugin through its C ABI alone, as the host uses it.
+class Plugin {
+ public:
+  Plugin() : shape_(kind().create(&kind(), nullptr)) {}
+  ~Plugin() { kind().destroy(shape_); }
+
+  hsp_status set(const char* id, double number) { return put(id, {0, 0, number, nullptr, nullptr}); }
+  hsp_status set(const char* id, const std::string& text) { return put(id, {0, 0, 0, text.c_str(), nullptr}); }
+  hsp_status activate() {
+    hsp_activation activation{};
+    activation.struct_size = sizeof activation;
+    activation.max_probes = 1;
+    report.struct_size = sizeof report;
+    return kind().activate(shape_, &activation, &report);
+  }
+  const hsp_ext_surfaces& surfaces() {
+    return *static_cast<const hsp_ext_surfaces*>(kind().extension(shape_, HSP_EXT_SURFACES));
+  }
+  const hsp_ext_geometry& geometry() {
+    return *static_cast<const hsp_ext_geometry*>(kind().extension(shape_, HSP_EXT_GEOMETRY));
+  }
+  hsp_shape* handle() { return shape_; }
+
+  hsp_contact at(double x, double y, double z, double vx = 0) {
+    const double p[3] = {x, y, z};
+    hsp_near near[8];
+    const hsp_ext_surfaces& s = surfaces();
+    const int64_t count = s.nearby(shape_, p, 0.15, near, 8);
+    for (int64_t i = 0; i < count && i < 8; ++i) s.activate(shape_, &near[i]);
+    hsp_probe probe{};
+    std::memcpy(probe.position, p, sizeof p);
+    probe.velocity[0] = vx;
+    hsp_contact contact{};
+    hsp_step step{};
+    step.struct_size = sizeof step;
+    step.count = 1;
+    step.in = &probe;
+    step.out = &contact;
+    step.in_stride = sizeof probe;
+    step.out_stride = sizeof contact;
+    step.dt_s = 1e-3;
+    status = kind().step(shape_, &step);
+    return contact;
+  }
+
+  hsp_status status = HSP_OK;
+  hsp_report report{};
+
+ private:
+  static const hsp_class& kind() { return *hsp_plugin_entry.classes[0]; }
+  hsp_status put(const char* id, hsp_value value) {
+    for (uint32_t i = 0; i < kind().param_count; ++i)
+      if (std::strcmp(kind().params[i].id, id) == 0) {
+        value.kind = kind().params[i].kind;
+        return kind().set(shape_, i, &value);
+      }
+    return HSP_E_ARG;
+  }
+  hsp_shape* shape_;
+};
+
+const std::string kModels = HAPTICD_SOURCE_DIR "/config/models/";
+
+TEST(NurbsRigid, PushesOutAlongTheNormalWithItsStiffness) {
+  Plugin plugin;
+  ASSERT_EQ(plugin.set("geometry", kModels + "sphere.yaml"), HSP_OK);
+  ASSERT_EQ(plugin.set("stiffness", 1000), HSP_OK);
+  ASSERT_EQ(plugin.activate(), HSP_OK);
+  EXPECT_EQ(plugin.report.flags & HSP_R_VELOCITY, 0u);  // nobody reads it
+  const hsp_contact inside = plugin.at(0.048, 0, 0);
+  EXPECT_NEAR(inside.depth_m, 0.002, 1e-9);
+  EXPECT_NEAR(inside.force[0], 2, 1e-6);
+  EXPECT_NEAR(inside.force[1], 0, 1e-6);
+  EXPECT_TRUE(inside.flags & HSP_OUT_CONTACT);
+  const hsp_contact outside = plugin.at(0.055, 0, 0);
+  EXPECT_NEAR(outside.depth_m, -0.005, 1e-9);
+  EXPECT_EQ(outside.force[0], 0);
+  EXPECT_FALSE(outside.flags & HSP_OUT_CONTACT);
+  EXPECT_TRUE(outside.flags & HSP_OUT_TRACED);
+}
+
+TEST(NurbsRigid, DampingAsksForVelocityAndFrictionAloneDoesNot) {
+  for (const auto& [id, asks] : {std::pair{"damping", true}, {"viscosity", true}, {"friction_static", false}}) {
+    Plugin plugin;
+    plugin.set("geometry", kModels + "box.yaml");
+    ASSERT_EQ(plugin.set(id, 0.5), HSP_OK);
+    ASSERT_EQ(plugin.activate(), HSP_OK);
+    EXPECT_EQ((plugin.report.flags & HSP_R_VELOCITY) != 0, asks) << id;
+  }
+}
+
+TEST(NurbsRigid, FrictionHoldsBackAProbeThatSlides) {
+  Plugin plugin;
+  plugin.set("geometry", kModels + "box.yaml");
+  plugin.set("friction_static", 0.5);
+  plugin.set("friction_dynamic", 0.3);
+  ASSERT_EQ(plugin.activate(), HSP_OK);
+  hsp_contact contact{};
+  for (int i = 0; i <= 100; ++i) contact = plugin.at(1e-4 * i, 0.049, 0);
+  EXPECT_NEAR(contact.force[1], 0.8, 1e-6);
+  EXPECT_NEAR(contact.force[0], -0.3 * 0.8, 0.02);
+}
+
+TEST(NurbsRigid, SidesSayWhereTheSolidIs) {
+  for (const auto& [sides, inside, outside] : {std::tuple{0, true, false}, {1, false, true}}) {
+    Plugin plugin;
+    plugin.set("geometry", kModels + "sphere.yaml");
+    plugin.set("sides", sides);
+    ASSERT_EQ(plugin.activate(), HSP_OK);
+    EXPECT_EQ((plugin.at(0.049, 0, 0).flags & HSP_OUT_CONTACT) != 0, inside);
+    EXPECT_EQ((plugin.at(0.051, 0, 0).flags & HSP_OUT_CONTACT) != 0, outside);
+  }
+}
+
+TEST(NurbsRigid, AShellPushesBackToTheSideItWasEnteredFromUntilItGivesWay) {
+  Plugin plugin;
+  plugin.set("geometry", kModels + "sphere.yaml");
+  plugin.set("sides", 2);
+  plugin.set("pop_through", 2);
+  ASSERT_EQ(plugin.activate(), HSP_OK);
+  plugin.at(0.048, 0, 0);
+  EXPECT_LT(plugin.at(0.051, 0, 0).force[0], -0.79);  // from inside, outward: pushed in again
+  EXPECT_LT(plugin.at(0.053, 0, 0).force[0], -2.0);   // gives way
+  EXPECT_EQ(plugin.at(0.053, 0, 0).force[0], 0);
+  EXPECT_GT(plugin.at(0.049, 0, 0).force[0], 0.79);
+}
+
+TEST(NurbsRigid, ANanSampleGivesNoForceAndTheNextOneIsTraced) {
+  Plugin plugin;
+  plugin.set("geometry", kModels + "torus.yaml");
+  ASSERT_EQ(plugin.activate(), HSP_OK);
+  const hsp_contact before = plugin.at(0.069, 0, 0);
+  const hsp_contact bad = plugin.at(0.069, NAN, 0);
+  EXPECT_EQ(plugin.status, HSP_E_NUMERIC);
+  EXPECT_EQ(bad.force[0], 0);
+  EXPECT_NEAR(plugin.at(0.069, 0, 0).force[0], before.force[0], 1e-9);
+}
+
+TEST(NurbsRigid, RefusesAMissingModelAndOutOfRangeValues) {
+  Plugin plugin;
+  plugin.set("geometry", kModels + "no_such_model.yaml");
+  EXPECT_LT(plugin.activate(), 0);
+  EXPECT_EQ(plugin.set("stiffness", -1), HSP_E_ARG);
+  EXPECT_EQ(plugin.set("stiffness", NAN), HSP_E_ARG);
+}
+
+TEST(NurbsRigid, DrawsAMeshWithinTheChordError) {
+  Plugin plugin;
+  plugin.set("geometry", kModels + "sphere.yaml");
+  ASSERT_EQ(plugin.activate(), HSP_OK);
+  hsp_mesh mesh{};
+  mesh.struct_size = sizeof mesh;
+  ASSERT_EQ(plugin.geometry().tessellate(plugin.handle(), 1e-4, &mesh), HSP_OK);
+  ASSERT_GT(mesh.triangle_count, 100u);
+  for (uint32_t i = 0; i < mesh.triangle_count; ++i) {
+    double center[3] = {0, 0, 0};
+    for (uint32_t corner = 0; corner < 3; ++corner)
+      for (uint32_t axis = 0; axis < 3; ++axis)
+        center[axis] += static_cast<double>(mesh.xyz[3 * mesh.indices[3 * i + corner] + axis]) / 3;
+    EXPECT_NEAR(std::sqrt(center[0] * center[0] + center[1] * center[1] + center[2] * center[2]), 0.05, 2e-4);
+  }
+}
+
+}  // namespace
