@@ -1,0 +1,64 @@
+/// A pendulum of any NURBS bob and rod, pushed by the user's hand.
+#pragma once
+#include <array>
+#include <optional>
+
+#include "kernels/dynamics/pendulum.hpp"
+#include "traced_shape/moving.hpp"
+#include "traced_shape/traced_shape.hpp"
+
+namespace hapticd {
+
+class Pendulum final : public TracedShape {
+ public:
+  static constexpr ShapeInfo kInfo = {"org.hapticd.shape.pendulum",
+                                      "pendulum",
+                                      "1.0",
+                                      "MIT",
+                                      "A model that swings about a fixed axis under gravity and the hand.",
+                                      HSP_C_MOVES};
+  static constexpr auto fields() {
+    using F = Fields<Pendulum>;
+    return join(
+        tracingFields<Pendulum>(),
+        std::array{
+            F::real("stiffness", &Pendulum::stiffness_, "N/m", 0, 1e5, 800, "k of Eq. 4", HSP_P_LIVE | HSP_P_SAFETY),
+            F::real("contact_damping", &Pendulum::contact_damping_, "N s/m", 0, 1e3, 0,
+                    "damping of the surface, lambda of Eq. 4", HSP_P_SAFETY),
+            F::real("exponent", &Pendulum::exponent_, "", 0.25, 3, 1, "n of Eq. 4; 1: linear wall", HSP_P_SAFETY),
+            F::real("depth_scale", &Pendulum::depth_scale_, "m", 1e-6, 1, 1e-3, "x0 of Eq. 4", HSP_P_SAFETY),
+            F::vector3("pivot", &Pendulum::pivot_, "m", -1e3, 1e3, "[0, 0, 0]", "a point of the axis, model frame"),
+            F::vector3("axis", &Pendulum::axis_, "", -1e6, 1e6, "[0, 0, 1]",
+                       "axis of the swing, model frame; positive angles by the right hand"),
+            F::real("mass", &Pendulum::mass_, "kg", 1e-6, 1e6, 1, "of the moving body"),
+            F::real("inertia", &Pendulum::inertia_, "kg m^2", 0, 1e9, 0, "about the pivot; 0: a point mass at length"),
+            F::real("length", &Pendulum::length_, "m", 0, 1e3, 0.25,
+                    "pivot to centre of mass, which is drawn straight along gravity"),
+            F::real("damping", &Pendulum::damping_, "N m s/rad", 0, 1e6, 0, "of the swing"),
+            F::real("angle", &Pendulum::angle_, "rad", -1e3, 1e3, 0, "at the start, from hanging"),
+            F::real("rate", &Pendulum::rate_, "rad/s", -1e3, 1e3, 0, "at the start")});
+  }
+
+  void activate(const hsp_activation& activation, hsp_report& report);
+  void reset() noexcept HSP_RT;
+  hsp_status step(const hsp_step& step) noexcept HSP_RT;
+  const void* extension(const char* name);
+
+ private:
+  MovingFrame frame() const noexcept HSP_RT;
+
+  double stiffness_ = 800, contact_damping_ = 0, exponent_ = 1, depth_scale_ = 1e-3;
+  std::array<double, 3> pivot_{}, axis_{};
+  double mass_ = 1, inertia_ = 0, length_ = 0.25, damping_ = 0, angle_ = 0, rate_ = 0;
+
+  dynamics::PendulumLaw law_;
+  dynamics::PendulumState state_;
+  Eigen::Vector3d pivot_world_{0, 0, 0}, axis_world_{0, 0, 1}, axis_model_{0, 0, 1};
+  MovingFrame drawn_;  ///< at angle 0
+  double torque_ = 0;  ///< of the hand about the axis [N m], from the contacts of the last step
+  double stored_ = 0;  ///< [J] in the surface
+  std::optional<MovedProbes> probes_;
+  hsp_ext_energy energy_extension_{};
+};
+
+}  // namespace hapticd

@@ -1,0 +1,102 @@
+#include "push_button.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+namespace hapticd {
+namespace {
+
+constexpr double kSteepest = 0.1;  // of the normal along the axis: on steeper flanks a push hardly moves the button
+
+}  // namespace
+
+void PushButton::activate(const hsp_activation& activation, hsp_report& report) {
+  load(activation, report);
+  inward_ = Eigen::Vector3d(axis_.data());
+  if (!(inward_.norm() > 0)) throw std::invalid_argument("push_button: axis: expected a direction, got [0, 0, 0]");
+  inward_.normalize();
+  std::vector<dynamics::DetentCurve::Knot> knots;
+  for (size_t i = 0; i + 1 < detent_.size(); i += 2) knots.push_back({detent_[i], detent_[i + 1]});
+  curve_.emplace(knots, end_stiffness_);
+  rest_ = Eigen::Vector3d(activation.pose.position);
+  const double* q = activation.pose.orientation;
+  turn_ = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+  button_.reset();
+  last_x2_ = stored_ = 0;
+  probes_.emplace(std::max(activation.max_probes, 1u));
+  report.max_stiffness = stiffness_;
+  report.flags |= HSP_R_MOVES;
+}
+
+void PushButton::reset() noexcept HSP_RT {
+  TracedShape::reset();
+  button_.reset();
+  stored_ = 0;
+}
+
+/// Travel from the button's rest to the probe, along the axis, as the cap under the probe tells it; 0: not pressed. The
+/// stiffness of a cap whose normal leans counts with the square of its part along the axis.
+PushButton::Press PushButton::press(const hsp_step& step) noexcept HSP_RT {
+  Press deepest;
+  for (uint32_t i = 0; i < step.count; ++i) {
+    const hsp_probe& probe = *HSP_AT(const hsp_probe, step.in, step.in_stride, i);
+    if ((probe.flags & HSP_IN_INVALID) != 0) deepest.blind = true;
+    hsp_contact unused{};
+    const Touch touch = trace(probe, step, unused);
+    const double along = -touch.normal.dot(inward_);
+    if (!touch.traced || along < kSteepest || (touch.depth <= 0 && button_.position() <= 0)) continue;
+    const double travel = button_.position() + touch.depth / along;
+    if (travel > deepest.travel) deepest = {travel, along, deepest.blind};
+  }
+  return deepest;
+}
+
+/// The button has no mass: it is where the springs balance in this very tick. The probes are traced on the cap as it
+/// was, the balance moves the cap, and they are traced again on the cap where it is.
+hsp_status PushButton::step(const hsp_step& step) noexcept HSP_RT {
+  bool clicked = false;
+  const MovingFrame before = MovingFrame::of(*step.pose);
+  if (step.dt_s > 0) {
+    const Press pressed = press(step);
+    if (pressed.travel > 0 || !pressed.blind)  // a lost sample leaves the button where it is
+      clicked = button_.step(stiffness_ * pressed.along * pressed.along, *curve_, pressed.travel).clicked;
+  }
+  const MovingFrame now = frame(step.dt_s);
+  now.write(*step.pose);
+  const hsp_step moved = probes_->step(step, before, now);
+  hsp_status worst = HSP_OK;
+  stored_ = curve_->energy(button_.position());
+  for (uint32_t i = 0; i < moved.count; ++i) {
+    hsp_contact& contact = *HSP_AT(hsp_contact, step.out, step.out_stride, i);
+    const Touch touch = trace(*HSP_AT(const hsp_probe, moved.in, moved.in_stride, i), moved, contact);
+    if (touch.status < 0 || (worst == HSP_OK && touch.status > 0)) worst = touch.status;
+    if (clicked) contact.flags |= HSP_OUT_EVENT;
+    if (!touch.traced || touch.depth <= 0) continue;
+    Eigen::Map<Eigen::Vector3d>(contact.force) = stiffness_ * touch.depth * touch.normal;
+    contact.stiffness = stiffness_;
+    stored_ += stiffness_ * touch.depth * touch.depth / 2;
+  }
+  return worst;
+}
+
+MovingFrame PushButton::frame(double dt) noexcept HSP_RT {
+  const Eigen::Vector3d inward_world = turn_ * inward_;
+  const double x2 = button_.position();
+  MovingFrame now{rest_ + x2 * inward_world, turn_, {0, 0, 0}, {0, 0, 0}};
+  if (dt > 0) now.linear = (x2 - last_x2_) / dt * inward_world;
+  last_x2_ = x2;
+  return now;
+}
+
+const void* PushButton::extension(const char* name) {
+  if (std::string_view(name) != HSP_EXT_ENERGY) return tracedExtension<PushButton>(name);
+  energy_extension_ = {sizeof(hsp_ext_energy), 0,
+                       [](hsp_shape* shape) HSP_RT -> double { return reinterpret_cast<PushButton*>(shape)->stored_; }};
+  return &energy_extension_;
+}
+
+}  // namespace hapticd
+
+HAPTICD_SHAPES(hapticd::PushButton)
