@@ -13,10 +13,10 @@ class ContactStatistics {
  public:
   static constexpr double kBuzzWindow = 0.02;  ///< [s] faster changes of depth than this are felt as buzz
 
-  /// [rt] One tick. @param depth_m, force_n count only in contact @param step_ns 0: not measured
+  /// [rt] One tick. @param depth_m, force_n count only in contact and if finite @param step_ns 0: not measured
   void add(bool contact, double depth_m, double force_n, double dt, uint64_t step_ns) noexcept HSP_RT {
     if (step_ns > 0) step_us_.add(static_cast<double>(step_ns) * 1e-3);
-    if (!contact) {
+    if (!contact || !std::isfinite(depth_m) || !std::isfinite(force_n)) {
       closeWindow();
       return;
     }

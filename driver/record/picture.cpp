@@ -78,7 +78,8 @@ void drawCurve(Svg& svg, const Quantity& quantity, const Range& range, const std
   svg.curve(xy, quantity.colour, 1.1);
 }
 
-void drawHistogram(Svg& svg, const Quantity& quantity, const Range& range, const std::vector<Sample>& samples, double y) {
+void drawHistogram(Svg& svg, const Quantity& quantity, const Range& range, const std::vector<Sample>& samples,
+                   double y) {
   std::vector<double> bins(kBins, 0);
   double counted = 0;
   for (const Sample& sample : samples) {
@@ -89,8 +90,8 @@ void drawHistogram(Svg& svg, const Quantity& quantity, const Range& range, const
   }
   const double most = std::max(1.0, *std::max_element(bins.begin(), bins.end())), bar = kPlotHeight / kBins;
   for (int i = 0; i < kBins; ++i)
-    svg.rectangle(kHistogramLeft, y + kPlotHeight - (i + 1) * bar, kHistogramWidth * bins[static_cast<size_t>(i)] / most,
-                  bar * 0.9, quantity.colour);
+    svg.rectangle(kHistogramLeft, y + kPlotHeight - (i + 1) * bar,
+                  kHistogramWidth * bins[static_cast<size_t>(i)] / most, bar * 0.9, quantity.colour);
   svg.line(kHistogramLeft, y, kHistogramLeft, y + kPlotHeight, "#999");
   svg.label(kHistogramLeft, y + kPlotHeight + 16, fmt::format("{:.0f} ticks", counted));
 }
@@ -102,12 +103,15 @@ Result<void> drawRun(const RunReport& report, const std::vector<Sample>& samples
   const auto always = [](const Sample&) { return true; };
   const auto in_contact = [](const Sample& s) { return s.depth_m > 0; };
   const Quantity quantities[] = {
-      {"penetration depth (negative: distance)", "mm", "#1b6ca8", [](const Sample& s) { return std::max(s.depth_m * 1e3, -10.0); }, in_contact},
+      {"penetration depth (negative: distance)", "mm", "#1b6ca8",
+       [](const Sample& s) { return std::max(s.depth_m * 1e3, -10.0); }, in_contact},
       {"force on the hand", "N", "#b5432a", [](const Sample& s) { return s.force_n; }, in_contact},
       {report.virtual_time ? "compute time" : "lateness", "us", "#3a7d44",
        [&](const Sample& s) { return report.virtual_time ? s.compute_us : s.lateness_us; }, always}};
   Svg svg(kWidth, kTop + 3 * kRowHeight + 10);
-  svg.label(kLeft, 24, fmt::format("{}: {:.1f} Hz held, {} overruns, {:.1f} s", report.scene, report.rate_hz, report.overruns, report.seconds),
+  svg.label(kLeft, 24,
+            fmt::format("{}: {:.1f} Hz held, {} overruns, {:.1f} s", report.scene, report.rate_hz, report.overruns,
+                        report.seconds),
             "start", "#222", 15);
   double y = kTop + 10;
   for (const Quantity& quantity : quantities) {

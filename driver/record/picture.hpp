@@ -10,8 +10,8 @@ namespace hapticd::record {
 
 /// One tick to draw.
 struct Sample {
-  double t = 0;            ///< [s]
-  double depth_m = 0;      ///< negative: distance outside
+  double t = 0;        ///< [s]
+  double depth_m = 0;  ///< negative: distance outside
   double force_n = 0;
   double lateness_us = 0, compute_us = 0;
 };

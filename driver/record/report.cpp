@@ -21,12 +21,13 @@ Json modelJson(const ModelReport& model) {
   constexpr double kMm = 1e3, kNs = 1e3;
   const ContactStatistics& c = model.contact;
   const Histogram& step = c.stepUs();
-  return {{"plugin", model.plugin},
-          {"contact_ticks", c.contactTicks()},
-          {"penetration_mm", {{"mean", c.meanDepth() * kMm}, {"std", c.stdDepth() * kMm}, {"max", c.maxDepth() * kMm}}},
-          {"force_n", {{"mean", c.meanForce()}, {"max", c.maxForce()}}},
-          {"buzz_mm", c.buzz() * kMm},
-          {"step_ns", {{"p50", step.quantile(0.5) * kNs}, {"p99", step.quantile(0.99) * kNs}, {"max", step.max() * kNs}}}};
+  return {
+      {"plugin", model.plugin},
+      {"contact_ticks", c.contactTicks()},
+      {"penetration_mm", {{"mean", c.meanDepth() * kMm}, {"std", c.stdDepth() * kMm}, {"max", c.maxDepth() * kMm}}},
+      {"force_n", {{"mean", c.meanForce()}, {"max", c.maxForce()}}},
+      {"buzz_mm", c.buzz() * kMm},
+      {"step_ns", {{"p50", step.quantile(0.5) * kNs}, {"p99", step.quantile(0.99) * kNs}, {"max", step.max() * kNs}}}};
 }
 
 std::string timeLine(const char* name, const Histogram& h) {
@@ -40,8 +41,8 @@ std::string modelText(const ModelReport& model, const RunReport& report) {
   std::string text = fmt::format("{} ({})\n", model.name, model.plugin);
   text += fmt::format("  contact   {:.2f} s ({} ticks)\n", seconds, c.contactTicks());
   if (c.contactTicks() > 0) {
-    text += fmt::format("  depth     mean {:.3f} mm   std {:.3f} mm   max {:.3f} mm   buzz {:.4f} mm\n", c.meanDepth() * 1e3,
-                        c.stdDepth() * 1e3, c.maxDepth() * 1e3, c.buzz() * 1e3);
+    text += fmt::format("  depth     mean {:.3f} mm   std {:.3f} mm   max {:.3f} mm   buzz {:.4f} mm\n",
+                        c.meanDepth() * 1e3, c.stdDepth() * 1e3, c.maxDepth() * 1e3, c.buzz() * 1e3);
     text += fmt::format("  force     mean {:.2f} N   max {:.2f} N\n", c.meanForce(), c.maxForce());
   }
   const Histogram& step = c.stepUs();
@@ -92,7 +93,8 @@ std::string summary(const RunReport& report) {
     text += timeLine("lateness", report.lateness_us);
   }
   text += timeLine("compute", report.compute_us);
-  text += fmt::format("  servo     {} page faults, {} allocations after warm-up\n", report.page_faults, report.servo_allocations);
+  text += fmt::format("  servo     {} page faults, {} allocations after warm-up\n", report.page_faults,
+                      report.servo_allocations);
   text += fmt::format("  process   {:.1f} MB resident, first tick {:.0f} ms after the start\n",
                       static_cast<double>(report.resident_bytes) / 1e6, report.start_ms);
   constexpr size_t kMostModels = 12;

@@ -22,10 +22,10 @@ struct RunReport {
   bool virtual_time = false;
   uint64_t ticks = 0, overruns = 0, missed_ticks = 0;
   Histogram lateness_us, compute_us;
-  long page_faults = 0;             ///< of the servo thread after its warm-up
-  uint64_t servo_allocations = 0;   ///< the same
+  long page_faults = 0;            ///< of the servo thread after its warm-up
+  uint64_t servo_allocations = 0;  ///< the same
   uint64_t resident_bytes = 0;
-  double start_ms = 0;              ///< from the start of the program to the first tick
+  double start_ms = 0;  ///< from the start of the program to the first tick
   std::vector<ModelReport> models;
   std::vector<std::string> faults;
 };
