@@ -1,0 +1,9 @@
+/// Any bytes as Bezier patches.
+#include "cli/bezier_import.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  auto model = hapticd::cli::parseBpt({reinterpret_cast<const char*>(data), size}, "fuzz.bpt");
+  if (!model) return 0;
+  hapticd::cli::placeModel(*model, {1, 0.1, true, 'z'});
+  return hapticd::cli::toModelYaml(*model).empty() || hapticd::cli::toModelJson(*model).empty() ? 1 : 0;
+}
