@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 namespace hapticd {
 
 void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) {
+  if (motion_ == kDynamic)
+    throw std::invalid_argument("motion: dynamic is not available in this version, expected static or kinematic");
   load(activation, report);
   report.max_stiffness = stiffness_;
   if (damping_ > 0 || viscosity_ > 0) report.flags |= HSP_R_VELOCITY;

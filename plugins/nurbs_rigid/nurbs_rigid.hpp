@@ -18,6 +18,8 @@ class NurbsRigid final : public TracedShape {
     return join(
         tracingFields<NurbsRigid>(),
         std::array{
+            F::choice("motion", &NurbsRigid::motion_, kMotionNames, 0,
+                      "static; kinematic: moved by the host along a path; dynamic: moved by the forces on it"),
             F::real("stiffness", &NurbsRigid::stiffness_, "N/m", 0, 1e5, 800, "k of Eq. 4: force is k x0 at depth x0",
                     HSP_P_LIVE | HSP_P_SAFETY),
             F::real("damping", &NurbsRigid::damping_, "N s/m", 0, 1e3, 0, "of the closing speed, grows with depth",
@@ -44,10 +46,14 @@ class NurbsRigid final : public TracedShape {
   const void* extension(const char* name) { return tracedExtension<NurbsRigid>(name); }
 
  private:
+  enum Motion { kStatic = 0, kKinematic = 1, kDynamic = 2 };
+  static constexpr const char* kMotionNames[] = {"static", "kinematic", "dynamic"};
+
   Eigen::Vector3d along(const Touch& touch, const Eigen::Vector3d& velocity, double wall_force,
                         contact::Friction& friction) const noexcept HSP_RT;
   double texture(const trace::Foot& foot) const noexcept HSP_RT;
 
+  int motion_ = kStatic;
   double stiffness_ = 800, damping_ = 0, exponent_ = 1, depth_scale_ = 1e-3;
   double friction_static_ = 0, friction_dynamic_ = 0;
   double viscosity_ = 0, texture_amplitude_ = 0, texture_wavelength_ = 2e-3, pop_through_ = 0;
