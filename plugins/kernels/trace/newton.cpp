@@ -71,7 +71,7 @@ QuadraticModel modelOf(const spline::SurfacePoint& E, const Vector3d& r) noexcep
   const double a11 = 1 + i11 * i11 * b11;
   const double a12 = i11 * (i21 * b11 + i22 * b12);
   const double a22 = 1 + i21 * i21 * b11 + 2 * i21 * i22 * b12 + i22 * i22 * b22;
-  const double mean = 0.5 * (a11 + a22), half = std::hypot(0.5 * (a11 - a22), a12);
+  const double mean = 0.5 * (a11 + a22), half = std::sqrt(0.25 * (a11 - a22) * (a11 - a22) + a12 * a12);
   if (mean - half > kMinCurvature) {
     m.H << L.l11 * L.l11 + b11, L.l11 * L.l21 + b12, 0, L.l21 * L.l21 + L.l22 * L.l22 + b22;
     m.H(1, 0) = m.H(0, 1);
