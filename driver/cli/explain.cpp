@@ -122,7 +122,7 @@ int explain(const std::string& file) {
   auto scene = loadSceneOrReport(file);
   if (!scene) return kBadInput;
   auto world = servo::World::build(*scene, {scene->servo.rate, 1, true}, logToTerminal);
-  if (!world) return fail(kFailed, world.error());
+  if (!world) return fail(kBadInput, world.error());
   const std::vector<uint64_t> costs = measureSteps(**world, *scene);
   explainServo(*scene, **world);
   explainSimulation(**world);

@@ -94,7 +94,9 @@ int run(const Options& options) {
   how.cpu = options.cpu ? options.cpu : daemonSettings().cpu;
   how.priority = options.priority.value_or(daemonSettings().priority.value_or(os::kServoPriority));
   how.allow_non_rt = options.allow_non_rt;
-  auto runner = servo::Runner::prepare(*scene, how, logToTerminal);
+  auto world = servo::Runner::buildWorld(*scene, how, logToTerminal);
+  if (!world) return fail(kBadInput, world.error());
+  auto runner = servo::Runner::prepare(*scene, how, std::move(*world), logToTerminal);
   if (!runner) return fail(kFailed, runner.error());
   running = runner->get();
   os::onStopSignal(onStop);

@@ -75,7 +75,7 @@ int trace(const Options& options) {
   auto models = chosenModels(*scene, options.models);
   if (!models) return fail(kBadInput, models.error());
   auto world = servo::World::build(*scene, {scene->servo.rate, 1, false}, logToTerminal);
-  if (!world) return fail(kFailed, world.error());
+  if (!world) return fail(kBadInput, world.error());
   auto writer = TraceWriter::open(options.out, *scene, *models);
   if (!writer) return fail(kBadInput, writer.error());
   if (auto done = traceRows(*scene, **world, *rows, **writer); !done) return fail(kFailed, done.error());

@@ -28,17 +28,20 @@ std::string noFifo(int priority, const std::error_code& code, bool hardware) {
 
 }  // namespace
 
-Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const RunOptions& options,
-                                                const host::Services::Log& log) {
-  std::unique_ptr<Runner> runner(new Runner(scene, options));
+Result<std::unique_ptr<World>> Runner::buildWorld(const scene::Scene& scene, const RunOptions& options,
+                                                  const host::Services::Log& log) {
   WorldOptions world_options;
   world_options.rate = options.rate;
   world_options.probe_count = static_cast<uint32_t>(scene.devices.size());
   world_options.measure = true;
-  if (options.virtual_time) runner->scene_.servo.budget_us = 0;
-  auto world = World::build(runner->scene_, world_options, log);
-  if (!world) return Error{world.error()};
-  runner->world_ = std::move(*world);
+  world_options.budgets = !options.virtual_time;  // a budget of real time would make virtual runs differ
+  return World::build(scene, world_options, log);
+}
+
+Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const RunOptions& options,
+                                                std::unique_ptr<World> world, const host::Services::Log& log) {
+  std::unique_ptr<Runner> runner(new Runner(scene, options));
+  runner->world_ = std::move(world);
   if (auto opened = runner->openArms(log); !opened) return Error{opened.error()};
   if (options.virtual_time && !runner->onlySimulated())
     return Error{

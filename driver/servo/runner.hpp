@@ -24,9 +24,13 @@ struct RunOptions {
 
 class Runner {
  public:
-  /// [main] Loads plugins and devices. Errors are for the user.
+  /// [main] Sets up the models. A failure is the fault of what the scene names: its files and parameters.
+  static Result<std::unique_ptr<World>> buildWorld(const scene::Scene& scene, const RunOptions& options,
+                                                   const host::Services::Log& log);
+
+  /// [main] Opens the devices. A failure is that of the hardware, or of a virtual run that names some.
   static Result<std::unique_ptr<Runner>> prepare(const scene::Scene& scene, const RunOptions& options,
-                                                 const host::Services::Log& log);
+                                                 std::unique_ptr<World> world, const host::Services::Log& log);
 
   /// [main] Runs to the end; `every` is called about five times a second from this thread.
   Result<void> run(const std::function<void(const Runner&)>& every);

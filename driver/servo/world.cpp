@@ -37,7 +37,7 @@ hsp_activation activationFor(const scene::Scene& scene, const WorldOptions& opti
 Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const WorldOptions& options,
                                             const host::Services::Log& log) {
   std::unique_ptr<World> world(new World);
-  const uint64_t budget_ns = options.measure ? budgetNs(scene.servo, options.rate) : 0;
+  const uint64_t budget_ns = options.budgets ? budgetNs(scene.servo, options.rate) : 0;
   hsp_activation activation = activationFor(scene, options, budget_ns);
   std::vector<host::ShapeInstance*> models;
   std::vector<hsp_pose> poses;

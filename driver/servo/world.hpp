@@ -16,7 +16,8 @@ namespace hapticd::servo {
 struct WorldOptions {
   double rate = 1000;  ///< [Hz]
   uint32_t probe_count = 1;
-  bool measure = false;  ///< take the CPU time of every step, and hand out budgets
+  bool measure = false;  ///< take the CPU time of every step
+  bool budgets = false;  ///< tell every step how much CPU time is left of the tick
 };
 
 class World {
