@@ -1,8 +1,10 @@
 /// Truth cases: a family of cases is a function that computes each with the production kernels and checks the answers.
 #pragma once
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -19,7 +21,12 @@ struct Case {
 /// An expected number: a decimal string of up to 30 digits, or a plain number. Kept in long double, so that rounding the
 /// string costs nothing against the tolerances.
 inline long double truth(const Json& value) {
-  return value.is_string() ? std::stold(value.get<std::string>()) : static_cast<long double>(value.get<double>());
+  if (!value.is_string()) return static_cast<long double>(value.get<double>());
+  const std::string text = value.get<std::string>();
+  char* end = nullptr;
+  const long double number = std::strtold(text.c_str(), &end);  // unlike stold it takes subnormal numbers
+  if (end == text.c_str() || *end != '\0') throw std::invalid_argument("\"" + text + "\" is not a number");
+  return number;
 }
 
 /// A tolerance or other number that may be written as a string.
