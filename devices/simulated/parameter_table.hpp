@@ -39,6 +39,7 @@ struct ParameterTable {
         F::real("device.continuous_force", &T::continuous_force, "N", 0, 10000, 1.4,
                 "Force that it reports for any length of time."),
         F::real("device.max_stiffness", &T::max_stiffness, "N/m", 0, 1e6, 3500, "Stiffness that it reports as stable."),
+        F::real("device.mass", &T::felt_mass, "kg", 0, 1000, 0.075, "Mass felt at the tip that it reports."),
         F::integer("delay", &T::delay, "", 0, kMaxDelay, 0, "Commands act this many reads late."),
         F::real("substep", &T::substep, "s", 1e-6, 1e-2, 2e-4, "Longest step of the integration.", HSP_P_ACCURACY),
         F::integer("seed", &T::seed, "", 0, 1000000000, 1, "Seed of tremor and noise: same seed, same bits.")};

@@ -25,7 +25,7 @@ struct Parameters {
   double motor_lag = 0, friction_speed = 0, torque_noise = 0;
   bool torque_sensors = false;
   // device facts
-  double rate = 0, max_force = 0, continuous_force = 0, max_stiffness = 0;
+  double rate = 0, max_force = 0, continuous_force = 0, max_stiffness = 0, felt_mass = 0;
   // hand
   int script = 0;
   double mass = 0, hand_stiffness = 0, hand_damping = 0, radius = 0, sweep = 0, rise = 0, hand_rate = 0;

@@ -98,6 +98,7 @@ class SimulatedArm : public Device, public Parameters {
     info.max_force = max_force;
     info.continuous_force = continuous_force;
     info.max_stiffness = max_stiffness;
+    info.mass_kg = felt_mass;
     for (int i = 0; i < count; ++i) {
       info.max_torque[i] = joints_.max_torque[i];
       info.position_min[i] = arm_->limits().min[i];

@@ -1,0 +1,234 @@
+#include <random>
+
+#include "module.hpp"
+
+namespace hapticd::simulated {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Every position of a second of stroking with a spring wall of 800 N/m in the way.
+std::vector<double> strokeOf(Module& arm, int milliseconds = 1000) {
+  std::vector<double> all;
+  EXPECT_EQ(arm.start(), HSP_OK) << arm.said;
+  for (int i = 0; i < milliseconds; ++i) {
+    arm.read(kMillisecond);
+    all.insert(all.end(), arm.sample.position, arm.sample.position + 3);
+    const double depth = 0.04 - arm.tip().norm();
+    arm.write(HDV_TORQUE, arm.torqueOf(depth > 0 ? Vector3d(800 * depth * arm.tip().normalized()) : Vector3d::Zero()));
+  }
+  return all;
+}
+
+TEST(Simulated, GivesTheSameBitsForTheSameSeedAndOthersForAnother) {
+  std::vector<double> runs[3];
+  for (int run = 0; run < 3; ++run) {
+    Module arm;
+    arm.set("hand.tremor", 0.2);
+    arm.set("seed", run == 2 ? 8 : 7);
+    runs[run] = strokeOf(arm);
+  }
+  EXPECT_EQ(runs[0], runs[1]);
+  EXPECT_NE(runs[0], runs[2]);
+}
+
+TEST(Simulated, ChangesByLessThanTwoCountsWhenTheStepIsHalved) {
+  Module coarse, fine;
+  fine.set("substep", 1e-4);
+  const auto a = strokeOf(coarse), b = strokeOf(fine);
+  double worst = 0;
+  for (size_t i = 0; i < a.size(); ++i) worst = std::max(worst, std::abs(a[i] - b[i]));
+  EXPECT_LT(worst, 2 * 2 * M_PI / (4096 * 11.2));
+}
+
+TEST(Simulated, ReportsWholeEncoderCounts) {
+  Module arm;
+  strokeOf(arm, 300);
+  const double gears[] = {13.3, 11.2, 11.2};
+  for (int i = 0; i < 3; ++i) {
+    const double counts = arm.sample.position[i] * gears[i] * 4096 / (2 * M_PI);
+    EXPECT_NEAR(counts, std::round(counts), 1e-9);
+  }
+}
+
+TEST(Simulated, StaysFiniteAndWithinItsStopsWhateverTheMotorsDo) {
+  std::mt19937 random(3);
+  for (const double grip : {0.0, 1e5}) {
+    Module arm;
+    arm.set("hand.script", grip > 0 ? kStroke : kNone);
+    arm.set("hand.stiffness", grip), arm.set("hand.damping", grip / 10), arm.set("hand.mass", 0.0);
+    ASSERT_EQ(arm.start(), HSP_OK) << arm.said;
+    for (int i = 0; i < 20000; ++i) {
+      Vector3d torque;
+      for (int j = 0; j < 3; ++j) torque[j] = std::uniform_real_distribution<double>(-1e6, 1e6)(random);
+      if (i / 1000 % 2 == 0) torque = Vector3d(1e300, -1e300, 1e300);
+      arm.read(kMillisecond);
+      arm.write(HDV_TORQUE, torque);
+      ASSERT_TRUE(arm.joints().allFinite());
+      for (int j = 0; j < 3; ++j) {
+        ASSERT_GT(arm.sample.position[j], arm.info.position_min[j] - 0.3);
+        ASSERT_LT(arm.sample.position[j], arm.info.position_max[j] + 0.3);
+      }
+    }
+  }
+}
+
+TEST(Simulated, TakesNoTorqueThatIsNotANumberAndNoneWhenOff) {
+  Module free, nan, off;
+  for (Module* arm : {&free, &nan, &off}) {
+    arm->set("hand.script", kNone);
+    ASSERT_EQ(arm->start(), HSP_OK);
+    for (int i = 0; i < 200; ++i) {
+      arm->read(kMillisecond);
+      if (arm == &nan) arm->write(HDV_TORQUE, Vector3d::Constant(std::nan("")));
+      if (arm == &off) arm->write(HDV_OFF, Vector3d::Ones());
+    }
+  }
+  EXPECT_EQ(free.joints(), nan.joints());
+  EXPECT_EQ(free.joints(), off.joints());
+}
+
+TEST(Simulated, FloatsWithGravityCompensatedAndFallsWithout) {
+  Module held, falling;
+  for (Module* arm : {&held, &falling}) {
+    arm->set("hand.script", kNone);
+    arm->set("joint.friction", std::vector<double>{0});
+    ASSERT_EQ(arm->start(), HSP_OK);
+    const Vector3d before = arm->tip();  // at rest in the neutral pose
+    for (int i = 0; i < 1000; ++i) {
+      if (arm == &held) arm->write(HDV_TORQUE, arm->torqueOf(Vector3d::Zero()));
+      arm->read(kMillisecond);
+    }
+    const double moved = (arm->tip() - before).norm();
+    if (arm == &held)
+      EXPECT_LT(moved, 6e-5);  // two encoder counts
+    else
+      EXPECT_GT(moved, 1e-2);
+  }
+}
+
+TEST(Simulated, AForceMovesTheHandByForceOverStiffness) {
+  Module arm;
+  arm.set("hand.script", kHold);
+  arm.set("hand.radius", 0.0), arm.set("hand.approach", 0.0);
+  arm.set("hand.stiffness", 500), arm.set("hand.damping", 30);
+  arm.set("joint.friction", std::vector<double>{0});
+  ASSERT_EQ(arm.start(), HSP_OK) << arm.said;
+  const Vector3d force(0.5, -0.7, 1.0);
+  for (int i = 0; i < 3000; ++i) {
+    arm.read(kMillisecond);
+    arm.write(HDV_TORQUE, arm.torqueOf(force));
+  }
+  EXPECT_LT((arm.tip() - force / 500).norm(), 6e-5);  // two encoder counts
+}
+
+TEST(Simulated, DoesNotDependOnHowOftenItIsReadWhileACommandHolds) {
+  Module often, seldom;
+  for (Module* arm : {&often, &seldom}) {
+    ASSERT_EQ(arm->start(), HSP_OK);
+    arm->write(HDV_TORQUE, Vector3d(0.02, 0.02, 0.02));
+    const uint64_t period = arm == &often ? kMillisecond : 2 * kMillisecond;
+    for (uint64_t t = 0; t < 500 * kMillisecond; t += period) arm->read(period);
+  }
+  EXPECT_LT((often.tip() - seldom.tip()).norm(), 6e-5);
+}
+
+TEST(Simulated, RepeatsASampleWhenTimeStandsStill) {
+  Module arm;
+  ASSERT_EQ(arm.start(), HSP_OK);
+  const uint64_t first = arm.read(kMillisecond).sequence;
+  const Eigen::VectorXd q = arm.joints();
+  EXPECT_EQ(arm.read(0).sequence, first);
+  EXPECT_EQ(arm.joints(), q);
+  EXPECT_EQ(arm.read(kMillisecond).sequence, first + 1);
+}
+
+TEST(Simulated, DelaysCommandsByWholeReads) {
+  for (const int delay : {0, 1, 5}) {
+    Module arm, still;
+    for (Module* each : {&arm, &still}) {
+      each->set("delay", delay), each->set("hand.script", kNone), each->set("joint.counts", std::vector<double>{0});
+      ASSERT_EQ(each->start(0), HSP_OK);
+    }
+    int late = -1;
+    for (int i = 0; i < 12 && late < 0; ++i) {
+      arm.write(HDV_TORQUE, Vector3d(0.1, 0, 0));
+      still.write(HDV_TORQUE, Vector3d::Zero());
+      arm.read(kMillisecond), still.read(kMillisecond);
+      if ((arm.joints() - still.joints()).norm() > 1e-9) late = i;
+    }
+    EXPECT_EQ(late, delay);
+  }
+}
+
+TEST(Simulated, SaysWhyAHandCannotBeWhereTheScriptWantsIt) {
+  Module arm;
+  arm.set("hand.center", std::vector<double>{2, 0, 0});
+  EXPECT_LT(arm.start(), 0);
+  EXPECT_NE(arm.said.find("cannot reach"), std::string::npos) << arm.said;
+}
+
+TEST(Simulated, SaysWhichListHasTheWrongLength) {
+  Module arm;
+  arm.set("joint.damping", std::vector<double>{1, 2});
+  EXPECT_LT(arm.start(), 0);
+  EXPECT_NE(arm.said.find("joint.damping: 2 numbers, expected 1 or 3"), std::string::npos) << arm.said;
+  Module chain;
+  chain.set("arm.kind", 1);
+  EXPECT_LT(chain.start(), 0);
+  EXPECT_NE(chain.said.find("arm.dh is empty"), std::string::npos) << chain.said;
+}
+
+/// A chain of three joints with sensors and its own position loop.
+void describeChain(Module& arm) {
+  arm.set("arm.kind", 1);
+  arm.set("arm.dh", std::vector<double>{0, M_PI / 2, 0.1, 0, 0.3, 0, 0, 0.5, 0.25, 0, 0, -1});
+  arm.set("arm.masses", std::vector<double>{1, 1, 0.5});
+  arm.set("arm.centers", std::vector<double>{0, 0, 0, -0.15, 0, 0, -0.1, 0, 0});
+  arm.set("arm.inertias", std::vector<double>{0.01, 0.01, 0.01, 0.01, 0.01, 0.01, 0.005, 0.005, 0.005});
+  arm.set("arm.limits", std::vector<double>{-2, 2, -1, 1.5, -1.2, 1.2});
+  arm.set("joint.damping", std::vector<double>{0.1});
+  arm.set("joint.stiffness", std::vector<double>{2000});
+  arm.set("joint.rate_damping", std::vector<double>{40});
+  arm.set("joint.torque_sensors", 1);
+  arm.set("hand.script", kNone);
+}
+
+TEST(SimulatedChain, MeasuresTheForceThatTheHandPushesWith) {
+  Module arm;
+  describeChain(arm);
+  arm.set("hand.script", kHold), arm.set("hand.radius", 0.0), arm.set("hand.approach", 0.0);
+  arm.set("hand.center", std::vector<double>{0.4, 0.05, 0.2}), arm.set("hand.stiffness", 500);
+  ASSERT_EQ(arm.start(), HSP_OK) << arm.said;
+  const Vector3d force(2, -1, 1.5);
+  for (int i = 0; i < 4000; ++i) {
+    arm.read(kMillisecond);
+    arm.write(HDV_TORQUE, arm.torqueOf(force));
+  }
+  EXPECT_TRUE((arm.info.capabilities & HDV_C_TORQUE) != 0 && (arm.sample.flags & HDV_S_TORQUE) != 0);
+  const Eigen::VectorXd measured = Eigen::Map<const Eigen::VectorXd>(arm.sample.torque, 3);
+  EXPECT_LT((measured - arm.torqueOf(force)).norm(), 1e-3);
+  const Vector3d center(0.4, 0.05, 0.2);
+  EXPECT_LT((arm.tip() - center - force / 500).norm(), 1e-4);
+}
+
+TEST(SimulatedChain, HoldsAPositionReference) {
+  Module arm;
+  describeChain(arm);
+  ASSERT_EQ(arm.start(), HSP_OK) << arm.said;
+  EXPECT_NE(arm.info.capabilities & HDV_C_POSITION, 0u);
+  const Vector3d wanted(0.3, 0.2, -0.1);
+  for (int i = 0; i < 3000; ++i) {
+    arm.read(kMillisecond);
+    hdv_command command{};
+    command.struct_size = sizeof command;
+    command.mode = HDV_POSITION;
+    const Eigen::VectorXd weight = arm.torqueOf(Vector3d::Zero());
+    for (int j = 0; j < 3; ++j) command.position[j] = wanted[j], command.torque[j] = weight[j];
+    arm.write(command);
+  }
+  EXPECT_LT((arm.joints() - wanted).norm(), 1e-4);
+}
+
+}  // namespace
+}  // namespace hapticd::simulated
