@@ -1,0 +1,83 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "kernels/medial/skeleton.hpp"
+
+namespace hapticd::medial {
+namespace {
+
+/// Slope of a monotone cubic at a sample: the weighted harmonic mean of its neighbours' slopes, 0 at an extremum.
+double innerSlope(double h0, double h1, double d0, double d1) {
+  if (!(d0 * d1 > 0)) return 0;
+  const double w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
+  return (w0 + w1) / (w0 / d0 + w1 / d1);
+}
+
+/// Bernstein cubic with end values and slopes; value and derivative.
+std::array<double, 8> hermite(double t, double h) {
+  const double s = 1 - t;
+  return {s * s * (1 + 2 * t), h * s * s * t,     t * t * (3 - 2 * t), -h * t * t * s,
+          -6 * s * t / h,      s * s - 2 * s * t, 6 * s * t / h,       t * t - 2 * s * t};
+}
+
+std::size_t interval(const std::vector<double>& knots, double t) {
+  const auto above = std::upper_bound(knots.begin() + 1, knots.end() - 1, t);
+  return static_cast<std::size_t>(above - knots.begin()) - 1;
+}
+
+}  // namespace
+
+ScalarField::ScalarField(const std::array<std::vector<double>, 2>& parameters, const std::vector<double>& samples)
+    : parameters_(parameters) {
+  nodes_.resize(samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!(samples[i] >= 0) || !std::isfinite(samples[i]))
+      throw std::invalid_argument("sample " + std::to_string(i) + " is " + std::to_string(samples[i]) +
+                                  ", expected a finite number of at least 0");
+    nodes_[i].f = samples[i];
+  }
+  limitSlopes();
+}
+
+void ScalarField::limitSlopes() {
+  const std::array<std::size_t, 2> count{parameters_[0].size(), parameters_[1].size()};
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const std::vector<double>& t = parameters_[axis];
+    const std::size_t stride = axis == 0 ? count[1] : 1, last = count[axis] - 1;
+    for (std::size_t n = 0; n < nodes_.size(); ++n) {
+      const std::size_t i = axis == 0 ? n / count[1] : n % count[1];
+      const auto slope = [&](std::size_t a) {
+        return (nodes_[n + stride * (a + 1) - stride * i].f - nodes_[n + stride * a - stride * i].f) /
+               (t[a + 1] - t[a]);
+      };
+      double d = i == 0 ? slope(0) : slope(i - 1);
+      if (i > 0 && i < last) d = innerSlope(t[i] - t[i - 1], t[i + 1] - t[i], slope(i - 1), slope(i));
+      // Half of what keeps a curve's Bernstein coefficients positive, so that both directions together keep a patch's.
+      const double width = std::max(i > 0 ? t[i] - t[i - 1] : 0, i < last ? t[i + 1] - t[i] : 0);
+      const double most = 1.5 * nodes_[n].f / width;
+      (axis == 0 ? nodes_[n].fu : nodes_[n].fv) = std::clamp(d, -most, most);
+    }
+  }
+}
+
+ScalarField::Value ScalarField::evaluate(double u, double v) const noexcept {
+  const std::vector<double>&tu = parameters_[0], &tv = parameters_[1];
+  const std::size_t i = interval(tu, u), j = interval(tv, v), stride = tv.size();
+  const double hu = tu[i + 1] - tu[i], hv = tv[j + 1] - tv[j];
+  const std::array<double, 8> a = hermite((u - tu[i]) / hu, hu), b = hermite((v - tv[j]) / hv, hv);
+  Value sum;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const std::size_t x = c / 2, y = c % 2;
+    const Value& n = nodes_[(i + x) * stride + j + y];
+    const double pu = a[2 * x], qu = a[2 * x + 1], pv = b[2 * y], qv = b[2 * y + 1];
+    sum.f += n.f * pu * pv + n.fu * qu * pv + n.fv * pu * qv;
+    sum.fu += n.f * a[4 + 2 * x] * pv + n.fu * a[5 + 2 * x] * pv + n.fv * a[4 + 2 * x] * qv;
+    sum.fv += n.f * pu * b[4 + 2 * y] + n.fu * qu * b[4 + 2 * y] + n.fv * pu * b[5 + 2 * y];
+  }
+  sum.f = std::max(0.0, sum.f);  // rounding only
+  return sum;
+}
+
+}  // namespace hapticd::medial
