@@ -58,6 +58,9 @@ struct DeviceClass {
     } catch (const std::exception& e) {
       detail::logError(host, std::string(T::kInfo.name) + ": " + e.what());
       return nullptr;
+    } catch (...) {
+      detail::logError(host, std::string(T::kInfo.name) + ": threw something that is no std::exception");
+      return nullptr;
     }
   }
   static void destroy(hdv_device* device) { delete &self(device); }
@@ -114,6 +117,9 @@ struct DeviceClass {
       return HSP_E_NOMEM;
     } catch (const std::exception& e) {
       detail::logError(base(device).host_, e.what());
+      return HSP_E_IO;
+    } catch (...) {
+      detail::logError(base(device).host_, "threw something that is no std::exception");
       return HSP_E_IO;
     }
   }

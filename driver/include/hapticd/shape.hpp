@@ -59,6 +59,9 @@ struct ShapeClass {
     } catch (const std::exception& e) {
       detail::logError(host, std::string(T::kInfo.name) + ": " + e.what());
       return nullptr;
+    } catch (...) {
+      detail::logError(host, std::string(T::kInfo.name) + ": threw something that is no std::exception");
+      return nullptr;
     }
   }
   static void destroy(hsp_shape* shape) { delete &self(shape); }
@@ -81,6 +84,9 @@ struct ShapeClass {
       return HSP_E_NOMEM;
     } catch (const std::exception& e) {
       detail::logError(base(shape).host_, e.what());
+      return HSP_E_ARG;
+    } catch (...) {
+      detail::logError(base(shape).host_, "threw something that is no std::exception");
       return HSP_E_ARG;
     }
   }

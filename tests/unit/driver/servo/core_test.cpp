@@ -136,6 +136,14 @@ TEST(Core, JumpAsksForASearchInTheNextTick) {
   EXPECT_TRUE(world->core().wantsSearch());
 }
 
+TEST(World, PluginThatThrowsAnythingIsAnErrorThatNamesTheModel) {
+  scene::Scene scene;
+  scene.models.push_back(testModel("throwing"));
+  const auto world = World::build(scene, {1000, 1}, [](int, const std::string&, const std::string&) {});
+  ASSERT_FALSE(world);
+  EXPECT_NE(world.error().find("'throwing'"), std::string::npos) << world.error();
+}
+
 TEST(Core, SameInputGivesTheSameBits) {
   scene::Scene scene;
   for (const char* plugin : {"wall", "sliding"}) scene.models.push_back(testModel(plugin));

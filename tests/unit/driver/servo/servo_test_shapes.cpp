@@ -88,6 +88,17 @@ struct Allocating : hapticd::Shape {
   }
 };
 
+/// Throws what nobody should throw.
+struct Throwing : hapticd::Shape {
+  int unused;
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.throwing", "throwing", "1.0.0", "MIT", "Throws."};
+  static constexpr auto fields() {
+    return std::array{Fields<Throwing>::integer("unused", &Throwing::unused, "", 0, 1, 0, "Nothing.")};
+  }
+  void activate(const hsp_activation&, hsp_report&) { throw 42; }
+  hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept { return HSP_OK; }
+};
+
 }  // namespace
 
-HAPTICD_SHAPES(Wall, Misbehaving, Sliding, Allocating)
+HAPTICD_SHAPES(Wall, Misbehaving, Sliding, Allocating, Throwing)
