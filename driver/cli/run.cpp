@@ -52,7 +52,8 @@ std::vector<record::Sample> samplesOf(const servo::Telemetry& telemetry) {
   for (const servo::BlackBoxRow& row : telemetry.blackBox()) {
     record::Sample sample;
     sample.t = row.t;
-    sample.depth_m = static_cast<double>(row.depth_m);
+    // nothing traced is far away, not at the surface
+    sample.depth_m = row.model == UINT32_MAX ? -1 : static_cast<double>(row.depth_m);
     sample.force_n = std::hypot(row.force[0], row.force[1], row.force[2]);
     sample.lateness_us = static_cast<double>(row.lateness_us);
     sample.compute_us = static_cast<double>(row.compute_us);
