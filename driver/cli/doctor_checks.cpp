@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <thread>
 
@@ -12,8 +11,6 @@
 namespace hapticd::cli {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string firstLine(const std::string& file) {
   std::ifstream in(file);
@@ -117,15 +114,7 @@ Finding checkDmaLatency() {
   if (os::DmaLatencyHold().held()) return ok("cpu_dma_latency", "writable");
   return {"cpu_dma_latency", Verdict::kWarn, "/dev/cpu_dma_latency is not writable",
           "the processor may sleep deeply and wake late",
-          "install udev/70-hapticd.rules, then: sudo udevadm control --reload && sudo udevadm trigger"};
-}
-
-Finding checkUdev() {
-  for (const char* folder : {"/etc/udev/rules.d", "/usr/lib/udev/rules.d", "/lib/udev/rules.d"})
-    if (const fs::path rules = fs::path(folder) / "70-hapticd.rules"; fs::exists(rules))
-      return ok("udev", rules.string());
-  return {"udev", Verdict::kWarn, "70-hapticd.rules is not installed", "USB arms cannot be opened by ordinary users",
-          "sudo cp udev/70-hapticd.rules /etc/udev/rules.d/ && sudo udevadm control --reload && sudo udevadm trigger"};
+          "sudo chgrp haptic /dev/cpu_dma_latency && sudo chmod 660 /dev/cpu_dma_latency"};
 }
 
 }  // namespace
@@ -133,7 +122,7 @@ Finding checkUdev() {
 std::vector<Finding> checkSystem() {
   return {checkKernel(), checkVirtualMachine(), checkScheduler(), checkGroupScheduling(),
           checkMemory(), checkThrottling(),     checkGovernor(),  checkIsolation(),
-          checkClock(),  checkDmaLatency(),     checkUdev()};
+          checkClock(),  checkDmaLatency()};
 }
 
 Finding checkLatency(double seconds) {
