@@ -1,0 +1,151 @@
+/// `hapticd completion`: completion scripts for bash, zsh and fish, made of the option table itself.
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+struct Word {
+  std::string text, doc;
+  std::vector<std::string> choices;  ///< what may follow an option
+};
+
+/// A command of the tree: "" is the program itself, "plugin info" a command below a command.
+struct Node {
+  std::string path;
+  std::vector<Word> words;
+};
+
+/// The words of a validator such as "TEXT:{scene,device}"; none for others.
+std::vector<std::string> choicesOf(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const size_t begin = type.find('{'), end = type.find('}');
+  std::vector<std::string> words;
+  if (begin == std::string::npos || end == std::string::npos || end < begin) return words;
+  std::stringstream list(type.substr(begin + 1, end - begin - 1));
+  for (std::string word; std::getline(list, word, ',');) words.push_back(word);
+  return words;
+}
+
+void collect(const CLI::App& app, const std::string& path, std::vector<Node>& nodes) {
+  Node node{path, {}};
+  for (const CLI::App* command : app.get_subcommands(nullptr))
+    node.words.push_back({command->get_name(), command->get_description(), {}});
+  for (const CLI::Option* option : app.get_options(nullptr)) {
+    if (option->get_positional())
+      for (const std::string& choice : choicesOf(*option)) node.words.push_back({choice, "", {}});
+    for (const std::string& name : option->get_lnames())
+      node.words.push_back({"--" + name, option->get_description(), choicesOf(*option)});
+  }
+  nodes.push_back(std::move(node));
+  for (const CLI::App* command : app.get_subcommands(nullptr))
+    collect(*command, path.empty() ? command->get_name() : path + " " + command->get_name(), nodes);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+/// For single quotes of a shell, and with the colon that zsh splits at made harmless.
+std::string quoted(const std::string& text, bool zsh = false) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '\'') result += "'\\'";
+    if (c == ':' && zsh) result += '\\';
+    result += c;
+  }
+  return result;
+}
+
+/// Shell lines, the same in bash and zsh, that find the command in the words before the cursor.
+std::string findPath(const std::vector<Node>& nodes, const std::string& words) {
+  std::string text = "  local path_='' word_\n  for word_ in " + words + "; do\n    case \"$path_ $word_\" in\n      ";
+  for (size_t i = 1; i < nodes.size(); ++i) {
+    const size_t space = nodes[i].path.rfind(' ');
+    const std::string above = space == std::string::npos ? "" : nodes[i].path.substr(0, space);
+    const std::string name = space == std::string::npos ? nodes[i].path : nodes[i].path.substr(space + 1);
+    text += (i == 1 ? "'" : " | '") + above + " " + name + "'";
+  }
+  return text + ") path_=\"${path_:+$path_ }$word_\" ;;\n    esac\n  done\n";
+}
+
+std::string bash(const std::vector<Node>& nodes) {
+  std::string text = "# bash completion of hapticd; made with `hapticd completion bash`\n_hapticd() {\n";
+  text += findPath(nodes, "\"${COMP_WORDS[@]:1:COMP_CWORD-1}\"");
+  text += "  local known_=''\n  case \"$path_ ${COMP_WORDS[COMP_CWORD-1]}\" in\n";
+  for (const Node& node : nodes)
+    for (const Word& word : node.words)
+      if (!word.choices.empty())
+        text += "    '" + node.path + " " + word.text + "') known_='" + joined(word.choices) + "' ;;\n";
+  text += "    *)\n      case \"$path_\" in\n";
+  for (const Node& node : nodes) {
+    std::vector<std::string> words;
+    for (const Word& word : node.words) words.push_back(word.text);
+    text += "        '" + node.path + "') known_='" + joined(words) + "' ;;\n";
+  }
+  text += "      esac ;;\n  esac\n";
+  text += "  mapfile -t COMPREPLY < <(compgen -W \"$known_\" -- \"${COMP_WORDS[COMP_CWORD]}\")\n}\n";
+  return text + "complete -o default -F _hapticd hapticd\n";
+}
+
+std::string zsh(const std::vector<Node>& nodes) {
+  std::string text =
+      "#compdef hapticd\n# zsh completion of hapticd; made with `hapticd completion zsh`\n_hapticd() {\n";
+  text += findPath(nodes, "${words[2,CURRENT-1]}");
+  text += "  local -a known_\n  case \"$path_ ${words[CURRENT-1]}\" in\n";
+  for (const Node& node : nodes)
+    for (const Word& word : node.words)
+      if (!word.choices.empty())
+        text += "    '" + node.path + " " + word.text + "') compadd -- " + joined(word.choices) + "; return ;;\n";
+  text += "  esac\n  case \"$path_\" in\n";
+  for (const Node& node : nodes) {
+    text += "    '" + node.path + "') known_=(\n";
+    for (const Word& word : node.words) text += "      '" + word.text + ":" + quoted(word.doc, true) + "'\n";
+    text += "    ) ;;\n";
+  }
+  return text + "  esac\n  _describe -o hapticd known_\n  _files\n}\n_hapticd \"$@\"\n";
+}
+
+std::string fish(const std::vector<Node>& nodes) {
+  std::string text = "# fish completion of hapticd; made with `hapticd completion fish`\n";
+  for (const Node& node : nodes) {
+    std::string condition = "__fish_use_subcommand";
+    if (!node.path.empty()) {
+      condition.clear();
+      std::stringstream parts(node.path);
+      for (std::string part; parts >> part;)
+        condition += (condition.empty() ? "" : "; and ") + ("__fish_seen_subcommand_from " + part);
+    }
+    for (const Word& word : node.words) {
+      const bool option = word.text.rfind("--", 0) == 0;
+      text +=
+          "complete -c hapticd -n '" + condition + "' " + (option ? "-l " + word.text.substr(2) : "-a " + word.text);
+      if (!word.choices.empty()) text += " -x -a '" + joined(word.choices) + "'";
+      text += " -d '" + quoted(word.doc) + "'\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+void addCompletion(CLI::App& app, int& exit_code) {
+  auto shell = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("completion", "Print the completion script of a shell.");
+  command->add_option("shell", *shell, "bash, zsh or fish")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  command->footer("Example:\n  source <(hapticd completion bash)");
+  command->callback([shell, &app, &exit_code] {
+    std::vector<Node> nodes;
+    collect(app, "", nodes);
+    std::fputs((*shell == "bash" ? bash(nodes) : *shell == "zsh" ? zsh(nodes) : fish(nodes)).c_str(), stdout);
+    exit_code = kWorked;
+  });
+}
+
+}  // namespace hapticd::cli

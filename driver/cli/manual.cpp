@@ -1,0 +1,116 @@
+/// `hapticd manual`: the pages that follow from tables, so that they cannot say other than the program does:
+/// hapticd(1) from the option table, hapticd.yaml(5) from the tables of keys. man(7) source.
+#include <memory>
+#include <string>
+
+#include "cli/command.hpp"
+#include "scene/format.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+/// A text with what troff reads specially made plain.
+std::string plain(const std::string& text) {
+  std::string result;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const bool line_start = i == 0 || text[i - 1] == '\n';
+    if (line_start && (text[i] == '.' || text[i] == '\'')) result += "\\&";
+    if (text[i] == '\\')
+      result += "\\e";
+    else if (text[i] == '-')
+      result += "\\-";
+    else
+      result += text[i];
+  }
+  return result;
+}
+
+std::string header(const std::string& name, int section) {
+  return ".TH \"" + name + "\" \"" + std::to_string(section) + "\" \"\" \"hapticd " HAPTICD_VERSION "\" \"hapticd\"\n";
+}
+
+std::string verbatim(const std::string& text) {
+  return ".PP\n.nf\n" + plain(text) + "\n.fi\n";
+}
+
+std::string optionText(const CLI::Option& option) {
+  std::string names = option.get_positional() ? option.get_name(true) : option.get_name(false, true);
+  if (option.get_type_size() > 0 && !option.get_positional()) names += " " + option.get_type_name();
+  return ".TP\n.B " + plain(names) + "\n" + plain(option.get_description()) + "\n";
+}
+
+std::string commandText(const CLI::App& command, const std::string& above) {
+  const std::string name = above + command.get_name();
+  std::string text = ".SS " + plain(name) + "\n" + plain(command.get_description()) + "\n";
+  for (const CLI::Option* option : command.get_options(nullptr))
+    if (!option->check_lname("help")) text += optionText(*option);
+  if (!command.get_footer().empty()) text += verbatim(command.get_footer());
+  for (const CLI::App* below : command.get_subcommands(nullptr)) text += commandText(*below, name + " ");
+  return text;
+}
+
+std::string programPage(const CLI::App& app) {
+  std::string text = header("HAPTICD", 1);
+  text += ".SH NAME\nhapticd \\- real\\-time haptic servo daemon\n";
+  text += ".SH SYNOPSIS\n.B hapticd\n[\\fIOPTIONS\\fR] \\fICOMMAND\\fR [\\fIARGUMENTS\\fR]\n";
+  text += ".SH DESCRIPTION\n" + plain(app.get_description()) + "\n";
+  text += "Scenes, devices and the daemon's own settings are YAML files: see\n.BR hapticd.yaml (5).\n";
+  text += ".SH OPTIONS\n";
+  for (const CLI::Option* option : app.get_options(nullptr)) text += optionText(*option);
+  text += ".SH COMMANDS\n";
+  for (const CLI::App* command : app.get_subcommands(nullptr)) text += commandText(*command, "");
+  text += ".SH EXIT STATUS\n0 worked, 1 failed while running, 2 bad input or usage.\n";
+  text +=
+      ".SH ENVIRONMENT\n.TP\n.B HAPTICD_PLUGIN_PATH\nfolders searched for shape plugins, separated by colons\n"
+      ".TP\n.B HAPTICD_DEVICE_PATH\nfolders searched for device modules, separated by colons\n"
+      ".TP\n.B HAPTICD_CONFIG\nthe daemon file\n";
+  text +=
+      ".SH FILES\n.TP\n.I /etc/hapticd/hapticd.yaml\nthe daemon file of this machine\n"
+      ".TP\n.I /etc/hapticd/scene.yaml\nthe scene that the systemd unit runs\n";
+  return text + ".SH SEE ALSO\n.BR hapticd.yaml (5),\n.BR hapticd\\-shape (7),\n.BR hapticd\\-device (7)\n";
+}
+
+std::string keyText(const scene::Key& key, const std::string& above) {
+  const std::string name = above + key.name;
+  std::string text = ".TP\n.B " + plain(name) + "\n" + plain(key.doc) + " Expected: " + plain(key.expected()) + ".";
+  if (key.required) text += " Required.";
+  if (key.def != nullptr) text += " Default: " + plain(key.def) + ".";
+  text += "\n";
+  if (key.table != nullptr)
+    for (const scene::Key& below : key.table->keys)
+      text += keyText(below, name + (key.type == scene::Type::kList ? "[]." : "."));
+  return text;
+}
+
+std::string filesPage() {
+  std::string text = header("HAPTICD.YAML", 5);
+  text += ".SH NAME\nhapticd.yaml \\- scene, device and daemon files of hapticd\n.SH DESCRIPTION\n";
+  text +=
+      "The first key of a file tells its format. Units are SI; quaternions are w, x, y, z; the world has x to the "
+      "right,\n"
+      "y up, z toward the user. Paths are relative to the file that names them. Unknown keys are errors.\n"
+      ".B hapticd check\nprints every problem of a file,\n.B hapticd check \\-\\-schema\na JSON Schema for editors,\n"
+      ".B hapticd plugin info\nand\n.B hapticd device info\nthe parameters of a plugin and of an arm.\n";
+  for (const scene::Format& format : scene::kFormats) {
+    text += ".SH " + std::string(format.name) + " file (begins with " + format.key + ":)\n" + plain(format.doc) + "\n";
+    for (const scene::Key& key : format.table->keys) text += keyText(key, "");
+  }
+  return text + ".SH SEE ALSO\n.BR hapticd (1)\n";
+}
+
+}  // namespace
+
+void addManual(CLI::App& app, int& exit_code) {
+  auto page = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("manual", "Print a manual page that follows from the program's own tables.");
+  command->add_option("page", *page, "hapticd or hapticd.yaml")
+      ->required()
+      ->check(CLI::IsMember({"hapticd", "hapticd.yaml"}));
+  command->footer("Example:\n  hapticd manual hapticd.yaml | man -l -");
+  command->callback([page, &app, &exit_code] {
+    std::fputs((*page == "hapticd" ? programPage(app) : filesPage()).c_str(), stdout);
+    exit_code = kWorked;
+  });
+}
+
+}  // namespace hapticd::cli
