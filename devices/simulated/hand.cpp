@@ -67,6 +67,7 @@ Hand::Hand(const HandSettings& settings, HandPath path)
     throw std::invalid_argument("hand.axis is parallel to hand.normal, expected two different directions");
   side_.normalize();
   settings_.axis = settings_.normal.cross(side_);
+  guided_.position = settings_.center + settings_.radius * settings_.normal;
   if (settings_.script == Script::kPath && path_.empty())
     throw std::invalid_argument("hand.script is path, but hand.path names no file; expected a CSV file t,x,y,z");
 }
@@ -100,6 +101,10 @@ void Hand::script(double t, Vector3d& position, Vector3d& velocity) const noexce
     case Script::kPath:
       path_.at(t, position, velocity);
       break;
+    case Script::kGuided:
+      position = guided_.position;
+      velocity = guided_.velocity;
+      break;
     case Script::kHold:
     case Script::kNone:
       break;
@@ -110,7 +115,9 @@ HandTarget Hand::at(double t) const noexcept {
   HandTarget target;
   script(t, target.position, target.velocity);
   target.force = tremor_.at(t) + wander_.at(t);
-  if (settings_.script == Script::kPath || t >= settings_.lead_in) return target;
+  if (settings_.script == Script::kGuided) target.force += guided_.force;
+  const bool leads_in = settings_.script != Script::kPath && settings_.script != Script::kGuided;
+  if (!leads_in || t >= settings_.lead_in) return target;
   const double s = std::max(t, 0.0) / settings_.lead_in;
   target.position += settings_.approach * (1 - s * s * (3 - 2 * s)) * settings_.normal;
   target.velocity -= settings_.approach * 6 * s * (1 - s) / settings_.lead_in * settings_.normal;

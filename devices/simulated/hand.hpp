@@ -1,5 +1,6 @@
 /// The simulated hand: a mass on a spring and damper whose other end follows a script, with a seeded tremor. Everything
-/// it wants is a function of time alone, so that a run does not depend on how time was cut into steps.
+/// it wants is a function of time alone, so that a run does not depend on how time was cut into steps; but for the
+/// guided hand, which a program leads.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -9,7 +10,7 @@
 
 namespace hapticd::simulated {
 
-enum class Script { kHold, kStroke, kPress, kTap, kCircle, kPath, kNone };
+enum class Script { kHold, kStroke, kPress, kTap, kCircle, kPath, kNone, kGuided };
 
 /// Lengths in m, device frame.
 struct HandSettings {
@@ -50,6 +51,9 @@ class Hand {
   /// [rt] What the hand wants `t` seconds after the start.
   HandTarget at(double t) const noexcept;
 
+  /// [rt] What a guided hand wants from now on.
+  void guide(const HandTarget& target) noexcept { guided_ = target; }
+
   bool holds() const noexcept { return settings_.script != Script::kNone; }
   const HandSettings& settings() const noexcept { return settings_; }
 
@@ -62,6 +66,7 @@ class Hand {
   HandSettings settings_;
   HandPath path_;
   Eigen::Vector3d side_;  ///< completes axis and normal
+  HandTarget guided_;
   Unrest tremor_, wander_;
 };
 

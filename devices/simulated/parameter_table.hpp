@@ -6,7 +6,7 @@
 namespace hapticd::simulated {
 
 inline constexpr const char* kKinds[] = {"premium15", "chain"};
-inline constexpr const char* kScripts[] = {"hold", "stroke", "press", "tap", "circle", "path", "none"};
+inline constexpr const char* kScripts[] = {"hold", "stroke", "press", "tap", "circle", "path", "none", "guided"};
 inline constexpr int kMaxDelay = 16;
 
 /// Lines for a device class T that derives from Parameters.
@@ -64,7 +64,7 @@ struct ParameterTable {
         F::array("joint.stiffness", &T::stiffness, "N m/rad", 1, 0, 16, 0, 1e6, "[]",
                  "Stiffness of the arm's own position loop; left out: it takes torques alone."),
         F::array("joint.rate_damping", &T::rate_damping, "N m s/rad", 1, 0, 16, 0, 1e5, "[]",
-                 "Damping of the arm's own position loop."),
+                 "Damping of the arm's own position loop, on the difference of the rates of joint and reference."),
         F::boolean("joint.torque_sensors", &T::torque_sensors, false,
                    "Samples carry the torque that passes from motor to link, friction taken off."),
         F::real("joint.torque_noise", &T::torque_noise, "N m", 0, 100, 0, "White noise of the torque sensors, rms.")};
@@ -74,7 +74,7 @@ struct ParameterTable {
     return std::array{
         F::choice("hand.script", &T::script, kScripts, 1,
                   "What the hand wants: hold still, stroke round the object, press into it and out again, tap on it, "
-                  "circle round it, follow a path file, or none: the hand is away."),
+                  "circle round it, follow a path file, none: the hand is away, or guided by a program (guide.h)."),
         F::real("hand.mass", &T::mass, "kg", 0, 100, 0.2, "Mass of the hand at the tip."),
         F::real("hand.stiffness", &T::hand_stiffness, "N/m", 0, 1e5, 500,
                 "Spring from the tip to where the hand wants it."),

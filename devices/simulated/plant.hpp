@@ -24,8 +24,11 @@ class Plant {
   virtual void reset(const JointVector& q) = 0;
   /// [rt] One step of h seconds.
   virtual void step(double h, const Drive& drive, const Pull& pull) noexcept = 0;
-  virtual JointVector position() const noexcept = 0;  ///< [rt] [rad]
-  virtual JointVector velocity() const noexcept = 0;  ///< [rt] [rad/s]
+  virtual JointVector position() const noexcept = 0;         ///< [rt] [rad]
+  virtual JointVector velocity() const noexcept = 0;         ///< [rt] [rad/s]
+  virtual Eigen::Vector3d tip() const noexcept = 0;          ///< [rt] [m] device frame, no later than a step ago
+  virtual Eigen::Vector3d tipVelocity() const noexcept = 0;  ///< [rt] [m/s]
+  virtual Eigen::Vector3d handForce() const noexcept = 0;    ///< [rt] [N] of the hand's spring and damper on the tip
   /// [rt] Torque [N m] that passes from motors to links, friction taken off: what a load cell behind the gear reads.
   virtual JointVector transmitted() const noexcept = 0;
 
@@ -51,6 +54,8 @@ class PlantOf final : public Plant {
     qd_ = Vector::Zero(q.size());
     motor_ = Vector::Zero(q.size());
     transmitted_ = Vector::Zero(q.size());
+    hand_force_.setZero();
+    mechanism_.evaluate(q_, qd_);
   }
 
   void step(double h, const Drive& drive, const Pull& pull) noexcept override {
@@ -58,6 +63,7 @@ class PlantOf final : public Plant {
     const Eigen::Vector3d tip_velocity = mechanism_.J * qd_;
     const Eigen::Vector3d force =
         pull.stiffness * (pull.target - mechanism_.tip) + pull.damping * (pull.velocity - tip_velocity) + pull.force;
+    hand_force_ = force;
     A_.noalias() = mechanism_.J.transpose() * mechanism_.J;
     K_ = pull.stiffness * A_;
     D_ = pull.damping * A_;
@@ -75,6 +81,9 @@ class PlantOf final : public Plant {
   JointVector position() const noexcept override { return q_; }
   JointVector velocity() const noexcept override { return qd_; }
   JointVector transmitted() const noexcept override { return transmitted_; }
+  Eigen::Vector3d tip() const noexcept override { return mechanism_.tip; }
+  Eigen::Vector3d tipVelocity() const noexcept override { return mechanism_.J * qd_; }
+  Eigen::Vector3d handForce() const noexcept override { return hand_force_; }
 
  private:
   void addMotors(double h, const Drive& drive) noexcept {
@@ -82,7 +91,8 @@ class PlantOf final : public Plant {
     for (Eigen::Index i = 0; i < q_.size(); ++i) {
       double wanted = drive.torque[i];
       if (drive.position_mode && joints_.stiffness.size() > 0) {
-        wanted += joints_.stiffness[i] * (drive.reference[i] - q_[i]) - joints_.rate_damping[i] * qd_[i];
+        wanted += joints_.stiffness[i] * (drive.reference[i] - q_[i]) +
+                  joints_.rate_damping[i] * (drive.reference_rate[i] - qd_[i]);
         if (std::abs(wanted) < joints_.max_torque[i]) {  // saturated, the loop is open
           K_(i, i) += joints_.stiffness[i];
           D_(i, i) += joints_.rate_damping[i];
@@ -117,6 +127,7 @@ class PlantOf final : public Plant {
   Mechanism mechanism_;
   Vector q_, qd_, motor_, transmitted_, tau_;
   Matrix A_, K_, D_;
+  Eigen::Vector3d hand_force_{0, 0, 0};
 };
 
 }  // namespace hapticd::simulated

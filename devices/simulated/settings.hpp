@@ -24,7 +24,7 @@ struct JointSettings {
 /// What acts on the arm during one integration step.
 struct Drive {
   bool position_mode = false;
-  JointVector torque, reference;  ///< [N m]; [rad]
+  JointVector torque, reference, reference_rate;  ///< [N m]; [rad]; [rad/s]
 };
 
 /// The hand at the tip during one integration step, interpolated within the servo period.

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "guide.h"
 #include "kinematics/extension.hpp"
 #include "kinematics/statics.hpp"
 #include "parameter_table.hpp"
@@ -37,8 +38,9 @@ class SimulatedArm : public Device, public Parameters {
     sequence_ = 0;
     noise_ = static_cast<uint64_t>(seed);
     written_ = 0;
+    written_ns_ = how.time_ns;
     const JointVector off = JointVector::Zero(arm_->jointCount());
-    drives_.fill({false, off, off});
+    drives_.fill({false, off, off, off});
     target_ = hand_->at(0);
     JointVector q = arm_->neutral();
     if (hand_->holds() && !arm_->inverse(target_.position, q)) throw std::invalid_argument(unreachable());
@@ -61,19 +63,25 @@ class SimulatedArm : public Device, public Parameters {
     return HSP_OK;
   }
 
-  hsp_status write(uint64_t, const hdv_command& command) noexcept HSP_RT {
+  hsp_status write(uint64_t now_ns, const hdv_command& command) noexcept HSP_RT {
+    const Drive& last = drives_[written_ % drives_.size()];
     Drive& drive = drives_[++written_ % drives_.size()];
+    const bool follows = last.position_mode && now_ns > written_ns_;  // otherwise the reference has no rate yet
+    const double since = static_cast<double>(now_ns - written_ns_) * 1e-9;
+    written_ns_ = now_ns;
     drive.position_mode = command.mode == HDV_POSITION && joints_.stiffness.size() > 0;
     for (int i = 0; i < arm_->jointCount(); ++i) {
       const bool on = command.mode != HDV_OFF && std::isfinite(command.torque[i]);
       drive.torque[i] = on ? std::clamp(command.torque[i], -joints_.max_torque[i], joints_.max_torque[i]) : 0;
       drive.reference[i] = command.position[i];
+      drive.reference_rate[i] = follows ? (drive.reference[i] - last.reference[i]) / since : 0;
       drive.position_mode = drive.position_mode && std::isfinite(command.position[i]);
     }
     return HSP_OK;
   }
 
   const void* extension(const char* name) {
+    if (std::strcmp(name, HDV_EXT_HAND) == 0) return &kHand;
     if (std::strcmp(name, HDV_EXT_KINEMATICS) != 0) return nullptr;
     try {
       arm_ = makeArm(*this);
@@ -88,6 +96,25 @@ class SimulatedArm : public Device, public Parameters {
   const kinematics::Arm& kinematics() const { return *arm_; }
 
  private:
+  static SimulatedArm& self(hdv_device* device) { return *reinterpret_cast<SimulatedArm*>(device); }
+  static hsp_status guide(hdv_device* device, const double position[3], const double velocity[3],
+                          const double force[3]) noexcept HSP_RT {
+    if (self(device).hand_ == nullptr) return HSP_E_STATE;
+    const HandTarget target{Vector3d(position), Vector3d(velocity), Vector3d(force)};
+    if (!target.position.allFinite() || !target.velocity.allFinite() || !target.force.allFinite()) return HSP_E_ARG;
+    self(device).hand_->guide(target);
+    return HSP_OK;
+  }
+  static hsp_status truth(hdv_device* device, double position[3], double velocity[3], double force[3]) noexcept HSP_RT {
+    const Plant* plant = self(device).plant_.get();
+    if (plant == nullptr) return HSP_E_STATE;
+    Eigen::Map<Vector3d>(position, 3) = plant->tip();
+    Eigen::Map<Vector3d>(velocity, 3) = plant->tipVelocity();
+    Eigen::Map<Vector3d>(force, 3) = plant->handForce();
+    return HSP_OK;
+  }
+  static constexpr hdv_ext_hand kHand = {sizeof(hdv_ext_hand), 0, &guide, &truth};
+
   /// What the arm says of itself; what it does not publish follows from its own kinematics at the neutral pose.
   void describe(hdv_info& info) const {
     const int count = arm_->jointCount();
@@ -169,7 +196,7 @@ class SimulatedArm : public Device, public Parameters {
   JointSettings joints_;
   HandTarget target_;
   std::array<Drive, kMaxDelay + 1> drives_;  ///< the newest is at written_
-  uint64_t written_ = 0, start_ns_ = 0, now_ns_ = 0, sequence_ = 0, noise_ = 1;
+  uint64_t written_ = 0, written_ns_ = 0, start_ns_ = 0, now_ns_ = 0, sequence_ = 0, noise_ = 1;
 };
 
 }  // namespace

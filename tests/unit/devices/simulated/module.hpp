@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "guide.h"
 #include "hapticd/device.h"
 
 namespace hapticd::simulated {
@@ -83,6 +84,12 @@ class Module {
     return tau + J.topRows<3>().transpose() * force;
   }
 
+  /// The extension that leads the hand.
+  const hdv_ext_hand& hand() const {
+    return *static_cast<const hdv_ext_hand*>(class_->extension(device_, HDV_EXT_HAND));
+  }
+  hdv_device* handle() const { return device_; }
+
   hdv_info info{};
   hdv_sample sample{};
   const hdv_ext_kinematics* kinematics = nullptr;
@@ -106,7 +113,7 @@ class Module {
   hdv_device* device_ = nullptr;
 };
 
-enum Script { kHold, kStroke, kPress, kTap, kCircle, kPath, kNone };
+enum Script { kHold, kStroke, kPress, kTap, kCircle, kPath, kNone, kGuided };
 inline constexpr uint64_t kMillisecond = 1'000'000;
 
 }  // namespace hapticd::simulated

@@ -20,7 +20,7 @@ double energyDrift(double h) {
   PhantomMechanism mechanism(arm, {}, 0.2, Eigen::Vector3d::Zero());
   PlantOf<PhantomMechanism> plant(frictionless(3), mechanism);
   plant.reset(JointVector::Zero(3));
-  Drive push{false, Eigen::Vector3d(0.3, 0.2, -0.1), JointVector::Zero(3)}, none = push;
+  Drive push{false, Eigen::Vector3d(0.3, 0.2, -0.1), JointVector::Zero(3), JointVector::Zero(3)}, none = push;
   none.torque.setZero();
   const Pull away{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   for (int i = 0; i < 100; ++i) plant.step(1e-3, push, away);
@@ -53,7 +53,7 @@ TEST(Plant, SwingsOnAHandSpringAtTheRightFrequency) {
   const Eigen::Matrix3d J_inverse = mechanism.J.inverse();
   const Eigen::Matrix3d mass = J_inverse.transpose() * mechanism.M * J_inverse;
   Pull pull{Eigen::Vector3d(1e-4, 0, 0), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 800, 0};
-  const Drive none{false, JointVector::Zero(3), JointVector::Zero(3)};
+  const Drive none{false, JointVector::Zero(3), JointVector::Zero(3), JointVector::Zero(3)};
   const double period = 2 * M_PI * std::sqrt(mass(0, 0) / 800);
   constexpr int kSteps = 20000;
   for (int i = 0; i < kSteps; ++i) plant.step(period / kSteps, none, pull);

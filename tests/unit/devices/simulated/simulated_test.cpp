@@ -161,6 +161,28 @@ TEST(Simulated, DelaysCommandsByWholeReads) {
   }
 }
 
+TEST(Simulated, LetsAProgramLeadTheHandAndTellsItTheTruth) {
+  Module arm;
+  arm.set("hand.script", kGuided), arm.set("joint.friction", std::vector<double>{0});
+  arm.set("hand.stiffness", 500), arm.set("hand.damping", 30);
+  const hdv_ext_hand& hand = arm.hand();
+  ASSERT_EQ(arm.start(), HSP_OK) << arm.said;
+  const Vector3d wanted(0.01, -0.02, 0.03), rest(0, 0, 0), pull(1, 0.5, -0.5);
+  EXPECT_EQ(hand.guide(arm.handle(), wanted.data(), rest.data(), pull.data()), HSP_OK);
+  for (int i = 0; i < 3000; ++i) {
+    arm.read(kMillisecond);
+    arm.write(HDV_TORQUE, arm.torqueOf(Vector3d::Zero()));
+  }
+  Vector3d tip, velocity, force;
+  ASSERT_EQ(hand.truth(arm.handle(), tip.data(), velocity.data(), force.data()), HSP_OK);
+  EXPECT_LT((tip - wanted - pull / 500).norm(), 1e-6);
+  EXPECT_LT((tip - arm.tip()).norm(), 6e-5);
+  EXPECT_LT(velocity.norm(), 1e-6);
+  EXPECT_LT(force.norm(), 1e-4) << "nothing pushes back";
+  const double nan = std::nan("");
+  EXPECT_LT(hand.guide(arm.handle(), &nan, rest.data(), rest.data()), 0);
+}
+
 TEST(Simulated, SaysWhyAHandCannotBeWhereTheScriptWantsIt) {
   Module arm;
   arm.set("hand.center", std::vector<double>{2, 0, 0});
@@ -210,6 +232,25 @@ TEST(SimulatedChain, MeasuresTheForceThatTheHandPushesWith) {
   EXPECT_LT((measured - arm.torqueOf(force)).norm(), 1e-3);
   const Vector3d center(0.4, 0.05, 0.2);
   EXPECT_LT((arm.tip() - center - force / 500).norm(), 1e-4);
+}
+
+TEST(SimulatedChain, FollowsAMovingReferenceWithoutTheLagOfItsDamping) {
+  Module arm;
+  describeChain(arm);
+  ASSERT_EQ(arm.start(), HSP_OK) << arm.said;
+  arm.read(kMillisecond);
+  Eigen::VectorXd wanted = arm.joints();
+  for (int i = 0; i < 1000; ++i) {
+    wanted += Eigen::Vector3d::Constant(0.2e-3);  // 0.2 rad/s; against standing still the damping would lag by 4 mrad
+    hdv_command command{};
+    command.struct_size = sizeof command;
+    command.mode = HDV_POSITION;
+    const Eigen::VectorXd weight = arm.torqueOf(Vector3d::Zero());
+    for (int j = 0; j < 3; ++j) command.position[j] = wanted[j], command.torque[j] = weight[j];
+    arm.write(command);
+    arm.read(kMillisecond);
+  }
+  EXPECT_LT((arm.joints() - wanted).norm(), 5e-4);
 }
 
 TEST(SimulatedChain, HoldsAPositionReference) {
