@@ -10,12 +10,14 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <exception>
 #include <optional>
 
 namespace hapticd::host {
 namespace {
 
 constexpr size_t kLargestAnswer = 64u << 20;
+constexpr int kThrew = 113;  ///< exit code of a child that an exception ended
 
 bool writeAll(int fd, const std::string& bytes) {
   for (size_t done = 0; done < bytes.size();) {
@@ -36,13 +38,13 @@ bool writeAll(int fd, const std::string& bytes) {
     dup2(null, STDOUT_FILENO);
     dup2(null, STDERR_FILENO);
   }
-  bool sent = false;
+  // An exception out of a constructor comes through dlopen() or ends there, as the compilers of plugin and host will.
+  std::set_terminate([] { _exit(kThrew); });
   try {
-    sent = writeAll(fd, work());
+    _exit(writeAll(fd, work()) ? 0 : 1);
   } catch (...) {
-    sent = false;
+    _exit(kThrew);
   }
-  _exit(sent ? 0 : 1);
 }
 
 /// Everything the child writes until it closes the pipe; nothing when the time is over first.
@@ -95,6 +97,7 @@ Result<std::string> runInChild(const std::function<std::string()>& work, int lim
   const int status = waitFor(child);
   if (!answer) return Error{"took longer than " + std::to_string(limit_ms / 1000.0).substr(0, 4) + " s"};
   if (WIFSIGNALED(status)) return Error{std::string("crashed: ") + strsignal(WTERMSIG(status))};
+  if (WEXITSTATUS(status) == kThrew) return Error{"threw an exception"};
   if (WEXITSTATUS(status) != 0 || answer->empty())
     return Error{"ended the process with code " + std::to_string(WEXITSTATUS(status))};
   return *std::move(answer);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/allocation_count.hpp"
+#include "base/not_real_time.hpp"
 #include "base/os.hpp"
 
 namespace hapticd::servo {
@@ -78,6 +79,7 @@ bool Loop::simulated() const noexcept HSP_RT {
 void Loop::search(double t) noexcept {
   const Nanoseconds begun = monotonicNow();
   const uint64_t allocations = allocationsOfThread();
+  const NotRealTime virtual_time_only;
   lockstep_.before(t);
   search_allocations_ += allocationsOfThread() - allocations;
   search_time_ = monotonicNow() - begun;

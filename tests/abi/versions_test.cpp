@@ -102,14 +102,16 @@ TEST_P(BrokenPlugin, IsRefusedWithItsOwnReason) {
   EXPECT_NE(classes.error().find(GetParam().words), std::string::npos) << classes.error();
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, BrokenPlugin,
-    testing::Values(Broken{"bad_no_symbol", "hsp_plugin_entry"}, Broken{"bad_magic", "does not begin with its mark"},
-                    Broken{"bad_major", "built for version 2."}, Broken{"bad_no_class", "lists 0 classes"},
-                    Broken{"bad_null_class", "damaged"}, Broken{"bad_no_step", "lacks a required function"},
-                    Broken{"bad_crash", "crashed"}, Broken{"bad_throw", "crashed"}, Broken{"bad_exit", "ended"},
-                    Broken{"bad_hang", "longer than"}, Broken{"bad_unresolved", "undefined symbol"}),
-    [](const auto& given) { return std::string(given.param.file); });
+INSTANTIATE_TEST_SUITE_P(Kinds, BrokenPlugin,
+                         testing::Values(Broken{"bad_no_symbol", "hsp_plugin_entry"},
+                                         Broken{"bad_magic", "does not begin with its mark"},
+                                         Broken{"bad_major", "built for version 2."},
+                                         Broken{"bad_no_class", "lists 0 classes"}, Broken{"bad_null_class", "damaged"},
+                                         Broken{"bad_no_step", "lacks a required function"},
+                                         Broken{"bad_crash", "crashed"}, Broken{"bad_throw", "threw an exception"},
+                                         Broken{"bad_exit", "ended"}, Broken{"bad_hang", "longer than"},
+                                         Broken{"bad_unresolved", "undefined symbol"}),
+                         [](const auto& given) { return std::string(given.param.file); });
 
 TEST(FaultyPlugin, ThatCannotActivateSaysWhyAndCanBeTriedAgain) {
   auto shape = instanceOf("faulty_shapes", "no_activation");
