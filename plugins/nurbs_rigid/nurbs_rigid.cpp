@@ -3,42 +3,90 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
+#include <string_view>
 
 namespace hapticd {
 
 void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) {
-  if (motion_ == kDynamic)
-    throw std::invalid_argument("motion: dynamic is not available in this version, expected static or kinematic");
   load(activation, report);
   report.max_stiffness = stiffness_;
   if (damping_ > 0 || viscosity_ > 0) report.flags |= HSP_R_VELOCITY;
   const bool rubs = friction_static_ > 0 || friction_dynamic_ > 0 || viscosity_ > 0;
   friction_.assign(rubs ? std::max(activation.max_probes, 1u) : 0, contact::Friction{});
+  body_.reset();
+  if (motion_ == kDynamic) setInMotion(activation, report);
+}
+
+void NurbsRigid::setInMotion(const hsp_activation& activation, hsp_report& report) {
+  bool bounded = true;
+  const dynamics::MassProperties shape = massProperties(model(), bounded);
+  const bool asked = center_.empty() || inertia_.empty();
+  if (!bounded && asked && host() != nullptr && host()->log != nullptr)
+    host()->log(host(), HSP_LOG_WARNING,
+                "the surfaces bound no volume: center and inertia that are not given are those of the box around them");
+  body_.emplace(*this, shape, activation);
+  report.flags |= HSP_R_MOVES;
 }
 
 void NurbsRigid::reset() noexcept HSP_RT {
   TracedShape::reset();
   for (contact::Friction& friction : friction_) friction.reset();
+  if (body_) body_->release();
+  stored_ = 0;
 }
 
-hsp_status NurbsRigid::touch(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT {
+hsp_status NurbsRigid::step(const hsp_step& given) noexcept HSP_RT {
+  const hsp_step step = body_ ? body_->move(given) : given;
+  hsp_status worst = HSP_OK;
+  stored_ = 0;
+  for (uint32_t i = 0; i < step.count; ++i) {
+    const hsp_status status = press(*HSP_AT(const hsp_probe, step.in, step.in_stride, i), step,
+                                    *HSP_AT(hsp_contact, step.out, step.out_stride, i));
+    if (status < 0 ? worst >= 0 : worst == HSP_OK) worst = status;
+  }
+  return worst;
+}
+
+hsp_status NurbsRigid::press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT {
   const Touch touch = trace(probe, step, contact);
   const uint32_t index = indexOf(probe, step);
   const double depth = touch.depth + (texture_amplitude_ > 0 ? texture(touch.foot) : 0);
   if (!touch.traced || touch.depth <= 0 || depth <= 0) {
     if (index < friction_.size()) friction_[index].reset();
+    if (body_ && touch.traced) remember(probe, touch, index, depth, Eigen::Vector3d::Zero());
     return touch.status;
   }
   const Eigen::Vector3d velocity(probe.velocity);
   const contact::WallLaw law{stiffness_, damping_, exponent_, depth_scale_};
   const contact::WallForce wall = contact::wallForce(law, depth, -velocity.dot(touch.normal));
-  Eigen::Vector3d force = wall.force * touch.normal;
-  if (index < friction_.size()) force += along(touch, velocity, wall.force, friction_[index]);
-  Eigen::Map<Eigen::Vector3d>(contact.force) = force;
+  Eigen::Vector3d rub = Eigen::Vector3d::Zero();
+  if (index < friction_.size()) rub = along(touch, velocity, wall.force, friction_[index]);
+  Eigen::Map<Eigen::Vector3d>(contact.force) = wall.force * touch.normal + rub;
   contact.stiffness = std::isfinite(wall.stiffness) ? wall.stiffness : stiffness_;
+  stored_ += contact::wallEnergy(law, depth);
+  if (body_) remember(probe, touch, index, depth, rub);
   if (pop_through_ > 0 && wall.force > pop_through_) popThrough(index);
   return touch.status;
+}
+
+/// A dynamic body is pushed in the next step by what this one answers; a probe just outside may touch it by then.
+void NurbsRigid::remember(const hsp_probe& probe, const Touch& touch, uint32_t index, double depth,
+                          const Eigen::Vector3d& rub) noexcept HSP_RT {
+  dynamics::Pressing pressing;
+  pressing.probe = Eigen::Vector3d(probe.position);
+  pressing.point = touch.foot.point;
+  pressing.normal = touch.normal;
+  pressing.depth = depth;
+  pressing.law = {stiffness_, damping_, exponent_, depth_scale_};
+  pressing.along = rub;
+  if (index < friction_.size() && depth > 0) {
+    const double most =
+        std::max(friction_static_, friction_dynamic_) * contact::wallForce(pressing.law, depth, 0).force;
+    pressing.along_limit = friction_[index].slipping() ? rub.norm() : std::max(rub.norm(), most);
+    pressing.along_stiffness = most > 0 ? stiffness_ : 0;
+    pressing.along_damping = viscosity_;
+  }
+  body_->remember(index, pressing);
 }
 
 /// What the surface does along itself: dry friction and drag.
@@ -54,6 +102,15 @@ Eigen::Vector3d NurbsRigid::along(const Touch& touch, const Eigen::Vector3d& vel
 double NurbsRigid::texture(const trace::Foot& foot) const noexcept HSP_RT {
   const Eigen::Array3d phase = foot.point.array() * (2 * std::numbers::pi / texture_wavelength_);
   return texture_amplitude_ * (std::sin(phase.x()) + std::sin(phase.y()) + std::sin(phase.z())) / 3;
+}
+
+const void* NurbsRigid::extension(const char* name) {
+  if (std::string_view(name) != HSP_EXT_ENERGY) return tracedExtension<NurbsRigid>(name);
+  energy_extension_ = {sizeof(hsp_ext_energy), 0, [](hsp_shape* shape) HSP_RT -> double {
+                         const NurbsRigid& self = *reinterpret_cast<NurbsRigid*>(shape);
+                         return self.stored_ + (self.body_ ? self.body_->energy() : 0);
+                       }};
+  return &energy_extension_;
 }
 
 }  // namespace hapticd

@@ -1,18 +1,24 @@
 /// A rigid model of NURBS surfaces with the feel of a material: wall, friction, viscosity, texture, pop-through.
 #pragma once
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "kernels/contact/friction.hpp"
 #include "kernels/contact/wall.hpp"
+#include "motion.hpp"
 #include "traced_shape/traced_shape.hpp"
 
 namespace hapticd {
 
-class NurbsRigid final : public TracedShape {
+class NurbsRigid final : public TracedShape, public MotionParameters {
  public:
-  static constexpr ShapeInfo kInfo = {"org.hapticd.shape.nurbs_rigid", "nurbs_rigid", "1.0", "MIT",
-                                      "A rigid model of NURBS surfaces, traced exactly by its parameters."};
+  static constexpr ShapeInfo kInfo = {"org.hapticd.shape.nurbs_rigid",
+                                      "nurbs_rigid",
+                                      "1.0",
+                                      "MIT",
+                                      "A rigid model of NURBS surfaces, traced exactly by its parameters.",
+                                      HSP_C_MOVES};
   static constexpr auto fields() {
     using F = Fields<NurbsRigid>;
     return join(
@@ -37,18 +43,23 @@ class NurbsRigid final : public TracedShape {
             F::real("texture.wavelength", &NurbsRigid::texture_wavelength_, "m", 1e-5, 1, 2e-3,
                     "length of a bump along the model's axes", HSP_P_LIVE),
             F::real("pop_through", &NurbsRigid::pop_through_, "N", 0, 1e3, 0,
-                    "a shell (sides: both) gives way above this force; 0: never")});
+                    "a shell (sides: both) gives way above this force; 0: never")},
+        motionFields<NurbsRigid>());
   }
 
   void activate(const hsp_activation& activation, hsp_report& report);
   void reset() noexcept HSP_RT;
-  hsp_status touch(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT;
-  const void* extension(const char* name) { return tracedExtension<NurbsRigid>(name); }
+  hsp_status step(const hsp_step& given) noexcept HSP_RT;
+  const void* extension(const char* name);
 
  private:
   enum Motion { kStatic = 0, kKinematic = 1, kDynamic = 2 };
   static constexpr const char* kMotionNames[] = {"static", "kinematic", "dynamic"};
 
+  void setInMotion(const hsp_activation& activation, hsp_report& report);
+  hsp_status press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT;
+  void remember(const hsp_probe& probe, const Touch& touch, uint32_t index, double depth,
+                const Eigen::Vector3d& rub) noexcept HSP_RT;
   Eigen::Vector3d along(const Touch& touch, const Eigen::Vector3d& velocity, double wall_force,
                         contact::Friction& friction) const noexcept HSP_RT;
   double texture(const trace::Foot& foot) const noexcept HSP_RT;
@@ -58,6 +69,9 @@ class NurbsRigid final : public TracedShape {
   double friction_static_ = 0, friction_dynamic_ = 0;
   double viscosity_ = 0, texture_amplitude_ = 0, texture_wavelength_ = 2e-3, pop_through_ = 0;
   std::vector<contact::Friction> friction_;  ///< one a probe, empty if nothing rubs
+  std::optional<DynamicBody> body_;          ///< of a dynamic model
+  double stored_ = 0;                        ///< [J] in the wall
+  hsp_ext_energy energy_extension_{};
 };
 
 }  // namespace hapticd

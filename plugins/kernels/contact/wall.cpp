@@ -21,8 +21,9 @@ WallForce wallForce(const WallLaw& law, double depth, double closing_speed) noex
   if (!(depth > 0)) return {};
   if (!std::isfinite(closing_speed)) closing_speed = 0;  // the spring alone is known
   const double at_scale = law.stiffness * law.depth_scale + law.damping * closing_speed;
-  const double force = at_scale * shape(law, depth);
-  return {std::max(0.0, force), law.exponent * force / depth};
+  const double share = shape(law, depth);
+  const double force = at_scale * share;
+  return {std::max(0.0, force), law.exponent * force / depth, law.damping * share};
 }
 
 double wallEnergy(const WallLaw& law, double depth) noexcept {

@@ -16,7 +16,8 @@ struct WallLaw {
 struct WallForce {
   double force = 0;  ///< [N] along the outward normal, never negative: a wall does not pull
   double stiffness =
-      0;  ///< [N/m] dF/dx before the clamp, at this speed; for n < 1 it grows beyond bounds toward depth 0
+      0;               ///< [N/m] dF/dx before the clamp, at this speed; for n < 1 it grows beyond bounds toward depth 0
+  double damping = 0;  ///< [N s/m] dF/dv before the clamp
 };
 
 /// [rt] Force at `depth` x [m] (> 0 inside) with `closing_speed` v [m/s] (> 0 going deeper), both relative to the wall:

@@ -1,10 +1,12 @@
 #include "kernels/dynamics/rigid_body.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "kernels/dynamics/mass_properties.hpp"
 #include "kernels/dynamics/oscillator.hpp"
 
 namespace hapticd::dynamics {
@@ -36,8 +38,7 @@ void drive(double mass, double damping, double stiffness, const Vector3d& force,
 void validate(const RigidBodyLaw& law) {
   if (!(law.mass > 0) || !std::isfinite(law.mass)) throw std::invalid_argument("mass: expected above 0 kg");
   if (!law.center.allFinite()) throw std::invalid_argument("center: expected finite numbers");
-  if (!law.inertia.allFinite() || !law.inertia.isApprox(law.inertia.transpose(), 1e-9))
-    throw std::invalid_argument("inertia: expected a symmetric matrix of finite numbers");
+  principalMoments(law.inertia);
   if (!(law.damping >= 0) || !(law.angular_damping >= 0) || !(law.tether >= 0))
     throw std::invalid_argument("damping, angular damping and tether: expected 0 or more");
   if (law.joint != Joint::kFree && !(law.axis.norm() > 0))
@@ -57,7 +58,6 @@ RigidBody::RigidBody(const RigidBodyLaw& law, const Vector3d& position, const Qu
     principal_ = law.inertia.diagonal();
     axes.setIdentity();
   }
-  if (!(principal_.minCoeff() > 0)) throw std::invalid_argument("inertia: expected moments above 0 kg m^2");
   if (axes.determinant() < 0) axes.col(0) *= -1;
   from_axes_ = Quaterniond(axes);
   const Quaterniond model = orientation.normalized();
@@ -82,6 +82,72 @@ void RigidBody::step(const Vector3d& force, const Vector3d& torque, double dt) n
   }
   translate(f, dt);
   rotate(t, dt);
+}
+
+namespace {
+
+/// Velocity of a point from (velocity of the centre, angular velocity); its transpose makes wrenches of forces.
+Eigen::Matrix<double, 3, 6> pointRows(const Vector3d& lever) noexcept {
+  Eigen::Matrix<double, 3, 6> rows;
+  rows << Matrix3d::Identity(),
+      Matrix3d{{0, lever.z(), -lever.y()}, {-lever.z(), 0, lever.x()}, {lever.y(), -lever.x(), 0}};
+  return rows;
+}
+
+}  // namespace
+
+/// Mass and inertia, and what tether and drag take of a change of velocity within the step.
+RigidBody::Matrix6d RigidBody::ownResistance(double dt) const noexcept {
+  Matrix6d own = Matrix6d::Zero();
+  own.topLeftCorner<3, 3>().diagonal().setConstant(law_.mass + dt * law_.damping + dt * dt * law_.tether);
+  const Matrix3d axes = turn_.matrix();
+  own.bottomRightCorner<3, 3>() = axes * principal_.asDiagonal() * axes.transpose();
+  own.bottomRightCorner<3, 3>().diagonal().array() += dt * law_.angular_damping;
+  return own;
+}
+
+RigidBody::Vector6d RigidBody::ownImpulse(double dt) const noexcept {
+  Vector6d impulse;
+  impulse << law_.mass * gravity_ - law_.damping * v_ - law_.tether * (x_ - start_ + dt * v_),
+      -law_.angular_damping * angular();
+  return dt * impulse;
+}
+
+/// The change of velocity that the joint lets through.
+RigidBody::Vector6d RigidBody::changeUnder(const Matrix6d& resisting, const Vector6d& impulse) const noexcept {
+  if (law_.joint == Joint::kFree) return resisting.llt().solve(impulse);
+  Vector6d free;
+  if (law_.joint == Joint::kHinge) {
+    free << axis_world_.cross(x_ - pivot_world_), axis_world_;
+  } else {
+    free << axis_world_, Vector3d::Zero();
+  }
+  return free * (free.dot(impulse) / free.dot(resisting * free));
+}
+
+void RigidBody::step(std::span<const Press> presses, double dt) noexcept {
+  Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero();
+  if (!presses.empty() && dt > 0) {
+    Matrix6d resisting = ownResistance(dt);
+    Vector6d impulse = ownImpulse(dt);
+    for (const Press& press : presses) {
+      const Eigen::Matrix<double, 3, 6> rows = pointRows(press.point - x_);
+      resisting += dt * rows.transpose() * press.give * rows;
+      impulse += dt * rows.transpose() * press.force;
+    }
+    const Vector6d change = changeUnder(resisting, impulse);
+    for (const Press& press : presses) {
+      const Vector3d lever = press.point - x_;
+      const Vector3d felt = forceAfter(press, pointRows(lever) * change);
+      force += felt;
+      torque += lever.cross(felt);
+    }
+  }
+  step(force, torque, dt);
+}
+
+Vector3d RigidBody::velocityAt(const Vector3d& point) const noexcept {
+  return v_ + angular().cross(point - x_);
 }
 
 void RigidBody::translate(const Vector3d& force, double dt) noexcept {
@@ -132,8 +198,13 @@ void RigidBody::swing(const Vector3d& force, const Vector3d& torque, double dt) 
   const double phi = c * dt > 1e-12 ? -std::expm1(-c * dt) / c : dt;
   hinge_rate_ += phi * (moment / hinge_inertia_ - c * hinge_rate_);
   turnBy(hinge_rate_ * dt / 2);
-  v_ = hinge_rate_ * axis.cross(x_ - pivot_world_);
-  l_ = turn_.quaternion() * principal_.cwiseProduct(turn_.quaternion().conjugate() * (hinge_rate_ * axis));
+  setHingeVelocities();
+}
+
+void RigidBody::setHingeVelocities() noexcept {
+  const Vector3d rate = hinge_rate_ * axis_world_;
+  v_ = rate.cross(x_ - pivot_world_);
+  l_ = turn_.quaternion() * principal_.cwiseProduct(turn_.quaternion().conjugate() * rate);
 }
 
 Quaterniond RigidBody::orientation() const noexcept {
@@ -164,12 +235,16 @@ double RigidBody::energy() const noexcept {
 }
 
 void RigidBody::setVelocity(const Vector3d& center_velocity, const Vector3d& body_rate) noexcept {
+  const Vector3d rate = turn_.quaternion() * (from_axes_.conjugate() * body_rate);
+  hinge_rate_ = law_.joint == Joint::kHinge ? axis_world_.dot(rate) : 0;
   v_ = center_velocity;
+  l_.setZero();
+  if (law_.joint == Joint::kHinge) return setHingeVelocities();
+  if (law_.joint == Joint::kSlider) {
+    v_ = axis_world_ * axis_world_.dot(center_velocity);
+    return;
+  }
   l_ = turn_.quaternion() * principal_.cwiseProduct(from_axes_.conjugate() * body_rate);
-}
-
-double smallestStableMass(double stiffness, double damping, double period) noexcept {
-  return 2.5 * stiffness * period * period + 4.5 * damping * period;
 }
 
 }  // namespace hapticd::dynamics

@@ -1,7 +1,9 @@
 /// A rigid body with its full inertia, free or on a joint to the world.
 #pragma once
 #include <Eigen/Core>
+#include <span>
 
+#include "kernels/dynamics/press.hpp"
 #include "kernels/dynamics/rotation.hpp"
 
 namespace hapticd::dynamics {
@@ -39,6 +41,13 @@ class RigidBody {
   /// in the step. Not-a-number counts as nothing.
   void step(const Eigen::Vector3d& force, const Eigen::Vector3d& torque, double dt) noexcept;
 
+  /// [rt] One step of dt [s] under contacts, each of which gives as the body moves (implicit in the change of
+  /// velocity): bounded for every mass and stiffness.
+  void step(std::span<const Press> presses, double dt) noexcept;
+
+  /// [rt] Velocity [m/s] of the body's point that is at `point` [m], world.
+  Eigen::Vector3d velocityAt(const Eigen::Vector3d& point) const noexcept;
+
   Eigen::Vector3d position() const noexcept;                       ///< [rt] of the model's frame, world [m]
   Eigen::Quaterniond orientation() const noexcept;                 ///< [rt]
   Eigen::Vector3d linear() const noexcept;                         ///< [rt] velocity of the frame's origin, world [m/s]
@@ -48,13 +57,20 @@ class RigidBody {
   Eigen::Vector3d bodyRate() const noexcept;  ///< [rt] angular velocity in the model's frame [rad/s]
   double energy() const noexcept;             ///< [rt] kinetic, tether, and gravity from the start [J]
 
-  void setVelocity(const Eigen::Vector3d& center_velocity, const Eigen::Vector3d& body_rate) noexcept;  ///< [rt]
+  /// [rt] Velocity of the centre (world) and angular velocity (model's frame); a joint keeps what it lets through.
+  void setVelocity(const Eigen::Vector3d& center_velocity, const Eigen::Vector3d& body_rate) noexcept;
 
  private:
   void translate(const Eigen::Vector3d& force, double dt) noexcept;
   void rotate(const Eigen::Vector3d& torque, double dt) noexcept;
   void rotateOnce(const Eigen::Vector3d& torque, double h) noexcept;
+  void setHingeVelocities() noexcept;
   void swing(const Eigen::Vector3d& force, const Eigen::Vector3d& torque, double dt) noexcept;
+  using Vector6d = Eigen::Matrix<double, 6, 1>;
+  using Matrix6d = Eigen::Matrix<double, 6, 6>;
+  Vector6d changeUnder(const Matrix6d& resisting, const Vector6d& impulse) const noexcept;
+  Matrix6d ownResistance(double dt) const noexcept;
+  Vector6d ownImpulse(double dt) const noexcept;
   Eigen::Vector3d worldAxis() const noexcept { return axis_world_; }
 
   RigidBodyLaw law_;
@@ -66,9 +82,5 @@ class RigidBody {
   Eigen::Vector3d x_{0, 0, 0}, v_{0, 0, 0}, l_{0, 0, 0};
   double hinge_rate_ = 0;
 };
-
-/// [any] Smallest mass [kg] that stays stable when a sampled wall of `stiffness` and `damping` pushes it, its force
-/// held for a period [s]: 2.5 k T^2 + 4.5 B T, from simulations of bodies between a wall and a hand.
-double smallestStableMass(double stiffness, double damping, double period) noexcept;
 
 }  // namespace hapticd::dynamics

@@ -1,0 +1,40 @@
+#include "kernels/dynamics/press.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hapticd::dynamics {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+Press foresee(const Pressing& last, const Vector3d& probe_now, double closing_speed, const Vector3d& point_velocity,
+              double dt) noexcept {
+  Press press;
+  press.point = last.point;
+  press.outward = last.normal;
+  const Vector3d slide = probe_now - last.probe - dt * point_velocity;  // of the probe against the body
+  const double depth = last.depth - last.normal.dot(slide);
+  const contact::WallForce wall = contact::wallForce(last.law, depth, closing_speed);
+  if (!(wall.force > 0)) return press;
+  // The chord to depth 0 for n < 1: where the law is steeper than that, a light body would be thrown out.
+  const double chord = wall.force / depth * std::max(1.0, last.law.exponent);
+  const Matrix3d across = last.normal * last.normal.transpose();
+  press.force = -wall.force * last.normal;
+  press.give = (chord * dt + wall.damping) * across;
+  if (last.along_stiffness > 0 || last.along_damping > 0) {
+    Vector3d along = last.along - last.along_stiffness * (slide - across * slide);
+    const double length = along.norm();
+    if (length > last.along_limit) along *= last.along_limit / length;
+    press.force -= along;
+    press.give += (last.along_stiffness * dt + last.along_damping) * (Matrix3d::Identity() - across);
+  }
+  return press;
+}
+
+Vector3d forceAfter(const Press& press, const Vector3d& change) noexcept {
+  const Vector3d force = press.force - press.give * change;
+  return force - std::max(0.0, press.outward.dot(force)) * press.outward;
+}
+
+}  // namespace hapticd::dynamics

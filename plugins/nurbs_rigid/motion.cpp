@@ -1,0 +1,140 @@
+#include "motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace hapticd {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Nodes and weights of Gauss and Legendre on [-1, 1], eight points: exact for a polynomial surface of degree 3 by 3,
+/// and to 1e-9 for arcs of a quarter circle.
+constexpr std::array<double, 4> kNodes = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                                          0.9602898564975363};
+constexpr std::array<double, 4> kWeights = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                                            0.1012285362903763};
+
+template <class Add>
+void overSpan(double lo, double hi, const Add& add) {
+  const double middle = (lo + hi) / 2, half = (hi - lo) / 2;
+  for (size_t i = 0; i < kNodes.size(); ++i)
+    for (const double side : {-1.0, 1.0}) add(middle + side * half * kNodes[i], half * kWeights[i]);
+}
+
+void addPatch(const trace::Patch& patch, dynamics::SolidIntegral& integral) {
+  const auto us = patch.surface.breaks(0), vs = patch.surface.breaks(1);
+  spline::SurfacePoint at;
+  for (size_t i = 0; i + 1 < us.size(); ++i)
+    for (size_t j = 0; j + 1 < vs.size(); ++j)
+      overSpan(us[i], us[i + 1], [&](double u, double wu) {
+        overSpan(vs[j], vs[j + 1], [&](double v, double wv) {
+          patch.surface.evaluate1(u, v, at);
+          integral.add(at.S, patch.sign * wu * wv * at.Su.cross(at.Sv));
+        });
+      });
+}
+
+dynamics::RigidBodyLaw lawOf(const MotionParameters& given, const dynamics::MassProperties& shape) {
+  dynamics::RigidBodyLaw law;
+  law.mass = given.mass_;
+  law.center = given.center_.size() == 3 ? Vector3d(given.center_.data()) : shape.center;
+  const auto& numbers = given.inertia_;
+  if (numbers.size() == 3) {
+    law.inertia = Vector3d(numbers.data()).asDiagonal();
+  } else if (numbers.size() == 9) {
+    law.inertia = Eigen::Matrix3d(numbers.data());  // symmetric, or refused
+  } else if (numbers.empty()) {
+    const Vector3d away = shape.center - law.center;
+    law.inertia =
+        given.mass_ * (shape.inertia + away.squaredNorm() * Eigen::Matrix3d::Identity() - away * away.transpose());
+  } else {
+    throw std::invalid_argument("inertia: " + std::to_string(numbers.size()) +
+                                " numbers, expected three moments or three rows of three");
+  }
+  dynamics::validateSolid(law.inertia);
+  law.damping = given.drag_;
+  law.angular_damping = given.angular_drag_;
+  law.tether = given.tether_;
+  law.joint = static_cast<dynamics::Joint>(given.joint_);
+  law.pivot = Vector3d(given.pivot_.data());
+  law.axis = Vector3d(given.axis_.data());
+  return law;
+}
+
+}  // namespace
+
+dynamics::MassProperties massProperties(const trace::Model& model, bool& bounded) {
+  const Eigen::AlignedBox3d& box = model.bounds();
+  dynamics::SolidIntegral integral(box.center());
+  for (int i = 0; i < model.patchCount(); ++i) addPatch(model.patch(i), integral);
+  bounded = true;
+  for (int shell = 0; shell < model.shellCount(); ++shell) bounded = bounded && model.closed(shell);
+  constexpr double kEmptiest = 1e-6;  // of the box: what is thinner bounds nothing that rounding leaves intact
+  bounded = bounded && std::abs(integral.volume()) > kEmptiest * box.volume();
+  if (bounded) return integral.properties();
+  Eigen::AlignedBox3d thick = box;  // a flat model has moments too
+  const Vector3d margin = Vector3d::Constant(1e-3 * box.diagonal().norm());
+  thick.min() -= margin;
+  thick.max() += margin;
+  return dynamics::boxProperties(thick);
+}
+
+DynamicBody::DynamicBody(const MotionParameters& parameters, const dynamics::MassProperties& shape,
+                         const hsp_activation& activation)
+    : body_(lawOf(parameters, shape), MovingFrame::of(activation.pose).position,
+            MovingFrame::of(activation.pose).orientation,
+            parameters.gravity_ ? Vector3d(activation.gravity) : Vector3d::Zero()),
+      probes_(std::max(activation.max_probes, 1u)),
+      pressing_(std::max(activation.max_probes, 1u)),
+      held_(pressing_.size(), 0) {
+  presses_.reserve(pressing_.size());
+  body_.setVelocity(Vector3d(parameters.velocity_.data()), Vector3d(parameters.spin_.data()));
+  now_ = frame();
+}
+
+MovingFrame DynamicBody::frame() const noexcept HSP_RT {
+  return {body_.position(), body_.orientation(), body_.linear(), body_.angular()};
+}
+
+std::span<const dynamics::Press> DynamicBody::presses(const hsp_step& step, const MovingFrame& before) noexcept HSP_RT {
+  presses_.clear();
+  for (uint32_t i = 0; i < step.count && i < pressing_.size(); ++i) {
+    const hsp_probe& probe = *HSP_AT(const hsp_probe, step.in, step.in_stride, i);
+    if (held_[i] == 0 || (probe.flags & HSP_IN_JUMP) != 0) continue;
+    const dynamics::Pressing& last = pressing_[i];
+    const Vector3d now = before.position + before.orientation * Vector3d(probe.position);
+    const double closing = -last.normal.dot(before.orientation * Vector3d(probe.velocity));
+    if (!now.allFinite()) continue;
+    const dynamics::Press press = dynamics::foresee(last, now, closing, body_.velocityAt(last.point), step.dt_s);
+    if (!press.force.isZero(0)) presses_.push_back(press);  // reserved for all of them: never allocates
+  }
+  return presses_;
+}
+
+hsp_step DynamicBody::move(const hsp_step& step) noexcept HSP_RT {
+  const MovingFrame before = MovingFrame::of(*step.pose);
+  if (step.dt_s > 0) body_.step(presses(step, before), step.dt_s);
+  release();
+  now_ = frame();
+  now_.write(*step.pose);
+  return probes_.step(step, before, now_);
+}
+
+void DynamicBody::remember(uint32_t index, const dynamics::Pressing& in_model) noexcept HSP_RT {
+  if (index >= pressing_.size()) return;
+  dynamics::Pressing& there = pressing_[index];
+  there = in_model;
+  there.probe = now_.position + now_.orientation * in_model.probe;
+  there.point = now_.position + now_.orientation * in_model.point;
+  there.normal = now_.orientation * in_model.normal;
+  there.along = now_.orientation * in_model.along;
+  held_[index] = 1;
+}
+
+void DynamicBody::release() noexcept HSP_RT {
+  std::fill(held_.begin(), held_.end(), 0);
+}
+
+}  // namespace hapticd
