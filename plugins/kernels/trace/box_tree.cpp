@@ -87,6 +87,7 @@ void addLeaves(const Piece& piece, int patch, int halvings, std::vector<Leaf>& l
   for (int i = 0; i < piece.count_u; ++i)
     for (int j = 0; j < piece.count_v; ++j) leaf.box.extend(piece.point(i, j));
   leaf.middle = 0.5 * (piece.lo + piece.hi);
+  leaf.half = 0.5 * (piece.hi - piece.lo);
   leaf.patch = patch;
   leaves.push_back(leaf);
 }

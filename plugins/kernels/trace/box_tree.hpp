@@ -12,6 +12,7 @@ namespace hapticd::trace {
 struct Leaf {
   Eigen::AlignedBox3d box;  ///< of the control points of the piece, which enclose it
   Eigen::Array2d middle;    ///< (u, v) to start from
+  Eigen::Array2d half;      ///< widths of the piece in (u, v), halved
   int patch = 0;
 };
 

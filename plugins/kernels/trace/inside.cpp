@@ -15,10 +15,10 @@ constexpr double kTouching = 1e-7;
 
 }  // namespace
 
-Vector3d Tracer::surfaceNormal(int patch) const noexcept {
+Vector3d Tracer::surfaceNormal(int track) const noexcept {
   constexpr double kVanishing = 1e-9;  // sine of the angle of the tangents, or their ratio: a pole or a cusp
-  const Patch& piece = model_.patch(patch);
-  const LocalFoot& foot = track(patch).foot;
+  const Patch& piece = model_.patch(tracks_[track].patch);
+  const LocalFoot& foot = tracks_[track].foot;
   const Vector3d n = foot.Su.cross(foot.Sv);
   const double length = n.norm();
   if (length > kVanishing * (foot.Su.squaredNorm() + foot.Sv.squaredNorm())) return n * (piece.sign / length);
@@ -26,9 +26,9 @@ Vector3d Tracer::surfaceNormal(int patch) const noexcept {
 }
 
 /// Pseudonormal of the edge or corner that holds the foot: a probe in its direction is outside (Baerentzen & Aanaes).
-Vector3d Tracer::edgeNormal(int patch) const noexcept {
-  const Patch& piece = model_.patch(patch);
-  const LocalFoot& foot = track(patch).foot;
+Vector3d Tracer::edgeNormal(int track) const noexcept {
+  const Patch& piece = model_.patch(tracks_[track].patch);
+  const LocalFoot& foot = tracks_[track].foot;
   int only = -1;
   bool corner = false;
   for (int side = 0; side < kSides; ++side) {
@@ -42,7 +42,7 @@ Vector3d Tracer::edgeNormal(int patch) const noexcept {
     if (n.squaredNorm() > 0) return n;
   }
   const Side& edge = piece.sides[static_cast<std::size_t>(only)];
-  const Vector3d n = surfaceNormal(patch);
+  const Vector3d n = surfaceNormal(track);
   if (edge.kind != SideKind::kJoined) return n;
   const double fraction = piece.fractionOn(only, foot.uv);
   const Patch& next = model_.patch(edge.patch);
@@ -50,9 +50,9 @@ Vector3d Tracer::edgeNormal(int patch) const noexcept {
   return sum.squaredNorm() > 0 ? Vector3d(sum.normalized()) : n;
 }
 
-Foot Tracer::describe(int patch, const Vector3d& p) const noexcept {
-  const Patch& piece = model_.patch(patch);
-  const LocalFoot& local = track(patch).foot;
+Foot Tracer::describe(int track, const Vector3d& p) const noexcept {
+  const Patch& piece = model_.patch(tracks_[track].patch);
+  const LocalFoot& local = tracks_[track].foot;
   Foot foot;
   foot.point = local.S;
   foot.u = local.uv[0];
@@ -64,14 +64,14 @@ Foot Tracer::describe(int patch, const Vector3d& p) const noexcept {
   foot.distance = local.distance;
   const Vector3d r = p - local.S;
   if (local.sides == 0) {
-    foot.normal = surfaceNormal(patch);
+    foot.normal = surfaceNormal(track);
     foot.depth = foot.behind = -r.dot(foot.normal);
     return foot;
   }
   bool open = false;
   for (int side = 0; side < kSides; ++side)
     open = open || ((local.sides & bit(side)) && piece.sides[static_cast<std::size_t>(side)].kind == SideKind::kFree);
-  foot.normal = open ? surfaceNormal(patch) : edgeNormal(patch);
+  foot.normal = open ? surfaceNormal(track) : edgeNormal(track);
   foot.behind = -r.dot(foot.normal);
   if (open) {
     // The solid behind an open surface ends in a bevel of 45 degrees: the force fades out as the probe slides off.

@@ -33,16 +33,29 @@ struct Near {
   double distance = 0;  ///< [m]
 };
 
+/// What a global search finds.
+struct Found {
+  std::vector<Near> nearest;  ///< one a surface, nearest first
+  std::vector<Near> rivals;   ///< other local feet that could become the nearest before the next search
+};
+
 /// Built once, then constant: every const function may run in any thread while a Tracer steps.
 class Model {
  public:
+  /// [m] How much nearer than another a surface can come before the next search: 10 ms at 2 m/s, toward one and away
+  /// from the other.
+  static constexpr double kSoon = 0.02;
+  static constexpr int kMaxParts = 8;
+
   /// [main] Splits, sews and indexes the surfaces.
   /// @throws std::invalid_argument that names the surface and says what was expected.
   explicit Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOptions& options = {});
 
   /// [sim] Global search: every surface within `radius` [m] of `p` (model frame), nearest first. The nearest, and those
-  /// at most 20 mm farther, come with their global foot; the others with a lower bound of the distance and a parameter
-  /// to start from. Writes at most `cap` records and returns how many surfaces there are, even beyond cap.
+  /// at most kSoon farther, come with their global foot; the others with a lower bound of the distance and a parameter
+  /// to start from. Rivals are feet in other valleys of the same surfaces, at most kSoon farther than the nearest.
+  void search(const Eigen::Vector3d& p, double radius, Found& found) const;
+  /// [sim] The same without rivals. Writes at most `cap` records and returns how many surfaces there are, even beyond.
   std::int64_t nearby(const Eigen::Vector3d& p, double radius, Near* out, std::size_t cap) const;
 
   /// [any] Number of surfaces in the model file; a surface with creases holds several patches.
@@ -61,6 +74,11 @@ class Model {
   const Eigen::Vector3d& vertexNormal(int vertex) const noexcept {
     return vertex_normal_[static_cast<std::size_t>(vertex)];
   }
+  /// [any] Shells that run into each other (one ends or passes inside the other) belong to different parts: each part
+  /// is a solid of its own, and the probe is outside if it is outside all of them. Other shells bound one solid
+  /// together.
+  int part(int shell) const noexcept { return part_[static_cast<std::size_t>(shell)]; }
+  int partCount() const noexcept { return part_count_; }
   const PoleFan& pole(int index) const noexcept { return poles_[static_cast<std::size_t>(index)]; }
 
   const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }
@@ -77,6 +95,8 @@ class Model {
   std::vector<PoleFan> poles_;
   std::vector<Eigen::Vector3d> vertex_normal_;
   std::vector<char> shell_closed_;
+  std::vector<int> part_;  ///< by shell
+  int part_count_ = 1;
   std::vector<std::string> warnings_;
   std::vector<std::string> names_;
   BoxTree tree_;

@@ -10,80 +10,49 @@ namespace {
 using Eigen::Array2d;
 using Eigen::Vector3d;
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 1e150;       ///< [m] squares of coordinates beyond overflow
-constexpr double kLongestWay = 1e4;       ///< [m] then keys are counted from zero again, to keep their digits
 constexpr double kNeighbourReach = 0.15;  ///< [m] a neighbour nobody asked for is dropped beyond
-/// [m] A record tells the distance from where the probe was when the search began: 10 ms earlier at 2 m/s.
-constexpr double kRecordAge = 0.02;
-/// A record whose (u, v) differ by less than this share of the range leads Newton to the foot that is tracked already.
-constexpr double kSameFoot = 0.02;
-constexpr int kMaxCrossings = 4;  ///< of sides in one tick
+constexpr int kMaxCrossings = 4;          ///< of sides in one tick
 
 }  // namespace
 
-Tracer::Tracer(const Model& model) : model_(model), tracks_(static_cast<std::size_t>(model.patchCount())) {
-  active_.reserve(tracks_.size());
-  key_.reserve(tracks_.size());
-}
+Tracer::Tracer(const Model& model) : model_(model), tracks_(model) {}
 
 void Tracer::activate(int surface, double u, double v, double distance) noexcept {
   if (surface < 0 || surface >= model_.surfaceCount() || !std::isfinite(u) || !std::isfinite(v)) return;
-  for (int i = model_.firstPatch(surface); i < model_.lastPatch(surface); ++i) start(i, {u, v}, distance, true);
-}
-
-void Tracer::start(int patch, const Array2d& uv, double distance, bool asked) noexcept {
-  const Patch& piece = model_.patch(patch);
-  Track& t = track(patch);
-  const Array2d inside = uv.max(piece.lo).min(piece.hi);
-  const double bound = way_ + std::max(0.0, distance - kRecordAge);
-  t.asked = t.asked || asked;
-  if (t.slot < 0) {
-    t.slot = static_cast<int>(active_.size());
-    t.at.uv = inside;
-    t.at.valid = t.has_candidate = false;
-    active_.push_back(patch);
-    key_.push_back(bound);
-    return;
-  }
-  if (((inside - t.at.uv).abs() < kSameFoot * (piece.hi - piece.lo)).all()) return;
-  t.candidate = inside;
-  t.has_candidate = true;
-  double& key = key_[static_cast<std::size_t>(t.slot)];
-  key = std::min(key, bound);
+  const double best = nearest_ >= 0 ? tracks_[nearest_].foot.distance : kInfinity;
+  for (int i = model_.firstPatch(surface); i < model_.lastPatch(surface); ++i)
+    tracks_.offer(i, {u, v}, distance, best, true);
 }
 
 void Tracer::deactivate(int surface) noexcept {
   if (surface < 0 || surface >= model_.surfaceCount()) return;
   for (int i = model_.firstPatch(surface); i < model_.lastPatch(surface); ++i) drop(i);
-  const bool asked = std::any_of(active_.begin(), active_.end(), [this](int i) { return track(i).asked; });
-  while (!asked && !active_.empty()) drop(active_.back());
+  const auto& active = tracks_.active();
+  const bool asked = std::any_of(active.begin(), active.end(), [this](int i) { return tracks_[i].asked; });
+  while (!asked && !active.empty()) drop(active.back());
 }
 
-void Tracer::drop(int patch) noexcept {
-  Track& t = track(patch);
-  if (t.slot < 0) return;
-  const auto slot = static_cast<std::size_t>(t.slot);
-  active_[slot] = active_.back();
-  key_[slot] = key_.back();
-  track(active_[slot]).slot = t.slot;
-  active_.pop_back();
-  key_.pop_back();
-  t.slot = -1;
-  t.tick = 0;
-  t.at.valid = t.has_candidate = t.asked = false;
-  if (nearest_ == patch) nearest_ = -1;
+void Tracer::drop(int track) noexcept {
+  tracks_.drop(track);
+  const auto gone = [this](int i) { return i >= 0 && tracks_[i].slot < 0; };
+  if (gone(nearest_)) nearest_ = -1;
+  for (Part& part : parts_)
+    if (gone(part.nearest)) part.nearest = -1;
 }
 
 void Tracer::reset() noexcept {
-  while (!active_.empty()) drop(active_.back());
+  tracks_.clear();
+  parts_.fill({});
+  nearest_ = -1;
   has_last_ = false;
-  way_ = 0;
 }
 
 bool Tracer::active(int surface) const noexcept {
   if (surface < 0 || surface >= model_.surfaceCount()) return false;
   for (int i = model_.firstPatch(surface); i < model_.lastPatch(surface); ++i)
-    if (track(i).slot >= 0) return true;
+    if (tracks_[i].slot >= 0) return true;
   return false;
 }
 
@@ -93,148 +62,141 @@ Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
     foot.status = TraceStatus::kInvalid;
     return foot;
   }
-  goneTo(p);
-  if (active_.empty()) return foot;
-  ++tick_;
-  budget_ = std::max(options.max_evaluations, 1);
+  if (has_last_) tracks_.gone((p - last_p_).norm());
+  last_p_ = p;
+  has_last_ = true;
+  if (tracks_.active().empty()) return foot;
+  tracks_.nextTick();
+  const int budget = std::max(options.max_evaluations, 1);
+  budget_ = budget;
   if (options.method == Method::kDirect) {
-    stepDirect(p, options.iterations);
+    stepDirect(p, options);
   } else {
-    stepNewton(p, std::max(options.tolerance, 0.0));
+    stepNewton(p, options);
   }
   if (nearest_ < 0) return foot;
   foot = describe(nearest_, p);
-  foot.evaluations = std::max(options.max_evaluations, 1) - budget_;
+  if (options.unite && model_.partCount() > 1) uniteParts(p, options, foot);
+  foot.evaluations = budget - budget_;
   return foot;
 }
 
-void Tracer::goneTo(const Vector3d& p) noexcept {
-  if (has_last_) way_ += (p - last_p_).norm();
-  last_p_ = p;
-  has_last_ = true;
-  if (!(way_ > kLongestWay)) return;
-  for (double& key : key_) key -= way_;
-  way_ = 0;
-}
-
-/// The active patch that could hold a foot nearer than `best` and has the smallest lower bound; -1: none.
-int Tracer::mostPromising(double best) const noexcept {
-  double lowest = best + way_;
-  int found = -1;
-  for (std::size_t slot = 0; slot < key_.size(); ++slot) {
-    if (!(key_[slot] < lowest) || track(active_[slot]).tick == tick_) continue;
-    lowest = key_[slot];
-    found = active_[slot];
-  }
-  return found;
-}
-
-void Tracer::stepDirect(const Vector3d& p, int iterations) noexcept {
-  double best = std::numeric_limits<double>::infinity();
+void Tracer::stepDirect(const Vector3d& p, const TraceOptions& options) noexcept {
+  const int last = nearest_;
+  double best = kInfinity;
   nearest_ = -1;
-  for (int patch : active_) {
-    Track& t = track(patch);
-    if (t.has_candidate) {
-      t.has_candidate = false;
-      const double here = t.at.valid ? (t.at.E.S - p).norm() : std::numeric_limits<double>::infinity();
-      Iterate other{t.candidate, {}, false};
-      const LocalFoot foot = directFoot(model_.patch(patch), p, other, 0);
-      if (foot.distance < here) t.at = other;
-    }
-    t.foot = directFoot(model_.patch(patch), p, t.at, iterations);
+  for (int index : tracks_.active()) {
+    Track& t = tracks_[index];
+    t.foot = directFoot(model_.patch(t.patch), p, t.at, options.iterations);
     budget_ -= t.foot.evaluations;
-    store(patch);
+    tracks_.refined(index);
     if (!(t.foot.distance < best)) continue;
     best = t.foot.distance;
-    nearest_ = patch;
+    nearest_ = index;
   }
-}
-
-void Tracer::stepNewton(const Vector3d& p, double tolerance) noexcept {
-  double best = std::numeric_limits<double>::infinity();
-  for (int patch = nearest_ >= 0 ? nearest_ : mostPromising(best); patch >= 0 && budget_ > 0;
-       patch = mostPromising(best)) {
-    refine(patch, p, tolerance);
-    if (!(track(patch).foot.distance < best)) continue;
-    best = track(patch).foot.distance;
-    nearest_ = patch;
+  if (options.hold > 0 && last >= 0 && best >= tracks_[last].foot.distance - options.hold &&
+      describe(last, p).depth > 0)
+    nearest_ = last;
+  for (Part& part : parts_) part.nearest = -1;
+  for (int index : tracks_.active()) {
+    int& nearest = parts_[static_cast<std::size_t>(tracks_[index].part)].nearest;
+    if (nearest < 0 || tracks_[index].foot.distance < tracks_[nearest].foot.distance) nearest = index;
   }
-  if (nearest_ >= 0) cross(p, tolerance);
+  if (nearest_ >= 0) parts_[static_cast<std::size_t>(tracks_[nearest_].part)].nearest = nearest_;
 }
 
-/// Keeps the new foot's distance as the bound for the ticks to come.
-void Tracer::store(int patch) noexcept {
-  Track& t = track(patch);
-  t.tick = tick_;
-  key_[static_cast<std::size_t>(t.slot)] = t.foot.distance + way_;
+void Tracer::stepNewton(const Vector3d& p, const TraceOptions& options) noexcept {
+  nearest_ = nearestOf(-1, nearest_, p, options);
+  if (nearest_ >= 0) parts_[static_cast<std::size_t>(tracks_[nearest_].part)].nearest = nearest_;
 }
 
-void Tracer::refine(int patch, const Vector3d& p, double tolerance) noexcept {
-  Track& t = track(patch);
-  t.foot = newtonFoot(model_.patch(patch), p, t.at, tolerance, budget_);
+/// Nearest foot of a part (-1: of all), refined in this tick, looking at track `start` (-1: none) first.
+int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions& options) noexcept {
+  double best = kInfinity;
+  int nearest = -1;
+  for (int index = start >= 0 ? start : tracks_.mostPromising(best, part); index >= 0 && budget_ > 0;
+       index = tracks_.mostPromising(best, part)) {
+    const bool last = index == start;
+    index = refine(index, p, options.tolerance);
+    if (nearest < 0 || tracks_[nearest].slot < 0 || tracks_[index].foot.distance < best) nearest = index;
+    best = std::min(best, tracks_[index].foot.distance);
+    // What holds a contact is left only for what is nearer by so much.
+    if (last && options.hold > 0 && describe(index, p).depth > 0) best -= options.hold;
+  }
+  return nearest >= 0 ? cross(nearest, p, options.tolerance) : start;
+}
+
+/// Brings a foot up to date. Returns the track that holds it then: a rival may join the patch's first foot.
+int Tracer::refine(int track, const Vector3d& p, double tolerance) noexcept {
+  Track& t = tracks_[track];
+  if (t.tick == tracks_.tick()) return track;
+  t.foot = newtonFoot(model_.patch(t.patch), p, t.at, std::max(tolerance, 0.0), budget_);
   budget_ -= t.foot.evaluations;
-  if (t.has_candidate && budget_ > 0) {
-    t.has_candidate = false;
-    tryFrom(patch, t.candidate, p, tolerance);
-  }
-  store(patch);
+  tracks_.refined(track);
+  return tracks_[t.patch].rival >= 0 ? tracks_.merge(track) : track;
 }
 
-/// Replaces the foot of a patch by the one found from (u, v) if that is nearer.
-bool Tracer::tryFrom(int patch, const Array2d& uv, const Vector3d& p, double tolerance) noexcept {
+/// Replaces a foot by the one found from (u, v) on its patch if that is nearer.
+bool Tracer::tryFrom(int track, const Array2d& uv, const Vector3d& p, double tolerance) noexcept {
   if (budget_ <= 0) return false;
-  Track& t = track(patch);
+  Track& t = tracks_[track];
   Iterate other{uv, {}, false};
-  const LocalFoot foot = newtonFoot(model_.patch(patch), p, other, tolerance, budget_);
+  const LocalFoot foot = newtonFoot(model_.patch(t.patch), p, other, tolerance, budget_);
   budget_ -= foot.evaluations;
   if (!(foot.distance < t.foot.distance)) return false;
   t.foot = foot;
   t.at = other;
-  store(patch);
+  tracks_.refined(track);
   return true;
 }
 
-/// Follows the nearest foot across the sides that it meets, while that brings it nearer.
-void Tracer::cross(const Vector3d& p, double tolerance) noexcept {
+/// Follows a foot across the sides that it meets, while that brings it nearer. Returns the track that it ends on.
+int Tracer::cross(int track, const Vector3d& p, double tolerance) noexcept {
   for (int i = 0; i < kMaxCrossings && budget_ > 0; ++i) {
-    const int from = nearest_;
-    const SideMask sides = track(from).foot.sides;
-    bool nearer = false;
-    for (int side = 0; side < kSides && !nearer; ++side)
-      if (sides & bit(side)) nearer = crossSide(from, side, p, tolerance);
-    if (!nearer) return;
+    const SideMask sides = tracks_[track].foot.sides;
+    int next = -1;
+    for (int side = 0; side < kSides && next < 0; ++side)
+      if (sides & bit(side)) next = crossSide(track, side, p, tolerance);
+    if (next < 0) return track;
+    track = next;
   }
+  return track;
 }
 
-bool Tracer::crossSide(int patch, int side, const Vector3d& p, double tolerance) noexcept {
+/// The track on which the foot goes on nearer to the probe beyond a side, -1: none.
+int Tracer::crossSide(int track, int side, const Vector3d& p, double tolerance) noexcept {
+  const int patch = tracks_[track].patch;
   const Patch& piece = model_.patch(patch);
   const Side& edge = piece.sides[static_cast<std::size_t>(side)];
-  const LocalFoot& foot = track(patch).foot;
-  if (edge.kind == SideKind::kFree) return false;
-  if (edge.kind == SideKind::kPole) return leavePole(patch, side, p, tolerance);
-  const double fraction = piece.fractionOn(side, foot.uv);
+  if (edge.kind == SideKind::kFree) return -1;
+  if (edge.kind == SideKind::kPole) return leavePole(track, side, p, tolerance) ? track : -1;
+  const double best = tracks_[track].foot.distance;
+  const double fraction = piece.fractionOn(side, tracks_[track].foot.uv);
   const Array2d there = model_.patch(edge.patch).onSide(edge.side, edge.flipped ? 1 - fraction : fraction);
-  if (edge.patch == patch) return tryFrom(patch, there, p, tolerance);
-  Track& next = track(edge.patch);
-  const double best = foot.distance;
-  if (next.slot < 0) start(edge.patch, there, 0, false);
-  if (next.tick != tick_) refine(edge.patch, p, tolerance);
+  if (edge.patch == patch) return tryFrom(track, there, p, tolerance) ? track : -1;
+  const int next = edge.patch;
+  tracks_.follow(next, there);
+  if (budget_ > 0) refine(next, p, tolerance);
+  if (tracks_[next].tick != tracks_.tick()) return -1;
   // The common side belongs to the neighbour too: if its foot is farther away, it sits in another valley.
-  if (next.foot.distance > best + tolerance) tryFrom(edge.patch, there, p, tolerance);
-  const bool nearer = next.foot.distance < best;
-  if (nearer) nearest_ = edge.patch;
-  if (!next.asked && next.foot.distance > kNeighbourReach) drop(edge.patch);
-  return nearer;
+  if (tracks_[next].foot.distance > best + tolerance) {
+    const Iterate at = tracks_[next].at;
+    const LocalFoot foot = tracks_[next].foot;
+    if (tryFrom(next, there, p, tolerance) && foot.distance < best + Model::kSoon) tracks_.keepAsRival(next, at, foot);
+  }
+  const bool nearer = tracks_[next].foot.distance < best;
+  if (!tracks_[next].asked && tracks_[next].foot.distance > kNeighbourReach) drop(next);
+  return nearer ? next : -1;
 }
 
-bool Tracer::leavePole(int patch, int side, const Vector3d& p, double tolerance) noexcept {
+bool Tracer::leavePole(int track, int side, const Vector3d& p, double tolerance) noexcept {
   constexpr double kOutward = 1e-9;  // cosine: rays at right angles to the probe lead no nearer
-  const Patch& piece = model_.patch(patch);
+  const Track& t = tracks_[track];
+  const Patch& piece = model_.patch(t.patch);
   const PoleFan& fan = model_.pole(piece.sides[static_cast<std::size_t>(side)].pole);
-  const Track& t = track(patch);
   const Vector3d r = p - t.foot.S;
   int best = 0;
-  double most = -std::numeric_limits<double>::infinity();
+  double most = -kInfinity;
   for (int i = 0; i < PoleFan::kRays; ++i) {
     const double gain = r.dot(fan.direction[static_cast<std::size_t>(i)]);
     if (!(gain > most)) continue;
@@ -249,7 +211,7 @@ bool Tracer::leavePole(int patch, int side, const Vector3d& p, double tolerance)
   Array2d uv;
   uv[axis] = side % 2 == 0 ? piece.lo[axis] + inward : piece.hi[axis] - inward;
   uv[1 - axis] = fan.along[static_cast<std::size_t>(best)];
-  return tryFrom(patch, uv, p, tolerance);
+  return tryFrom(track, uv, p, tolerance);
 }
 
 }  // namespace hapticd::trace

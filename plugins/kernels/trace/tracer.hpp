@@ -1,10 +1,10 @@
 /// Traces one probe over the active surfaces of a model. One Tracer a probe; the Model is shared.
 #pragma once
+#include <array>
 #include <cstdint>
-#include <vector>
 
 #include "kernels/trace/model.hpp"
-#include "kernels/trace/newton.hpp"
+#include "kernels/trace/tracks.hpp"
 
 namespace hapticd::trace {
 
@@ -18,6 +18,11 @@ struct TraceOptions {
   int iterations = 1;        ///< steps a tick of kDirect, 1..4
   double tolerance = 1e-9;   ///< [m] error of the foot at which kNewton stops
   int max_evaluations = 12;  ///< bound of the work of one tick, over all surfaces
+  /// [m] A foot that holds a contact is left only for one nearer by more than this, however near others come; it still
+  /// slides on across edges. 0: the nearest foot always. Large: a proxy, which never comes out of the far side.
+  double hold = 0;
+  /// Whether parts that run into each other are felt as one solid. Otherwise the nearest foot of all decides alone.
+  bool unite = true;
 };
 
 enum class TraceStatus : std::uint8_t {
@@ -27,14 +32,14 @@ enum class TraceStatus : std::uint8_t {
   kInvalid    ///< the probe is not a finite position; tracks are kept as they were
 };
 
-/// The nearest foot, in the model's frame.
+/// The nearest foot, in the model's frame. Inside two parts at once: what leads out of both.
 struct Foot {
   Eigen::Vector3d point{0, 0, 0};
   Eigen::Vector3d normal{0, 0, 1};  ///< outward, unit
   double depth = 0;                 ///< [m] > 0 inside, minus the distance outside
-  double distance = 0;           ///< [m] from the probe to the point
-  double behind = 0;  ///< [m] how far the probe is behind the surface, negative in front of it
-  double aside = 0;   ///< [m] how far it is beside a free edge that holds the foot
+  double distance = 0;              ///< [m] from the probe to the point
+  double behind = 0;                ///< [m] how far the probe is behind the surface, negative in front of it
+  double aside = 0;                 ///< [m] how far it is beside a free edge that holds the foot
   double u = 0, v = 0;              ///< parameters of the model file
   double residual = 0;              ///< [m] estimated error of the foot
   int surface = -1;                 ///< index in the model file
@@ -43,15 +48,15 @@ struct Foot {
   bool on_edge = false;  ///< the foot lies on a side of its patch
 };
 
-/// Local feet of all active surfaces, advanced once a tick. The distance to a surface changes by at most the way the
-/// probe goes (it is 1-Lipschitz), so a surface is evaluated only in ticks in which it could hold the nearest foot.
+/// Local feet of all active surfaces, advanced once a tick. A surface is evaluated only in ticks in which it could hold
+/// the nearest foot (see tracks.hpp).
 class Tracer {
  public:
   /// [main] Allocates all that stepping needs.
   explicit Tracer(const Model& model);
 
   /// [rt] Starts tracing a surface at (u, v); `distance` [m], where known, is a lower bound of its distance from the
-  /// probe. On an active surface (u, v) is a second candidate: it is taken if it proves nearer than the tracked foot.
+  /// probe. On an active surface (u, v) is followed beside the feet that are known, and taken when it is the nearest.
   void activate(int surface, double u, double v, double distance = 0) noexcept;
   /// [rt] Stops tracing a surface.
   void deactivate(int surface) noexcept;
@@ -61,49 +66,41 @@ class Tracer {
   Foot step(const Eigen::Vector3d& p, const TraceOptions& options = {}) noexcept;
 
   bool active(int surface) const noexcept;
-  int activeCount() const noexcept { return static_cast<int>(active_.size()); }
+  int activeCount() const noexcept { return static_cast<int>(tracks_.active().size()); }
   const Model& model() const noexcept { return model_; }
 
  private:
-  struct Track {
-    Iterate at;
-    LocalFoot foot;
-    Eigen::Array2d candidate{0, 0};
-    std::uint64_t tick = 0;  ///< last tick that refined it
-    int slot = -1;           ///< index in active_, -1: not active
-    bool has_candidate = false;
-    bool asked = false;  ///< activated by the host; otherwise by a neighbour's foot on a common side
+  /// What is known of a part of the model.
+  struct Part {
+    int nearest = -1;  ///< track
+    double depth = 0;  ///< [m] > 0 inside, when it was last looked at
+    double way = 0;    ///< [m] gone until then
+    bool known = false;
   };
 
-  Track& track(int patch) noexcept { return tracks_[static_cast<std::size_t>(patch)]; }
-  const Track& track(int patch) const noexcept { return tracks_[static_cast<std::size_t>(patch)]; }
-  void start(int patch, const Eigen::Array2d& uv, double distance, bool asked) noexcept;
-  void drop(int patch) noexcept;
-  void goneTo(const Eigen::Vector3d& p) noexcept;
-  int mostPromising(double best) const noexcept;
+  void stepDirect(const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
+  void stepNewton(const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
+  int nearestOf(int part, int start, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
+  int refine(int track, const Eigen::Vector3d& p, double tolerance) noexcept;
+  bool tryFrom(int track, const Eigen::Array2d& uv, const Eigen::Vector3d& p, double tolerance) noexcept;
+  int cross(int track, const Eigen::Vector3d& p, double tolerance) noexcept;
+  int crossSide(int track, int side, const Eigen::Vector3d& p, double tolerance) noexcept;
+  bool leavePole(int track, int side, const Eigen::Vector3d& p, double tolerance) noexcept;
+  void drop(int track) noexcept;
 
-  void stepDirect(const Eigen::Vector3d& p, int iterations) noexcept;
-  void stepNewton(const Eigen::Vector3d& p, double tolerance) noexcept;
-  void refine(int patch, const Eigen::Vector3d& p, double tolerance) noexcept;
-  bool tryFrom(int patch, const Eigen::Array2d& uv, const Eigen::Vector3d& p, double tolerance) noexcept;
-  void store(int patch) noexcept;
-  void cross(const Eigen::Vector3d& p, double tolerance) noexcept;
-  bool crossSide(int patch, int side, const Eigen::Vector3d& p, double tolerance) noexcept;
-  bool leavePole(int patch, int side, const Eigen::Vector3d& p, double tolerance) noexcept;
-
-  Foot describe(int patch, const Eigen::Vector3d& p) const noexcept;
-  Eigen::Vector3d surfaceNormal(int patch) const noexcept;
-  Eigen::Vector3d edgeNormal(int patch) const noexcept;
+  Foot describe(int track, const Eigen::Vector3d& p) const noexcept;
+  Eigen::Vector3d surfaceNormal(int track) const noexcept;
+  Eigen::Vector3d edgeNormal(int track) const noexcept;
+  void uniteParts(const Eigen::Vector3d& p, const TraceOptions& options, Foot& foot) noexcept;
+  bool refreshPart(int part, const Eigen::Vector3d& p, const TraceOptions& options, double deepest,
+                   Foot& foot) noexcept;
 
   const Model& model_;
-  std::vector<Track> tracks_;  ///< by patch
-  std::vector<int> active_;    ///< patches, dense
-  std::vector<double> key_;    ///< by slot: distance when last refined + way gone until then
+  Tracks tracks_;
+  std::array<Part, Model::kMaxParts> parts_{};
   Eigen::Vector3d last_p_{0, 0, 0};
-  double way_ = 0;  ///< [m] length of the probe's path
-  std::uint64_t tick_ = 0;
-  int nearest_ = -1;
-  int budget_ = 0;  ///< evaluations left in this tick
+  int nearest_ = -1;  ///< track
+  int budget_ = 0;    ///< evaluations left in this tick
   bool has_last_ = false;
 };
 

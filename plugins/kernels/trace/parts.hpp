@@ -1,0 +1,13 @@
+/// Which shells of a model bound one solid together, and which run into each other.
+#pragma once
+#include <vector>
+
+#include "kernels/trace/model.hpp"
+
+namespace hapticd::trace {
+
+/// [main] The part of each shell, see Model::part(). By generalized winding numbers (Jacobson et al. 2013), which tell
+/// inside from outside for shells with openings too. Models of very many shells make one part.
+std::vector<int> groupShells(const Model& model);
+
+}  // namespace hapticd::trace

@@ -1,0 +1,140 @@
+/// Global search over a model: leaves of the box tree, nearest first, and Newton from the middle of each.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kernels/trace/model.hpp"
+#include "kernels/trace/newton.hpp"
+
+namespace hapticd::trace {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// One search under way.
+class Search {
+ public:
+  Search(const Model& model, const BoxTree& tree, const Vector3d& p, Found& found)
+      : model_(model),
+        tree_(tree),
+        p_(p),
+        found_(found),
+        slot_(static_cast<std::size_t>(model.surfaceCount()), -1),
+        same_(1e-5 * model.bounds().diagonal().norm()) {}
+
+  void run(double radius) {
+    std::vector<LeafHit> hits;
+    tree_.within(p_, radius, hits);
+    for (const LeafHit& hit : hits) look(tree_.leaf(hit.leaf), std::sqrt(hit.distance2));
+    std::erase_if(found_.nearest, [radius](const Near& near) { return !(near.distance <= radius); });
+    std::sort(found_.nearest.begin(), found_.nearest.end(), before);
+    keepRivals();
+  }
+
+ private:
+  struct Valley {
+    Near near;
+    Vector3d point;
+  };
+
+  static bool before(const Near& a, const Near& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.surface < b.surface;
+  }
+
+  /// Looks at a leaf that is `bound` or more away: for the nearest foot of its surface, or else for another valley.
+  void look(const Leaf& leaf, double bound) {
+    const int source = model_.patch(leaf.patch).source;
+    int& at = slot_[static_cast<std::size_t>(source)];
+    const bool known = at >= 0;
+    if (known && bound >= found_.nearest[static_cast<std::size_t>(at)].distance) {
+      if (bound <= nearest_ + Model::kSoon) lookForValley(leaf);
+      return;
+    }
+    if (!known) {
+      at = static_cast<int>(found_.nearest.size());
+      found_.nearest.push_back({source, leaf.middle[0], leaf.middle[1], kInfinity});
+    }
+    Near& near = found_.nearest[static_cast<std::size_t>(at)];
+    if (bound > nearest_ + Model::kSoon) {  // cannot become the nearest soon: a bound will do, and most work falls away
+      near.distance = bound;
+      return;
+    }
+    constexpr int kEvaluations = 40;
+    const LocalFoot foot = footFrom(leaf, kEvaluations);
+    keepValley(leaf.patch, foot);
+    if (foot.distance < near.distance) near = {source, foot.uv[0], foot.uv[1], foot.distance};
+    nearest_ = std::min(nearest_, near.distance);
+  }
+
+  LocalFoot footFrom(const Leaf& leaf, int evaluations) const {
+    constexpr double kTolerance = 1e-12;  // [m]
+    Iterate iterate;
+    iterate.uv = leaf.middle;
+    return newtonFoot(model_.patch(leaf.patch), p_, iterate, kTolerance, evaluations);
+  }
+
+  /// A valley has its bottom in some leaf, and Newton from the middle of that leaf stays near: others are given up
+  /// after the first step.
+  void lookForValley(const Leaf& leaf) {
+    constexpr int kFirst = 2, kEvaluations = 20;
+    const double kNear = 2;  // half-widths of the leaf
+    const auto strays = [&leaf, kNear](const LocalFoot& foot) {
+      return ((foot.uv - leaf.middle).abs() > kNear * leaf.half).any();
+    };
+    const LocalFoot first = footFrom(leaf, kFirst);
+    if (strays(first)) return;
+    keepValley(leaf.patch, first.converged ? first : footFrom(leaf, kEvaluations));
+  }
+
+  void keepValley(int patch, const LocalFoot& foot) {
+    const Patch& piece = model_.patch(patch);
+    for (int side = 0; side < kSides; ++side)  // beyond a common side it goes on down
+      if ((foot.sides & bit(side)) && piece.sides[static_cast<std::size_t>(side)].kind != SideKind::kFree) return;
+    if (!foot.converged) return;
+    for (const Valley& valley : valleys_)
+      if (valley.near.surface == piece.source && (valley.point - foot.S).norm() < same_) return;
+    valleys_.push_back({{piece.source, foot.uv[0], foot.uv[1], foot.distance}, foot.S});
+  }
+
+  void keepRivals() {
+    constexpr std::size_t kMostRivals = 16;
+    for (const Valley& valley : valleys_) {
+      const int at = slot_[static_cast<std::size_t>(valley.near.surface)];
+      if (at < 0 || valley.near.distance > nearest_ + Model::kSoon) continue;
+      const auto first = std::find_if(found_.nearest.begin(), found_.nearest.end(),
+                                      [&](const Near& near) { return near.surface == valley.near.surface; });
+      if (first != found_.nearest.end() && (first->u != valley.near.u || first->v != valley.near.v))
+        found_.rivals.push_back(valley.near);
+    }
+    std::sort(found_.rivals.begin(), found_.rivals.end(), before);
+    if (found_.rivals.size() > kMostRivals) found_.rivals.resize(kMostRivals);
+  }
+
+  const Model& model_;
+  const BoxTree& tree_;
+  const Vector3d p_;
+  Found& found_;
+  std::vector<int> slot_;  ///< by surface: index in found_.nearest before it is sorted
+  std::vector<Valley> valleys_;
+  double same_;  ///< [m] feet closer than this are one
+  double nearest_ = kInfinity;
+};
+
+}  // namespace
+
+void Model::search(const Vector3d& p, double radius, Found& found) const {
+  found.nearest.clear();
+  found.rivals.clear();
+  if (p.allFinite() && radius >= 0) Search(*this, tree_, p, found).run(radius);
+}
+
+std::int64_t Model::nearby(const Vector3d& p, double radius, Near* out, std::size_t cap) const {
+  Found found;
+  search(p, radius, found);
+  if (out != nullptr) std::copy_n(found.nearest.begin(), std::min(cap, found.nearest.size()), out);
+  return static_cast<std::int64_t>(found.nearest.size());
+}
+
+}  // namespace hapticd::trace

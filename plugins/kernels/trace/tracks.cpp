@@ -1,0 +1,199 @@
+#include "kernels/trace/tracks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hapticd::trace {
+namespace {
+
+using Eigen::Array2d;
+
+constexpr double kLongestWay = 1e4;  ///< [m] then keys are counted from zero again, to keep their digits
+/// [m] A record tells the distance from where the probe was when the search began. The first one may be 10 ms old at
+/// 2 m/s; the others are younger than the results of the search before.
+constexpr double kRecordAge = 0.02;
+/// A record whose (u, v) differ by less than this share of the range leads Newton to a foot that is followed already.
+constexpr double kSameRecord = 0.02;
+/// Refined feet so close in (u, v), or in space [m], are the same.
+constexpr double kSameFoot = 1e-5, kSamePoint = 1e-8;
+
+}  // namespace
+
+Tracks::Tracks(const Model& model)
+    : model_(model), patch_count_(model.patchCount()), tracks_(static_cast<std::size_t>(patch_count_ + kRivals)) {
+  active_.reserve(tracks_.size());
+  key_.reserve(tracks_.size());
+  for (int i = 0; i < patch_count_; ++i) {
+    (*this)[i].patch = i;
+    (*this)[i].part = model.part(model.patch(i).shell);
+  }
+  clear();
+}
+
+void Tracks::append(int index, double bound) noexcept {
+  Track& t = (*this)[index];
+  t.slot = static_cast<int>(active_.size());
+  active_.push_back(index);
+  key_.push_back(bound);
+}
+
+void Tracks::offer(int patch, const Array2d& uv, double distance, double best, bool asked) noexcept {
+  noteSearch();
+  const Patch& piece = model_.patch(patch);
+  const Array2d inside = uv.max(piece.lo).min(piece.hi);
+  const double bound = way_told_before_ + std::max(0.0, distance);
+  Track& first = (*this)[patch];
+  first.asked = first.asked || asked;
+  if (first.slot < 0) {
+    append(patch, bound);
+    set(patch, inside, bound);
+    return;
+  }
+  if (distance > best + Model::kSoon || (inside != uv).any()) return;  // or the foot of another patch of the surface
+  if (follows(patch, inside, bound)) return;
+  for (int i = patch; i >= 0; i = (*this)[i].rival)
+    if ((*this)[i].touched < told_before_) return set(i, inside, bound);
+  if (const Track* rival = newRival(patch)) set(static_cast<int>(rival - tracks_.data()), inside, bound);
+}
+
+void Tracks::follow(int patch, const Array2d& uv) noexcept {
+  if ((*this)[patch].slot >= 0) return;
+  append(patch, way_);
+  set(patch, uv, way_);
+}
+
+/// Notes that this tick brings results of a search. They may come in the middle of a tick and so in two: only what the
+/// search before the last one told is certainly older than where the newest search began.
+void Tracks::noteSearch() noexcept {
+  if (told_ == tick_) return;
+  told_before_ = told_;
+  way_told_before_ = way_told_;
+  told_ = tick_;
+  way_told_ = way_;
+}
+
+void Tracks::set(int index, const Array2d& uv, double bound) noexcept {
+  Track& t = (*this)[index];
+  t.at.uv = uv;
+  t.at.valid = false;
+  t.touched = tick_;
+  key_[static_cast<std::size_t>(t.slot)] = bound;
+}
+
+/// Whether a record leads to a foot of the patch that is followed already, or to an older record, which it replaces.
+bool Tracks::follows(int patch, const Array2d& uv, double bound) noexcept {
+  const Array2d range = model_.patch(patch).hi - model_.patch(patch).lo;
+  for (int i = patch; i >= 0; i = (*this)[i].rival) {
+    Track& t = (*this)[i];
+    if (!((uv - t.at.uv).abs() < kSameRecord * range).all()) continue;
+    t.touched = tick_;
+    if (!t.at.valid) set(i, uv, bound);
+    return true;
+  }
+  return false;
+}
+
+void Tracks::keepAsRival(int patch, const Iterate& at, const LocalFoot& foot) noexcept {
+  Track* rival = newRival(patch);
+  if (rival == nullptr) return;
+  rival->at = at;
+  rival->foot = foot;
+  refined(static_cast<int>(rival - tracks_.data()));
+}
+
+/// A rival that nobody uses, or else the one that has been out of interest for the longest time; none if all are new.
+Track* Tracks::newRival(int patch) noexcept {
+  int index = patch_count_;
+  for (int i = patch_count_; i < patch_count_ + kRivals && (*this)[index].slot >= 0; ++i)
+    if ((*this)[i].slot < 0 || (*this)[i].touched < (*this)[index].touched) index = i;
+  Track& rival = (*this)[index];
+  if (rival.slot >= 0 && rival.touched == tick_) return nullptr;
+  drop(index);
+  Track& first = (*this)[patch];
+  rival.patch = patch;
+  rival.tick = 0;
+  rival.at.valid = rival.asked = false;
+  rival.part = first.part;
+  rival.rival = first.rival;
+  first.rival = index;
+  append(index, way_);
+  return &rival;
+}
+
+void Tracks::drop(int index) noexcept {
+  Track& t = (*this)[index];
+  if (t.slot < 0) return;
+  if (isRival(index)) {
+    int before = t.patch;
+    while ((*this)[before].rival != index) before = (*this)[before].rival;
+    (*this)[before].rival = t.rival;
+  } else {
+    while (t.rival >= 0) drop(t.rival);
+  }
+  const auto slot = static_cast<std::size_t>(t.slot);
+  active_[slot] = active_.back();
+  key_[slot] = key_.back();
+  (*this)[active_[slot]].slot = t.slot;
+  active_.pop_back();
+  key_.pop_back();
+  t.slot = t.rival = -1;
+  t.tick = 0;
+  t.at.valid = t.asked = false;
+}
+
+int Tracks::merge(int index) noexcept {
+  const Array2d range = model_.patch((*this)[index].patch).hi - model_.patch((*this)[index].patch).lo;
+  const int first = (*this)[index].patch;
+  for (int i = first; i >= 0; i = (*this)[i].rival) {
+    if (i == index || (*this)[i].tick != tick_) continue;
+    const LocalFoot &one = (*this)[i].foot, &other = (*this)[index].foot;
+    const bool same = ((one.uv - other.uv).abs() < kSameFoot * range).all() || (one.S - other.S).norm() < kSamePoint;
+    if (!same) continue;
+    const int kept = isRival(i) ? index : i, gone = isRival(i) ? i : index;
+    if ((*this)[gone].foot.distance < (*this)[kept].foot.distance) {
+      (*this)[kept].at = (*this)[gone].at;
+      (*this)[kept].foot = (*this)[gone].foot;
+      refined(kept);
+    }
+    drop(gone);
+    return kept;
+  }
+  return index;
+}
+
+void Tracks::clear() noexcept {
+  while (!active_.empty()) drop(active_.back());
+  way_ = 0;
+  told_ = told_before_ = tick_;
+  way_told_ = way_told_before_ = -kRecordAge;
+}
+
+void Tracks::gone(double way) noexcept {
+  way_ += way;
+  if (!(way_ > kLongestWay)) return;
+  for (double& key : key_) key -= way_;
+  way_told_ -= way_;
+  way_told_before_ -= way_;
+  way_ = 0;
+}
+
+void Tracks::refined(int index) noexcept {
+  Track& t = (*this)[index];
+  t.tick = t.touched = tick_;
+  key_[static_cast<std::size_t>(t.slot)] = t.foot.distance + way_;
+}
+
+int Tracks::mostPromising(double best, int part) const noexcept {
+  double lowest = best + way_;
+  int found = -1;
+  for (std::size_t slot = 0; slot < key_.size(); ++slot) {
+    if (!(key_[slot] < lowest)) continue;
+    const Track& t = (*this)[active_[slot]];
+    if (t.tick == tick_ || (part >= 0 && t.part != part)) continue;
+    lowest = key_[slot];
+    found = active_[slot];
+  }
+  return found;
+}
+
+}  // namespace hapticd::trace

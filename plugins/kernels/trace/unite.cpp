@@ -1,0 +1,92 @@
+/// Models whose parts run into each other, as the handle of a pot ends inside its body: what is buried is not felt, and
+/// where parts meet they act together.
+#include <algorithm>
+#include <array>
+
+#include "kernels/trace/tracer.hpp"
+
+namespace hapticd::trace {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A part seen from the probe: the plane through its nearest foot.
+struct Wall {
+  Vector3d normal;   ///< unit, outward
+  double depth = 0;  ///< [m] of the probe behind the plane
+};
+
+/// Shortest way out of all walls at once: the projection onto the intersection of their half-spaces (Zilles & Salisbury
+/// 1995), by Hildreth's method. A fixed number of sweeps of continuous functions is continuous in the walls, so the
+/// force is continuous wherever the feet are. `pushes`: what each wall contributes.
+Vector3d wayOut(const Wall* walls, int count, double* pushes) noexcept {
+  constexpr int kSweeps = 32;  // 10 % of the depth is left between walls that meet at 20 degrees
+  Vector3d way = Vector3d::Zero();
+  std::fill_n(pushes, count, 0.0);
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (int i = 0; i < count; ++i) {
+      const double push = std::max(0.0, pushes[i] + walls[i].depth - way.dot(walls[i].normal));
+      way += (push - pushes[i]) * walls[i].normal;
+      pushes[i] = push;
+    }
+  return way;
+}
+
+double behindPlane(const Foot& foot) noexcept {
+  return foot.behind - foot.aside;  // beside a free edge the plane falls away in a bevel of 45 degrees
+}
+
+}  // namespace
+
+/// Brings what is known of a part up to date if its plane could be less than `reach` [m] from the probe by now.
+bool Tracer::refreshPart(int part, const Vector3d& p, const TraceOptions& options, double reach, Foot& foot) noexcept {
+  constexpr double kSteepest = 3;  // the depth behind a bevelled edge changes faster than the probe goes
+  Part& known = parts_[static_cast<std::size_t>(part)];
+  if (known.known && known.depth + kSteepest * std::abs(tracks_.way() - known.way) < -reach) return false;
+  if (known.nearest >= 0 && (tracks_[known.nearest].slot < 0 || tracks_[known.nearest].part != part))
+    known.nearest = -1;
+  if (options.method == Method::kNewton && (known.nearest < 0 || known.nearest != nearest_))
+    known.nearest = nearestOf(part, known.nearest, p, options);
+  known.known = known.nearest >= 0 && tracks_[known.nearest].tick > 0;
+  if (!known.known) return false;
+  foot = describe(known.nearest, p);
+  if (tracks_[known.nearest].tick != tracks_.tick()) foot.status = TraceStatus::kDegraded;  // its last plane serves on
+  known.depth = behindPlane(foot);
+  known.way = tracks_.way();
+  return true;
+}
+
+void Tracer::uniteParts(const Vector3d& p, const TraceOptions& options, Foot& foot) noexcept {
+  std::array<Foot, Model::kMaxParts> feet;
+  std::array<Wall, Model::kMaxParts> walls;
+  std::array<double, Model::kMaxParts> pushes{};
+  std::array<bool, Model::kMaxParts> seen{};
+  int count = 0;
+  double deepest = 0;
+  // The parts that the probe is in, then those so near that they could be in the way out.
+  for (int pass = 0; pass < 2; ++pass) {
+    const double reach = deepest;
+    for (int part = 0; part < model_.partCount(); ++part) {
+      const auto n = static_cast<std::size_t>(count);
+      if (seen[static_cast<std::size_t>(part)] || !refreshPart(part, p, options, reach, feet[n])) continue;
+      seen[static_cast<std::size_t>(part)] = true;
+      walls[n] = {feet[n].normal, behindPlane(feet[n])};
+      deepest = std::max(deepest, walls[n].depth);
+      ++count;
+    }
+    if (!(deepest > 0)) return;
+  }
+  const Vector3d way = wayOut(walls.data(), count, pushes.data());
+  const auto pushing = std::count_if(pushes.begin(), pushes.begin() + count, [](double push) { return push > 0; });
+  const auto most = static_cast<std::size_t>(std::max_element(pushes.begin(), pushes.begin() + count) - pushes.begin());
+  foot = feet[most];
+  const double depth = way.norm();
+  if (pushing < 2 || !(depth > 0)) return;
+  foot.point = p + way;
+  foot.normal = way / depth;
+  foot.depth = foot.behind = foot.distance = depth;
+  foot.aside = 0;
+  foot.on_edge = true;
+}
+
+}  // namespace hapticd::trace
