@@ -51,8 +51,8 @@ Result<void> Arm::start(Nanoseconds now, const Eigen::Vector3d& gravity_world) {
 }
 
 const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
-  const hsp_status status = device_->read(now, sample_);
-  probe_.valid = judge(status, now) && locate();
+  read_status_ = device_->read(now, sample_);
+  probe_.valid = judge(read_status_, now) && locate();
   if (!probe_.valid) return probe_;
   if (velocity_) {
     probe_.velocity = velocity_->update(probe_.position, dt);
@@ -105,7 +105,8 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
   const hdv_ext_kinematics& kinematics = device_->kinematics();
   using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HDV_MAX_JOINTS>;
   Jacobian J(6, joints);
-  hdv_command command{};
+  hdv_command& command = command_;
+  command = hdv_command{};
   command.struct_size = sizeof command;
   command.mode = HDV_OFF;
   const bool located = std::isfinite(sample_.position[0]) &&
@@ -121,7 +122,8 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
     if (kinematics.gravity(device_->handle(), sample_.position, gravity_device_.data(), gravity.data()) == HSP_OK)
       for (uint32_t i = 0; i < joints; ++i) command.torque[i] += gravity[i];
   }
-  if (device_->write(now, command) < 0) limiter_.trip(Fault::kDeviceLost);
+  write_status_ = device_->write(now, command);
+  if (write_status_ < 0) limiter_.trip(Fault::kDeviceLost);
 }
 
 void Arm::scaleToMotors(hdv_command& command) const noexcept HSP_RT {

@@ -42,6 +42,10 @@ class Arm {
   const Limiter& limiter() const noexcept { return limiter_; }
   const Eigen::Vector3d& force() const noexcept { return force_; }  ///< [N] world, as sent
   const Probe& probe() const noexcept { return probe_; }
+  const hdv_sample& sample() const noexcept { return sample_; }      ///< as read() got it
+  const hdv_command& command() const noexcept { return command_; }   ///< as write() gave it
+  hsp_status readStatus() const noexcept { return read_status_; }    ///< of the last read
+  hsp_status writeStatus() const noexcept { return write_status_; }  ///< of the last write
   bool estimatesVelocity() const { return velocity_.has_value(); }
   bool simulated() const noexcept { return (device_->info().capabilities & HDV_C_SIMULATED) != 0; }
   double rampOut() const noexcept { return limiter_.rampOut(); }  ///< [s]
@@ -61,6 +65,8 @@ class Arm {
   std::optional<passivity::PassivityController> passivity_;
   Limiter limiter_;
   hdv_sample sample_{};
+  hdv_command command_{};
+  hsp_status read_status_ = HSP_OK, write_status_ = HSP_OK;
   uint64_t last_sequence_ = 0;
   Nanoseconds fresh_at_ = 0;
   Probe probe_;

@@ -99,11 +99,10 @@ void Core::listLive() noexcept HSP_RT {
 }
 
 void Core::receiveRecords() noexcept HSP_RT {
-  // Bounded: a flood of records must not make a tick late; the rest waits for the next.
-  constexpr int kRecordsPerTick = 1024;
-  link::ActivationRecord record;
   bool changed = false;
-  for (int i = 0; i < kRecordsPerTick && link_.records.pop(record); ++i) {
+  for (received_count_ = 0; received_count_ < received_.size() && link_.records.pop(received_[received_count_]);
+       ++received_count_) {
+    const link::ActivationRecord& record = received_[received_count_];
     ModelState& model = models_[record.model];
     const hsp_ext_surfaces& surfaces = *model.shape->surfaces();
     if (record.order == link::ActivationRecord::Order::kStop) {

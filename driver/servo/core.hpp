@@ -2,6 +2,7 @@
 /// over a recorded path; same input gives the same bits.
 #pragma once
 #include <Eigen/Geometry>
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -75,6 +76,8 @@ class Core {
   uint32_t transforms() const noexcept { return transforms_; }
   /// Models that have something to do in this tick, in scene order.
   std::span<const uint32_t> live() const noexcept { return live_; }
+  /// Activation records that the last tick took, for the recording.
+  std::span<const link::ActivationRecord> received() const noexcept { return {received_.data(), received_count_}; }
   uint32_t probeCount() const noexcept { return probe_count_; }
 
  private:
@@ -96,6 +99,9 @@ class Core {
   std::vector<Contact> contacts_;  // [model * probe_count + probe]
   std::vector<hsp_probe> inputs_;  // of the model being stepped
   std::vector<hsp_contact> outputs_;
+  // Bounded: a flood of records must not make a tick late; the rest waits for the next.
+  std::array<link::ActivationRecord, 1024> received_;
+  size_t received_count_ = 0;
   std::vector<Vector3d> last_position_;  // of the last good sample
   std::vector<uint8_t> jumped_, seen_;
   std::vector<Vector3d> forces_, torques_;

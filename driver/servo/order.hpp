@@ -1,0 +1,34 @@
+/// What a person asks of the running servo. Ordinary threads prepare it, a ring carries it, and the servo obeys at the
+/// start of a tick; a recording keeps it, because it changes forces.
+#pragma once
+#include <cstdint>
+
+#include "hapticd/shape.h"
+
+namespace hapticd::servo {
+
+struct ModelState;
+
+struct Order {
+  enum class Kind : uint32_t {
+    kNone,
+    kEnable,   ///< the model is felt: its force fades in
+    kDisable,  ///< the model is not felt: its force fades out, it is traced on
+    kMove,     ///< a kinematic model goes to a pose and stays
+    kSet,      ///< a live parameter
+    kClear,    ///< the arm's latched fault is forgiven; the force ramps in
+    kHold,     ///< the arm's force ramps out until it is cleared
+    kAdopt,    ///< a prepared model takes an empty place
+    kRelease   ///< the model fades out and leaves its place
+  };
+  Kind kind = Kind::kNone;
+  uint32_t target = 0;                                     ///< model or arm
+  uint32_t param = 0;                                      ///< kSet
+  uint32_t ticket = 0;                                     ///< of the request, for the answer
+  double value = 0;                                        ///< kSet
+  double seconds = 0;                                      ///< kMove: how long it takes
+  double position[3] = {}, orientation[4] = {1, 0, 0, 0};  ///< kMove: world frame
+  ModelState* model = nullptr;                             ///< kAdopt: swapped with the empty place
+};
+
+}  // namespace hapticd::servo
