@@ -87,9 +87,7 @@ DynamicBody::DynamicBody(const MotionParameters& parameters, const dynamics::Mas
             MovingFrame::of(activation.pose).orientation,
             parameters.gravity_ ? Vector3d(activation.gravity) : Vector3d::Zero()),
       probes_(std::max(activation.max_probes, 1u)),
-      pressing_(std::max(activation.max_probes, 1u)),
-      held_(pressing_.size(), 0) {
-  presses_.reserve(pressing_.size());
+      presses_(std::max(activation.max_probes, 1u)) {
   body_.setVelocity(Vector3d(parameters.velocity_.data()), Vector3d(parameters.spin_.data()));
   now_ = frame();
 }
@@ -98,43 +96,14 @@ MovingFrame DynamicBody::frame() const noexcept HSP_RT {
   return {body_.position(), body_.orientation(), body_.linear(), body_.angular()};
 }
 
-std::span<const dynamics::Press> DynamicBody::presses(const hsp_step& step, const MovingFrame& before) noexcept HSP_RT {
-  presses_.clear();
-  for (uint32_t i = 0; i < step.count && i < pressing_.size(); ++i) {
-    const hsp_probe& probe = *HSP_AT(const hsp_probe, step.in, step.in_stride, i);
-    if (held_[i] == 0 || (probe.flags & HSP_IN_JUMP) != 0) continue;
-    const dynamics::Pressing& last = pressing_[i];
-    const Vector3d now = before.position + before.orientation * Vector3d(probe.position);
-    const double closing = -last.normal.dot(before.orientation * Vector3d(probe.velocity));
-    if (!now.allFinite()) continue;
-    const dynamics::Press press = dynamics::foresee(last, now, closing, body_.velocityAt(last.point), step.dt_s);
-    if (!press.force.isZero(0)) presses_.push_back(press);  // reserved for all of them: never allocates
-  }
-  return presses_;
-}
-
 hsp_step DynamicBody::move(const hsp_step& step) noexcept HSP_RT {
   const MovingFrame before = MovingFrame::of(*step.pose);
-  if (step.dt_s > 0) body_.step(presses(step, before), step.dt_s);
-  release();
+  if (step.dt_s > 0)
+    body_.step(presses_.foresee(step, before, [this](const Vector3d& point) { return body_.velocityAt(point); }),
+               step.dt_s);
   now_ = frame();
   now_.write(*step.pose);
   return probes_.step(step, before, now_);
-}
-
-void DynamicBody::remember(uint32_t index, const dynamics::Pressing& in_model) noexcept HSP_RT {
-  if (index >= pressing_.size()) return;
-  dynamics::Pressing& there = pressing_[index];
-  there = in_model;
-  there.probe = now_.position + now_.orientation * in_model.probe;
-  there.point = now_.position + now_.orientation * in_model.point;
-  there.normal = now_.orientation * in_model.normal;
-  there.along = now_.orientation * in_model.along;
-  held_[index] = 1;
-}
-
-void DynamicBody::release() noexcept HSP_RT {
-  std::fill(held_.begin(), held_.end(), 0);
 }
 
 }  // namespace hapticd

@@ -1,14 +1,13 @@
 /// A rigid model that moves by the forces on it: its parameters, its body, and the contacts that push it.
 #pragma once
 #include <array>
-#include <span>
 #include <vector>
 
 #include "hapticd/shape.hpp"
 #include "kernels/dynamics/mass_properties.hpp"
 #include "kernels/dynamics/rigid_body.hpp"
 #include "kernels/trace/model.hpp"
-#include "traced_shape/moving.hpp"
+#include "traced_shape/presses.hpp"
 
 namespace hapticd {
 
@@ -64,24 +63,22 @@ class DynamicBody {
   hsp_step move(const hsp_step& step) noexcept HSP_RT;
 
   /// [rt] What probe number `index` does to the body, in the frame of the model; all that is not listed is left alone.
-  void remember(uint32_t index, const dynamics::Pressing& in_model) noexcept HSP_RT;
+  void remember(uint32_t index, const dynamics::Pressing& in_model) noexcept HSP_RT {
+    presses_.remember(index, in_model, now_);
+  }
 
-  /// [rt] Forgets the contacts.
-  void release() noexcept HSP_RT;
+  void release() noexcept HSP_RT { presses_.release(); }  ///< [rt] forgets the contacts
 
   double energy() const noexcept HSP_RT { return body_.energy(); }  ///< [rt] [J]
   const dynamics::RigidBody& body() const noexcept { return body_; }
 
  private:
-  std::span<const dynamics::Press> presses(const hsp_step& step, const MovingFrame& before) noexcept HSP_RT;
   MovingFrame frame() const noexcept HSP_RT;
 
   dynamics::RigidBody body_;
   MovedProbes probes_;
+  Presses presses_;
   MovingFrame now_;
-  std::vector<dynamics::Pressing> pressing_;  ///< by probe
-  std::vector<char> held_;                    ///< by probe: pressing_ is of the last step
-  std::vector<dynamics::Press> presses_;
 };
 
 }  // namespace hapticd

@@ -11,11 +11,10 @@ namespace hapticd {
 
 void Pendulum::activate(const hsp_activation& activation, hsp_report& report) {
   load(activation, report);
-  axis_model_ = Eigen::Vector3d(axis_.data());
-  if (!(axis_model_.norm() > 0)) throw std::invalid_argument("pendulum: axis: expected a direction, got [0, 0, 0]");
-  axis_model_.normalize();
+  const Eigen::Vector3d axis(axis_.data());
+  if (!(axis.norm() > 0)) throw std::invalid_argument("pendulum: axis: expected a direction, got [0, 0, 0]");
   drawn_ = MovingFrame::of(activation.pose);
-  axis_world_ = drawn_.orientation * axis_model_;
+  axis_world_ = drawn_.orientation * axis.normalized();
   pivot_world_ = drawn_.position + drawn_.orientation * Eigen::Vector3d(pivot_.data());
   const Eigen::Vector3d gravity(activation.gravity);
   const double inertia = inertia_ > 0 ? inertia_ : mass_ * length_ * length_;
@@ -25,8 +24,9 @@ void Pendulum::activate(const hsp_activation& activation, hsp_report& report) {
         "pendulum: inertia: a point mass of length 0 has none; expected inertia or length above 0");
   dynamics::validate(law_);
   state_ = {angle_, rate_};
-  torque_ = stored_ = 0;
+  stored_ = 0;
   probes_.emplace(std::max(activation.max_probes, 1u));
+  presses_.emplace(std::max(activation.max_probes, 1u));
   report.max_stiffness = stiffness_;
   report.flags |= HSP_R_MOVES;
   if (contact_damping_ > 0) report.flags |= HSP_R_VELOCITY;
@@ -34,7 +34,8 @@ void Pendulum::activate(const hsp_activation& activation, hsp_report& report) {
 
 void Pendulum::reset() noexcept HSP_RT {
   TracedShape::reset();
-  torque_ = 0;
+  if (presses_) presses_->release();
+  stored_ = 0;
 }
 
 /// Turned by an angle from the drawing, never by steps: whatever the number of ticks the pose has the angle's error
@@ -49,29 +50,65 @@ MovingFrame Pendulum::frame() const noexcept HSP_RT {
   return now;
 }
 
+/// The hand's torque about the axis [N m], held through the step: that of its end, as the pendulum gives way.
+double Pendulum::torqueOf(std::span<const dynamics::Press> presses, double dt) const noexcept HSP_RT {
+  double resisting = law_.inertia + dt * law_.damping;
+  double impulse = -dt * (law_.mass * law_.gravity * law_.length * std::sin(state_.angle) + law_.damping * state_.rate);
+  for (const dynamics::Press& press : presses) {
+    const Eigen::Vector3d moment = axis_world_.cross(press.point - pivot_world_);  // velocity of the point at 1 rad/s
+    resisting += dt * moment.dot(press.give * moment);
+    impulse += dt * moment.dot(press.force);
+  }
+  const double change = impulse / resisting;
+  double torque = 0;
+  for (const dynamics::Press& press : presses) {
+    const Eigen::Vector3d moment = axis_world_.cross(press.point - pivot_world_);
+    torque += moment.dot(dynamics::forceAfter(press, change * moment));
+  }
+  return torque;
+}
+
 hsp_status Pendulum::step(const hsp_step& step) noexcept HSP_RT {
   const MovingFrame before = MovingFrame::of(*step.pose);
-  state_ = dynamics::advance(law_, state_, torque_, step.dt_s);
+  const auto velocity_at = [this](const Eigen::Vector3d& point) -> Eigen::Vector3d {
+    return state_.rate * axis_world_.cross(point - pivot_world_);
+  };
+  if (step.dt_s > 0) {
+    const double torque = torqueOf(presses_->foresee(step, before, velocity_at), step.dt_s);
+    state_ = dynamics::advance(law_, state_, torque, step.dt_s);
+    state_.angle = std::remainder(state_.angle, 2 * M_PI);  // one that goes round keeps the digits of its angle
+  }
   const MovingFrame now = frame();
   now.write(*step.pose);
   const hsp_step moved = probes_->step(step, before, now);
-  const contact::WallLaw wall_law{stiffness_, contact_damping_, exponent_, depth_scale_};
   hsp_status worst = HSP_OK;
-  torque_ = stored_ = 0;
+  stored_ = 0;
   for (uint32_t i = 0; i < moved.count; ++i) {
-    const hsp_probe& probe = *HSP_AT(const hsp_probe, moved.in, moved.in_stride, i);
-    hsp_contact& contact = *HSP_AT(hsp_contact, step.out, step.out_stride, i);
-    const Touch touch = trace(probe, moved, contact);
-    if (touch.status < 0 || (worst == HSP_OK && touch.status > 0)) worst = touch.status;
-    if (!touch.traced || touch.depth <= 0) continue;
-    const auto wall = contact::wallForce(wall_law, touch.depth, -Eigen::Vector3d(probe.velocity).dot(touch.normal));
-    const Eigen::Vector3d force = wall.force * touch.normal;
-    Eigen::Map<Eigen::Vector3d>(contact.force) = force;
-    contact.stiffness = std::isfinite(wall.stiffness) ? wall.stiffness : stiffness_;
-    stored_ += contact::wallEnergy(wall_law, touch.depth);
-    torque_ -= axis_model_.dot((touch.foot.point - Eigen::Vector3d(pivot_.data())).cross(force));
+    const hsp_status status = press(*HSP_AT(const hsp_probe, moved.in, moved.in_stride, i), moved,
+                                    *HSP_AT(hsp_contact, step.out, step.out_stride, i), now);
+    if (status < 0 ? worst >= 0 : worst == HSP_OK) worst = status;
   }
   return worst;
+}
+
+hsp_status Pendulum::press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact,
+                           const MovingFrame& now) noexcept HSP_RT {
+  const Touch touch = trace(probe, step, contact);
+  if (!touch.traced) return touch.status;
+  dynamics::Pressing pressing;
+  pressing.probe = Eigen::Vector3d(probe.position);
+  pressing.point = touch.foot.point;
+  pressing.normal = touch.normal;
+  pressing.depth = touch.depth;
+  pressing.law = {stiffness_, contact_damping_, exponent_, depth_scale_};
+  presses_->remember(indexOf(probe, step), pressing, now);
+  if (touch.depth <= 0) return touch.status;
+  const double closing_speed = -Eigen::Vector3d(probe.velocity).dot(touch.normal);
+  const contact::WallForce wall = contact::wallForce(pressing.law, touch.depth, closing_speed);
+  Eigen::Map<Eigen::Vector3d>(contact.force) = wall.force * touch.normal;
+  contact.stiffness = std::isfinite(wall.stiffness) ? wall.stiffness : stiffness_;
+  stored_ += contact::wallEnergy(pressing.law, touch.depth);
+  return touch.status;
 }
 
 const void* Pendulum::extension(const char* name) {

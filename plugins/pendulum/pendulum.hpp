@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "kernels/dynamics/pendulum.hpp"
-#include "traced_shape/moving.hpp"
+#include "traced_shape/presses.hpp"
 #include "traced_shape/traced_shape.hpp"
 
 namespace hapticd {
@@ -46,6 +46,9 @@ class Pendulum final : public TracedShape {
 
  private:
   MovingFrame frame() const noexcept HSP_RT;
+  double torqueOf(std::span<const dynamics::Press> presses, double dt) const noexcept HSP_RT;
+  hsp_status press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact,
+                   const MovingFrame& now) noexcept HSP_RT;
 
   double stiffness_ = 800, contact_damping_ = 0, exponent_ = 1, depth_scale_ = 1e-3;
   std::array<double, 3> pivot_{}, axis_{};
@@ -53,11 +56,11 @@ class Pendulum final : public TracedShape {
 
   dynamics::PendulumLaw law_;
   dynamics::PendulumState state_;
-  Eigen::Vector3d pivot_world_{0, 0, 0}, axis_world_{0, 0, 1}, axis_model_{0, 0, 1};
+  Eigen::Vector3d pivot_world_{0, 0, 0}, axis_world_{0, 0, 1};
   MovingFrame drawn_;  ///< at angle 0
-  double torque_ = 0;  ///< of the hand about the axis [N m], from the contacts of the last step
   double stored_ = 0;  ///< [J] in the surface
   std::optional<MovedProbes> probes_;
+  std::optional<Presses> presses_;
   hsp_ext_energy energy_extension_{};
 };
 

@@ -4,39 +4,47 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "kernels/dynamics/splitting.hpp"
+
 namespace hapticd::dynamics {
 namespace {
 
-constexpr double kLargestPhase = 0.02;  // [rad] of the linear swing in a substep: error 1e-12 of the amplitude
-constexpr int kMaxSubsteps = 64;        // bounds the time of a tick
+constexpr double kLargestPhase = 0.1;         // [rad] of the linear swing in a substep of freeStep
+constexpr double kLargestDampedPhase = 0.02;  // of the other two
+constexpr int kMaxSubsteps = 32;              // bounds the time of a tick
+constexpr double kWeak = 0.05;                // damping times substep, up to which Runge and Kutta resolve the decay
 
-PendulumState rungeKutta(double w2, double drive, PendulumState s, double h) noexcept {
-  const auto acceleration = [&](double angle) { return drive - w2 * std::sin(angle); };
-  const double v1 = s.rate, a1 = acceleration(s.angle);
-  const double v2 = s.rate + h / 2 * a1, a2 = acceleration(s.angle + h / 2 * v1);
-  const double v3 = s.rate + h / 2 * a2, a3 = acceleration(s.angle + h / 2 * v2);
-  const double v4 = s.rate + h * a3, a4 = acceleration(s.angle + h * v3);
-  return {s.angle + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), s.rate + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)};
+/// Without damping: its energy errs by a bounded amount, however long it swings.
+PendulumState freeStep(double w2, double drive, PendulumState s, double h) noexcept {
+  Splitting::step(
+      h, [&](double time) { s.angle += time * s.rate; },
+      [&](double time) { s.rate += time * (drive - w2 * std::sin(s.angle)); });
+  return s;
 }
 
-/// The same with damping: fourth order while it is weak against the step, and otherwise an exponential step, whose
-/// stiff part cannot grow.
-PendulumState dampedStep(double w2, double c, double drive, PendulumState s, double h) noexcept {
-  if (c == 0) return rungeKutta(w2, drive, s, h);
-  if (c * h > 0.05) {  // angle hardly moves in the step: v' = a - c v exactly, with the angle of the midpoint
-    const double decay = std::exp(-c * h), phi = -std::expm1(-c * h) / c;
-    const double half_phi = -std::expm1(-c * h / 2) / c;
-    const double half_drift = (h / 2 - half_phi) / c, drift = (h - phi) / c;
-    const double middle = s.angle + half_phi * s.rate + half_drift * (drive - w2 * std::sin(s.angle));
-    const double a = drive - w2 * std::sin(middle);
-    return {s.angle + phi * s.rate + drift * a, decay * s.rate + phi * a};
-  }
+/// Weakly damped: the classical method of fourth order.
+PendulumState rungeKutta(double w2, double c, double drive, PendulumState s, double h) noexcept {
   const auto acceleration = [&](double angle, double rate) { return drive - w2 * std::sin(angle) - c * rate; };
   const double v1 = s.rate, a1 = acceleration(s.angle, v1);
   const double v2 = s.rate + h / 2 * a1, a2 = acceleration(s.angle + h / 2 * v1, v2);
   const double v3 = s.rate + h / 2 * a2, a3 = acceleration(s.angle + h / 2 * v2, v3);
   const double v4 = s.rate + h * a3, a4 = acceleration(s.angle + h * v3, v4);
   return {s.angle + h / 6 * (v1 + 2 * v2 + 2 * v3 + v4), s.rate + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)};
+}
+
+/// Strongly damped: v' = a - c v exactly, with the angle of the step's middle, so that no damping is too strong.
+PendulumState exponential(double w2, double c, double drive, PendulumState s, double h) noexcept {
+  const double decay = std::exp(-c * h), phi = -std::expm1(-c * h) / c;
+  const double half_phi = -std::expm1(-c * h / 2) / c;
+  const double half_drift = (h / 2 - half_phi) / c, drift = (h - phi) / c;
+  const double middle = s.angle + half_phi * s.rate + half_drift * (drive - w2 * std::sin(s.angle));
+  const double a = drive - w2 * std::sin(middle);
+  return {s.angle + phi * s.rate + drift * a, decay * s.rate + phi * a};
+}
+
+PendulumState substep(double w2, double c, double drive, PendulumState s, double h) noexcept {
+  if (c == 0) return freeStep(w2, drive, s, h);
+  return c * h <= kWeak ? rungeKutta(w2, c, drive, s, h) : exponential(w2, c, drive, s, h);
 }
 
 }  // namespace
@@ -53,11 +61,13 @@ PendulumState advance(const PendulumLaw& law, PendulumState state, double torque
   if (!(dt > 0) || !std::isfinite(dt) || !std::isfinite(torque)) return state;
   const double w2 = law.frequencySquared();
   const double drive = torque / law.inertia;
-  const double fastest = std::max(std::sqrt(std::fabs(w2)), std::fabs(state.rate));
-  const int steps =
-      std::clamp(static_cast<int>(std::ceil(std::min(fastest * dt / kLargestPhase, 1e6))), 1, kMaxSubsteps);
+  // by the rate at the bottom: it is the same all the way, so the substeps are, which a bounded energy needs
+  const double lift = std::sin(state.angle / 2);
+  const double fastest = std::sqrt(std::max(w2, state.rate * state.rate + 4 * w2 * lift * lift));
+  const double largest = law.damping == 0 ? kLargestPhase : kLargestDampedPhase;
+  const int steps = std::clamp(static_cast<int>(std::ceil(std::min(fastest * dt / largest, 1e6))), 1, kMaxSubsteps);
   const double h = dt / steps;
-  for (int i = 0; i < steps; ++i) state = dampedStep(w2, law.damping / law.inertia, drive, state, h);
+  for (int i = 0; i < steps; ++i) state = substep(w2, law.damping / law.inertia, drive, state, h);
   return state;
 }
 

@@ -16,8 +16,8 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kLargestTurn = 1e-3;  // [rad] of a substep: energy then drifts by 1e-17 of itself a tick
-constexpr int kMaxSubsteps = 32;       // bounds the time of a tick; faster bodies stay bounded but lose digits
+constexpr double kLargestTurn = 0.05;  // [rad] of a substep
+constexpr int kMaxSubsteps = 8;        // bounds the time of a tick; faster bodies stay bounded but lose digits
 
 /// One coordinate under a constant force: x'' = (force - b x' - k x)/m, exactly.
 void drive(double mass, double damping, double stiffness, const Vector3d& force, double dt, Vector3d& x, Vector3d& v) {
@@ -60,6 +60,7 @@ RigidBody::RigidBody(const RigidBodyLaw& law, const Vector3d& position, const Qu
   }
   if (axes.determinant() < 0) axes.col(0) *= -1;
   from_axes_ = Quaterniond(axes);
+  top_ = Top(principal_);
   const Quaterniond model = orientation.normalized();
   turn_.set(model * from_axes_);
   x_ = start_ = position + model * law.center;
@@ -157,29 +158,24 @@ void RigidBody::translate(const Vector3d& force, double dt) noexcept {
 }
 
 void RigidBody::rotate(const Vector3d& torque, double dt) noexcept {
-  const double rate = std::max(bodyRate().norm(), torque.norm() * dt / principal_.minCoeff());
-  const int steps = std::clamp(static_cast<int>(std::ceil(std::min(rate * dt / kLargestTurn, 1e6))), 1, kMaxSubsteps);
-  for (int i = 0; i < steps; ++i) rotateOnce(torque, dt / steps);
+  l_ += dt / 2 * torque;
+  decay(dt / 2);
+  const double turn = top_.symmetric() ? 0 : top_.bodyRate() * l_.norm() * dt;
+  const int steps = turn < kMaxSubsteps * kLargestTurn ? 1 + static_cast<int>(turn / kLargestTurn) : kMaxSubsteps;
+  for (int i = 0; i < steps; ++i) {
+    turn_.turnBody(top_.bodyTurn(turn_.quaternion().conjugate() * l_, dt / steps));
+    turn_.turnWorld(dt / steps * top_.worldRate() * l_);
+  }
+  decay(dt / 2);
+  l_ += dt / 2 * torque;
 }
 
-void RigidBody::rotateOnce(const Vector3d& torque, double h) noexcept {
-  const Quaterniond to_body = turn_.quaternion().conjugate();
-  if (law_.angular_damping > 0) {  // each principal axis decays by itself
-    const Vector3d decay = (-law_.angular_damping * h * principal_.cwiseInverse()).array().exp();
-    l_ = turn_.quaternion() * decay.cwiseProduct(to_body * l_);
-  }
-  const Vector3d l0 = to_body * l_, push = to_body * torque;
-  const auto rate = [&](const Vector3d& u, double time) {
-    const Vector3d w = (rotationBy(-u) * (l0 + time * push)).cwiseQuotient(principal_);
-    const Vector3d bracket = u.cross(w);
-    return Vector3d(w + bracket / 2 + u.cross(bracket) / 12);
-  };
-  const Vector3d k1 = rate(Vector3d::Zero(), 0);
-  const Vector3d k2 = rate(h / 2 * k1, h / 2);
-  const Vector3d k3 = rate(h / 2 * k2, h / 2);
-  const Vector3d k4 = rate(h * k3, h);
-  turn_.turnBody(h / 6 * (k1 + 2 * k2 + 2 * k3 + k4));
-  l_ += h * torque;
+/// Angular drag: the momentum about each principal axis decays by itself.
+void RigidBody::decay(double time) noexcept {
+  if (!(law_.angular_damping > 0)) return;
+  const Quaterniond& q = turn_.quaternion();
+  const Vector3d left = (-law_.angular_damping * time * principal_.cwiseInverse()).array().exp();
+  l_ = q * left.cwiseProduct(q.conjugate() * l_);
 }
 
 void RigidBody::swing(const Vector3d& force, const Vector3d& torque, double dt) noexcept {

@@ -5,6 +5,7 @@
 
 #include "kernels/dynamics/press.hpp"
 #include "kernels/dynamics/rotation.hpp"
+#include "kernels/dynamics/top.hpp"
 
 namespace hapticd::dynamics {
 
@@ -63,7 +64,7 @@ class RigidBody {
  private:
   void translate(const Eigen::Vector3d& force, double dt) noexcept;
   void rotate(const Eigen::Vector3d& torque, double dt) noexcept;
-  void rotateOnce(const Eigen::Vector3d& torque, double h) noexcept;
+  void decay(double time) noexcept;
   void setHingeVelocities() noexcept;
   void swing(const Eigen::Vector3d& force, const Eigen::Vector3d& torque, double dt) noexcept;
   using Vector6d = Eigen::Matrix<double, 6, 1>;
@@ -77,6 +78,7 @@ class RigidBody {
   Eigen::Vector3d gravity_, start_, pivot_world_, axis_world_;
   Eigen::Vector3d principal_;     // moments of inertia
   Eigen::Quaterniond from_axes_;  // principal axes to the model's frame
+  Top top_;
   double hinge_inertia_ = 1;
   Rotation turn_;  // principal axes to the world
   Eigen::Vector3d x_{0, 0, 0}, v_{0, 0, 0}, l_{0, 0, 0};

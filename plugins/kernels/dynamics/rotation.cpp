@@ -9,24 +9,46 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-/// sin(angle/2)/angle and cos(angle/2) - 1, without cancellation.
+/// A turn as a quaternion (1 + cosine_less_one, turn/2 - turn * shortfall): sin(a/2)/a = 1/2 - shortfall. Half of the
+/// turn is exact; what is small beside it is kept apart, so that a turn repeated 1e8 times is as long as it should be.
 struct HalfTurn {
-  double sine_by_angle, cosine_less_one;
+  double shortfall, cosine_less_one;
 };
-HalfTurn halfTurn(double angle) noexcept {
-  if (angle < 1e-4) {
-    const double a2 = angle * angle;
-    return {0.5 - a2 / 48 + a2 * a2 / 3840, -a2 / 8 + a2 * a2 / 384};
+
+/// a^2 of a vector as a sum of two numbers, exact to 1e-31 of it.
+struct Square {
+  double high, low;
+};
+Square squareOf(const Vector3d& a) noexcept {
+  Square sum{0, 0};
+  for (int i = 0; i < 3; ++i) {
+    const double product = a[i] * a[i];
+    const double total = sum.high + product;
+    const double part = total - sum.high;
+    sum.low += std::fma(a[i], a[i], -product) + (sum.high - (total - part)) + (product - part);
+    sum.high = total;
   }
-  const double quarter = std::sin(angle / 4);
-  return {std::sin(angle / 2) / angle, -2 * quarter * quarter};
+  return sum;
+}
+
+HalfTurn halfTurn(const Vector3d& turn) noexcept {
+  const Square square = squareOf(turn);
+  const double s = square.high;
+  if (s > 1) {
+    const double angle = std::sqrt(s), quarter = std::sin(angle / 4);
+    return {0.5 - std::sin(angle / 2) / angle, -2 * quarter * quarter};
+  }
+  // 1/2 - sin(a/2)/a = s/48 (1 - s/80 (1 - s/168 (1 - ...))) with s = a^2: the next factor is (2k)(2k+1) 4
+  const double tail = 1 - s / 80 * (1 - s / 168 * (1 - s / 288 * (1 - s / 440 * (1 - s / 624 * (1 - s / 840)))));
+  const double cosine = 1 - s / 48 * (1 - s / 120 * (1 - s / 224 * (1 - s / 360 * (1 - s / 528 * (1 - s / 728)))));
+  return {(s * tail + square.low) / 48, -s / 8 * cosine};
 }
 
 }  // namespace
 
 Quaterniond rotationBy(const Vector3d& turn) noexcept {
-  const HalfTurn half = halfTurn(turn.norm());
-  const Vector3d v = half.sine_by_angle * turn;
+  const HalfTurn half = halfTurn(turn);
+  const Vector3d v = turn / 2 - half.shortfall * turn;
   return {1 + half.cosine_less_one, v.x(), v.y(), v.z()};
 }
 
@@ -37,15 +59,16 @@ void Rotation::set(const Quaterniond& q) noexcept {
 
 /// q (or its product with the turn from the other side) changes by (cos - 1) q + the part of the vector: a small
 /// change, which is added with its rounding kept (Fast2Sum), and then the length is put right to first order.
-void Rotation::apply(const Vector3d& turn, bool world) noexcept {
-  const HalfTurn half = halfTurn(turn.norm());
-  const Vector3d v = half.sine_by_angle * turn;
+/// The vector is given as v + rest.
+void Rotation::apply(const Vector3d& v, const Vector3d& rest, double cosine_less_one, bool world) noexcept {
   const Vector4d now = q_.coeffs() + carry_;
   const Vector3d vec = now.head<3>();
-  Vector4d change;
-  const Vector3d side = world ? Vector3d(v.cross(vec)) : Vector3d(vec.cross(v));
-  change.head<3>() = half.cosine_less_one * vec + now.w() * v + side;
-  change.w() = half.cosine_less_one * now.w() - v.dot(vec);
+  const double hand = world ? 1 : -1;
+  Vector4d change, small;
+  change.head<3>() = now.w() * v + hand * v.cross(vec);
+  change.w() = -v.dot(vec);
+  small.head<3>() = cosine_less_one * vec + now.w() * rest + hand * rest.cross(vec);
+  small.w() = cosine_less_one * now.w() - rest.dot(vec);
   // |q|^2 - 1 of the exact pair q_ + carry_, with fused products so that it is known beyond rounding
   const Vector4d q = q_.coeffs();
   double excess = -1;
@@ -58,7 +81,8 @@ void Rotation::apply(const Vector3d& turn, bool world) noexcept {
     low += (excess - (sum - part)) + (square - part);
     excess = sum;
   }
-  change += carry_ - (excess + low) / 2 * q;
+  small += carry_ - (excess + low) / 2 * q;
+  change += small;
   for (int i = 0; i < 4; ++i) {
     const double sum = q[i] + change[i];
     const double part = sum - q[i];
@@ -69,10 +93,15 @@ void Rotation::apply(const Vector3d& turn, bool world) noexcept {
 }
 
 void Rotation::turnWorld(const Vector3d& turn) noexcept {
-  apply(turn, true);
+  const HalfTurn half = halfTurn(turn);
+  apply(turn / 2, -half.shortfall * turn, half.cosine_less_one, true);
 }
 void Rotation::turnBody(const Vector3d& turn) noexcept {
-  apply(turn, false);
+  const HalfTurn half = halfTurn(turn);
+  apply(turn / 2, -half.shortfall * turn, half.cosine_less_one, false);
+}
+void Rotation::turnBody(const SmallTurn& turn) noexcept {
+  apply(turn.vector, Vector3d::Zero(), turn.less, false);
 }
 
 }  // namespace hapticd::dynamics

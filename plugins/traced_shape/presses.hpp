@@ -1,0 +1,58 @@
+/// Traced shapes that the probes push: what each probe does to the body in the coming step.
+#pragma once
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "kernels/dynamics/press.hpp"
+#include "traced_shape/moving.hpp"
+
+namespace hapticd {
+
+/// The contacts of the last step, by probe, kept in the world frame.
+class Presses {
+ public:
+  explicit Presses(uint32_t most) : last_(most), held_(most, 0) { presses_.reserve(most); }  ///< [main]
+
+  /// [rt] What presses by the end of a step, from where the probes are now. A probe that jumped presses no more.
+  /// @param before the frame that the probes are given in  @param velocity_at the body's velocity at a point, both
+  /// world
+  template <class VelocityAt>
+  std::span<const dynamics::Press> foresee(const hsp_step& step, const MovingFrame& before,
+                                           const VelocityAt& velocity_at) noexcept HSP_RT {
+    presses_.clear();
+    for (uint32_t i = 0; i < step.count && i < last_.size(); ++i) {
+      const hsp_probe& probe = *HSP_AT(const hsp_probe, step.in, step.in_stride, i);
+      if (held_[i] == 0 || (probe.flags & HSP_IN_JUMP) != 0) continue;
+      const dynamics::Pressing& last = last_[i];
+      const Eigen::Vector3d now = before.position + before.orientation * Eigen::Vector3d(probe.position);
+      const double closing = -last.normal.dot(before.orientation * Eigen::Vector3d(probe.velocity));
+      if (!now.allFinite()) continue;
+      const dynamics::Press press = dynamics::foresee(last, now, closing, velocity_at(last.point), step.dt_s);
+      if (!press.force.isZero(0)) presses_.push_back(press);  // reserved for all of them: never allocates
+    }
+    release();
+    return presses_;
+  }
+
+  /// [rt] The contact of probe `index` in this step, in the model's frame, which is now at `now`.
+  void remember(uint32_t index, const dynamics::Pressing& in_model, const MovingFrame& now) noexcept HSP_RT {
+    if (index >= last_.size()) return;
+    dynamics::Pressing& there = last_[index];
+    there = in_model;
+    there.probe = now.position + now.orientation * in_model.probe;
+    there.point = now.position + now.orientation * in_model.point;
+    there.normal = now.orientation * in_model.normal;
+    there.along = now.orientation * in_model.along;
+    held_[index] = 1;
+  }
+
+  void release() noexcept HSP_RT { std::fill(held_.begin(), held_.end(), 0); }  ///< [rt] forgets the contacts
+
+ private:
+  std::vector<dynamics::Pressing> last_;
+  std::vector<char> held_;  ///< last_ is of the last step
+  std::vector<dynamics::Press> presses_;
+};
+
+}  // namespace hapticd
