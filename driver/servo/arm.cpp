@@ -9,6 +9,9 @@ namespace {
 
 constexpr double kStaleAfter = 0.05;  ///< [s] without a new sample: no force on yesterday's position
 
+/// As the kinematics extension writes it.
+using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HDV_MAX_JOINTS>;
+
 constexpr double kAssumedMass = 0.05;   ///< [kg] of a light arm: the damping that the passivity controller may add stays small
 
 }  // namespace
@@ -97,13 +100,27 @@ bool Arm::locate() noexcept HSP_RT {
   return true;
 }
 
+std::optional<Eigen::Vector3d> Arm::handForce() const noexcept HSP_RT {
+  if ((sample_.flags & HDV_S_TORQUE) == 0) return std::nullopt;
+  const auto joints = static_cast<Eigen::Index>(device_->info().joint_count);
+  const hdv_ext_kinematics& kinematics = device_->kinematics();
+  Jacobian J(6, joints);
+  JointVector weight(joints);
+  if (kinematics.jacobian(device_->handle(), sample_.position, J.data()) != HSP_OK) return std::nullopt;
+  if (kinematics.gravity(device_->handle(), sample_.position, gravity_device_.data(), weight.data()) != HSP_OK)
+    return std::nullopt;
+  const JointVector torque = Eigen::Map<const Eigen::VectorXd>(sample_.torque, joints) - weight;
+  const Eigen::Vector3d force_device = -TipInverse(J.topRows<3>()).force(torque);
+  if (!force_device.allFinite()) return std::nullopt;
+  return R_world_device_ * force_device;
+}
+
 void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque) noexcept HSP_RT {
   if (passivity_ && probe_.valid) force = passivity_->update(probe_.position, force, dt);
   limiter_.apply(force, torque, probe_.position - origin_world_, dt);
   force_ = force;
   const uint32_t joints = device_->info().joint_count;
   const hdv_ext_kinematics& kinematics = device_->kinematics();
-  using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HDV_MAX_JOINTS>;
   Jacobian J(6, joints);
   hdv_command& command = command_;
   command = hdv_command{};

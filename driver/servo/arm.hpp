@@ -12,6 +12,7 @@
 #include "servo/limiter.hpp"
 #include "servo/passivity/controller.hpp"
 #include "servo/probe_velocity.hpp"
+#include "servo/tip_force.hpp"
 
 namespace hapticd::servo {
 
@@ -46,6 +47,10 @@ class Arm {
   const hdv_command& command() const noexcept { return command_; }   ///< as write() gave it
   hsp_status readStatus() const noexcept { return read_status_; }    ///< of the last read
   hsp_status writeStatus() const noexcept { return write_status_; }  ///< of the last write
+  /// [rt] Force [N] of the hand on the arm, world frame, from the joint torques of the newest sample less what carries the
+  /// arm's own weight: -pinv(J^T) (tau - gravity). Nothing: the device measures no torque. In motion it has the inertia of
+  /// what lies beyond the load cells in it.
+  std::optional<Eigen::Vector3d> handForce() const noexcept HSP_RT;
   bool estimatesVelocity() const { return velocity_.has_value(); }
   bool simulated() const noexcept { return (device_->info().capabilities & HDV_C_SIMULATED) != 0; }
   double rampOut() const noexcept { return limiter_.rampOut(); }  ///< [s]

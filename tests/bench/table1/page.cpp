@@ -1,0 +1,196 @@
+#include "page.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "plot/plot.hpp"
+
+namespace hapticd::table1 {
+
+std::string lineOf(const Row& row) {
+  const record::ContactStatistics& d = row.recording.depth;
+  return fmt::format(
+      "{:10} {}  {:7} samples  mean {:5.2f} ({:4.2f})  std {:5.2f} ({:4.2f})  max {:6.2f} ({:5.2f}) mm  buzz {:.3f} mm "
+      "{}",
+      row.subject, row.moving ? 2 : 1, d.contactTicks(), d.meanDepth() * 1e3, row.paper.mean, d.stdDepth() * 1e3,
+      row.paper.std, d.maxDepth() * 1e3, row.paper.max, d.buzz() * 1e3, row.recording.fault);
+}
+
+Verdict judge(const std::vector<Row>& rows) {
+  Verdict verdict;
+  const auto demand = [&](bool good, const std::string& what) {
+    if (!good) verdict.text += "MISSED: " + what + "\n", verdict.met = false;
+  };
+  for (const Row& row : rows) {
+    const record::ContactStatistics& d = row.recording.depth;
+    const std::string who = row.subject + (row.moving ? " 2" : " 1");
+    verdict.mean += d.meanDepth() * 1e3 / static_cast<double>(rows.size());
+    verdict.std += d.stdDepth() * 1e3 / static_cast<double>(rows.size());
+    verdict.max += d.maxDepth() * 1e3 / static_cast<double>(rows.size());
+    demand(d.contactTicks() >= 10000, who + ": at least 10,000 samples in contact");
+    demand(d.meanDepth() < 3e-3, who + ": mean below 3 mm");
+    demand(d.maxDepth() < 12e-3, who + ": maximum below 12 mm");
+    demand(d.buzz() <= 0.12e-3, who + ": buzz at most 0.12 mm");
+    demand(row.recording.fault.empty(), who + ": " + row.recording.fault);
+  }
+  demand(std::abs(verdict.mean - 1.63) <= 0.25 * 1.63, "average mean within a quarter of 1.63 mm");
+  verdict.text += fmt::format("average: mean {:.2f} (1.63), std {:.2f} (1.17), max {:.2f} (7.07) mm", verdict.mean,
+                              verdict.std, verdict.max);
+  return verdict;
+}
+
+namespace {
+
+std::vector<double> histogram(const Recording& recording, double bin, size_t bins) {
+  std::vector<double> counts(bins, 0);
+  const auto all = static_cast<double>(recording.depth.contactTicks());
+  for (const Sample& sample : recording.samples)
+    if (sample.contact) counts[std::min(bins - 1, static_cast<size_t>(sample.depth / bin))] += 100 / all;
+  return counts;
+}
+
+void drawHistograms(const Evaluation& e, const std::string& file) {
+  constexpr double kBin = 0.25e-3;
+  constexpr size_t kBins = 48;
+  plot::Picture picture("Depth in contact: ten rows of Table 1 (as Fig. 7 shows for the cylinder)", 2, 5, 420, 190);
+  for (const Row& row : e.rows)
+    picture.histogram(fmt::format("{}, {}", row.subject, row.moving ? "moving" : "at rest"), {"depth [mm]", 0, 12},
+                      {"% of samples", 0, 30}, 0, kBin * 1e3, histogram(row.recording, kBin, kBins),
+                      row.moving ? "#d1495b" : "#1f5fa8");
+  picture.save(file);
+}
+
+/// Eq. 10 along the detent curve: the tip is where the surface's spring has added its share to the button's travel.
+plot::Curve closedForm() {
+  plot::Curve curve{"two springs, closed form", "#222", {}, {}, 1.2};
+  const auto add = [&](double x2, double force) {
+    curve.x.push_back(1e3 * (x2 + force / kSurface));
+    curve.y.push_back(force);
+  };
+  for (const auto& [x2, force] : kDetent) add(x2, force);
+  add(kDetent[3][0] + 1.5e-3, kDetent[3][1] + 1.5e-3 * kEndSlope);
+  return curve;
+}
+
+void drawButton(const Evaluation& e, const std::string& file) {
+  plot::Curve sent{"force commanded", "#1f5fa8", {}, {}, 1.2},
+      felt{"force from the load cells", "#d1495b", {}, {}, 0.6, true};
+  for (size_t i = 0; i < e.pressed.samples.size(); i += 24) {
+    const Sample& s = e.pressed.samples[i];
+    sent.x.push_back(s.travel * 1e3), sent.y.push_back(s.contact ? s.force : 0);
+    felt.x.push_back(s.travel * 1e3), felt.y.push_back(s.felt);
+  }
+  plot::Picture picture("Force against travel of the push button, pressed slowly in and out (as Fig. 8)", 1, 1, 760,
+                        380);
+  picture.panel("", {"travel of the tip [mm]", -1, 17}, {"force [N]", -2, 20}, {felt, sent, closedForm()}, false);
+  picture.save(file);
+}
+
+void drawTrace(const Evaluation& e, const std::string& file) {
+  plot::Picture picture("Twelve seconds of tracing", 1, 4, 860, 170);
+  for (const size_t i : {size_t{0}, size_t{3}, size_t{5}, size_t{9}}) {
+    if (i >= e.rows.size()) continue;
+    const Row& row = e.rows[i];
+    plot::Curve depth{"", row.moving ? "#d1495b" : "#1f5fa8", {}, {}, 1.0};
+    for (size_t k = 0; k < row.recording.samples.size(); k += 8) {
+      const Sample& s = row.recording.samples[k];
+      if (s.t < 6 || s.t > 18) continue;
+      depth.x.push_back(s.t), depth.y.push_back(s.contact ? s.depth * 1e3 : std::nan(""));
+    }
+    picture.panel(fmt::format("{}, {}", row.subject, row.moving ? "moving" : "at rest"), {"t [s]", 6, 18},
+                  {"depth [mm]", 0, 8}, {depth});
+  }
+  picture.save(file);
+}
+
+std::string table(const Evaluation& e) {
+  std::string text =
+      "| model | test | samples | mean | paper | STD | paper | max | paper | buzz |\n"
+      "|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const Row& row : e.rows) {
+    const record::ContactStatistics& d = row.recording.depth;
+    text += fmt::format("| {} | {} | {} | **{:.2f}** | {:.2f} | **{:.2f}** | {:.2f} | **{:.2f}** | {:.2f} | {:.3f} |\n",
+                        row.subject, row.moving ? "2, moving" : "1, at rest", d.contactTicks(), d.meanDepth() * 1e3,
+                        row.paper.mean, d.stdDepth() * 1e3, row.paper.std, d.maxDepth() * 1e3, row.paper.max,
+                        d.buzz() * 1e3);
+  }
+  return text + fmt::format("| average | | | **{:.2f}** | 1.63 | **{:.2f}** | 1.17 | **{:.2f}** | 7.07 | |\n",
+                            e.verdict.mean, e.verdict.std, e.verdict.max);
+}
+
+std::string variationTable(const Evaluation& e) {
+  std::string text = "| cylinder at rest | mean | STD | max | buzz |\n|---|---|---|---|---|\n";
+  for (const Variation& v : e.variations)
+    text += fmt::format("| {} | {:.2f} | {:.2f} | {:.2f} | {:.3f} |\n", v.what, v.depth.meanDepth() * 1e3,
+                        v.depth.stdDepth() * 1e3, v.depth.maxDepth() * 1e3, v.depth.buzz() * 1e3);
+  return text;
+}
+
+std::string protocolText(const Protocol& p) {
+  return fmt::format(
+      R"(- **From the paper**: 1500 Hz; Eq. 4 with n = 1/2 and 6000 N/m, read as 6 N at 1 mm (k x0 (x/x0)^n with x0 = 1 mm: in SI units
+  as printed the mean row would need 242 N); velocity by Eq. 5 with n = {}; models of 40 kg, the button without mass and with
+  linear springs (Eq. 10); the button's own resistance rises to 9 N, falls to 5 N and rises again (Fig. 6 has no numbers).
+- **The arm** ([simulated-sarcos.yaml](../../config/devices/simulated-sarcos.yaml)): eight joints, 10 to 30 um at the tip, one sample of delay,
+  joint friction. Its masses were never published: 1.1 to 1.9 kg are felt at the tip. Assumption.
+- **The hand**: 1 kg on {:g} N/m and 10 N s/m, pulled to a point behind the surface. The push is {:g} N on average and wanders by {:.0f} %
+  (Ornstein-Uhlenbeck, {:g} Hz, at most {:g} standard deviations), with a tremor of {:.0f} % at {:g} Hz. Assumptions, but for one subject's
+  grip in the literature (0.55 kg, 6.5 N s/m, 135 N/m).
+- **The eye** is {:.0f} ms late: the hand follows where a moving model was.
+- **The way**: strokes of about 0.1 m/s over models of 0.2 to 0.36 m. Every {:g} s the finger is lifted by {:.0f} mm and touches
+  down again at {:g} m/s. It is lifted round the edges of the cube, and near edges and on the goblet's stem it pushes less: a point behind
+  the surface that is nearer to another side would drag it there, as happened to an earlier operator of ours who cut the corner.
+- **Moving models** (test 2): cube, cylinder and goblet {}; the pendulum swings from 0.15 rad.
+)",
+      p.window, p.stiffness, p.force, 100 * p.spread, p.spread_rate, p.most, 100 * p.tremor, p.tremor_rate,
+      1e3 * p.visual_delay, p.touch_every, 1e3 * p.lift, p.touch_speed, kMotionOfSolids);
+}
+
+}  // namespace
+
+void writePage(const Evaluation& e, const std::string& folder) {
+  const std::filesystem::path pictures = std::filesystem::path(folder) / "pictures";
+  std::filesystem::create_directories(pictures);
+  drawHistograms(e, pictures / "table1-histograms.svg");
+  drawButton(e, pictures / "table1-button.svg");
+  drawTrace(e, pictures / "table1-trace.svg");
+  std::ofstream out(std::filesystem::path(folder) / "table1.md");
+  out << "# Table 1 of the NURBS paper, in simulation\n\n"
+         "Made by `table1 --write` (in the build folder's `bench/`; a few seconds of CPU, virtual time, same numbers "
+         "every time).\n\n"
+         "Thompson, Nelson, Cohen and Hollerbach (1999) measured how deep a hand sinks into five models while it "
+         "traces them with a\n"
+         "Sarcos arm. Here the same daemon core, plugins and limits run against a simulated arm and a simulated "
+         "operator. Depth in mm;\n"
+         "buzz is the rms of the depth about its mean in windows of 20 ms, as `--report` gives it.\n\n"
+      << table(e)
+      << "\nGoals, checked by `table1 --check` (a test): average mean within 25 % of 1.63 mm, every mean below 3 mm, "
+         "every maximum\n"
+         "below 12 mm, buzz at most 0.12 mm, at least 10,000 samples a row. "
+      << (e.verdict.met ? "**All met.**\n" : "**Missed**:\n\n```\n" + e.verdict.text + "\n```\n")
+      << "\n![histograms of depth](pictures/table1-histograms.svg)\n\n![depth over time](pictures/table1-trace.svg)\n\n"
+         "![force against travel of the button](pictures/table1-button.svg)\n\n"
+         "The load cells sit behind the joints' friction and before the arm's mass: their force is pinv(J^T) of the "
+         "torques less the\n"
+         "arm's weight, with the arm's inertia in it while it moves; the snap of the detent shows it.\n\n"
+         "## Protocol: one for all rows\n\n"
+      << protocolText(e.protocol)
+      << "\n## What the figures depend on\n\n"
+         "The mean is set by how hard the hand pushes and by the wall, hardly by the software; buzz tells "
+         "implementations apart. A touch is\n"
+         "a fast change of depth too, and counts as buzz in the window it falls into: hence its dependence on the "
+         "touch.\n\n"
+      << variationTable(e)
+      << "\nThe paper says that the largest depth was \"on the average less than 7 mm\"; its own rows average 7.07 "
+         "mm.\n"
+         "Three human parameters against three numbers a row: the agreement shows that the system is plausible, not "
+         "that it is the\n"
+         "same.\n";
+  if (!out.flush()) throw std::runtime_error(folder + "/table1.md: cannot be written");
+}
+
+}  // namespace hapticd::table1
