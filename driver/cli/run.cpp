@@ -19,7 +19,7 @@ namespace hapticd::cli {
 namespace {
 
 struct Options {
-  std::string scene, device, report, picture;
+  std::string scene, device, report, picture, record;
   std::optional<double> duration, rate;
   std::optional<int> cpu;
   std::optional<int> priority;
@@ -72,6 +72,10 @@ int conclude(const Options& options, const servo::Runner& runner) {
   report.start_ms = static_cast<double>(runner.loop().firstTick() - program_start) * 1e-6;
   report.resident_bytes = runner.residentBytes();
   std::fputs(record::summary(report).c_str(), stdout);
+  if (const record::Recorder* recorder = runner.recorder())
+    std::printf("  recorded  %s: %llu ticks, %llu rows lost\n", options.record.c_str(),
+                static_cast<unsigned long long>(recorder->rows(servo::kTicks)),
+                static_cast<unsigned long long>(recorder->lost()));
   if (!options.report.empty())
     if (auto written = record::writeJson(report, options.report); !written) return fail(kFailed, written.error());
   if (!options.picture.empty())
@@ -81,7 +85,7 @@ int conclude(const Options& options, const servo::Runner& runner) {
 }
 
 int run(const Options& options) {
-  for (const std::string& file : {options.report, options.picture})
+  for (const std::string& file : {options.report, options.picture, options.record})
     if (!writable(file))
       return fail(kBadInput, file + ": cannot be written, expected a file in a folder that you may write to");
   auto scene = loadSceneOrReport(options.scene, options.device);
@@ -95,6 +99,7 @@ int run(const Options& options) {
   how.cpu = options.cpu ? options.cpu : daemonSettings().cpu;
   how.priority = options.priority.value_or(daemonSettings().priority.value_or(os::kServoPriority));
   how.allow_non_rt = options.allow_non_rt;
+  how.record = options.record;
   auto world = servo::Runner::buildWorld(*scene, how, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   auto runner = servo::Runner::prepare(*scene, how, std::move(*world), logToTerminal);
@@ -133,6 +138,7 @@ void addRun(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 98));
   command->add_option("--report", options->report, "write a report (JSON)");
   command->add_option("--picture", options->picture, "write a picture of depth, force and lateness over time (SVG)");
+  command->add_option("--record", options->record, "record every tick (HDF5), for replay, plot, Python and MATLAB");
   command->add_flag("--allow-non-rt", options->allow_non_rt, "push with real hardware even without real-time rights");
   command->footer("Example:\n  hapticd run config/scenes/teapot.yaml --for 10 --report report.json --picture run.svg");
   command->callback([options, &exit_code] { exit_code = run(*options); });

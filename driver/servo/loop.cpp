@@ -46,6 +46,7 @@ void Loop::run() noexcept {
     const double dt = static_cast<double>(deadline - last) * kSecondsPerNanosecond;
     if (dt > kLateFault && !simulated()) trip(Fault::kLate);
     const double t = static_cast<double>(deadline - start) * kSecondsPerNanosecond;
+    telemetry_.begin(deadline, arms_);
     tick(deadline, t, dt);
     telemetry_.tick(t, dt, woke - deadline, monotonicNow() - begun - search_time_, world_.core(), arms_);
     last = deadline;

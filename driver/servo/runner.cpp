@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/os.hpp"
+#include "servo/about.hpp"
 #include "sim/proximity_thread.hpp"
 
 namespace hapticd::servo {
@@ -17,6 +18,23 @@ Nanoseconds spinFor(const scene::Servo& servo) {
   const double us = servo.spin_us.value_or(os::inVirtualMachine() ? 0 : kBareMetalSpinUs);
   return static_cast<Nanoseconds>(us * 1e3);
 }
+
+/// Virtual time that waits for the recording: it runs hundreds of times faster than the disk was asked to follow.
+class RecordedClock final : public Clock {
+ public:
+  explicit RecordedClock(const record::Recorder& recorder) : recorder_(recorder) {}
+  Nanoseconds now() noexcept HSP_RT override { return clock_.now(); }
+  Nanoseconds waitUntil(Nanoseconds deadline) noexcept HSP_RT override {
+    constexpr Nanoseconds kPause = 1'000'000;
+    while (recorder_.behind()) pause_.waitUntil(pause_.now() + kPause);
+    return clock_.waitUntil(deadline);
+  }
+
+ private:
+  const record::Recorder& recorder_;
+  VirtualClock clock_;
+  RealClock pause_{0};
+};
 
 std::string noFifo(int priority, const std::error_code& code, bool hardware) {
   return "cannot run the servo thread at FIFO " + std::to_string(priority) + ": " + code.message() + "\n  " +
@@ -53,7 +71,10 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
   settings.period_ns = static_cast<Nanoseconds>(std::llround(1e9 / options.rate));
   settings.ticks = options.duration ? static_cast<uint64_t>(std::llround(*options.duration * options.rate)) : 0;
   settings.lockstep = options.virtual_time;
-  if (options.virtual_time) {
+  if (auto opened = runner->openBlackBox(settings); !opened) return Error{opened.error()};
+  if (options.virtual_time && runner->recorder_) {
+    runner->clock_ = std::make_unique<RecordedClock>(*runner->recorder_);
+  } else if (options.virtual_time) {
     runner->clock_ = std::make_unique<VirtualClock>();
   } else {
     runner->clock_ = std::make_unique<RealClock>(spinFor(scene.servo));
@@ -61,6 +82,19 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
   runner->loop_ =
       std::make_unique<Loop>(*runner->world_, runner->arms_, *runner->clock_, settings, *runner->telemetry_);
   return runner;
+}
+
+Result<void> Runner::openBlackBox(const LoopSettings& settings) {
+  const auto streams = flightStreams(scene_, arms_, options_.rate, Telemetry::kBlackBoxSeconds);
+  const RunFacts facts{options_.rate, settings.period_ns, settings.ticks, options_.virtual_time};
+  auto ring = record::FlightRing::create(streams, aboutRun(scene_, *world_, arms_, facts, streams), options_.black_box);
+  if (!ring) return Error{ring.error()};
+  telemetry_->attach(std::make_unique<Flight>(std::move(*ring), arms_));
+  if (options_.record.empty()) return {};
+  auto recorder = record::Recorder::create(telemetry_->flight()->ring(), options_.record);
+  if (!recorder) return Error{recorder.error()};
+  recorder_ = std::move(*recorder);
+  return {};
 }
 
 Result<void> Runner::openArms(const host::Services::Log& log) {
@@ -77,6 +111,8 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every) {
   for (const auto& arm : arms_)
     if (auto started = arm->start(now, scene_.servo.gravity); !started) return started;
   Result<void> done;
+  if (recorder_)
+    if (const auto code = recorder_->start()) return Error{"cannot start the recording thread: " + code.message()};
   const Nanoseconds begun = monotonicNow();
   if (options_.virtual_time) {
     loop_->run();
@@ -86,6 +122,8 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every) {
   wall_time_ = monotonicNow() - begun;
   resident_bytes_ = os::residentBytes();
   for (const auto& arm : arms_) arm->stop();
+  if (recorder_)
+    if (auto recorded = recorder_->finish(); !recorded && done) done = recorded;
   return done;
 }
 

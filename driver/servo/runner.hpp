@@ -8,6 +8,7 @@
 
 #include "base/os.hpp"
 #include "base/result.hpp"
+#include "record/recorder.hpp"
 #include "scene/scene.hpp"
 #include "servo/loop.hpp"
 
@@ -19,6 +20,8 @@ struct RunOptions {
   bool virtual_time = false;
   std::optional<int> cpu;  ///< pins the servo thread
   int priority = os::kServoPriority;
+  std::string record;     ///< file that takes every tick; empty: none
+  std::string black_box;  ///< file in memory that keeps the last seconds; empty: memory of the process
   bool allow_non_rt = false;  ///< run real hardware without real-time rights all the same
 };
 
@@ -44,6 +47,7 @@ class Runner {
   size_t residentBytes() const { return resident_bytes_; }   ///< [main] at the end of the loop
   const std::vector<std::unique_ptr<Arm>>& arms() const { return arms_; }
   const scene::Scene& scene() const { return scene_; }
+  const record::Recorder* recorder() const { return recorder_.get(); }  ///< nullptr: nothing is recorded
 
   /// Real time could not be had in full: four-part messages for the user.
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -53,6 +57,7 @@ class Runner {
 
  private:
   Runner(const scene::Scene& scene, const RunOptions& options) : scene_(scene), options_(options) {}
+  Result<void> openBlackBox(const LoopSettings& settings);
   Result<void> openArms(const host::Services::Log& log);
   Result<void> runReal(const std::function<void(const Runner&)>& every);
   void lockMemory();
@@ -66,6 +71,7 @@ class Runner {
   std::unique_ptr<Telemetry> telemetry_;
   std::unique_ptr<Clock> clock_;
   std::unique_ptr<Loop> loop_;
+  std::unique_ptr<record::Recorder> recorder_;
   std::vector<std::string> warnings_;
   Nanoseconds wall_time_ = 0;
   size_t resident_bytes_ = 0;

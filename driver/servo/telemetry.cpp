@@ -22,6 +22,7 @@ void Telemetry::tick(double t, double dt, Nanoseconds late, Nanoseconds spent, c
   lateness_us_.add(row.lateness_us);
   compute_us_.add(row.compute_us);
   bookModels(dt, core, row);
+  if (flight_) flight_->tick(t, dt, late, spent, core, arms);
   if (!arms.empty()) {
     const Arm& arm = *arms.front();
     for (int i = 0; i < 3; ++i) {

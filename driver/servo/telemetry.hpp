@@ -12,6 +12,7 @@
 #include "record/report.hpp"
 #include "servo/arm.hpp"
 #include "servo/core.hpp"
+#include "servo/flight.hpp"
 
 namespace hapticd::servo {
 
@@ -33,6 +34,16 @@ class Telemetry {
 
   /// [main] Allocates and touches everything.
   Telemetry(const scene::Scene& scene, double rate);
+
+  /// [main] Keeps every tick in a black box too.
+  void attach(std::unique_ptr<Flight> flight) { flight_ = std::move(flight); }
+  Flight* flight() { return flight_.get(); }
+  const Flight* flight() const { return flight_.get(); }
+
+  /// [rt] Before a tick at time `now`.
+  void begin(Nanoseconds now, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+    if (flight_) flight_->begin(now, arms);
+  }
 
   /// [rt] Books one tick.
   void tick(double t, double dt, Nanoseconds late, Nanoseconds spent, const Core& core,
@@ -68,6 +79,7 @@ class Telemetry {
   uint64_t ticks_ = 0, overruns_ = 0, missed_ = 0, allocations_ = 0;
   long page_faults_ = 0;
   Nanoseconds elapsed_ = 0;
+  std::unique_ptr<Flight> flight_;
 };
 
 }  // namespace hapticd::servo
