@@ -1,9 +1,9 @@
+#include "kernels/medial/scalar_field.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
-
-#include "kernels/medial/skeleton.hpp"
 
 namespace hapticd::medial {
 namespace {
@@ -15,29 +15,37 @@ double innerSlope(double h0, double h1, double d0, double d1) {
   return (w0 + w1) / (w0 / d0 + w1 / d1);
 }
 
-/// Bernstein cubic with end values and slopes; value and derivative.
-std::array<double, 8> hermite(double t, double h) {
+/// Weights of (left value, left slope, right value, right slope) of a cubic: row 0 for the value, rows 1 and 2 for its
+/// derivatives.
+using Hermite = std::array<std::array<double, 4>, 3>;
+
+Hermite hermite(double t, double h) noexcept {
   const double s = 1 - t;
-  return {s * s * (1 + 2 * t), h * s * s * t,     t * t * (3 - 2 * t), -h * t * t * s,
-          -6 * s * t / h,      s * s - 2 * s * t, 6 * s * t / h,       t * t - 2 * s * t};
+  return {{{s * s * (1 + 2 * t), h * s * s * t, t * t * (3 - 2 * t), -h * t * t * s},
+           {-6 * s * t / h, s * s - 2 * s * t, 6 * s * t / h, t * t - 2 * s * t},
+           {(12 * t - 6) / (h * h), (6 * t - 4) / h, (6 - 12 * t) / (h * h), (6 * t - 2) / h}}};
 }
 
-std::size_t interval(const std::vector<double>& knots, double t) {
+std::size_t interval(const std::vector<double>& knots, double t) noexcept {
   const auto above = std::upper_bound(knots.begin() + 1, knots.end() - 1, t);
   return static_cast<std::size_t>(above - knots.begin()) - 1;
 }
 
 }  // namespace
 
-ScalarField::ScalarField(const std::array<std::vector<double>, 2>& parameters, const std::vector<double>& samples)
-    : parameters_(parameters) {
-  nodes_.resize(samples.size());
+ScalarField::ScalarField(const std::array<std::vector<double>, 2>& parameters, const std::vector<double>& samples) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!(samples[i] >= 0) || !std::isfinite(samples[i]))
       throw std::invalid_argument("sample " + std::to_string(i) + " is " + std::to_string(samples[i]) +
                                   ", expected a finite number of at least 0");
-    nodes_[i].f = samples[i];
   }
+  if (samples.empty()) return;
+  const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
+  range_ = {*low, *high};
+  constant_.f = samples.front();
+  if (*low == *high) return;
+  parameters_ = parameters;
+  for (const double f : samples) nodes_.push_back({f, 0, 0});
   limitSlopes();
 }
 
@@ -62,22 +70,37 @@ void ScalarField::limitSlopes() {
   }
 }
 
-ScalarField::Value ScalarField::evaluate(double u, double v) const noexcept {
+template <int kOrder>
+ScalarField::Value ScalarField::blend(double u, double v) const noexcept {
   const std::vector<double>&tu = parameters_[0], &tv = parameters_[1];
   const std::size_t i = interval(tu, u), j = interval(tv, v), stride = tv.size();
   const double hu = tu[i + 1] - tu[i], hv = tv[j + 1] - tv[j];
-  const std::array<double, 8> a = hermite((u - tu[i]) / hu, hu), b = hermite((v - tv[j]) / hv, hv);
+  const Hermite a = hermite((u - tu[i]) / hu, hu), b = hermite((v - tv[j]) / hv, hv);
   Value sum;
   for (std::size_t c = 0; c < 4; ++c) {
-    const std::size_t x = c / 2, y = c % 2;
-    const Value& n = nodes_[(i + x) * stride + j + y];
-    const double pu = a[2 * x], qu = a[2 * x + 1], pv = b[2 * y], qv = b[2 * y + 1];
-    sum.f += n.f * pu * pv + n.fu * qu * pv + n.fv * pu * qv;
-    sum.fu += n.f * a[4 + 2 * x] * pv + n.fu * a[5 + 2 * x] * pv + n.fv * a[4 + 2 * x] * qv;
-    sum.fv += n.f * pu * b[4 + 2 * y] + n.fu * qu * b[4 + 2 * y] + n.fv * pu * b[5 + 2 * y];
+    const std::size_t x = 2 * (c / 2), y = 2 * (c % 2);
+    const Node& n = nodes_[(i + x / 2) * stride + j + y / 2];
+    const auto add = [&](double& to, std::size_t du, std::size_t dv) {
+      to += n.f * a[du][x] * b[dv][y] + n.fu * a[du][x + 1] * b[dv][y] + n.fv * a[du][x] * b[dv][y + 1];
+    };
+    add(sum.f, 0, 0);
+    add(sum.fu, 1, 0);
+    add(sum.fv, 0, 1);
+    if constexpr (kOrder > 1) {
+      add(sum.fuu, 2, 0);
+      add(sum.fuv, 1, 1);
+      add(sum.fvv, 0, 2);
+    }
   }
   sum.f = std::max(0.0, sum.f);  // rounding only
   return sum;
+}
+
+template ScalarField::Value ScalarField::blend<1>(double, double) const noexcept;
+template ScalarField::Value ScalarField::blend<2>(double, double) const noexcept;
+
+std::size_t ScalarField::bytes() const noexcept {
+  return nodes_.capacity() * sizeof(Node) + (parameters_[0].capacity() + parameters_[1].capacity()) * sizeof(double);
 }
 
 }  // namespace hapticd::medial

@@ -1,42 +1,21 @@
-/// The skeleton of a body: a spline surface through the centres of its spheres, with radius and material beside it.
+/// The skeleton of a body: a spline surface (or curve) through the centres of its spheres, with their radii beside it.
 #pragma once
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <memory>
 #include <vector>
 
+#include "kernels/medial/scalar_field.hpp"
 #include "kernels/spline/surface.hpp"
 
 namespace hapticd::medial {
 
-/// Samples of a medial axis on a grid; index = i * count[1] + j.
+/// Samples of a medial axis on a grid; index = i * count[1] + j. One row or one column makes a curve.
 struct SkeletonGrid {
   std::array<int, 2> count{0, 0};
   std::vector<Eigen::Vector3d> points;  ///< [m]
   std::vector<double> radius;           ///< [m] one a point, not negative
-};
-
-/// A scalar over the parameter rectangle that keeps the shape of its samples: C1, never negative where they are not,
-/// and between two samples of a grid line never beyond them (Fritsch & Carlson 1980). A cubic spline through radii 0,
-/// 0.05, 1 falls to -0.27.
-class ScalarField {
- public:
-  ScalarField() = default;
-  /// [main] Samples at every pair of parameters. @throws std::invalid_argument for a negative or non-finite sample.
-  ScalarField(const std::array<std::vector<double>, 2>& parameters, const std::vector<double>& samples);
-
-  /// Value and first derivatives.
-  struct Value {
-    double f = 0, fu = 0, fv = 0;
-  };
-  /// [any]
-  Value evaluate(double u, double v) const noexcept;
-
- private:
-  void limitSlopes();
-
-  std::array<std::vector<double>, 2> parameters_;
-  std::vector<Value> nodes_;
 };
 
 /// A foot on the skeleton: the sphere that comes nearest to a point, or that the point is deepest in.
@@ -46,7 +25,10 @@ struct SkeletonFoot {
   double radius = 0;                                  ///< [m]
   double depth = 0;                                   ///< [m] radius less the distance to the centre; > 0 inside
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< outward unit direction
+  Eigen::Vector3d across = Eigen::Vector3d::Zero();   ///< unit Su x Sv; zero where the skeleton has no plane
+  double residual = 0;                                ///< [m] length of the Newton step that was left
   int evaluations = 0;
+  bool rim = false;  ///< on the boundary of the skeleton
   bool converged = false;
 };
 
@@ -56,32 +38,59 @@ enum class Envelope {
   kFoot    ///< the paper's test: least |Q - S|, then its radius. Too small by 1/sqrt(1 - r'^2) where radii vary
 };
 
+/// Accuracy knobs of a warm search.
+struct NewtonOptions {
+  Envelope envelope = Envelope::kExact;
+  double tolerance = 1e-8;  ///< [m] a Newton step shorter than this ends the search; the error left is its square
+  int max_evaluations = 20;
+};
+
+/// Knots and degrees of what deforms: the control grid. A curve has one row, of degree 0.
+struct ControlGrid {
+  std::array<int, 2> count{0, 0}, degree{0, 0};
+  std::array<std::vector<double>, 2> knots, greville;  ///< greville: parameters that control points stand for
+  std::vector<Eigen::Vector3d> points;                 ///< [m]
+};
+
 class Skeleton {
  public:
   /// [main] Interpolates the grid with degree at most `degree` each way.
-  /// @throws std::invalid_argument for fewer than 2 x 2 points, unequal counts, coinciding neighbours, bad numbers.
-  explicit Skeleton(const SkeletonGrid& grid, int degree = 3);
+  /// @throws std::invalid_argument for fewer than two points, unequal counts, coinciding neighbours, bad numbers.
+  explicit Skeleton(const SkeletonGrid& grid, int degree = 3, spline::Form form = spline::Form::kTable);
 
-  /// [any] The foot of p from a warm start (u, v): safeguarded Newton, at most `max_evaluations` evaluations.
-  SkeletonFoot nearest(const Eigen::Vector3d& p, double u, double v, Envelope envelope,
-                       int max_evaluations) const noexcept;
-  /// [sim] The foot of p with no start known: Newton from the best samples of the whole skeleton.
-  SkeletonFoot search(const Eigen::Vector3d& p, Envelope envelope) const noexcept;
+  /// [any] The foot of p from a warm start (u, v): safeguarded Newton.
+  SkeletonFoot nearest(const Eigen::Vector3d& p, double u, double v, const NewtonOptions& options) const noexcept;
+  /// [any] The foot of p with no start known: Newton from the best samples of the whole skeleton.
+  SkeletonFoot search(const Eigen::Vector3d& p, const NewtonOptions& options) const noexcept;
+  /// [any] The paper's binary search, nested so that it is right on skew skeletons as well: for each of `halvings`
+  /// intervals of u, as many of v. One minimum along each line is assumed.
+  SkeletonFoot bisect(const Eigen::Vector3d& p, Envelope envelope, int halvings) const noexcept;
+  /// [any] No point of the body is nearer to p than this [m]; 0 inside the bounding box.
+  double leastDistance(const Eigen::Vector3d& p) const noexcept { return bounds_.exteriorDistance(p); }
 
   const spline::Surface& surface() const noexcept { return *surface_; }
   const ScalarField& radius() const noexcept { return radius_; }
+  bool curve() const noexcept { return curve_; }                          ///< one row of points
+  const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }  ///< of all spheres
+  const std::array<std::vector<double>, 2>& parameters() const noexcept { return parameters_; }
+  double spacing() const noexcept { return spacing_; }  ///< [m] greatest distance of neighbouring points
+  const ControlGrid& control() const noexcept { return control_; }
+  /// [main] Frees what only set-up needs: the positions of the control points.
+  void trim() { control_.points = {}; }
+  std::size_t bytes() const noexcept;  ///< [any] memory behind this skeleton
 
  private:
-  struct Sample {
-    Eigen::Vector3d center;
-    double radius, u, v;
-  };
-  void sample();
+  void build(const SkeletonGrid& grid, int degree, spline::Form form);
+  void buildCurve(const SkeletonGrid& grid, int degree, spline::Form form);
+  void measure();
 
   std::unique_ptr<spline::Surface> surface_;
   ScalarField radius_;
-  std::array<std::vector<double>, 2> parameters_;
-  std::vector<Sample> samples_;
+  std::array<std::vector<double>, 2> parameters_;  ///< of the points of the grid
+  ControlGrid control_;
+  Eigen::AlignedBox3d bounds_;
+  double spacing_ = 0;
+  bool curve_ = false;
 };
 
 }  // namespace hapticd::medial

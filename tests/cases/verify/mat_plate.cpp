@@ -20,7 +20,7 @@ void matPlate(const Case& c, Check& check) {
   const Json& in = c.input;
   const Eigen::Vector3d q(number(in["Q"][0]), number(in["Q"][1]), number(in["Q"][2]));
   const medial::Skeleton skeleton = plate(number(in["L"]), number(in["W"]), number(in["r"]));
-  const medial::SkeletonFoot foot = skeleton.search(q, medial::Envelope::kExact);
+  const medial::SkeletonFoot foot = skeleton.search(q, {});
   const medial::Split split = medial::splitDepth(foot.depth, number(in["g"]));
   const double tolerance = number(c.tol["abs"]);
   check.near("delta", foot.depth, c.expect["delta"], tolerance);

@@ -1,0 +1,164 @@
+#include "kernels/medial/body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace hapticd::medial {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kChecksPerInterval = 2;  ///< of the monotonicity check, each way
+constexpr double kSameValue = 1e-300;
+
+/// Samples of a curve stand for both rows of its surface.
+ScalarField fieldOf(const Skeleton& skeleton, std::vector<double> samples, const SkeletonGrid& grid, const char* what) {
+  if (samples.size() != grid.points.size())
+    throw std::invalid_argument(std::string(what) + ": " + std::to_string(samples.size()) + " values, expected " +
+                                std::to_string(grid.points.size()) + ", one a point");
+  if (skeleton.curve()) {
+    const std::vector<double> row = samples;
+    samples.insert(samples.end(), row.begin(), row.end());
+  }
+  try {
+    return ScalarField(skeleton.parameters(), samples);
+  } catch (const std::invalid_argument& e) {
+    throw std::invalid_argument(std::string(what) + ": " + e.what());
+  }
+}
+
+std::vector<double> orZeros(const std::vector<double>& samples, std::size_t count) {
+  return samples.empty() ? std::vector<double>(count, 0) : samples;
+}
+
+}  // namespace
+
+Body::Body(const BodyData& data, const BodyOptions& options)
+    : options_(options), skeleton_(data.grid, options.degree, options.form) {
+  stiffness_ = fieldOf(skeleton_, data.stiffness, data.grid, "stiffness");
+  damping_ = fieldOf(skeleton_, orZeros(data.damping, data.grid.points.size()), data.grid, "damping");
+  deformation_.emplace(skeleton_, materialOf(data), options.deformation);
+  skeleton_.trim();
+}
+
+/// The material of a control point is that of the body where it acts most.
+std::vector<Oscillator> Body::materialOf(const BodyData& data) const {
+  const ScalarField mass = fieldOf(skeleton_, orZeros(data.mass, data.grid.points.size()), data.grid, "mass");
+  if (mass.constant() && damping_.constant() && stiffness_.constant())
+    return {Oscillator{mass.greatest(), damping_.greatest(), stiffness_.greatest()}};
+  const ControlGrid& control = skeleton_.control();
+  std::vector<Oscillator> material;
+  for (const double u : control.greville[0])
+    for (const double v : control.greville[1])
+      material.push_back({mass.evaluate(u, v).f, damping_.evaluate(u, v).f, stiffness_.evaluate(u, v).f});
+  return material;
+}
+
+/// Four points of the contour at rest, beside the contact. Their normal turns from the contact's as the skeleton's
+/// does. Toward the rim the springs fade out, so that the force does not jump there.
+Body::Neighbours Body::neighboursOf(const SkeletonFoot& foot, const Vector3d& normal) const noexcept {
+  Neighbours neighbours;
+  if (!(options_.shear_offset > 0)) return neighbours;
+  const double here = stiffness_.evaluate(foot.u, foot.v).f;
+  const double side = normal.dot(foot.across) < 0 ? -1 : 1;
+  spline::SurfacePoint s;
+  for (std::size_t axis = skeleton_.curve() ? 1 : 0; axis < 2; ++axis) {
+    const auto& range = skeleton_.parameters()[axis];
+    const double offset = options_.shear_offset * (range.back() - range.front());
+    for (const double sign : {-1.0, 1.0}) {
+      std::array<double, 2> at{foot.u, foot.v};
+      const double start = at[axis];
+      at[axis] = std::clamp(start + sign * offset, range.front(), range.back());
+      const double share = std::fabs(at[axis] - start) / offset;
+      if (!(share > 0)) continue;
+      skeleton_.surface().evaluate1(at[0], at[1], s);
+      const Vector3d cross = s.Su.cross(s.Sv);
+      const double area = cross.norm();
+      Vector3d turned = normal;
+      if (area > 0) turned += side * (cross / area - foot.across);
+      const double length = turned.norm();
+      if (!(length > 0)) continue;
+      ShearSpring& spring = neighbours.springs[neighbours.count++];
+      spring.anchor = s.S + skeleton_.radius().evaluate(at[0], at[1]).f / length * turned;
+      spring.stiffness = share * 0.5 * (here + stiffness_.evaluate(at[0], at[1]).f);
+    }
+  }
+  return neighbours;
+}
+
+BodyForce Body::press(const Vector3d& p, const SkeletonFoot& foot, const Vector3d& normal, double depth,
+                      double closing_speed) const noexcept {
+  BodyForce result;
+  if (!(depth > 0)) return result;
+  const Vector3d surface = p + depth * normal;
+  const Neighbours neighbours = neighboursOf(foot, normal);
+  const std::span<const ShearSpring> springs(neighbours.springs.data(), neighbours.count);
+  result.stiffness = stiffness_.evaluate(foot.u, foot.v).f;
+  result.force = pressForce(p, surface, normal, result.stiffness, depth, springs);
+  result.energy = 0.5 * result.stiffness * depth * depth;
+  for (const ShearSpring& spring : springs) {
+    const double stretch = (spring.anchor - p).norm() - (spring.anchor - surface).norm();
+    result.energy += 0.5 * spring.stiffness * stretch * stretch;
+  }
+  if (std::isfinite(closing_speed))
+    result.force +=
+        damping_.evaluate(foot.u, foot.v).f * std::min(1.0, depth / options_.damping_scale) * closing_speed * normal;
+  result.normal = result.force.dot(normal);
+  if (result.normal < 0) result.force -= result.normal * normal;  // a surface does not pull
+  result.normal = std::max(0.0, result.normal);
+  return result;
+}
+
+/// A spring whose far end lies below the surface is shortened while the contact comes down to its height, and pushes
+/// inward: at worst with its stiffness times (rest length / least length - 1) per metre, against the normal spring.
+MonotonicityReport Body::checkMonotonicity() const {
+  MonotonicityReport report;
+  const auto look = [&](double u, double v, const SkeletonFoot& at, const Vector3d& normal) {
+    const double k = stiffness_.evaluate(u, v).f;
+    const Neighbours neighbours = neighboursOf(at, normal);
+    double slope = k, worst = 1, total = 0;
+    for (std::size_t i = 0; i < neighbours.count; ++i) {
+      const ShearSpring& spring = neighbours.springs[i];
+      const Vector3d chord = spring.anchor - (at.center + at.radius * normal);
+      const double down = -chord.dot(normal), level = (chord + down * normal).norm();
+      total += spring.stiffness;
+      if (!(down > 0)) continue;
+      const double ratio = chord.norm() / std::max(level, kSameValue);
+      slope += spring.stiffness * (1 - ratio);
+      worst = std::max(worst, ratio);
+    }
+    if (!(k > 0) || !(slope / k < report.slope)) return;
+    report = {slope / k, worst, total > 0 ? 1 + k / total : HUGE_VAL, u, v};
+  };
+  const auto visit = [&](double u, double v) {
+    SkeletonFoot at;
+    spline::SurfacePoint s;
+    skeleton_.surface().evaluate1(u, v, s);
+    const Vector3d cross = s.Su.cross(s.Sv);
+    at.u = u, at.v = v, at.center = s.S, at.radius = skeleton_.radius().evaluate(u, v).f;
+    if (cross.norm() > 0) at.across = cross.normalized();
+    if (skeleton_.curve()) {
+      const Vector3d side = s.Sv.unitOrthogonal(), other = s.Sv.cross(side).normalized();
+      for (const Vector3d& normal : {side, Vector3d(-side), other, Vector3d(-other)}) look(u, v, at, normal);
+    } else if (cross.norm() > 0) {
+      look(u, v, at, at.across);
+      look(u, v, at, -at.across);
+    }
+  };
+  const auto& [tu, tv] = skeleton_.parameters();
+  const int rows = skeleton_.curve() ? 0 : kChecksPerInterval * (static_cast<int>(tu.size()) - 1);
+  const int columns = kChecksPerInterval * (static_cast<int>(tv.size()) - 1);
+  for (int i = 0; i <= rows; ++i)
+    for (int j = 0; j <= columns; ++j)
+      visit(rows > 0 ? tu.front() + (tu.back() - tu.front()) * i / rows : tu.front(),
+            tv.front() + (tv.back() - tv.front()) * j / columns);
+  return report;
+}
+
+std::size_t Body::bytes() const noexcept {
+  return sizeof *this - sizeof skeleton_ + skeleton_.bytes() + stiffness_.bytes() + damping_.bytes() +
+         deformation_->bytes();
+}
+
+}  // namespace hapticd::medial

@@ -1,0 +1,82 @@
+/// A soft body from a grid of skeleton points: where its surface is, how hard it pushes back, how it gives way.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "kernels/medial/deformation.hpp"
+#include "kernels/medial/shear.hpp"
+#include "kernels/medial/skeleton.hpp"
+
+namespace hapticd::medial {
+
+/// What a model file says of a body; index = i * count[1] + j.
+struct BodyData {
+  SkeletonGrid grid;
+  std::vector<double> stiffness;  ///< [N/m] one a point
+  std::vector<double> damping;    ///< [N s/m] one a point; empty: none
+  std::vector<double> mass;       ///< [kg] one a point; empty: none, so that control points creep
+};
+
+struct BodyOptions {
+  int degree = 3;
+  spline::Form form = spline::Form::kTable;
+  double shear_offset = 0.05;   ///< distance of the four neighbours, as a share of the parameter range; 0: no shear
+  double damping_scale = 5e-3;  ///< [m] depth at which damping of the contact is whole; it grows from 0 at the surface
+  DeformationOptions deformation;
+};
+
+/// The force of a pressed body.
+struct BodyForce {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N] on the probe
+  double normal = 0;                                ///< [N] its outward part
+  double stiffness = 0;                             ///< [N/m] of the normal spring here
+  double energy = 0;                                ///< [J] in the springs
+};
+
+/// Whether the force grows with every depth, at every place that was looked at.
+struct MonotonicityReport {
+  double slope = 1;  ///< least slope of the force over the stiffness of the normal spring, both at the same place
+  double ratio = 1, limit = 1;  ///< there: rest length over least length of the worst spring; what it may be
+  double u = 0, v = 0;          ///< there
+  bool holds() const noexcept { return slope > 0; }
+};
+
+class Body {
+ public:
+  /// [main] @throws std::invalid_argument that says what is wrong with the data.
+  Body(const BodyData& data, const BodyOptions& options);
+  Body(const Body&) = delete;  // the deformation looks at the skeleton beside it
+  Body& operator=(const Body&) = delete;
+
+  const Skeleton& skeleton() const noexcept { return skeleton_; }
+  Deformation& deformation() noexcept { return *deformation_; }
+  const Deformation& deformation() const noexcept { return *deformation_; }
+  const ScalarField& stiffness() const noexcept { return stiffness_; }
+
+  /// [rt] The force on a probe at `p` whose foot is `foot`, with outward unit direction `normal` and depth `depth`
+  /// along it: normal spring, four springs along the surface, damping against `closing_speed`. It never pulls inward
+  /// along the normal.
+  BodyForce press(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
+                  double closing_speed) const noexcept;
+  /// [main] Looks at the force law all over the skeleton, on both sides.
+  MonotonicityReport checkMonotonicity() const;
+  /// [any] No force rises faster with depth [N/m]: the normal spring and four others in line with it.
+  double greatestStiffness() const noexcept { return (options_.shear_offset > 0 ? 5 : 1) * stiffness_.greatest(); }
+  std::size_t bytes() const noexcept;
+
+ private:
+  struct Neighbours {
+    std::array<ShearSpring, 4> springs;
+    std::size_t count = 0;
+  };
+  Neighbours neighboursOf(const SkeletonFoot& foot, const Eigen::Vector3d& normal) const noexcept;
+  std::vector<Oscillator> materialOf(const BodyData& data) const;
+
+  BodyOptions options_;
+  Skeleton skeleton_;
+  ScalarField stiffness_, damping_;
+  std::optional<Deformation> deformation_;
+};
+
+}  // namespace hapticd::medial

@@ -1,0 +1,304 @@
+/// The three searches for the foot on a skeleton: warm Newton, cold Newton, nested bisection.
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/medial/skeleton.hpp"
+
+namespace hapticd::medial {
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr int kSamplesPerInterval = 3;  ///< of a cold search, each way
+constexpr int kColdStarts = 8;          ///< samples that Newton starts from in a cold search
+constexpr int kColdEvaluations = 60;
+constexpr double kSteepest = 0.99;        ///< slope of the radius beyond which spheres are nested
+constexpr double kLeastCurvature = 0.05;  ///< of a Hessian over that of the metric: below it a step would go too far
+constexpr double kSingular = 1e-14;       ///< share of the trace that keeps a collapsed direction solvable
+
+using Box = std::array<std::array<double, 2>, 2>;
+
+/// All that one evaluation gives.
+struct State {
+  spline::SurfacePoint s;
+  ScalarField::Value r;
+  Vector3d d;           ///< from the skeleton to the query
+  double distance = 0;  ///< |d|
+  double value = 0;     ///< what is least at the foot
+};
+
+/// One search: what it minimises and where.
+class Search {
+ public:
+  Search(const Skeleton& skeleton, const Vector3d& p, Envelope envelope)
+      : skeleton_(skeleton), p_(p), exact_(envelope == Envelope::kExact) {
+    for (std::size_t a = 0; a < 2; ++a) box_[a] = {skeleton.parameters()[a].front(), skeleton.parameters()[a].back()};
+  }
+
+  void evaluate(const Vector2d& x, State& q) noexcept {
+    skeleton_.surface().evaluate2(x[0], x[1], q.s);
+    q.r = skeleton_.radius().evaluate2(x[0], x[1]);
+    q.d = p_ - q.s.S;
+    q.distance = q.d.norm();
+    q.value = q.distance - (exact_ ? q.r.f : 0);
+    ++evaluations_;
+  }
+
+  Vector2d inside(const Vector2d& x) const noexcept {
+    return {std::clamp(x[0], box_[0][0], box_[0][1]), std::clamp(x[1], box_[1][0], box_[1][1])};
+  }
+
+  /// The step from x to the foot, to second order, that ends in the box.
+  Vector2d step(const State& q, const Vector2d& x) const noexcept;
+  /// Downhill direction times |d| along one parameter, with |d| taken as `height`.
+  double slope(const State& q, std::size_t axis, double height) const noexcept {
+    const Vector3d& tangent = axis == 0 ? q.s.Su : q.s.Sv;
+    return q.d.dot(tangent) + (exact_ ? height * (axis == 0 ? q.r.fu : q.r.fv) : 0);
+  }
+  void finish(const State& q, const Vector2d& x, SkeletonFoot& foot) const noexcept;
+
+  const Box& box() const noexcept { return box_; }
+  int evaluations() const noexcept { return evaluations_; }
+
+ private:
+  Matrix2d hessian(const State& q, double height, bool flat) const noexcept;
+  double planeHeight(const State& q, const Matrix2d& metric) const noexcept;
+  Vector2d solve(const Matrix2d& h, const Vector2d& g, const std::array<bool, 2>& held,
+                 const Vector2d& x) const noexcept;
+
+  const Skeleton& skeleton_;
+  const Vector3d& p_;
+  bool exact_;
+  Box box_;
+  int evaluations_ = 0;
+};
+
+Matrix2d metricOf(const State& q) noexcept {
+  Matrix2d metric;
+  metric << q.s.Su.dot(q.s.Su), q.s.Su.dot(q.s.Sv), q.s.Su.dot(q.s.Sv), q.s.Sv.dot(q.s.Sv);
+  return metric;
+}
+
+/// Shifts a Hessian so that it curves upward everywhere: the least curvature, relative to the metric, changes its sign.
+void makeConvex(Matrix2d& h, const Matrix2d& metric, bool curve) noexcept {
+  double least = h(1, 1) / std::max(metric(1, 1), 1e-300);
+  if (!curve) {
+    const double area2 = metric.determinant();
+    if (!(area2 > 0)) {
+      h = metric;
+      return;
+    }
+    const double mean = 0.5 * (h(0, 0) * metric(1, 1) + h(1, 1) * metric(0, 0) - 2 * h(0, 1) * metric(0, 1)) / area2;
+    least = mean - std::sqrt(std::max(0.0, mean * mean - h.determinant() / area2));
+  }
+  if (!(least > kLeastCurvature)) h += (std::max(-least, kLeastCurvature) - least) * metric;
+}
+
+/// |d| times the Hessian of |d| - r, made convex where it is not. `flat`: |d| is taken from the tangent
+/// plane and does not vary to first order.
+Matrix2d Search::hessian(const State& q, double height, bool flat) const noexcept {
+  const Matrix2d metric = metricOf(q);
+  Matrix2d h = metric;
+  h(0, 0) -= q.d.dot(q.s.Suu);
+  h(0, 1) -= q.d.dot(q.s.Suv);
+  h(1, 1) -= q.d.dot(q.s.Svv);
+  if (exact_) {
+    h(0, 0) -= height * q.r.fuu;
+    h(0, 1) -= height * q.r.fuv;
+    h(1, 1) -= height * q.r.fvv;
+    if (!flat && q.distance > 0) {
+      const Vector2d along(q.s.Su.dot(q.d) / q.distance, q.s.Sv.dot(q.d) / q.distance);
+      h(0, 0) -= along[0] * along[0];
+      h(0, 1) -= along[0] * along[1];
+      h(1, 1) -= along[1] * along[1];
+    }
+  }
+  h(1, 0) = h(0, 1);
+  makeConvex(h, metric, skeleton_.curve());
+  return h;
+}
+
+/// What |d| will be at the foot if the skeleton is its tangent plane: finite where the query lies on the skeleton.
+double Search::planeHeight(const State& q, const Matrix2d& metric) const noexcept {
+  const Vector3d cross = q.s.Su.cross(q.s.Sv);
+  const double area2 = cross.squaredNorm();
+  if (skeleton_.curve() || !(area2 > 0)) {
+    const double length2 = metric(1, 1);
+    if (!(length2 > 0)) return q.distance;
+    const double along = q.d.dot(q.s.Sv), steep2 = std::min(q.r.fv * q.r.fv / length2, kSteepest * kSteepest);
+    return std::sqrt(std::max(0.0, q.distance * q.distance - along * along / length2) / (1 - steep2));
+  }
+  const Vector2d slope(q.r.fu, q.r.fv);
+  const double steep2 = slope.dot(Vector2d(metric(1, 1) * slope[0] - metric(0, 1) * slope[1],
+                                           metric(0, 0) * slope[1] - metric(0, 1) * slope[0])) /
+                        area2;
+  return std::fabs(q.d.dot(cross)) / std::sqrt(area2 * (1 - std::min(steep2, kSteepest * kSteepest)));
+}
+
+/// Solves for the parameters that are not held, and where that leaves the box, again with those at the boundary.
+Vector2d Search::solve(const Matrix2d& h, const Vector2d& g, const std::array<bool, 2>& held,
+                       const Vector2d& x) const noexcept {
+  const double small = kSingular * (h(0, 0) + h(1, 1)) + 1e-300;
+  const double a = h(0, 0) + small, b = h(1, 1) + small;
+  if (held[0] && held[1]) return Vector2d::Zero();
+  if (held[0]) return inside(x + Vector2d(0, g[1] / b)) - x;
+  if (held[1]) return inside(x + Vector2d(g[0] / a, 0)) - x;
+  const double det = a * b - h(0, 1) * h(0, 1);
+  Vector2d move = Vector2d(b * g[0] - h(0, 1) * g[1], a * g[1] - h(0, 1) * g[0]) / std::max(det, 1e-300);
+  const Vector2d kept = inside(x + move) - x;
+  if (kept == move) return move;
+  const bool first = std::fabs(kept[0] - move[0]) * std::sqrt(a) > std::fabs(kept[1] - move[1]) * std::sqrt(b);
+  move = first ? Vector2d(kept[0], (g[1] - h(0, 1) * kept[0]) / b) : Vector2d((g[0] - h(0, 1) * kept[1]) / a, kept[1]);
+  return inside(x + move) - x;
+}
+
+Vector2d Search::step(const State& q, const Vector2d& x) const noexcept {
+  std::array<bool, 2> held{skeleton_.curve(), false};
+  bool rim = false;
+  for (std::size_t a = skeleton_.curve() ? 1 : 0; a < 2; ++a) {
+    const double g = slope(q, a, q.distance), at = x[static_cast<Eigen::Index>(a)];
+    held[a] = (at <= box_[a][0] && g < 0) || (at >= box_[a][1] && g > 0);
+    rim |= held[a];
+  }
+  const auto moveFor = [&](double height, bool flat) {
+    return solve(hessian(q, height, flat), {slope(q, 0, height), slope(q, 1, height)}, held, x);
+  };
+  const Vector2d move = moveFor(q.distance, false);
+  const double length = (q.s.Su * move[0] + q.s.Sv * move[1]).norm();
+  if (!exact_ || skeleton_.radius().constant() || rim || 2 * length < q.distance) return move;
+  return moveFor(planeHeight(q, metricOf(q)), true);  // |d| has its kink within reach of the step
+}
+
+void Search::finish(const State& q, const Vector2d& x, SkeletonFoot& foot) const noexcept {
+  foot.u = x[0];
+  foot.v = x[1];
+  foot.center = q.s.S;
+  foot.radius = q.r.f;
+  foot.depth = q.r.f - q.distance;
+  foot.evaluations = evaluations_;
+  const std::size_t first = skeleton_.curve() ? 1 : 0;
+  for (std::size_t a = first; a < 2; ++a) {
+    const double at = x[static_cast<Eigen::Index>(a)];
+    foot.rim |= at <= box_[a][0] || at >= box_[a][1];
+  }
+  const Vector3d cross = q.s.Su.cross(q.s.Sv);
+  const double area = cross.norm();
+  if (area > 0) foot.across = cross / area;
+  if (q.distance > 0) {
+    foot.normal = q.d / q.distance;
+  } else if (area > 0) {
+    foot.normal = foot.across;
+  } else if (q.s.Sv.squaredNorm() > 0) {
+    foot.normal = q.s.Sv.unitOrthogonal();
+  }
+}
+
+}  // namespace
+
+SkeletonFoot Skeleton::nearest(const Vector3d& p, double u, double v, const NewtonOptions& options) const noexcept {
+  SkeletonFoot foot;
+  if (!p.allFinite() || !std::isfinite(u) || !std::isfinite(v)) return foot;
+  Search search(*this, p, options.envelope);
+  Vector2d x = search.inside({u, v});
+  std::array<State, 2> states;  // in turn: the current one and the one tried
+  std::size_t now = 0;
+  search.evaluate(x, states[now]);
+  Vector2d move = search.step(states[now], x);
+  while (true) {
+    const State& q = states[now];
+    foot.residual = (q.s.Su * move[0] + q.s.Sv * move[1]).norm();
+    foot.converged = foot.residual < options.tolerance;
+    if (foot.converged || search.evaluations() >= options.max_evaluations) break;
+    State& next = states[1 - now];
+    next.s.span = q.s.span;
+    search.evaluate(x + move, next);
+    if (next.value <= q.value + 1e-15) {
+      x += move;
+      now = 1 - now;
+      move = search.step(states[now], x);
+    } else {
+      move *= 0.5;
+    }
+  }
+  search.finish(states[now], x, foot);
+  return foot;
+}
+
+SkeletonFoot Skeleton::search(const Vector3d& p, const NewtonOptions& options) const noexcept {
+  struct Start {
+    double value = HUGE_VAL, u = 0, v = 0;
+    int i = 0, j = 0;
+  };
+  std::array<Start, kColdStarts> starts;
+  const auto offer = [&starts](Start start) {
+    for (Start& kept : starts) {
+      if (start.value < kept.value) std::swap(start, kept);
+    }
+  };
+  spline::SurfacePoint s;
+  const auto at = [this](std::size_t axis, int i) {
+    const std::vector<double>& t = parameters_[axis];
+    const auto cell = static_cast<std::size_t>(i / kSamplesPerInterval);
+    return cell + 1 < t.size() ? t[cell] + (t[cell + 1] - t[cell]) * (i % kSamplesPerInterval) / kSamplesPerInterval
+                               : t.back();
+  };
+  const int rows = curve_ ? 1 : kSamplesPerInterval * (static_cast<int>(parameters_[0].size()) - 1) + 1;
+  const int columns = kSamplesPerInterval * (static_cast<int>(parameters_[1].size()) - 1) + 1;
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      const double u = at(0, i), v = at(1, j);
+      surface_->evaluate1(u, v, s);
+      const double radius = options.envelope == Envelope::kExact ? radius_.evaluate(u, v).f : 0;
+      offer({(p - s.S).norm() - radius, u, v, i, j});
+    }
+  }
+  NewtonOptions cold = options;
+  cold.max_evaluations = kColdEvaluations;
+  SkeletonFoot best;
+  double least = HUGE_VAL;
+  int evaluations = 0;
+  for (const Start& start : starts) {
+    if (start.value == HUGE_VAL) break;
+    const SkeletonFoot foot = nearest(p, start.u, start.v, cold);
+    evaluations += foot.evaluations;
+    const double value = options.envelope == Envelope::kExact ? -foot.depth : (p - foot.center).norm();
+    if (value < least) best = foot;
+    least = std::min(least, value);
+  }
+  best.evaluations = evaluations;
+  return best;
+}
+
+SkeletonFoot Skeleton::bisect(const Vector3d& p, Envelope envelope, int halvings) const noexcept {
+  SkeletonFoot foot;
+  if (!p.allFinite()) return foot;
+  Search search(*this, p, envelope);
+  State q;
+  Vector2d x(search.box()[0][0], search.box()[1][0]);
+  search.evaluate(x, q);
+  const auto halve = [&](std::size_t axis, const auto& refine) {
+    std::array<double, 2> range = search.box()[axis];
+    for (int i = 0; i < halvings; ++i) {
+      const double middle = 0.5 * (range[0] + range[1]);
+      x[static_cast<Eigen::Index>(axis)] = middle;
+      refine();
+      range[search.slope(q, axis, q.distance) > 0 ? 0 : 1] = middle;
+    }
+  };
+  const auto rows = [&] { halve(1, [&] { search.evaluate(x, q); }); };
+  if (curve_) {
+    rows();
+  } else {
+    halve(0, rows);
+  }
+  search.finish(q, x, foot);
+  foot.converged = true;
+  foot.residual = (q.s.Su.norm() * (search.box()[0][1] - search.box()[0][0]) +
+                   q.s.Sv.norm() * (search.box()[1][1] - search.box()[1][0])) *
+                  std::ldexp(1.0, -halvings);
+  return foot;
+}
+
+}  // namespace hapticd::medial
