@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <charconv>
+#include <fstream>
 #include <limits>
 
 #include "model_file.hpp"
@@ -14,6 +15,7 @@ using Json = nlohmann::json;
 constexpr std::size_t kMostProblems = 20;
 constexpr std::size_t kMostNodes = 50'000'000;  // aliases can make a small file a huge tree
 constexpr int kDeepest = 64;
+constexpr std::size_t kMostBytes = 1u << 30;
 
 Json scalarOf(const YAML::Node& node) {
   const std::string& text = node.Scalar();
@@ -124,6 +126,19 @@ void Problems::throwIfAny() const {
     all.append(line(file_, mark.line + 1, mark.column + 1, name.empty() ? problem.what : name + ": " + problem.what));
   }
   throw ModelFileError(all);
+}
+
+std::string readModelText(const std::string& path) {
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) throw ModelFileError(path + ":1:1: cannot be read, expected a model file (format hapticd-model/1)");
+  const std::streamoff size = in.tellg();
+  if (size < 0 || static_cast<std::size_t>(size) > kMostBytes)
+    throw ModelFileError(path + ":1:1: not a regular file of at most 1 GiB, expected a model file");
+  std::string text(static_cast<std::size_t>(size), '\0');
+  in.seekg(0);
+  in.read(text.data(), size);
+  if (!in) throw ModelFileError(path + ":1:1: cannot be read, expected a model file (format hapticd-model/1)");
+  return text;
 }
 
 Json parseDocument(const std::string& text, const std::string& file) {

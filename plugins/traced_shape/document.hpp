@@ -34,6 +34,9 @@ class Problems {
   std::vector<Problem> found_;
 };
 
+/// [main] All of a model file. @throws ModelFileError if it cannot be read or is larger than 1 GiB.
+std::string readModelText(const std::string& path);
+
 /// [main] The text as a tree. Numbers become numbers, `.nan` and `.inf` too (as not-a-number and infinity); everything
 /// else of YAML's scalars stays text. @throws ModelFileError if it is neither YAML nor JSON.
 nlohmann::json parseDocument(const std::string& text, const std::string& file);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <initializer_list>
 #include <iterator>
 #include <optional>
@@ -14,7 +13,6 @@ namespace {
 
 using Json = nlohmann::json;
 constexpr std::size_t kMostSurfaces = 1'000'000;
-constexpr std::size_t kMostBytes = 1u << 30;
 
 Path operator/(Path path, const char* key) {
   path.push_back({key, 0});
@@ -196,23 +194,10 @@ class Reader {
   Problems& problems_;
 };
 
-std::string textOf(const std::string& path) {
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in) throw ModelFileError(path + ":1:1: cannot be read, expected a model file (format hapticd-model/1)");
-  const std::streamoff size = in.tellg();
-  if (size < 0 || static_cast<std::size_t>(size) > kMostBytes)
-    throw ModelFileError(path + ":1:1: not a regular file of at most 1 GiB, expected a model file");
-  std::string text(static_cast<std::size_t>(size), '\0');
-  in.seekg(0);
-  in.read(text.data(), size);
-  if (!in) throw ModelFileError(path + ":1:1: cannot be read, expected a model file (format hapticd-model/1)");
-  return text;
-}
-
 }  // namespace
 
 ModelFile readModelFile(const std::string& path) {
-  const std::string text = textOf(path);
+  const std::string text = readModelText(path);
   const Json root = parseDocument(text, path);
   Problems problems(path, text);
   ModelFile file = Reader(problems).read(root);

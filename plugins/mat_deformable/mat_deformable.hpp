@@ -1,0 +1,114 @@
+/// A soft body from its medial axis: a grid of skeleton points with radii and material (Corso et al. 2002).
+#pragma once
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hapticd/shape.hpp"
+#include "kernels/contact/friction.hpp"
+#include "kernels/medial/body.hpp"
+
+namespace hapticd {
+
+class MatDeformable final : public Shape {
+ public:
+  static constexpr ShapeInfo kInfo = {"org.hapticd.shape.mat_deformable",
+                                      "mat_deformable",
+                                      "1.0",
+                                      "MIT",
+                                      "A soft body made of spheres along a skeleton: it yields, swings and settles.",
+                                      HSP_C_DEFORMS};
+  static constexpr auto fields() {
+    using T = MatDeformable;
+    using F = Fields<T>;
+    return std::array{
+        F::path("geometry", &T::geometry_, "model file (format hapticd-model/1) with medial, YAML or JSON",
+                HSP_P_REQUIRED),
+        F::choice("search", &T::search_, kSearchNames, 0,
+                  "newton: safeguarded Newton from the last foot; binary: nested halving, the paper's way",
+                  HSP_P_ACCURACY),
+        F::integer("depth", &T::depth_, "", 4, 30, 10, "halvings of each parameter of search binary", HSP_P_ACCURACY),
+        F::real("tolerance", &T::tolerance_, "m", 1e-12, 1e-3, 1e-8, "step at which search newton stops",
+                HSP_P_ACCURACY | HSP_P_LIVE),
+        F::choice("envelope", &T::envelope_, kEnvelopeNames, 0,
+                  "exact: the union of the spheres; foot: the paper's test, too small where radii vary",
+                  HSP_P_ACCURACY),
+        F::integer("degree", &T::degree_, "", 1, medial::kMaxSkeletonDegree, 3, "of the skeleton spline, at most",
+                   HSP_P_ACCURACY),
+        F::choice("evaluation", &T::evaluation_, kEvaluationNames, 0, "fast: a table a span; small: control points",
+                  HSP_P_ACCURACY),
+        F::real("split", &T::split_, "", 0, 1, 0.5,
+                "g: share of the depth by which the skeleton moves; 0.5: the opposite side stays, 1: it follows"),
+        F::array("influence", &T::influence_, "", 2, 2, 2, 1, medial::kMaxSkeletonDegree + 1, "[4, 4]",
+                 "p', q': control points that a contact moves; degree + 1: no jumps", HSP_P_ACCURACY),
+        F::choice("dynamics", &T::dynamics_, kSwitchNames, 1,
+                  "on: control points swing and creep back; off: they return at once", HSP_P_ACCURACY),
+        F::real("shear_offset", &T::shear_offset_, "", 0, 0.5, 0.05,
+                "distance of the four springs along the surface, as a share of the parameters; 0: none"),
+        F::real("damping_scale", &T::damping_scale_, "m", 1e-6, 1, 5e-3,
+                "depth at which the damping of the contact is whole"),
+        F::real("friction_static", &T::friction_static_, "", 0, 10, 0,
+                "mu_s: force along the surface over normal force that a stuck probe must overcome"),
+        F::real("friction_dynamic", &T::friction_dynamic_, "", 0, 10, 0, "mu_d: of a sliding probe"),
+        F::real("viscosity", &T::viscosity_, "N s/m", 0, 100, 0, "drag along the surface in contact")};
+  }
+
+  void activate(const hsp_activation& activation, hsp_report& report);
+  void deactivate();
+  void reset() noexcept HSP_RT;
+  hsp_status step(const hsp_step& step) noexcept HSP_RT;
+  const void* extension(const char* name);
+
+ private:
+  static constexpr const char* kSearchNames[] = {"newton", "binary"};
+  static constexpr const char* kEnvelopeNames[] = {"exact", "foot"};
+  static constexpr const char* kEvaluationNames[] = {"fast", "small"};
+  static constexpr const char* kSwitchNames[] = {"off", "on"};
+
+  /// One probe on the body.
+  struct Track {
+    medial::SkeletonFoot foot;
+    Eigen::Vector3d last{0, 0, 0};  ///< where the probe was
+    double offered_u = 0, offered_v = 0;
+    bool active = false, known = false, offered = false;
+    int side = 0;  ///< of the skeleton on which it entered; 0: it has not
+    contact::Friction friction;
+  };
+  /// The surface as the probe feels it: where it was pushed through the skeleton, still that of the side it came from.
+  struct Felt {
+    Eigen::Vector3d normal{0, 0, 1};
+    double depth = 0;
+  };
+
+  medial::BodyOptions bodyOptions() const;
+  void describe() const;
+  double elapsed(const hsp_step& step) noexcept HSP_RT;
+  medial::NewtonOptions newtonOptions(const hsp_step& step) const noexcept HSP_RT;
+  hsp_status touch(const hsp_probe& probe, const hsp_step& step, uint32_t index, hsp_contact& contact) noexcept HSP_RT;
+  void find(const Eigen::Vector3d& p, uint32_t flags, const medial::NewtonOptions& options,
+            Track& track) noexcept HSP_RT;
+  static Felt felt(Track& track) noexcept HSP_RT;
+  void push(const hsp_probe& probe, const Felt& felt, Track& track, hsp_contact& contact) noexcept HSP_RT;
+
+  int64_t nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const;
+  hsp_status start(const hsp_near& near) noexcept HSP_RT;
+  hsp_status stop(uint32_t probe) noexcept HSP_RT;
+
+  std::string geometry_;
+  int search_ = 0, depth_ = 10, envelope_ = 0, degree_ = 3, evaluation_ = 0, dynamics_ = 1;
+  double tolerance_ = 1e-8, split_ = 0.5, shear_offset_ = 0.05, damping_scale_ = 5e-3;
+  double friction_static_ = 0, friction_dynamic_ = 0, viscosity_ = 0;
+  std::vector<double> influence_{4, 4};
+
+  std::unique_ptr<medial::Body> body_;
+  std::vector<Track> tracks_;           ///< one a probe
+  std::vector<medial::Press> presses_;  ///< of this step, reserved for all probes
+  uint64_t last_time_ns_ = 0;
+  double stored_ = 0;  ///< [J] in the springs of the contacts
+  hsp_ext_surfaces surfaces_extension_{};
+  hsp_ext_geometry geometry_extension_{};
+  hsp_ext_energy energy_extension_{};
+};
+
+}  // namespace hapticd
