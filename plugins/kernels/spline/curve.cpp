@@ -1,6 +1,7 @@
 #include "kernels/spline/curve.hpp"
 
 #include "kernels/spline/net.hpp"
+#include "kernels/spline/surface.hpp"
 #include "kernels/spline/surface_data.hpp"
 
 namespace hapticd::spline {
@@ -31,18 +32,18 @@ void Curve::evaluate(int order, double u, std::int32_t& span, double* out) const
 }
 
 void Curve::evaluate1(double u, CurvePoint& out) const noexcept {
-  std::array<Eigen::Vector3d, 3> surface;  // S, Su, Sv
-  evaluate(1, u, out.span, surface[0].data());
-  out.C = scale_ * surface[0];
-  out.C1 = scale_ * surface[1];
+  SurfacePoint surface;
+  evaluate(1, u, out.span, surface.S.data());
+  out.C = scale_ * surface.S;
+  out.C1 = scale_ * surface.Su;
 }
 
 void Curve::evaluate2(double u, CurvePoint& out) const noexcept {
-  std::array<Eigen::Vector3d, 6> surface;  // S, Su, Sv, Suu, Suv, Svv
-  evaluate(2, u, out.span, surface[0].data());
-  out.C = scale_ * surface[0];
-  out.C1 = scale_ * surface[1];
-  out.C2 = scale_ * surface[3];
+  SurfacePoint surface;
+  evaluate(2, u, out.span, surface.S.data());
+  out.C = scale_ * surface.S;
+  out.C1 = scale_ * surface.Su;
+  out.C2 = scale_ * surface.Suu;
 }
 
 }  // namespace hapticd::spline

@@ -23,7 +23,9 @@ struct NetWindow {
   int stride;          ///< from one u row to the next
 };
 
-/// Kernels write S, Su, Sv, three doubles each; those of second order write Suu, Suv, Svv after them.
+/// Kernels write S, Su, Sv, those of second order Suu, Suv, Svv after them: four doubles each, the fourth of no
+/// meaning, so that a vector is one store, and whatever part of it is read next comes straight from the store buffer.
+inline constexpr int kOutStride = 4;
 using NetKernel = void (*)(const NetWindow& net, double u, double v, double* out) noexcept;
 /// `cell`: the local origin, then size_u x size_v coefficients of s^i t^j, i-major.
 using TableKernel = void (*)(const Quad* cell, int size_u, int size_v, double s, double t, double* out) noexcept;

@@ -10,11 +10,10 @@ inline V4 load(const Quad* q) {
 inline V4 splat(double a) {
   return V4{a, a, a, a};
 }
-/// Two plain stores: what reads a vector of three next then gets it straight from the store buffer.
-inline void store3(double* out, V4 a) {
-  typedef double V2 __attribute__((vector_size(16), aligned(8), may_alias));
-  *reinterpret_cast<V2*>(out) = V2{a[0], a[1]};
-  out[2] = a[2];
+/// No alignment asked for.
+inline void store(double* out, V4 a) {
+  typedef double Anywhere __attribute__((vector_size(32), aligned(8), may_alias));
+  *reinterpret_cast<Anywhere*>(out) = a;
 }
 
 /// S and derivatives of the numerator (x, y, z) and of the weight (lane 3), about a local origin.
@@ -41,13 +40,13 @@ inline void divideByWeight(Sums& a) {
 
 template <int kOrder>
 inline void storeSums(const Sums& a, V4 origin, double* out) {
-  store3(out, a.S + origin);
-  store3(out + 3, a.Su);
-  store3(out + 6, a.Sv);
+  store(out, a.S + origin);
+  store(out + kOutStride, a.Su);
+  store(out + 2 * kOutStride, a.Sv);
   if constexpr (kOrder > 1) {
-    store3(out + 9, a.Suu);
-    store3(out + 12, a.Suv);
-    store3(out + 15, a.Svv);
+    store(out + 3 * kOutStride, a.Suu);
+    store(out + 4 * kOutStride, a.Suv);
+    store(out + 5 * kOutStride, a.Svv);
   }
 }
 

@@ -4,7 +4,8 @@
 
 namespace hapticd::spline {
 
-static_assert(offsetof(SurfacePoint, Svv) == 15 * sizeof(double), "kernels write 18 doubles from S on");
+static_assert(offsetof(SurfacePoint, Svv) == 5 * kOutStride * sizeof(double), "kernels write six vectors from S on");
+static_assert(offsetof(SurfacePoint, span) >= 6 * kOutStride * sizeof(double), "kernels write what pads the vectors");
 
 Surface::Surface(const SurfaceData& data, Form form, Instructions instructions) {
   validate(data);

@@ -17,10 +17,15 @@ namespace hapticd::spline {
 
 /// A point of a surface and its partial derivatives [m, and m per unit of the parameters].
 struct SurfacePoint {
-  Eigen::Vector3d S, Su, Sv, Suu, Suv, Svv;
+  alignas(32) Eigen::Vector3d S;
+  alignas(32) Eigen::Vector3d Su;
+  alignas(32) Eigen::Vector3d Sv;
+  alignas(32) Eigen::Vector3d Suu;
+  alignas(32) Eigen::Vector3d Suv;
+  alignas(32) Eigen::Vector3d Svv;
   /// In: where to look first for (u, v); out: the cells that hold them. Hand the last point in again and the look-up
   /// costs nothing while the parameters stay in their spans. Any value is allowed.
-  std::array<std::int32_t, 2> span{0, 0};
+  alignas(32) std::array<std::int32_t, 2> span{0, 0};
 };
 
 /// How a surface is stored.
