@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace hapticd::trace {
@@ -19,6 +20,9 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kMinCurvature = 1e-3;
 /// Tangents shorter than this share of the longer one (or this close to parallel) span no plane: a pole or a cusp.
 constexpr double kFlatTangent = 1e-12;
+
+/// [m^2] Squares of squares beyond would overflow.
+constexpr double kLargest2 = 1e60;
 
 /// Quadratic model of f = |S - p|^2 / 2 about an evaluated point.
 struct QuadraticModel {
@@ -188,6 +192,7 @@ void evaluate(const Patch& patch, const Array2d& uv, Iterate& at) noexcept {
   at.uv = uv.max(patch.lo).min(patch.hi);
   patch.surface.evaluate2(at.uv[0], at.uv[1], at.E);
   at.valid = true;
+  at.has_forms = false;
 }
 
 SideMask sidesAt(const Patch& patch, const Array2d& uv) noexcept {
@@ -199,18 +204,62 @@ SideMask sidesAt(const Patch& patch, const Array2d& uv) noexcept {
   return sides;
 }
 
+static_assert(offsetof(LocalFoot, Sv) == offsetof(LocalFoot, S) + 2 * spline::kOutStride * sizeof(double));
+static_assert(offsetof(LocalFoot, distance) >= offsetof(LocalFoot, S) + 3 * spline::kOutStride * sizeof(double));
+static_assert(offsetof(LocalFoot, residual) == offsetof(LocalFoot, distance) + sizeof(double));
+
+void evaluateInto(const void* patch, double u, double v, double* point) noexcept {
+  auto* E = static_cast<spline::SurfacePoint*>(static_cast<void*>(point));
+  static_cast<const Patch*>(patch)->surface.evaluate2(u, v, *E);
+}
+
+/// The common tick. False: `at` is at least as near as before, but the steps below have to find the foot.
+bool quickly(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance2, int max_evaluations,
+             LocalFoot& foot) noexcept {
+  static const QuickKernels& kernels = quickKernels(spline::Instructions::kFastest);
+  constexpr int kAttempts = 3;
+  const QuickTask task{&patch, evaluateInto, p.data(), patch.lo.data(), patch.hi.data(), tolerance2};
+  for (int i = 0; i < kAttempts && foot.evaluations + 2 <= max_evaluations; ++i) {
+    if (!at.has_forms) kernels.forms(at.E.S.data(), at.forms);
+    at.has_forms = true;
+    const QuickPoint point{at.uv.data(), at.E.S.data(), &at.forms};
+    switch (kernels.foot(task, point, {foot.uv.data(), foot.S.data(), &foot.distance})) {
+      case QuickResult::kFoot:
+        ++foot.evaluations;
+        [[fallthrough]];
+      case QuickResult::kSameFoot:
+        foot.sides = 0;
+        return foot.converged = true;
+      case QuickResult::kNearer:
+        ++foot.evaluations;
+        continue;
+      case QuickResult::kFarther:
+        evaluate(patch, at.uv, at);  // as it was: cheaper than a copy in every tick
+        foot.evaluations += 2;
+        [[fallthrough]];
+      case QuickResult::kNoStep:
+        return false;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
-LocalFoot newtonFoot(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance,
-                     int max_evaluations) noexcept {
-  LocalFoot foot;
+void newtonFoot(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
+                LocalFoot& foot) noexcept {
+  foot.evaluations = 0;
+  foot.converged = false;
   if (!at.valid) {
     evaluate(patch, at.uv, at);
     foot.evaluations = 1;
   }
+  const double rounding2 = 64 * kEpsilon * kEpsilon * (p.squaredNorm() + at.E.S.squaredNorm());  // [m^2] of S and r
+  const double enough2 = std::max(tolerance * tolerance, rounding2);
+  if (rounding2 < kLargest2 && quickly(patch, p, at, enough2, max_evaluations, foot)) return;
   Vector3d r = at.E.S - p;
   double f = 0.5 * r.squaredNorm();
-  const double rounding = 8 * kEpsilon * (p.norm() + at.E.S.norm());  // [m] of S and of r
+  const double rounding = 8 * kEpsilon * (p.norm() + at.E.S.norm());
   const double enough = std::max(tolerance, rounding);
   double last_length = 0;  // of the step that led to this point, 0: none
   Step step;
@@ -263,7 +312,6 @@ LocalFoot newtonFoot(const Patch& patch, const Vector3d& p, Iterate& at, double 
   }
   foot.residual = foot.converged ? std::min(length, enough) : length;
   foot.distance = (foot.S - p).norm();
-  return foot;
 }
 
 LocalFoot directFoot(const Patch& patch, const Vector3d& p, Iterate& at, int steps) noexcept {

@@ -1,6 +1,7 @@
 /// Local closest point on one patch: the safeguarded Newton iteration, and the paper's one-step method as reference.
 #pragma once
 #include "kernels/trace/patch.hpp"
+#include "kernels/trace/quick.hpp"
 
 namespace hapticd::trace {
 
@@ -9,16 +10,20 @@ namespace hapticd::trace {
 struct Iterate {
   Eigen::Array2d uv{0, 0};
   spline::SurfacePoint E{};
-  bool valid = false;  ///< E belongs to uv
+  bool valid = false;      ///< E belongs to uv
+  bool has_forms = false;  ///< and forms to E
+  QuickForms forms{};
 };
 
 /// A foot on one patch.
 struct LocalFoot {
   Eigen::Array2d uv{0, 0};
-  Eigen::Vector3d S, Su, Sv;
-  double distance = 0;  ///< [m] |p - S|
-  double residual = 0;  ///< [m] estimated distance from S to the true foot
-  SideMask sides = 0;   ///< sides that hold the foot and keep it from going on
+  alignas(32) Eigen::Vector3d S;
+  alignas(32) Eigen::Vector3d Su;
+  alignas(32) Eigen::Vector3d Sv;
+  alignas(32) double distance = 0;  ///< [m] |p - S|
+  double residual = 0;              ///< [m] estimated distance from S to the true foot
+  SideMask sides = 0;               ///< sides that hold the foot and keep it from going on
   int evaluations = 0;
   bool converged = false;
 };
@@ -27,8 +32,14 @@ struct LocalFoot {
 /// the quadratic model exactly inside the rectangle, so a foot that meets a side slides along it and stops in corners;
 /// a step that does not decrease the distance is shortened. Stops when the estimated error is below `tolerance` [m] or
 /// after `max_evaluations`. `at` keeps the last evaluated point.
-LocalFoot newtonFoot(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, double tolerance,
-                     int max_evaluations) noexcept;
+void newtonFoot(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
+                LocalFoot& foot) noexcept;
+inline LocalFoot newtonFoot(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, double tolerance,
+                            int max_evaluations) noexcept {
+  LocalFoot foot;
+  newtonFoot(patch, p, at, tolerance, max_evaluations, foot);
+  return foot;
+}
 
 /// [rt] Direct parametric tracing (Thompson et al. 1999, Eq. 1-3, with the exact rational derivative instead of the
 /// refined polygon's): `steps` first-order steps (tangent-plane projection), each clamped to the rectangle.
