@@ -1,0 +1,182 @@
+/// `hapticd tune`: cost against error of every setting of a scene, on this machine, and the setting to take.
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+
+#include "base/os.hpp"
+#include "cli/command.hpp"
+#include "cli/probe_path.hpp"
+#include "servo/world.hpp"
+#include "tune/page.hpp"
+#include "tune/write_scene.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+struct Options {
+  std::string scene, probe, page, picture, json;
+  std::optional<double> budget_us;
+  double tolerance_um = 1, force_tolerance = 0.1, motion_seconds = 5, limit_seconds = 50;
+  bool write = false;
+};
+
+std::atomic<bool> stopped{false};
+
+void onStop(int) {
+  stopped = true;
+}
+
+/// The motion of a path file, brought to the scene's rate.
+Result<tune::Motion> motionOfFile(const std::string& file, double rate) {
+  auto rows = readProbePath(file);
+  if (!rows) return Error{rows.error()};
+  if (rows->size() < 100) return Error{file + ": " + std::to_string(rows->size()) + " rows, expected at least 100"};
+  const double period = (rows->back().t - rows->front().t) / static_cast<double>(rows->size() - 1);
+  std::vector<Eigen::Vector3d> position;
+  for (const PathRow& row : *rows) {
+    if (!row.finite()) return Error{file + ": a row holds no number, expected a path without gaps"};
+    position.push_back(row.position);
+  }
+  return tune::resampled(tune::motionThrough(std::move(position), period), rate);
+}
+
+bool showProgress(const tune::Progress& progress) {
+  if (isatty(STDERR_FILENO) != 0) {
+    constexpr int kWidth = 30;
+    const int filled = static_cast<int>(kWidth * progress.done / std::max<size_t>(progress.expected, 1));
+    std::fprintf(stderr, "\r[%-*s] %zu of %zu settings, %.0f s left \033[K", kWidth,
+                 std::string(static_cast<size_t>(filled), '#').c_str(), progress.done, progress.expected,
+                 progress.seconds_left);
+  }
+  return !stopped;
+}
+
+bool save(const std::string& file, const std::string& text) {
+  if (file.empty()) return true;
+  std::ofstream out(file);
+  out << text << std::flush;
+  if (!out) fail(kFailed, file + ": cannot be written");
+  return static_cast<bool>(out);
+}
+
+std::string tunedName(const std::string& scene) {
+  std::filesystem::path path(scene);
+  return (path.parent_path() / (path.stem().string() + ".tuned.yaml")).string();
+}
+
+/// Messages of plugins were seen at the first set-up; here the same models are set up hundreds of times.
+void quiet(int level, const std::string& who, const std::string& text) {
+  if (level >= HSP_LOG_ERROR) logToTerminal(level, who, text);
+}
+
+int report(const Options& options, const tune::Findings& findings) {
+  std::fputs(tune::table(findings).c_str(), stdout);
+  bool saved = save(options.page, tune::page(findings));
+  saved = save(options.picture, tune::picture(findings)) && saved;
+  saved = save(options.json, tune::json(findings)) && saved;
+  if (options.write) {
+    const std::string file = tunedName(options.scene);
+    if (auto written = tune::writeScene(findings, options.scene, file); !written) return fail(kFailed, written.error());
+    std::printf("\nwritten: %s\n", file.c_str());
+  }
+  if (!saved) return kFailed;
+  return findings.tuning.reached ? kWorked : kFailed;
+}
+
+/// The servo's own settings.
+Result<void> sweep(const scene::Scene& scene, const tune::Motion& motion, bool uses_velocity,
+                   tune::Findings& findings) {
+  auto rates = tune::measureRates(scene, motion, quiet);
+  if (!rates) return Error{rates.error()};
+  findings.rates = std::move(*rates);
+  auto radii = tune::measureRadii(scene, motion, quiet);
+  if (!radii) return Error{radii.error()};
+  findings.radii = std::move(*radii);
+  if (!uses_velocity) return {};
+  auto estimators = tune::measureEstimators(scene, motion, quiet);
+  if (!estimators) return Error{estimators.error()};
+  findings.estimators = std::move(*estimators);
+  return {};
+}
+
+int tuneScene(const Options& options) {
+  auto scene = loadSceneOrReport(options.scene);
+  if (!scene) return kBadInput;
+  if (scene->models.empty())
+    return fail(kBadInput, options.scene + ": the scene has no model, so there is nothing to tune");
+  auto world = servo::World::build(*scene, {scene->servo.rate, 1, false}, logToTerminal);
+  if (!world) return fail(kBadInput, world.error());
+  const bool uses_velocity = (*world)->needsVelocity();
+  world->reset();
+
+  auto motion = options.probe.empty() ? tune::motionOfHand(*scene, options.motion_seconds, quiet)
+                                      : motionOfFile(options.probe, scene->servo.rate);
+  if (!motion)
+    return fail(
+        kBadInput,
+        motion.error() + (options.probe.empty() ? "; --probe FILE.csv gives a motion where no hand is simulated" : ""));
+  tune::Findings findings;
+  findings.scene = options.scene;
+  findings.motion = (options.probe.empty() ? "the motion of the scene's hand, " : options.probe + ", ") +
+                    std::to_string(motion->position.size()) + " ticks";
+  findings.knobs = tune::findKnobs(*scene, catalog());
+  if (options.budget_us) findings.goal.budget_ns = *options.budget_us * 1e3;
+  findings.goal.tolerance_m = options.tolerance_um * 1e-6;
+  findings.goal.force_tolerance_n = options.force_tolerance;
+
+  os::onStopSignal(onStop);
+  auto tuning =
+      tune::search(*scene, *motion, findings.knobs, {findings.goal, options.limit_seconds, showProgress, quiet});
+  if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
+  if (!tuning) return fail(kFailed, tuning.error());
+  findings.tuning = std::move(*tuning);
+  if (!stopped)
+    if (auto swept = sweep(*scene, *motion, uses_velocity, findings); !swept) return fail(kFailed, swept.error());
+  return report(options, findings);
+}
+
+}  // namespace
+
+void addTune(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("tune", "Measure cost against error of a scene's settings on this machine, and choose.");
+  command->add_option("scene", options->scene, "scene file (YAML)")->required();
+  auto* budget = command
+                     ->add_option("--budget-us", options->budget_us,
+                                  "take the most accurate setting whose p99 of a tick is below this [us]")
+                     ->check(CLI::Range(1e-3, 1e6));
+  command
+      ->add_option("--tolerance-um", options->tolerance_um,
+                   "take the cheapest setting whose foot points are this exact [um]")
+      ->check(CLI::Range(1e-6, 1e6))
+      ->excludes(budget)
+      ->capture_default_str();
+  command->add_option("--force-tolerance-n", options->force_tolerance, "and whose forces are this exact [N]")
+      ->check(CLI::Range(1e-9, 1e3))
+      ->capture_default_str();
+  command->add_option("--probe", options->probe,
+                      "measure over this path (CSV, as for trace) instead of the scene's hand");
+  command->add_option("--motion-seconds", options->motion_seconds, "length of the hand's motion [s]")
+      ->check(CLI::Range(0.2, 10.0))
+      ->capture_default_str();
+  command->add_option("--limit-seconds", options->limit_seconds, "stop trying settings after this [s]")
+      ->check(CLI::Range(1.0, 86400.0))
+      ->capture_default_str();
+  command->add_flag("--write", options->write, "write SCENE.tuned.yaml beside the scene, with what was chosen and why");
+  command->add_option("--page", options->page, "write a report (HTML, one file, needs no network)");
+  command->add_option("--picture", options->picture, "write the picture (SVG)");
+  command->add_option("--json", options->json, "write everything that was measured (JSON)");
+  command->footer(
+      "Errors are against a converged reference, the largest over the whole motion. Ctrl-C keeps what was measured.\n"
+      "Exit code 1 when no setting reaches the goal.\n\n"
+      "Example:\n  hapticd tune config/scenes/teapot.yaml --tolerance-um 1 --page tune.html --write");
+  command->callback([options, &exit_code] { exit_code = tuneScene(*options); });
+}
+
+}  // namespace hapticd::cli
