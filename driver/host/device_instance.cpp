@@ -74,7 +74,7 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
 
 DeviceInstance::~DeviceInstance() {
   stop();
-  if (open_) class_->close(device_);
+  if (open_ && playback_ == nullptr) class_->close(device_);
   if (device_ != nullptr) class_->destroy(device_);
 }
 
@@ -84,11 +84,12 @@ Result<void> DeviceInstance::open() {
   info_ = {};
   info_.struct_size = sizeof info_;
   services_.forgetError();
-  const hsp_status status = class_->open(device_, &info_);
+  const hsp_status status = playback_ == nullptr ? class_->open(device_, &info_) : HSP_OK;
+  if (playback_ != nullptr) info_ = playback_->info;
   if (status < 0) return Error{who + "cannot be opened: " + reasonOf(status, services_)};
   open_ = true;
   if (const std::string wrong = wrongIn(info_, kinematics_->joint_count); !wrong.empty()) {
-    class_->close(device_);
+    if (playback_ == nullptr) class_->close(device_);
     open_ = false;
     return Error{who + "its module " + wrong};
   }
@@ -98,6 +99,7 @@ Result<void> DeviceInstance::open() {
 Result<void> DeviceInstance::start(const hdv_start& how) {
   const std::string who = "device '" + name_ + "': ";
   if (!open_) return Error{who + "is not open"};
+  if (playback_ != nullptr) return {};
   services_.forgetError();
   const hsp_status status = class_->start(device_, &how);
   if (status < 0) return Error{who + "cannot be started: " + reasonOf(status, services_)};

@@ -12,6 +12,13 @@
 
 namespace hapticd::host {
 
+/// Samples from elsewhere than the hardware, which is never opened: a recording that is run again.
+struct Playback {
+  hdv_info info{};      ///< what the device said of itself
+  hdv_sample sample{};  ///< what the next read gives
+  hsp_status read_status = HSP_OK, write_status = HSP_OK;
+};
+
 class DeviceInstance {
  public:
   /// [main] Loads the library (once a process), creates the instance and sets the parameters of the device file.
@@ -20,15 +27,20 @@ class DeviceInstance {
   DeviceInstance(const DeviceInstance&) = delete;
   DeviceInstance& operator=(const DeviceInstance&) = delete;
 
+  /// [main] Instead of the hardware; before open(). The playback outlives the instance.
+  void playBack(const Playback* playback) { playback_ = playback; }
+
   Result<void> open();                       ///< [main] finds the hardware
   Result<void> start(const hdv_start& how);  ///< [main]
   void stop();                               ///< [main] motors off
 
   hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
-    return class_->read(device_, now_ns, &sample);
+    if (playback_ == nullptr) return class_->read(device_, now_ns, &sample);
+    sample = playback_->sample;
+    return playback_->read_status;
   }
   hsp_status write(uint64_t now_ns, const hdv_command& command) noexcept HSP_RT {
-    return class_->write(device_, now_ns, &command);
+    return playback_ == nullptr ? class_->write(device_, now_ns, &command) : playback_->write_status;
   }
 
   const std::string& name() const { return name_; }
@@ -48,6 +60,7 @@ class DeviceInstance {
   hdv_info info_{};
   const hdv_ext_kinematics* kinematics_ = nullptr;
   const hdv_ext_calibration* calibration_ = nullptr;
+  const Playback* playback_ = nullptr;
   bool open_ = false, started_ = false;
 };
 

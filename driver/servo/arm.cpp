@@ -27,6 +27,7 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
                                        const ArmOptions& options, const host::Services::Log& log) {
   auto device = host::DeviceInstance::create(described, log);
   if (!device) return Error{device.error()};
+  (*device)->playBack(options.playback);
   if (auto opened = (*device)->open(); !opened) return Error{opened.error()};
   const Limiter limiter(described.limits, (*device)->info().max_force);
   std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter));

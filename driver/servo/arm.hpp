@@ -19,6 +19,7 @@ namespace hapticd::servo {
 struct ArmOptions {
   double rate = 1000;           ///< [Hz]
   bool needs_velocity = false;  ///< run the estimator
+  const host::Playback* playback = nullptr;  ///< samples from a recording instead of the hardware
 };
 
 class Arm {

@@ -1,0 +1,116 @@
+/// `hapticd replay`: runs a recording again and says where it first differs.
+#include "servo/replay.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "host/nearest.hpp"
+#include "record/recording.hpp"
+#include "scene/node.hpp"
+
+namespace hapticd::cli {
+
+namespace {
+
+struct Options {
+  std::string file;
+  std::vector<std::string> changes;
+};
+
+/// Plugins and modules as they are found here: the recording may come from another machine.
+Result<void> findLibraries(scene::Scene& scene) {
+  for (scene::Model& model : scene.models) {
+    auto found = catalog().shape(model.plugin);
+    if (!found) return Error{"model '" + model.name + "': " + found.error()};
+    model.library = (*found)->file;
+  }
+  for (scene::Device& device : scene.devices) {
+    auto found = catalog().device(device.module);
+    if (!found) return Error{"device '" + device.name + "': " + found.error()};
+    device.library = (*found)->file;
+  }
+  return {};
+}
+
+/// "teapot.stiffness=900": a number for a parameter of a model.
+Result<void> change(scene::Scene& scene, const std::string& text) {
+  const size_t equals = text.find('='), dot = text.find('.');
+  const auto number = equals == std::string::npos ? std::nullopt : scene::toNumber(text.substr(equals + 1));
+  if (dot == std::string::npos || !number || dot > equals)
+    return Error{"--set " + text + ": expected MODEL.PARAMETER=NUMBER"};
+  const std::string name = text.substr(0, dot), id = text.substr(dot + 1, equals - dot - 1);
+  const auto model =
+      std::find_if(scene.models.begin(), scene.models.end(), [&](const auto& m) { return m.name == name; });
+  if (model == scene.models.end()) return Error{"--set " + text + ": the recording has no model \"" + name + "\""};
+  auto found = catalog().shape(model->plugin);
+  const int index = found ? (*found)->indexOf(id) : -1;
+  if (index < 0)
+    return Error{"--set " + text + ": plugin " + model->plugin + " has no parameter \"" + id + "\"" +
+                 (found ? host::suggestion(id, (*found)->paramIds()) : "")};
+  const host::ParamInfo& param = (*found)->params[static_cast<size_t>(index)];
+  const bool is_number = param.kind >= HSP_REAL && param.kind <= HSP_ENUM;
+  if (!is_number || !(*number >= param.min && *number <= param.max))
+    return Error{"--set " + text + ": expected a parameter that is a number, and one in its range"};
+  const auto same = [&](const scene::Value& v) { return v.index == static_cast<uint32_t>(index); };
+  auto value = std::find_if(model->parameters.begin(), model->parameters.end(), same);
+  if (value == model->parameters.end()) value = model->parameters.insert(value, scene::Value{});
+  value->id = id;
+  value->index = static_cast<uint32_t>(index);
+  value->kind = param.kind;
+  value->number = *number;
+  return {};
+}
+
+void warnOfChanges(const servo::RecordedRun& run) {
+  if (run.version != HAPTICD_VERSION)
+    std::fprintf(stderr, "warning: recorded by hapticd %s, this is %s\n", run.version.c_str(), HAPTICD_VERSION);
+  for (const servo::Fingerprint& file : run.files)
+    if (const std::string now = servo::fingerprint(file.path); !now.empty() && now != file.hash)
+      std::fprintf(stderr, "warning: %s has changed since\n", file.path.c_str());
+}
+
+int replay(const Options& options) {
+  auto recording = record::Recording::open(options.file);
+  if (!recording) return fail(kBadInput, recording.error());
+  auto run = servo::readAbout((*recording)->aboutJson());
+  if (!run) return fail(kBadInput, options.file + ": " + run.error());
+  if (auto found = findLibraries(run->scene); !found) return fail(kBadInput, options.file + ": " + found.error());
+  for (const std::string& text : options.changes)
+    if (auto done = change(run->scene, text); !done) return fail(kBadInput, done.error());
+  warnOfChanges(*run);
+  if (!(*recording)->closed()) std::fprintf(stderr, "note: its writer was cut off; replaying what is there\n");
+  auto again = servo::Replay::prepare(**recording, *run, logToTerminal);
+  if (!again) return fail(kBadInput, options.file + ": " + again.error());
+  const servo::ReplayOutcome outcome = (*again)->run();
+  if (!outcome.note.empty()) std::fprintf(stderr, "note: %s\n", outcome.note.c_str());
+  if (!outcome.first) {
+    std::printf("%llu ticks of %llu: every bit is the same\n", static_cast<unsigned long long>(outcome.ticks),
+                static_cast<unsigned long long>(outcome.recorded_ticks));
+    return outcome.ticks == outcome.recorded_ticks || !outcome.note.empty() ? kWorked : kFailed;
+  }
+  const servo::Difference& first = *outcome.first;
+  std::printf("differs first in tick %llu (t = %.6f s): %s was %.17g, is now %.17g\n",
+              static_cast<unsigned long long>(first.tick), first.t, first.what.c_str(), first.recorded, first.replayed);
+  std::printf("largest difference of the force sent: %.3g N in %llu ticks\n", outcome.largest_force_error,
+              static_cast<unsigned long long>(outcome.ticks));
+  return kFailed;
+}
+
+}  // namespace
+
+void addReplay(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("replay", "Run a recording again and compare every force to the last bit.");
+  command->add_option("file", options->file, "recording that `hapticd run --record` wrote")->required();
+  command->add_option("--set", options->changes, "try another parameter: MODEL.PARAMETER=NUMBER; may be repeated");
+  command->footer(
+      "Exit codes: 0 every bit is the same, 1 something differs, 2 it cannot be replayed.\n\n"
+      "Example:\n  hapticd run config/scenes/teapot.yaml --for 10 --record run.h5\n  hapticd replay run.h5");
+  command->callback([options, &exit_code] { exit_code = replay(*options); });
+}
+
+}  // namespace hapticd::cli
