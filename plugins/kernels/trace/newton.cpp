@@ -28,6 +28,7 @@ constexpr double kLargest2 = 1e60;
 struct QuadraticModel {
   Vector2d g;             ///< gradient
   Matrix2d H;             ///< positive definite
+  Vector2d sided{0, 0};   ///< true curvature along a side v = const, u = const; 0: none to rely on
   bool saddle = false;    ///< the true Hessian is not: this point is no foot, whatever the gradient says
   Vector2d escape{0, 0};  ///< direction of negative curvature, unit length in space
 };
@@ -58,9 +59,16 @@ Matrix2d damped(const spline::SurfacePoint& E) noexcept {
   return G;
 }
 
+/// Curvature along a side of the distance function; it may be good where that of the whole surface is not.
+double sidedCurvature(const Vector3d& S1, double bend) noexcept {
+  const double first_order = S1.squaredNorm();
+  return first_order + bend > kMinCurvature * first_order ? first_order + bend : 0;
+}
+
 QuadraticModel modelOf(const spline::SurfacePoint& E, const Vector3d& r) noexcept {
   QuadraticModel m;
   m.g = {r.dot(E.Su), r.dot(E.Sv)};
+  m.sided = {sidedCurvature(E.Su, r.dot(E.Suu)), sidedCurvature(E.Sv, r.dot(E.Svv))};
   const TangentFrame L = tangentFrame(E.Su, E.Sv);
   const double longer = std::max(L.l11, E.Sv.norm());
   if (!(L.l11 > kFlatTangent * longer) || !(L.l22 > kFlatTangent * longer)) {
@@ -127,6 +135,12 @@ Step boxMinimum(const QuadraticModel& m, const Vector2d& lo, const Vector2d& hi)
     best.sides = bit(side);
     if (d[along] == lo[along]) best.sides |= bit(2 * along);
     if (d[along] == hi[along]) best.sides |= bit(2 * along + 1);
+  }
+  for (int axis = 0; axis < 2; ++axis) {  // a foot that stays on its side: Newton along it
+    const int along = 1 - axis;
+    if ((best.sides & (bit(2 * axis) | bit(2 * axis + 1))) == 0 || best.d[axis] != 0 || !(m.sided[along] > 0)) continue;
+    const double d = -m.g[along] / m.sided[along];
+    if (d > lo[along] && d < hi[along] && best.d[along] > lo[along] && best.d[along] < hi[along]) best.d[along] = d;
   }
   return best;
 }
