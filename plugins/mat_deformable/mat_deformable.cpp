@@ -15,7 +15,9 @@ using medial::SkeletonFoot;
 
 constexpr double kNewPlace = 0.25;   ///< a probe that moved by this share of a cell is looked for all over the body
 constexpr double kOtherFoot = 0.02;  ///< difference of parameters from which an offered foot is another one
-constexpr double kGapFactor = 1.5;   ///< so many ticks without a step: the body was left alone meanwhile
+constexpr double kShowPeriod = 1.0 / 60;  ///< [s] between two sets of displacements for drawing
+constexpr double kFinestMesh = 1e-6;      ///< [m] finer meshes are for files, not for drawing
+constexpr double kGapFactor = 1.5;        ///< so many ticks without a step: the body was left alone meanwhile
 
 }  // namespace
 
@@ -43,14 +45,22 @@ void MatDeformable::activate(const hsp_activation& activation, hsp_report& repor
   presses_.clear();
   presses_.reserve(probes);
   last_time_ns_ = 0;
-  stored_ = 0;
+  stored_ = since_shown_ = 0;
+  shown_at_rest_ = true;
+  displaced_ = std::make_unique<Displaced>(body_->deformation().controlPoints());
+  display_ = Display{};
+  contour_.reset();
+  if (display_tolerance_ > 0) {
+    contour_ = std::make_unique<medial::Contour>(body_->skeleton(), std::max(display_tolerance_, kFinestMesh));
+    report.viz_vertices = static_cast<uint32_t>(contour_->vertexCount());
+  }
   const auto positive = [](double x) { return x > 0; };
   const bool swings = dynamics_ == 1 && std::any_of(data.mass.begin(), data.mass.end(), positive);
   const bool damps = std::any_of(data.damping.begin(), data.damping.end(), positive);
   if (swings || damps || viscosity_ > 0) report.flags |= HSP_R_VELOCITY;
   report.max_stiffness = body_->greatestStiffness();
   report.size_m = body_->skeleton().bounds().diagonal().norm();
-  report.locked_bytes = body_->bytes() + probes * sizeof(Track) + sizeof *this;
+  report.locked_bytes = body_->bytes() + displaced_->bytes() + probes * sizeof(Track) + sizeof *this;
   describe();
 }
 
@@ -75,6 +85,9 @@ void MatDeformable::describe() const {
 
 void MatDeformable::deactivate() {
   tracks_.clear();
+  display_ = Display{};
+  contour_.reset();
+  displaced_.reset();
   body_.reset();
 }
 
@@ -86,6 +99,7 @@ void MatDeformable::reset() noexcept HSP_RT {
   }
   body_->deformation().reset();
   stored_ = 0;
+  shown_at_rest_ = false;
 }
 
 /// Time since the last step. A body that no probe was near to has not been stepped: it catches up when one comes back.
@@ -109,7 +123,29 @@ hsp_status MatDeformable::step(const hsp_step& step) noexcept HSP_RT {
     if (status < 0 || (status > 0 && worst == HSP_OK)) worst = worst < 0 ? worst : status;
   }
   body_->deformation().press(presses_);
+  show(step);
   return worst;
+}
+
+/// Leaves displacements for drawing 60 times a second while the body moves, and once when it has come to rest.
+void MatDeformable::show(const hsp_step& step) noexcept HSP_RT {
+  const medial::Deformation& moved = body_->deformation();
+  if (contour_ && step.viz_xyz != nullptr)
+    contour_->write([&moved](std::size_t i) -> Eigen::Vector4f { return moved.displacement(i).cast<float>(); },
+                    step.viz_xyz, step.viz_capacity);
+  since_shown_ += step.dt_s;
+  const bool at_rest = moved.awake() == 0;
+  if (since_shown_ < kShowPeriod || (at_rest && shown_at_rest_)) return;
+  displaced_->publish(moved);
+  since_shown_ = 0;
+  shown_at_rest_ = at_rest;
+}
+
+hsp_status MatDeformable::mesh(double chord_error, hsp_mesh& out) {
+  if (!body_) return HSP_E_STATE;
+  if (!(chord_error > 0)) return HSP_E_ARG;
+  display_.show(body_->skeleton(), *displaced_, std::max(chord_error, kFinestMesh), out);
+  return HSP_OK;
 }
 
 medial::NewtonOptions MatDeformable::newtonOptions(const hsp_step& step) const noexcept HSP_RT {
@@ -248,7 +284,9 @@ const void* MatDeformable::extension(const char* name) {
   }
   if (wanted == HSP_EXT_GEOMETRY && body_) {
     geometry_extension_ = {sizeof(hsp_ext_geometry), 0,
-                           [](hsp_shape*, double, hsp_mesh*) -> hsp_status { return HSP_E_UNSUPPORTED; },
+                           [](hsp_shape* shape, double chord_error, hsp_mesh* out) -> hsp_status {
+                             return reinterpret_cast<MatDeformable*>(shape)->mesh(chord_error, *out);
+                           },
                            [](hsp_shape* shape, double min[3], double max[3]) -> hsp_status {
                              const auto& body = reinterpret_cast<MatDeformable*>(shape)->body_;
                              if (!body) return HSP_E_STATE;

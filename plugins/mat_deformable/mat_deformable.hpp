@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "display.hpp"
 #include "hapticd/shape.hpp"
 #include "kernels/contact/friction.hpp"
 #include "kernels/medial/body.hpp"
@@ -51,7 +52,10 @@ class MatDeformable final : public Shape {
         F::real("friction_static", &T::friction_static_, "", 0, 10, 0,
                 "mu_s: force along the surface over normal force that a stuck probe must overcome"),
         F::real("friction_dynamic", &T::friction_dynamic_, "", 0, 10, 0, "mu_d: of a sliding probe"),
-        F::real("viscosity", &T::viscosity_, "N s/m", 0, 100, 0, "drag along the surface in contact")};
+        F::real("viscosity", &T::viscosity_, "N s/m", 0, 100, 0, "drag along the surface in contact"),
+        F::real("display_tolerance", &T::display_tolerance_, "m", 0, 1e-2, 0,
+                "chord error of the vertices that a step writes for drawing; 0: none, drawing asks for its own",
+                HSP_P_ACCURACY)};
   }
 
   void activate(const hsp_activation& activation, hsp_report& report);
@@ -94,16 +98,23 @@ class MatDeformable final : public Shape {
   int64_t nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const;
   hsp_status start(const hsp_near& near) noexcept HSP_RT;
   hsp_status stop(uint32_t probe) noexcept HSP_RT;
+  void show(const hsp_step& step) noexcept HSP_RT;
+  hsp_status mesh(double chord_error, hsp_mesh& out);
 
   std::string geometry_;
   int search_ = 0, depth_ = 10, envelope_ = 0, degree_ = 3, evaluation_ = 0, dynamics_ = 1;
   double tolerance_ = 1e-8, split_ = 0.5, shear_offset_ = 0.05, damping_scale_ = 5e-3;
-  double friction_static_ = 0, friction_dynamic_ = 0, viscosity_ = 0;
+  double friction_static_ = 0, friction_dynamic_ = 0, viscosity_ = 0, display_tolerance_ = 0;
   std::vector<double> influence_{4, 4};
 
   std::unique_ptr<medial::Body> body_;
   std::vector<Track> tracks_;           ///< one a probe
   std::vector<medial::Press> presses_;  ///< of this step, reserved for all probes
+  std::unique_ptr<Displaced> displaced_;
+  std::unique_ptr<medial::Contour> contour_;  ///< written by the step, if display_tolerance asks for it
+  Display display_;
+  double since_shown_ = 0;  ///< [s]
+  bool shown_at_rest_ = true;
   uint64_t last_time_ns_ = 0;
   double stored_ = 0;  ///< [J] in the springs of the contacts
   hsp_ext_surfaces surfaces_extension_{};

@@ -1,0 +1,268 @@
+#include "kernels/medial/contour.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/spline/basis.hpp"
+
+namespace hapticd::medial {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kLeastSegments = 2;  ///< between two points of the grid: a dent is as wide as they are apart
+constexpr int kMostSegments = 64;
+constexpr int kLeastArc = 2;        ///< segments from the top to the bottom round the rim
+constexpr double kSteepest = 0.99;  ///< slope of the radius beyond which spheres are nested
+
+Vector3d unit(const Vector3d& v, const Vector3d& fallback) {
+  const double length = v.norm();
+  return length > 0 ? Vector3d(v / length) : fallback;
+}
+
+/// From `a` over `middle` to `b` on the unit sphere, t from 0 to 1.
+Vector3d bend(const Vector3d& a, const Vector3d& middle, const Vector3d& b, double t) {
+  const Vector3d& from = t < .5 ? a : middle;
+  const Vector3d& to = t < .5 ? middle : b;
+  const double s = t < .5 ? 2 * t : 2 * t - 1;
+  const double angle = std::acos(std::clamp(from.dot(to), -1.0, 1.0));
+  if (angle < 1e-6) return from;
+  return (std::sin((1 - s) * angle) * from + std::sin(s * angle) * to).normalized();
+}
+
+}  // namespace
+
+Contour::Contour(const Skeleton& skeleton, double chord_error) : columns_(skeleton.control().count[1]) {
+  greatest_radius_ = skeleton.radius().greatest();
+  chooseLines(skeleton, chord_error);
+  if (skeleton.curve()) {
+    buildTube(skeleton, chord_error);
+  } else {
+    buildSheet(skeleton, chord_error);
+  }
+  at_ = {};
+}
+
+/// Segments of one interval between points of the grid: its sagitta, sampled on both sides, falls with their square.
+int Contour::segments(const Skeleton& skeleton, std::size_t axis, std::size_t interval, double chord_error) const {
+  const std::vector<double>&along = skeleton.parameters()[axis], &over = skeleton.parameters()[1 - axis];
+  double sagitta = 0;
+  for (const double w : over) {
+    for (const double side : {-1.0, 1.0}) {
+      std::array<Vector3d, 3> p;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double t = along[interval] + 0.5 * static_cast<double>(k) * (along[interval + 1] - along[interval]);
+        const double u = axis == 0 ? t : w, v = axis == 0 ? w : t;
+        spline::SurfacePoint s;
+        skeleton.surface().evaluate1(u, v, s);
+        const Vector3d across = skeleton.curve() ? s.Sv.unitOrthogonal() : s.Su.cross(s.Sv);
+        p[k] = s.S + side * skeleton.radius().evaluate(u, v).f * unit(across, Vector3d::UnitZ());
+      }
+      sagitta = std::max(sagitta, (p[1] - 0.5 * (p[0] + p[2])).norm());
+    }
+  }
+  return std::clamp(static_cast<int>(std::ceil(std::sqrt(sagitta / chord_error))), kLeastSegments, kMostSegments);
+}
+
+void Contour::chooseLines(const Skeleton& skeleton, double chord_error) {
+  const ControlGrid& grid = skeleton.control();
+  for (std::size_t a = 0; a < 2; ++a) {
+    const std::vector<double>& t = skeleton.parameters()[a];
+    if (skeleton.curve() && a == 0) {
+      at_[a] = {0};
+    } else {
+      for (std::size_t i = 0; i + 1 < t.size(); ++i) {
+        const int n = segments(skeleton, a, i, chord_error);
+        for (int k = 0; k < n; ++k) at_[a].push_back(t[i] + (t[i + 1] - t[i]) * k / n);
+      }
+      at_[a].push_back(t.back());
+    }
+    for (const double x : at_[a]) {
+      std::array<double, spline::kMaxDegree + 1> basis{};
+      const int span = spline::findSpan(grid.knots[a], grid.degree[a], x);
+      spline::basisFunctions(grid.knots[a], grid.degree[a], span, x, basis);
+      Influence line;
+      line.count = grid.degree[a] + 1;
+      line.first = span - grid.degree[a];
+      std::copy_n(basis.begin(), line.count, line.basis.begin());
+      lines_[a].push_back(line);
+    }
+  }
+}
+
+int Contour::arcSegments(double chord_error) const {
+  const double ratio = std::clamp(chord_error / std::max(greatest_radius_, 1e-12), 1e-6, 1.0);
+  return std::clamp(static_cast<int>(std::ceil(M_PI / (2 * std::acos(1 - ratio)))), kLeastArc, kMostSegments);
+}
+
+Contour::Place Contour::place(const Skeleton& skeleton, uint32_t i, uint32_t j) const {
+  const double u = at_[0][i], v = at_[1][j];
+  spline::SurfacePoint s;
+  skeleton.surface().evaluate1(u, v, s);
+  const ScalarField::Value r = skeleton.radius().evaluate(u, v);
+  Place p;
+  p.line = {i, j};
+  p.center = s.S, p.tangent_u = s.Su, p.tangent_v = s.Sv, p.radius = r.f;
+  const Vector3d cross = s.Su.cross(s.Sv);
+  const double area2 = cross.squaredNorm();
+  p.across = unit(cross, Vector3d::UnitZ());
+  p.slope = Vector3d::Zero();
+  if (area2 > 0) {
+    p.slope = (r.fu * s.Sv.cross(cross) + r.fv * cross.cross(s.Su)) / area2;
+  } else if (s.Sv.squaredNorm() > 0) {
+    p.slope = r.fv / s.Sv.squaredNorm() * s.Sv;
+  }
+  const double steep = p.slope.norm();
+  if (steep > kSteepest) p.slope *= kSteepest / steep;
+  return p;
+}
+
+uint32_t Contour::add(const Place& place, const Vector3d& normal) {
+  vertices_.push_back({place.line, place.center.cast<float>(), normal.cast<float>(), static_cast<float>(place.radius)});
+  return static_cast<uint32_t>(vertices_.size() - 1);
+}
+
+void Contour::triangle(uint32_t a, uint32_t b, uint32_t c) {
+  if (a != b && b != c && c != a) indices_.insert(indices_.end(), {a, b, c});
+}
+
+/// Triangles between two rows of equal length; the outside is on the left going along `low` with `high` ahead.
+void Contour::strip(const std::vector<uint32_t>& low, const std::vector<uint32_t>& high) {
+  for (std::size_t k = 0; k + 1 < low.size(); ++k) {
+    triangle(low[k], low[k + 1], high[k + 1]);
+    triangle(low[k], high[k + 1], high[k]);
+  }
+}
+
+void Contour::buildSheet(const Skeleton& skeleton, double chord_error) {
+  const auto rows = static_cast<uint32_t>(at_[0].size()), columns = static_cast<uint32_t>(at_[1].size());
+  std::array<std::vector<uint32_t>, 2> faces;
+  for (const std::size_t face : {0u, 1u}) {
+    const double side = face == 0 ? 1 : -1;
+    for (uint32_t i = 0; i < rows; ++i) {
+      for (uint32_t j = 0; j < columns; ++j) {
+        const Place p = place(skeleton, i, j);
+        faces[face].push_back(add(p, side * std::sqrt(1 - p.slope.squaredNorm()) * p.across - p.slope));
+      }
+    }
+    const auto at = [&](uint32_t i, uint32_t j) { return faces[face][i * columns + j]; };
+    for (uint32_t i = 0; i + 1 < rows; ++i) {
+      for (uint32_t j = 0; j + 1 < columns; ++j) {
+        const uint32_t a = at(i, j), b = at(i + 1, j), c = at(i + 1, j + 1), d = at(i, j + 1);
+        face == 0 ? (triangle(a, b, c), triangle(a, c, d)) : (triangle(a, c, b), triangle(a, d, c));
+      }
+    }
+  }
+  closeRim(skeleton, faces, arcSegments(chord_error));
+}
+
+/// Half a tube along each side and a piece of a sphere at each corner, from the top face to the bottom one.
+void Contour::closeRim(const Skeleton& skeleton, const std::array<std::vector<uint32_t>, 2>& faces, int steps) {
+  const auto rows = static_cast<uint32_t>(at_[0].size()), columns = static_cast<uint32_t>(at_[1].size());
+  struct Corner {
+    uint32_t i, j;
+  };
+  std::vector<Corner> loop;  // counter-clockwise seen from the top
+  std::vector<std::size_t> corners;
+  for (uint32_t i = 0; i + 1 < rows; ++i) loop.push_back({i, 0});
+  corners.push_back(loop.size());
+  for (uint32_t j = 0; j + 1 < columns; ++j) loop.push_back({rows - 1, j});
+  corners.push_back(loop.size());
+  for (uint32_t i = rows - 1; i > 0; --i) loop.push_back({i, columns - 1});
+  corners.push_back(loop.size());
+  for (uint32_t j = columns - 1; j > 0; --j) loop.push_back({0, j});
+  corners.push_back(0);
+  const auto outwardOf = [&](const Place& p, std::size_t side) {
+    const Vector3d along = side == 0   ? p.tangent_u
+                           : side == 1 ? p.tangent_v
+                           : side == 2 ? Vector3d(-p.tangent_u)
+                                       : Vector3d(-p.tangent_v);
+    return unit(along.cross(p.across), p.across.unitOrthogonal());
+  };
+  std::vector<std::vector<uint32_t>> arcs;  // one a place of the loop, several at a corner
+  const auto addArc = [&](const Corner& at, const Place& p, const Vector3d& outward) {
+    const std::size_t face = at.i * columns + at.j;
+    const Vector3d top = vertices_[faces[0][face]].normal.cast<double>();
+    const Vector3d bottom = vertices_[faces[1][face]].normal.cast<double>();
+    std::vector<uint32_t> arc{faces[0][face]};
+    for (int k = 1; k < steps; ++k) arc.push_back(add(p, bend(top, outward, bottom, double(k) / steps)));
+    arc.push_back(faces[1][face]);
+    arcs.push_back(std::move(arc));
+  };
+  std::size_t side = 0;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const Place p = place(skeleton, loop[k].i, loop[k].j);
+    const bool corner = std::find(corners.begin(), corners.end(), k) != corners.end();
+    const std::size_t before = k == 0 ? 3 : side;
+    if (corner && k > 0) ++side;
+    const Vector3d from = outwardOf(p, before), to = outwardOf(p, side);
+    if (!corner) {
+      addArc(loop[k], p, to);
+      continue;
+    }
+    const Vector3d middle = unit(from + to, to);
+    for (int turn = 0; turn <= steps; ++turn) addArc(loop[k], p, bend(from, middle, to, double(turn) / steps));
+  }
+  for (std::size_t k = 0; k < arcs.size(); ++k) strip(arcs[k], arcs[(k + 1) % arcs.size()]);
+}
+
+void Contour::buildTube(const Skeleton& skeleton, double chord_error) {
+  const int steps = arcSegments(chord_error), around = 2 * steps;
+  std::vector<std::vector<uint32_t>> rings;
+  Vector3d side = Vector3d::Zero();
+  const auto addRing = [&](const Place& p, const Vector3d& axis, double lean) {  // lean: share of the normal along axis
+    const Vector3d other = axis.cross(side);
+    if (std::fabs(lean) == 1) {  // a pole
+      rings.emplace_back(static_cast<std::size_t>(around) + 1, add(p, lean * axis));
+      return;
+    }
+    std::vector<uint32_t> ring;
+    for (int k = 0; k < around; ++k) {
+      const double angle = 2 * M_PI * k / around;
+      ring.push_back(
+          add(p, std::sqrt(1 - lean * lean) * (std::cos(angle) * side + std::sin(angle) * other) + lean * axis));
+    }
+    ring.push_back(ring.front());
+    rings.push_back(std::move(ring));
+  };
+  const auto count = static_cast<uint32_t>(at_[1].size());
+  for (uint32_t j = 0; j < count; ++j) {
+    const Place p = place(skeleton, 0, j);
+    const Vector3d axis = unit(p.tangent_v, Vector3d::UnitX());
+    side = unit(side - side.dot(axis) * axis, axis.unitOrthogonal());  // carried along without twist
+    const double lean = -p.slope.dot(axis);
+    const auto cap = [&](double pole, int k) {  // from the pole (k = 0) to the ring (k = steps)
+      const double start = pole * M_PI_2, end = std::asin(lean);
+      return std::sin(start + (end - start) * k / steps);
+    };
+    for (int k = 0; j == 0 && k < steps; ++k) addRing(p, axis, cap(-1, k));
+    addRing(p, axis, lean);
+    for (int k = steps - 1; j + 1 == count && k >= 0; --k) addRing(p, axis, cap(1, k));
+  }
+  for (std::size_t k = 0; k + 1 < rings.size(); ++k) strip(rings[k], rings[k + 1]);
+}
+
+std::vector<float> Contour::atRest() const {
+  std::vector<float> xyz(3 * vertices_.size());
+  write([](std::size_t) { return Eigen::Vector4f::Zero(); }, xyz.data(), vertices_.size());
+  return xyz;
+}
+
+std::vector<float> Contour::normalsOf(const std::vector<float>& xyz) const {
+  std::vector<float> normals(xyz.size(), 0);
+  const auto at = [&xyz](uint32_t i) { return Eigen::Map<const Eigen::Vector3f>(xyz.data() + 3 * std::size_t{i}); };
+  for (std::size_t t = 0; t + 2 < indices_.size(); t += 3) {
+    const Eigen::Vector3f area = (at(indices_[t + 1]) - at(indices_[t])).cross(at(indices_[t + 2]) - at(indices_[t]));
+    for (std::size_t k = 0; k < 3; ++k)
+      Eigen::Map<Eigen::Vector3f>(normals.data() + 3 * std::size_t{indices_[t + k]}) += area;
+  }
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    Eigen::Map<Eigen::Vector3f> normal(normals.data() + 3 * i);
+    const float length = normal.norm();
+    normal = length > 0 ? Eigen::Vector3f(normal / length) : vertices_[i].normal;
+  }
+  return normals;
+}
+
+}  // namespace hapticd::medial
