@@ -13,16 +13,24 @@ using Eigen::Vector3d;
 /// [m] Nearer to an edge than this, the direction from the foot to the probe is rounding; the force there is nothing.
 constexpr double kTouching = 1e-7;
 
+/// Here, not in another function's return value: what was just written in pieces is slow to read as a whole.
+inline void setSurfaceNormal(const Patch& piece, const LocalFoot& foot, Vector3d& normal) noexcept {
+  constexpr double kVanishing = 1e-9;  // sine of the angle of the tangents, or their ratio: a pole or a cusp
+  const Vector3d n = foot.Su.cross(foot.Sv);
+  const double length = n.norm();
+  if (length > kVanishing * (foot.Su.squaredNorm() + foot.Sv.squaredNorm())) [[likely]] {
+    normal = n * (piece.sign / length);
+  } else {
+    normal = piece.normalAt(foot.uv);
+  }
+}
+
 }  // namespace
 
 Vector3d Tracer::surfaceNormal(int track) const noexcept {
-  constexpr double kVanishing = 1e-9;  // sine of the angle of the tangents, or their ratio: a pole or a cusp
-  const Patch& piece = model_.patch(tracks_[track].patch);
-  const LocalFoot& foot = tracks_[track].foot;
-  const Vector3d n = foot.Su.cross(foot.Sv);
-  const double length = n.norm();
-  if (length > kVanishing * (foot.Su.squaredNorm() + foot.Sv.squaredNorm())) return n * (piece.sign / length);
-  return piece.normalAt(foot.uv);
+  Vector3d normal;
+  setSurfaceNormal(model_.patch(tracks_[track].patch), tracks_[track].foot, normal);
+  return normal;
 }
 
 /// Pseudonormal of the edge or corner that holds the foot: a probe in its direction is outside (Baerentzen & Aanaes).
@@ -64,7 +72,7 @@ Foot Tracer::describe(int track, const Vector3d& p) const noexcept {
   foot.distance = local.distance;
   const Vector3d r = p - local.S;
   if (local.sides == 0) {
-    foot.normal = surfaceNormal(track);
+    setSurfaceNormal(piece, local, foot.normal);
     foot.depth = foot.behind = -r.dot(foot.normal);
     return foot;
   }

@@ -21,6 +21,8 @@ constexpr double kMinCurvature = 1e-3;
 /// Tangents shorter than this share of the longer one (or this close to parallel) span no plane: a pole or a cusp.
 constexpr double kFlatTangent = 1e-12;
 
+/// Of coordinates, in the difference of two points.
+constexpr double kRounding = 8 * kEpsilon;
 /// [m^2] Squares of squares beyond would overflow.
 constexpr double kLargest2 = 1e60;
 
@@ -258,22 +260,13 @@ bool quickly(const Patch& patch, const Vector3d& p, Iterate& at, double toleranc
   return false;
 }
 
-}  // namespace
-
-void newtonFoot(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
-                LocalFoot& foot) noexcept {
-  foot.evaluations = 0;
-  foot.converged = false;
-  if (!at.valid) {
-    evaluate(patch, at.uv, at);
-    foot.evaluations = 1;
-  }
-  const double rounding2 = 64 * kEpsilon * kEpsilon * (p.squaredNorm() + at.E.S.squaredNorm());  // [m^2] of S and r
-  const double enough2 = std::max(tolerance * tolerance, rounding2);
-  if (rounding2 < kLargest2 && quickly(patch, p, at, enough2, max_evaluations, foot)) return;
+/// The safeguarded iteration, from any point. Kept apart from the common tick, which needs neither its code nor its
+/// stack in the caches.
+[[gnu::noinline]] void descend(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance,
+                               int max_evaluations, LocalFoot& foot) noexcept {
   Vector3d r = at.E.S - p;
   double f = 0.5 * r.squaredNorm();
-  const double rounding = 8 * kEpsilon * (p.norm() + at.E.S.norm());
+  const double rounding = kRounding * (p.norm() + at.E.S.norm());
   const double enough = std::max(tolerance, rounding);
   double last_length = 0;  // of the step that led to this point, 0: none
   Step step;
@@ -326,6 +319,22 @@ void newtonFoot(const Patch& patch, const Vector3d& p, Iterate& at, double toler
   }
   foot.residual = foot.converged ? std::min(length, enough) : length;
   foot.distance = (foot.S - p).norm();
+}
+
+}  // namespace
+
+void newtonFoot(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
+                LocalFoot& foot) noexcept {
+  foot.evaluations = 0;
+  foot.converged = false;
+  if (!at.valid) {
+    evaluate(patch, at.uv, at);
+    foot.evaluations = 1;
+  }
+  const double rounding2 = kRounding * kRounding * (p.squaredNorm() + at.E.S.squaredNorm());
+  const double enough2 = std::max(tolerance * tolerance, rounding2);
+  if (rounding2 < kLargest2 && quickly(patch, p, at, enough2, max_evaluations, foot)) return;
+  descend(patch, p, at, tolerance, max_evaluations, foot);
 }
 
 LocalFoot directFoot(const Patch& patch, const Vector3d& p, Iterate& at, int steps) noexcept {

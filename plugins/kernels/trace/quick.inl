@@ -124,8 +124,13 @@ inline Step stepFrom(const double* E, const Forms& F, const double* p) {
   return step;
 }
 
+/// Whether both components are true.
+inline bool all(decltype(V2{} < V2{}) mask) {
+  return (mask[0] & mask[1]) != 0;
+}
+
 inline bool inside(V2 uv, const QuickTask& task) {
-  return (uv[0] > task.lo[0]) & (uv[1] > task.lo[1]) & (uv[0] < task.hi[0]) & (uv[1] < task.hi[1]);
+  return all((uv > get2(task.lo)) & (uv < get2(task.hi)));
 }
 
 /// The foot at uv + d by Taylor expansion about the point.

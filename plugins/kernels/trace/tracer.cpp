@@ -57,15 +57,15 @@ bool Tracer::active(int surface) const noexcept {
 }
 
 Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
-  Foot foot;
+  Foot none;
   if (!(p.array().abs() <= kFarthest).all()) {  // also false for not-a-number
-    foot.status = TraceStatus::kInvalid;
-    return foot;
+    none.status = TraceStatus::kInvalid;
+    return none;
   }
   if (has_last_) tracks_.gone((p - last_p_).norm());
   last_p_ = p;
   has_last_ = true;
-  if (tracks_.active().empty()) return foot;
+  if (tracks_.active().empty()) return none;
   tracks_.nextTick();
   const int budget = std::max(options.max_evaluations, 1);
   budget_ = budget;
@@ -74,8 +74,13 @@ Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
   } else {
     stepNewton(p, options);
   }
-  if (nearest_ < 0) return foot;
-  foot = describe(nearest_, p);
+  if (nearest_ < 0) return none;
+  return answer(p, options, budget);
+}
+
+/// What the tick found. On its own, so that the foot is made where the caller wants it.
+Foot Tracer::answer(const Vector3d& p, const TraceOptions& options, int budget) noexcept {
+  Foot foot = describe(nearest_, p);
   if (options.unite && model_.partCount() > 1) uniteParts(p, options, foot);
   foot.evaluations = budget - budget_;
   return foot;
@@ -130,7 +135,7 @@ int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions
 int Tracer::refine(int track, const Vector3d& p, double tolerance) noexcept {
   Track& t = tracks_[track];
   if (t.tick == tracks_.tick()) return track;
-  t.foot = newtonFoot(model_.patch(t.patch), p, t.at, std::max(tolerance, 0.0), budget_);
+  newtonFoot(model_.patch(t.patch), p, t.at, std::max(tolerance, 0.0), budget_, t.foot);
   budget_ -= t.foot.evaluations;
   tracks_.refined(track);
   return tracks_[t.patch].rival >= 0 ? tracks_.merge(track) : track;

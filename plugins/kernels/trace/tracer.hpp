@@ -88,6 +88,7 @@ class Tracer {
   bool leavePole(int track, int side, const Eigen::Vector3d& p, double tolerance) noexcept;
   void drop(int track) noexcept;
 
+  Foot answer(const Eigen::Vector3d& p, const TraceOptions& options, int budget) noexcept;
   Foot describe(int track, const Eigen::Vector3d& p) const noexcept;
   Eigen::Vector3d surfaceNormal(int track) const noexcept;
   Eigen::Vector3d edgeNormal(int track) const noexcept;

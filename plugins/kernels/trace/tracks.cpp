@@ -8,7 +8,6 @@ namespace {
 
 using Eigen::Array2d;
 
-constexpr double kLongestWay = 1e4;  ///< [m] then keys are counted from zero again, to keep their digits
 /// [m] A record tells the distance from where the probe was when the search began. The first one may be 10 ms old at
 /// 2 m/s; the others are younger than the results of the search before.
 constexpr double kRecordAge = 0.02;
@@ -168,19 +167,11 @@ void Tracks::clear() noexcept {
   way_told_ = way_told_before_ = -kRecordAge;
 }
 
-void Tracks::gone(double way) noexcept {
-  way_ += way;
-  if (!(way_ > kLongestWay)) return;
+void Tracks::countAnew() noexcept {
   for (double& key : key_) key -= way_;
   way_told_ -= way_;
   way_told_before_ -= way_;
   way_ = 0;
-}
-
-void Tracks::refined(int index) noexcept {
-  Track& t = (*this)[index];
-  t.tick = t.touched = tick_;
-  key_[static_cast<std::size_t>(t.slot)] = t.foot.distance + way_;
 }
 
 int Tracks::mostPromising(double best, int part) const noexcept {

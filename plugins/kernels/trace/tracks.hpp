@@ -51,20 +51,31 @@ class Tracks {
 
   void nextTick() noexcept { ++tick_; }                  ///< [rt]
   std::uint64_t tick() const noexcept { return tick_; }  ///< [rt]
-  void gone(double way) noexcept;                        ///< [rt] The probe moved by `way` [m].
+  /// [rt] The probe moved by `way` [m].
+  void gone(double way) noexcept {
+    way_ += way;
+    if (way_ > kLongestWay) [[unlikely]]
+      countAnew();
+  }
   double way() const noexcept { return way_; }           ///< [rt] [m] gone since the last clear(), or so
   /// [rt] Notes the distance of a foot that was refined in this tick.
-  void refined(int index) noexcept;
+  void refined(int index) noexcept {
+    Track& t = (*this)[index];
+    t.tick = t.touched = tick_;
+    key_[static_cast<std::size_t>(t.slot)] = t.foot.distance + way_;
+  }
   /// [rt] The foot not refined in this tick that could be nearer than `best` and has the smallest bound; -1: none.
   /// @param part only feet of this part; -1: all.
   int mostPromising(double best, int part) const noexcept;
 
  private:
   static constexpr int kRivals = 32;
+  static constexpr double kLongestWay = 1e4;  ///< [m] then keys are counted from zero again, to keep their digits
 
   void append(int index, double bound) noexcept;
   Track* newRival(int patch) noexcept;
   void noteSearch() noexcept;
+  void countAnew() noexcept;
   bool follows(int patch, const Eigen::Array2d& uv, double bound) noexcept;
   void set(int index, const Eigen::Array2d& uv, double bound) noexcept;
 
