@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "kernels/spline/refinement.hpp"
 
@@ -21,6 +22,22 @@ struct Piece {
     const Vector4d& h = points[static_cast<std::size_t>(i * count_v + j)];
     return h.head<3>() / h[3];
   }
+  /// Edges of the control polygons along an axis.
+  template <class F>
+  void forEachEdge(int axis, F&& use) const {
+    const int du = axis == 0 ? 1 : 0, dv = 1 - du;
+    for (int i = 0; i + du < count_u; ++i)
+      for (int j = 0; j + dv < count_v; ++j) use(Vector3d(point(i + du, j + dv) - point(i, j)));
+  }
+  /// Mean direction of those edges, unit; 0 if they have no length.
+  Vector3d mean(int axis) const {
+    Vector3d sum = Vector3d::Zero();
+    forEachEdge(axis, [&sum](const Vector3d& edge) { sum += edge; });
+    const double length = sum.norm();
+    return length > 0 ? Vector3d(sum / length) : sum;
+  }
+  /// The surface point at the middle of the parameters.
+  Vector3d middle() const;
 };
 
 Piece pieceOf(const spline::SurfaceData& data) {
@@ -57,25 +74,25 @@ std::array<Piece, 2> halves(const Piece& piece, int axis) {
   return half;
 }
 
-/// Widest turn of the control polygons along an axis, as 1 - cos of the angle to their mean direction.
-double turn(const Piece& piece, int axis) {
-  const int du = axis == 0 ? 1 : 0, dv = 1 - du;
-  Vector3d mean = Vector3d::Zero();
-  std::vector<Vector3d> edges;
-  for (int i = 0; i + du < piece.count_u; ++i)
-    for (int j = 0; j + dv < piece.count_v; ++j) {
-      const Vector3d edge = piece.point(i + du, j + dv) - piece.point(i, j);
-      mean += edge;
-      if (edge.squaredNorm() > 0) edges.push_back(edge.normalized());
-    }
-  if (mean.squaredNorm() > 0) mean.normalize();
-  double widest = 0;
-  for (const Vector3d& edge : edges) widest = std::max(widest, 1 - edge.dot(mean));
-  return widest;
+Vector3d Piece::middle() const {
+  const std::array<Piece, 2> half = halves(*this, 0);
+  const std::array<Piece, 2> quarter = halves(half[0], 1);
+  return quarter[0].point(count_u - 1, count_v - 1);
 }
 
-constexpr double kFlat = 0.15;   // 1 - cos 32 deg: Newton from the middle of such a piece goes straight to the foot
-constexpr int kMaxHalvings = 5;  // of one Bezier piece: at most 32 leaves
+/// Widest turn of the control polygons along an axis, as 1 - cos of the angle to their mean direction.
+double turn(const Piece& piece, int axis) {
+  const Vector3d mean = piece.mean(axis);
+  double widest = 0;
+  piece.forEachEdge(axis, [&](const Vector3d& edge) {
+    const double length = edge.norm();
+    if (length > 0) widest = std::max(widest, 1 - edge.dot(mean) / length);
+  });
+  return std::min(widest, 2.0);
+}
+
+constexpr double kFlat = 0.03;   // 1 - cos 14 deg: Newton from the middle of such a piece goes straight to the foot
+constexpr int kMaxHalvings = 7;  // of one Bezier piece: at most 128 leaves
 
 void addLeaves(const Piece& piece, int patch, int halvings, std::vector<Leaf>& leaves) {
   const double turn_u = turn(piece, 0), turn_v = turn(piece, 1);
@@ -89,10 +106,28 @@ void addLeaves(const Piece& piece, int patch, int halvings, std::vector<Leaf>& l
   leaf.middle = 0.5 * (piece.lo + piece.hi);
   leaf.half = 0.5 * (piece.hi - piece.lo);
   leaf.patch = patch;
+  leaf.center = piece.middle();
+  for (int i = 0; i < piece.count_u; ++i)
+    for (int j = 0; j < piece.count_v; ++j)
+      leaf.radius = std::max(leaf.radius, (piece.point(i, j) - leaf.center).norm());
+  const Vector3d normal = piece.mean(0).cross(piece.mean(1));
+  const double sine = normal.norm();
+  // The tangents stay in cones about their means; the closer the means are to parallel, the more the normal turns.
+  if (sine > 0) leaf.normal = normal / sine;
+  leaf.cone = sine > 0 ? (std::acos(1 - turn_u) + std::acos(1 - turn_v)) / sine : std::numbers::pi;
   leaves.push_back(leaf);
 }
 
 }  // namespace
+
+bool Leaf::mayFace(const Vector3d& p) const noexcept {
+  const Vector3d r = p - center;
+  const double distance = r.norm();
+  if (!(distance > radius)) return true;
+  const double angle = std::asin(radius / distance) + cone;
+  return angle >= 0.5 * std::numbers::pi || normal.squaredNorm() == 0 ||
+         std::abs(r.dot(normal)) >= std::cos(angle) * distance;
+}
 
 void BoxTree::add(const spline::SurfaceData& patch, int index) {
   for (const spline::SurfaceData& bezier : spline::bezierPieces(patch)) addLeaves(pieceOf(bezier), index, 0, leaves_);

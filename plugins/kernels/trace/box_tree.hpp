@@ -10,10 +10,17 @@ namespace hapticd::trace {
 
 /// A piece of a patch so flat that Newton from its middle finds the foot that lies on it.
 struct Leaf {
-  Eigen::AlignedBox3d box;  ///< of the control points of the piece, which enclose it
-  Eigen::Array2d middle;    ///< (u, v) to start from
-  Eigen::Array2d half;      ///< widths of the piece in (u, v), halved
+  Eigen::AlignedBox3d box;          ///< of the control points of the piece, which enclose it
+  Eigen::Array2d middle;            ///< (u, v) to start from
+  Eigen::Array2d half;              ///< widths of the piece in (u, v), halved
+  Eigen::Vector3d center{0, 0, 0};  ///< S(middle)
+  Eigen::Vector3d normal{0, 0, 0};  ///< of the surface there, unit; 0: it has none
+  double radius = 0;                ///< [m] of a ball about the center that holds the piece
+  double cone = 0;                  ///< [rad] the normal turns by at most about this on the piece
   int patch = 0;
+
+  /// [any] False if no normal of the piece points to p (or straight away): then no foot lies inside it.
+  bool mayFace(const Eigen::Vector3d& p) const noexcept;
 };
 
 /// A leaf that a query met.

@@ -69,6 +69,19 @@ struct Patch {
     constexpr std::array<std::array<int, 2>, kSides> kEnds = {{{0, 2}, {1, 3}, {0, 1}, {2, 3}}};
     return kEnds[static_cast<std::size_t>(side)];
   }
+  /// [any] Whether the surface goes on beyond one of these sides: a foot there may be no bottom of a valley.
+  bool goesOn(SideMask mask) const noexcept {
+    for (int side = 0; side < kSides; ++side)
+      if ((mask & bit(side)) && sides[static_cast<std::size_t>(side)].kind != SideKind::kFree) return true;
+    return false;
+  }
+  /// [any] The sides on which the parameters (u, v) lie.
+  SideMask sidesAt(const Eigen::Array2d& uv) const noexcept {
+    SideMask mask = 0;
+    for (int side = 0; side < kSides; ++side)
+      if (uv[axisOf(side)] == (side % 2 == 0 ? lo : hi)[axisOf(side)]) mask |= bit(side);
+    return mask;
+  }
   /// [any] Outward unit normal. Where the tangents vanish (a pole), the normal a little further inside.
   Eigen::Vector3d normalAt(const Eigen::Array2d& uv) const noexcept;
 };

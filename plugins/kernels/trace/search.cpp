@@ -78,6 +78,7 @@ class Search {
   /// A valley has its bottom in some leaf, and Newton from the middle of that leaf stays near: others are given up
   /// after the first step.
   void lookForValley(const Leaf& leaf) {
+    if (!leaf.mayFace(p_) && !atFreeSide(leaf)) return;
     constexpr int kFirst = 2, kEvaluations = 20;
     const double kNear = 2;  // half-widths of the leaf
     const auto strays = [&leaf, kNear](const LocalFoot& foot) {
@@ -88,11 +89,21 @@ class Search {
     keepValley(leaf.patch, first.converged ? first : footFrom(leaf, kEvaluations));
   }
 
+  bool atFreeSide(const Leaf& leaf) const {
+    const Patch& piece = model_.patch(leaf.patch);
+    const Eigen::Array2d slack = 1e-9 * (piece.hi - piece.lo);
+    for (int side = 0; side < kSides; ++side) {
+      const int axis = Patch::axisOf(side);
+      const double gap = side % 2 == 0 ? leaf.middle[axis] - leaf.half[axis] - piece.lo[axis]
+                                       : piece.hi[axis] - leaf.middle[axis] - leaf.half[axis];
+      if (gap <= slack[axis] && piece.sides[static_cast<std::size_t>(side)].kind == SideKind::kFree) return true;
+    }
+    return false;
+  }
+
   void keepValley(int patch, const LocalFoot& foot) {
     const Patch& piece = model_.patch(patch);
-    for (int side = 0; side < kSides; ++side)  // beyond a common side it goes on down
-      if ((foot.sides & bit(side)) && piece.sides[static_cast<std::size_t>(side)].kind != SideKind::kFree) return;
-    if (!foot.converged) return;
+    if (!foot.converged || piece.goesOn(foot.sides)) return;  // beyond a common side it goes on down
     for (const Valley& valley : valleys_)
       if (valley.near.surface == piece.source && (valley.point - foot.S).norm() < same_) return;
     valleys_.push_back({{piece.source, foot.uv[0], foot.uv[1], foot.distance}, foot.S});

@@ -125,10 +125,16 @@ int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions
     index = refine(index, p, options.tolerance);
     if (nearest < 0 || tracks_[nearest].slot < 0 || tracks_[index].foot.distance < best) nearest = index;
     best = std::min(best, tracks_[index].foot.distance);
+    if (index != nearest && tracks_.isRival(index) && isHopeless(tracks_[index], best)) tracks_.drop(index);
     // What holds a contact is left only for what is nearer by so much.
     if (last && options.hold > 0 && describe(index, p).depth > 0) best -= options.hold;
   }
   return nearest >= 0 ? cross(nearest, p, options.tolerance) : start;
+}
+
+/// Whether a rival cannot become the nearest before the next search, or left for another patch, which follows it.
+bool Tracer::isHopeless(const Track& rival, double best) const noexcept {
+  return rival.foot.distance > best + Model::kSoon || model_.patch(rival.patch).goesOn(rival.foot.sides);
 }
 
 /// Brings a foot up to date. Returns the track that holds it then: a rival may join the patch's first foot.

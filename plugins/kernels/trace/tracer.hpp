@@ -87,6 +87,7 @@ class Tracer {
   int crossSide(int track, int side, const Eigen::Vector3d& p, double tolerance) noexcept;
   bool leavePole(int track, int side, const Eigen::Vector3d& p, double tolerance) noexcept;
   void drop(int track) noexcept;
+  bool isHopeless(const Track& rival, double best) const noexcept;
 
   Foot answer(const Eigen::Vector3d& p, const TraceOptions& options, int budget) noexcept;
   Foot describe(int track, const Eigen::Vector3d& p) const noexcept;

@@ -52,6 +52,8 @@ void Tracks::offer(int patch, const Array2d& uv, double distance, double best, b
   if (follows(patch, inside, bound)) return;
   for (int i = patch; i >= 0; i = (*this)[i].rival)
     if ((*this)[i].touched < told_before_) return set(i, inside, bound);
+  // Beyond a common side the foot goes on down: the neighbour's record tells of that valley.
+  if (!(distance < best) && piece.goesOn(piece.sidesAt(inside))) return;
   if (const Track* rival = newRival(patch)) set(static_cast<int>(rival - tracks_.data()), inside, bound);
 }
 
