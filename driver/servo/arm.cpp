@@ -33,7 +33,7 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter));
   if (described.limits.passivity && (arm->info().capabilities & HDV_C_UNVERIFIED) != 0) {
     const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
-    arm->passivity_.emplace(mass * options.rate / 2);
+    arm->passivity_.emplace(mass * options.rate / 2, arm->info().damping);
   }
   if (options.needs_velocity || described.limits.velocity > 0) {
     auto estimator = makeEstimator(servo.velocity, options.rate, arm->info().resolution_m);
@@ -116,9 +116,11 @@ std::optional<Eigen::Vector3d> Arm::handForce() const noexcept HSP_RT {
   return R_world_device_ * force_device;
 }
 
-void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque) noexcept HSP_RT {
-  if (passivity_ && probe_.valid) force = passivity_->update(probe_.position, force, dt);
+void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque,
+                const passivity::Exchange& exchange) noexcept HSP_RT {
+  if (passivity_ && probe_.valid) force = passivity_->update(probe_.position, force, dt, exchange);
   limiter_.apply(force, torque, probe_.position - origin_world_, dt);
+  if (passivity_) passivity_->applied(force);
   force_ = force;
   const uint32_t joints = device_->info().joint_count;
   const hdv_ext_kinematics& kinematics = device_->kinematics();

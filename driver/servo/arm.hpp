@@ -36,7 +36,9 @@ class Arm {
   const Probe& read(Nanoseconds now, double dt) noexcept HSP_RT;
 
   /// [rt] Limits a wrench (N, N m, world frame), maps it to torques (tau = J^T W + gravity) and hands it to the device.
-  void write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque) noexcept HSP_RT;
+  /// @param exchange what the scene says of its energy, for the passivity controller
+  void write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque,
+             const passivity::Exchange& exchange = {}) noexcept HSP_RT;
 
   const hdv_info& info() const { return device_->info(); }
   host::DeviceInstance& device() { return *device_; }
@@ -52,6 +54,8 @@ class Arm {
   /// arm's own weight: -pinv(J^T) (tau - gravity). Nothing: the device measures no torque. In motion it has the inertia of
   /// what lies beyond the load cells in it.
   std::optional<Eigen::Vector3d> handForce() const noexcept HSP_RT;
+  /// The passivity controller; nullptr: this arm needs none.
+  const passivity::PassivityController* passivity() const noexcept { return passivity_ ? &*passivity_ : nullptr; }
   bool estimatesVelocity() const { return velocity_.has_value(); }
   bool simulated() const noexcept { return (device_->info().capabilities & HDV_C_SIMULATED) != 0; }
   double rampOut() const noexcept { return limiter_.rampOut(); }  ///< [s]

@@ -36,7 +36,8 @@ Core::Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& 
       jumped_(probe_count),
       seen_(probe_count),
       forces_(probe_count, Vector3d::Zero()),
-      torques_(probe_count, Vector3d::Zero()) {
+      torques_(probe_count, Vector3d::Zero()),
+      exchanges_(probe_count) {
   for (size_t i = 0; i < models.size(); ++i) {
     ModelState& model = models_[i];
     const scene::Model& described = scene.models[i];
@@ -75,9 +76,11 @@ void Core::tick(double t, double dt, std::span<const Probe> probes) noexcept HSP
   for (uint32_t i = 0; i < probe_count_; ++i) {
     forces_[i].setZero();
     torques_[i].setZero();
+    exchanges_[i] = {0, 0};
   }
   for (const uint32_t i : live_) {
     ModelState& model = models_[i];
+    if (model.moves) model.before = model.frame;
     if (!model.path.empty()) {
       model.path.at(t, model.pose);
       model.frame = Frame::of(model.pose);
@@ -188,6 +191,7 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   for (const hsp_contact& out : outputs_) answers_finite &= finite(out);
   const bool moves_itself = (model.shape->report().flags & HSP_R_MOVES) != 0;
   if (moves_itself && answers_finite) answers_finite = takePose(model, pose);
+  if (model.moves && dt > 0) bookMotion(model, index);
   const Trouble trouble = model.guard.judge(model.status, answers_finite);
   if (trouble == Trouble::kBadStatus && model.failed_status == HSP_OK) model.failed_status = model.status;
   const double gain_before = model.guard.gain();
@@ -213,7 +217,33 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
     }
     forces_[i] += ConstMap(contact.world.force);
     torques_[i] += ConstMap(contact.world.torque);
+    bookContact(model, contact, i);
   }
+}
+
+/// The force of the last tick was held while the model's surface moved on: that work is the model's.
+void Core::bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT {
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    const Contact& held = contacts_[size_t{index} * probe_count_ + i];
+    const ConstMap force(held.world.force);
+    if (force.isZero(0)) continue;
+    const Vector3d from = held.traced ? Vector3d(ConstMap(held.world.point)) : last_position_[i];
+    const Vector3d in_model = model.before.R_world_model.transpose() * (from - model.before.origin_world);
+    const Vector3d to = model.frame.R_world_model * in_model + model.frame.origin_world;
+    exchanges_[i].supplied += force.dot(to - from);
+  }
+}
+
+/// A wall whose force grows with depth stores less than force times depth. What deforms says itself what it stores.
+void Core::bookContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT {
+  const ConstMap force(contact.world.force);
+  if (force.isZero(0)) return;
+  double recoverable = HUGE_VAL;
+  const bool deforms = (model.shape->description().flags & HSP_C_DEFORMS) != 0;
+  const double stored = model.shape->energy() != nullptr ? model.shape->energy()->stored(model.shape->handle()) : 0;
+  if (contact.traced && (!deforms || model.shape->energy() != nullptr))
+    recoverable = std::max(force.norm() * std::max(contact.world.depth_m, 0.0), stored);
+  exchanges_[probe].recoverable += std::isfinite(recoverable) ? recoverable : HUGE_VAL;
 }
 
 bool Core::takePose(ModelState& model, const hsp_pose& pose) noexcept HSP_RT {

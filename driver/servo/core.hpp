@@ -12,6 +12,7 @@
 #include "scene/scene.hpp"
 #include "servo/frame.hpp"
 #include "servo/guard.hpp"
+#include "servo/passivity/controller.hpp"
 #include "servo/path.hpp"
 
 namespace hapticd::servo {
@@ -35,6 +36,7 @@ struct ModelState {
   host::ShapeInstance* shape = nullptr;
   hsp_pose pose{};
   Frame frame;
+  Frame before;                  ///< a tick ago; kept where the model moves
   Path path;                     ///< kinematic models
   uint32_t active_surfaces = 0;  ///< over all probes
   bool always = false;           ///< stepped every tick: it traces itself, or moves by itself
@@ -66,6 +68,8 @@ class Core {
   /// Force [N] and torque [N m] of all models on a probe, world frame.
   const Vector3d& force(uint32_t probe) const noexcept { return forces_[probe]; }
   const Vector3d& torque(uint32_t probe) const noexcept { return torques_[probe]; }
+  /// What moving models did to a probe since the last tick, and what its contacts can give back.
+  const passivity::Exchange& exchange(uint32_t probe) const noexcept { return exchanges_[probe]; }
   std::span<const ModelState> models() const noexcept { return models_; }
   const Contact& contact(uint32_t model, uint32_t probe) const noexcept {
     return contacts_[size_t{model} * probe_count_ + probe];
@@ -86,6 +90,8 @@ class Core {
   void stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
   void fillProbe(const ModelState& model, const Probe& probe, uint32_t index, double t) noexcept HSP_RT;
   bool takePose(ModelState& model, const hsp_pose& pose) noexcept HSP_RT;
+  void bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT;
+  void bookContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT;
   void takeContact(ModelState& model, uint32_t index, uint32_t probe, double gain) noexcept HSP_RT;
   void clearContacts(uint32_t index) noexcept HSP_RT;
   void listLive() noexcept HSP_RT;
@@ -105,6 +111,7 @@ class Core {
   std::vector<Vector3d> last_position_;  // of the last good sample
   std::vector<uint8_t> jumped_, seen_;
   std::vector<Vector3d> forces_, torques_;
+  std::vector<passivity::Exchange> exchanges_;
   bool wants_search_ = true;
   uint32_t transforms_ = 0;
   uint64_t budget_left_ns_ = 0;

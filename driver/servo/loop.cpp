@@ -99,7 +99,9 @@ void Loop::tick(Nanoseconds now, double t, double dt) noexcept HSP_RT {
   world_.core().publish(t, probes_);
   if (settings_.lockstep) search(t);
   world_.core().tick(t, dt, probes_);
-  for (uint32_t i = 0; i < arms_.size(); ++i) arms_[i]->write(now, dt, world_.core().force(i), world_.core().torque(i));
+  const Core& core = world_.core();
+  for (uint32_t i = 0; i < arms_.size(); ++i)
+    arms_[i]->write(now, dt, core.force(i), core.torque(i), core.exchange(i));
   wants_search_.store(world_.core().wantsSearch(), std::memory_order_relaxed);
 }
 

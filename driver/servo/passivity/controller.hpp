@@ -2,21 +2,36 @@
 /// one probe, and damping while they are negative.
 #pragma once
 #include <Eigen/Core>
+#include <limits>
 
 namespace hapticd::passivity {
+
+/// What the scene says of its energy at one probe, each tick.
+struct Exchange {
+  /// [J] Work that moving models did on the probe since the last tick: their force times the way of their surface. It
+  /// is theirs to give; without it a model that pushes the hand along would look like a wall that makes energy.
+  double supplied = 0;
+  /// [J] The most that the contacts can still give back. A long stroke with damping pays in far more than that; kept in
+  /// the book, it would hide a vibration that begins later.
+  double recoverable = std::numeric_limits<double>::infinity();
+};
 
 class PassivityController {
  public:
   /// [main] @param max_damping [N s/m] the most it adds; the device's mass over twice the period is a good choice, for
-  /// more would itself oscillate.
-  explicit PassivityController(double max_damping) : max_damping_(max_damping) {}
+  /// more would itself oscillate.  @param device_damping [N s/m] of the device's own that is known: it takes energy too
+  explicit PassivityController(double max_damping, double device_damping = 0)
+      : max_damping_(max_damping), device_damping_(device_damping) {}
 
   /// [rt] Takes the position [m] of this tick and the force [N] the scene wants to apply until the next; gives the
   /// force to apply. The book counts what the hand really felt in the tick that ended: the force that was held then,
   /// times the way gone. In free space (no force) the book is closed.
-  /// @param dt [s] since the last tick  @param supplied [J] that the scene may rightly give (a model that moves itself)
+  /// @param dt [s] since the last tick
   Eigen::Vector3d update(const Eigen::Vector3d& position, const Eigen::Vector3d& force, double dt,
-                         double supplied = 0) noexcept;
+                         const Exchange& exchange = {}) noexcept;
+
+  /// [rt] After update(): the force [N] that the limits left of it. That is what the hand will have felt.
+  void applied(const Eigen::Vector3d& force) noexcept;
   void reset() noexcept;  ///< [rt]
 
   double energy() const noexcept { return energy_; }          ///< [rt] [J] put in minus given back, since contact began
@@ -24,8 +39,9 @@ class PassivityController {
   double dissipated() const noexcept { return dissipated_; }  ///< [rt] [J] taken by the controller, ever
 
  private:
-  double max_damping_;
+  double max_damping_, device_damping_;
   double energy_ = 0, damping_ = 0, dissipated_ = 0;
+  double share_ = 1;  ///< of the scene's force that the limits let through in the tick that ended
   Eigen::Vector3d position_{0, 0, 0}, held_{0, 0, 0}, added_{0, 0, 0};
   bool started_ = false;
 };

@@ -75,7 +75,7 @@ int evaluate(int argc, char** argv) {
   const Verdict verdict = judge(rows);
   fmt::print("{}\n", verdict.text);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  fmt::print("{:.1f} s of CPU for {:.0f} s of simulated time a row\n", seconds, protocol.seconds);
+  fmt::print("{:.1f} s for {:.0f} s of simulated time a row\n", seconds, protocol.seconds);
   if (has(argc, argv, "--write"))
     writePage({rows, varied, pressed, protocol, verdict}, HAPTICD_SOURCE_DIR "/driver/docs");
   return has(argc, argv, "--check") && !verdict.met ? 1 : 0;

@@ -102,7 +102,7 @@ class Rig {
     core.publish(t, {&probe, 1});
     lockstep_->before(t);
     core.tick(t, dt, {&probe, 1});
-    arm_->write(now, dt, core.force(0), core.torque(0));
+    arm_->write(now, dt, core.force(0), core.torque(0), core.exchange(0));
     ++count_;
     return sampleOf(t, core.contact(0, 0));
   }
