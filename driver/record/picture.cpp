@@ -98,17 +98,22 @@ void drawHistogram(Svg& svg, const Quantity& quantity, const Range& range, const
 
 }  // namespace
 
-Result<void> drawRun(const RunReport& report, const std::vector<Sample>& samples, const std::string& file) {
+Result<void> drawRun(const RunReport& report, const std::vector<Sample>& samples, const std::string& file,
+                     bool positions) {
   if (samples.empty()) return Error{file + ": nothing to draw: the run had no tick"};
   const auto always = [](const Sample&) { return true; };
   const auto in_contact = [](const Sample& s) { return s.depth_m > 0; };
-  const Quantity quantities[] = {
+  std::vector<Quantity> quantities = {
       {"penetration depth (negative: distance)", "mm", "#1b6ca8",
        [](const Sample& s) { return std::max(s.depth_m * 1e3, -10.0); }, in_contact},
       {"force on the hand", "N", "#b5432a", [](const Sample& s) { return s.force_n; }, in_contact},
       {report.virtual_time ? "compute time" : "lateness", "us", "#3a7d44",
        [&](const Sample& s) { return report.virtual_time ? s.compute_us : s.lateness_us; }, always}};
-  Svg svg(kWidth, kTop + 3 * kRowHeight + 10);
+  constexpr const char* kCoordinates[] = {"x of the tip", "y of the tip", "z of the tip"};
+  for (size_t i = 0; i < 3 && positions; ++i)
+    quantities.push_back(
+        {kCoordinates[i], "mm", "#6a4c93", [i](const Sample& s) { return s.position_m[i] * 1e3; }, always});
+  Svg svg(kWidth, kTop + static_cast<double>(quantities.size()) * kRowHeight + 10);
   svg.label(kLeft, 24,
             fmt::format("{}: {:.1f} Hz held, {} overruns, {:.1f} s", report.scene, report.rate_hz, report.overruns,
                         report.seconds),

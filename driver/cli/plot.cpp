@@ -1,0 +1,94 @@
+/// `hapticd plot`: a picture of a recording.
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "record/picture.hpp"
+#include "record/recording.hpp"
+
+namespace hapticd::cli {
+
+namespace {
+
+struct Options {
+  std::string file, out;
+  uint32_t arm = 0;
+  std::optional<double> from, to;
+};
+
+/// The columns that are drawn; nullptr: a recording without them.
+struct Columns {
+  const record::Column *t, *depth, *lateness, *compute, *force[3], *position[3];
+};
+
+std::optional<Columns> columnsOf(const record::RecordedStream& ticks, uint32_t arm) {
+  const std::string prefix = "arm" + std::to_string(arm) + "_";
+  Columns c{ticks.find("t"), ticks.find("depth"), ticks.find("lateness_us"), ticks.find("compute_us"), {}, {}};
+  constexpr const char* kAxes[] = {"x", "y", "z"};
+  bool all = c.t != nullptr && c.depth != nullptr && c.lateness != nullptr && c.compute != nullptr;
+  for (size_t i = 0; i < 3; ++i) {
+    c.force[i] = ticks.find(prefix + "sent_f" + kAxes[i]);
+    c.position[i] = ticks.find(prefix + kAxes[i]);
+    all = all && c.force[i] != nullptr && c.position[i] != nullptr;
+  }
+  return all ? std::optional(c) : std::nullopt;
+}
+
+record::Sample sampleAt(const record::RecordedStream& ticks, const Columns& c, uint64_t row) {
+  record::Sample sample;
+  sample.t = ticks.number(row, *c.t);
+  const double depth = ticks.number(row, *c.depth);
+  sample.depth_m = std::isfinite(depth) ? depth : -1;  // nothing traced is far away, not at the surface
+  double square = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    square += ticks.number(row, *c.force[i]) * ticks.number(row, *c.force[i]);
+    sample.position_m[i] = ticks.number(row, *c.position[i]);
+    if (!std::isfinite(sample.position_m[i])) sample.position_m[i] = 0;
+  }
+  sample.force_n = std::isfinite(square) ? std::sqrt(square) : 0;
+  sample.lateness_us = ticks.number(row, *c.lateness);
+  sample.compute_us = ticks.number(row, *c.compute);
+  return sample;
+}
+
+int plot(const Options& options) {
+  auto recording = record::Recording::open(options.file);
+  if (!recording) return fail(kBadInput, recording.error());
+  const record::RecordedStream* ticks = (*recording)->stream("ticks");
+  const auto columns = ticks != nullptr ? columnsOf(*ticks, options.arm) : std::nullopt;
+  if (!columns) return fail(kBadInput, options.file + ": has no ticks of arm " + std::to_string(options.arm));
+  std::vector<record::Sample> samples;
+  for (uint64_t row = 0; row < ticks->rows(); ++row) {
+    const double t = ticks->number(row, *columns->t);
+    if (!std::isfinite(t) || (options.from && t < *options.from) || (options.to && t > *options.to)) continue;
+    samples.push_back(sampleAt(*ticks, *columns, row));
+  }
+  record::RunReport report;
+  report.scene = options.file;
+  report.ticks = samples.size();
+  report.seconds = samples.empty() ? 0 : samples.back().t - samples.front().t;
+  report.rate_hz = report.seconds > 0 ? static_cast<double>(samples.size() - 1) / report.seconds : 0;
+  const std::string out = options.out.empty() ? options.file + ".svg" : options.out;
+  if (auto drawn = record::drawRun(report, samples, out, true); !drawn) return fail(kFailed, drawn.error());
+  std::printf("%s: %zu ticks, %.2f s\n", out.c_str(), samples.size(), report.seconds);
+  return kWorked;
+}
+
+}  // namespace
+
+void addPlot(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("plot", "Draw a recording: depth, force, lateness and position over time (SVG).");
+  command->add_option("file", options->file, "recording or black box")->required();
+  command->add_option("--out", options->out, "picture to write; without it FILE.svg");
+  command->add_option("--arm", options->arm, "which arm, from 0")->check(CLI::Range(0, 7));
+  command->add_option("--from", options->from, "s: begin here");
+  command->add_option("--to", options->to, "s: end here");
+  command->footer("Example:\n  hapticd plot run.h5 --out run.svg --from 2 --to 4");
+  command->callback([options, &exit_code] { exit_code = plot(*options); });
+}
+
+}  // namespace hapticd::cli
