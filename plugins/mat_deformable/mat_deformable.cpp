@@ -164,8 +164,15 @@ void MatDeformable::find(const Vector3d& p, uint32_t flags, const medial::Newton
   if (search_ == 1) {
     track.foot = skeleton.bisect(p, options.envelope, depth_);
   } else {
+    const bool jumped = (flags & HSP_IN_JUMP) != 0;
+    if (!track.known && track.offered && !jumped) {  // the search that started it has looked all over the body
+      track.foot.u = track.offered_u;
+      track.foot.v = track.offered_v;
+      track.known = true;
+      track.last = p;
+    }
     const bool far = (p - track.last).squaredNorm() > std::pow(kNewPlace * skeleton.spacing(), 2);
-    const bool lost = !track.known || far || (flags & HSP_IN_JUMP) != 0;
+    const bool lost = !track.known || far || jumped;
     if (!lost) track.foot = skeleton.nearest(p, track.foot.u, track.foot.v, options);
     if (lost || !track.foot.converged) {
       track.foot = skeleton.search(p, options);

@@ -63,7 +63,7 @@ class Search {
   int evaluations() const noexcept { return evaluations_; }
 
  private:
-  Matrix2d hessian(const State& q, double height, bool flat) const noexcept;
+  Matrix2d hessian(const State& q, double height, bool flat, const std::array<bool, 2>& held) const noexcept;
   double planeHeight(const State& q, const Matrix2d& metric) const noexcept;
   Vector2d solve(const Matrix2d& h, const Vector2d& g, const std::array<bool, 2>& held,
                  const Vector2d& x) const noexcept;
@@ -81,10 +81,14 @@ Matrix2d metricOf(const State& q) noexcept {
   return metric;
 }
 
-/// Shifts a Hessian so that it curves upward everywhere: the least curvature, relative to the metric, changes its sign.
-void makeConvex(Matrix2d& h, const Matrix2d& metric, bool curve) noexcept {
-  double least = h(1, 1) / std::max(metric(1, 1), 1e-300);
-  if (!curve) {
+/// Shifts a Hessian so that it curves upward in every direction that is not held: the least curvature, relative to the
+/// metric, changes its sign.
+void makeConvex(Matrix2d& h, const Matrix2d& metric, const std::array<bool, 2>& held) noexcept {
+  double least = 0;
+  if (held[0] || held[1]) {
+    const Eigen::Index free = held[0] ? 1 : 0;
+    least = h(free, free) / std::max(metric(free, free), 1e-300);
+  } else {
     const double area2 = metric.determinant();
     if (!(area2 > 0)) {
       h = metric;
@@ -98,7 +102,7 @@ void makeConvex(Matrix2d& h, const Matrix2d& metric, bool curve) noexcept {
 
 /// |d| times the Hessian of |d| - r, made convex where it is not. `flat`: |d| is taken from the tangent
 /// plane and does not vary to first order.
-Matrix2d Search::hessian(const State& q, double height, bool flat) const noexcept {
+Matrix2d Search::hessian(const State& q, double height, bool flat, const std::array<bool, 2>& held) const noexcept {
   const Matrix2d metric = metricOf(q);
   Matrix2d h = metric;
   h(0, 0) -= q.d.dot(q.s.Suu);
@@ -116,7 +120,7 @@ Matrix2d Search::hessian(const State& q, double height, bool flat) const noexcep
     }
   }
   h(1, 0) = h(0, 1);
-  makeConvex(h, metric, skeleton_.curve());
+  makeConvex(h, metric, held);
   return h;
 }
 
@@ -163,7 +167,7 @@ Vector2d Search::step(const State& q, const Vector2d& x) const noexcept {
     rim |= held[a];
   }
   const auto moveFor = [&](double height, bool flat) {
-    return solve(hessian(q, height, flat), {slope(q, 0, height), slope(q, 1, height)}, held, x);
+    return solve(hessian(q, height, flat, held), {slope(q, 0, height), slope(q, 1, height)}, held, x);
   };
   const Vector2d move = moveFor(q.distance, false);
   const double length = (q.s.Su * move[0] + q.s.Sv * move[1]).norm();

@@ -73,6 +73,23 @@ TEST(Skeleton, WarmSearchFollowsAMovingProbeInFiveEvaluations) {
   }
 }
 
+TEST(Skeleton, WarmSearchConvergesQuicklyOnARimWhereTheRadiusRisesInward) {
+  SkeletonGrid grid;
+  grid.count = {5, 5};
+  for (int i = 0; i < 25; ++i) {
+    const double s = (i / 5) / 4.0, t = (i % 5) / 4.0;
+    grid.points.emplace_back(.02 * s, .02 * t, .003 * (1 - std::pow(2 * s - 1, 2)) * (1 - std::pow(2 * t - 1, 2)));
+    grid.radius.push_back(.01 + .004 * std::sin(M_PI * s) * std::sin(M_PI * t));
+  }
+  const Skeleton skeleton(grid);
+  SkeletonFoot foot = skeleton.search({.005, .05, .01}, {});
+  for (int k = 1; k < 100; ++k) {
+    foot = skeleton.nearest({.005 + 1e-4 * k, .05, .01}, foot.u, foot.v, {});
+    EXPECT_TRUE(foot.converged && foot.rim);
+    EXPECT_LE(foot.evaluations, 5);
+  }
+}
+
 TEST(Skeleton, WarmSearchRefusesWhatIsNoNumber) {
   const Skeleton skeleton = test::build(test::sheets()[0], true);
   EXPECT_FALSE(skeleton.nearest({NAN, 0, 0}, .5, .5, {}).converged);
