@@ -24,7 +24,8 @@ Proximity::Proximity(const std::vector<host::ShapeInstance*>& models, const std:
     of_scene_[i] = static_cast<uint32_t>(models_.size());
     models_.push_back(std::move(model));
   }
-  found_.resize(most_surfaces);
+  constexpr uint32_t kRivals = 32;  // a plugin may offer several feet on a surface, after one on each
+  found_.resize(most_surfaces + kRivals);
   seen_.resize(most_surfaces);
 }
 

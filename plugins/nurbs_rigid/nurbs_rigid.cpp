@@ -3,15 +3,30 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
+#include <stdexcept>
 #include <string_view>
 
 namespace hapticd {
+namespace {
+
+std::string number(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+}  // namespace
 
 void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) {
+  if (friction_dynamic_ > friction_static_)
+    throw std::invalid_argument("friction_dynamic: " + number(friction_dynamic_) + " is more than friction_static, " +
+                                number(friction_static_) + "; expected at most as much");
   load(activation, report);
+  extents_ = extentsOf(model());
   report.max_stiffness = stiffness_;
   if (damping_ > 0 || viscosity_ > 0) report.flags |= HSP_R_VELOCITY;
-  const bool rubs = friction_static_ > 0 || friction_dynamic_ > 0 || viscosity_ > 0;
+  const bool rubs = friction_static_ > 0 || viscosity_ > 0;
   friction_.assign(rubs ? std::max(activation.max_probes, 1u) : 0, contact::Friction{});
   body_.reset();
   if (motion_ == kDynamic) setInMotion(activation, report);
@@ -50,7 +65,7 @@ hsp_status NurbsRigid::step(const hsp_step& given) noexcept HSP_RT {
 hsp_status NurbsRigid::press(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT {
   const Touch touch = trace(probe, step, contact);
   const uint32_t index = indexOf(probe, step);
-  const double depth = touch.depth + (texture_amplitude_ > 0 ? texture(touch.foot) : 0);
+  const double depth = touch.depth + (touch.traced && texture_amplitude_ > 0 ? texture(touch.foot) : 0);
   if (!touch.traced || touch.depth <= 0 || depth <= 0) {
     if (index < friction_.size()) friction_[index].reset();
     if (body_ && touch.traced) remember(probe, touch, index, depth, Eigen::Vector3d::Zero());
@@ -80,8 +95,7 @@ void NurbsRigid::remember(const hsp_probe& probe, const Touch& touch, uint32_t i
   pressing.law = {stiffness_, damping_, exponent_, depth_scale_};
   pressing.along = rub;
   if (index < friction_.size() && depth > 0) {
-    const double most =
-        std::max(friction_static_, friction_dynamic_) * contact::wallForce(pressing.law, depth, 0).force;
+    const double most = friction_static_ * contact::wallForce(pressing.law, depth, 0).force;
     pressing.along_limit = friction_[index].slipping() ? rub.norm() : std::max(rub.norm(), most);
     pressing.along_stiffness = most > 0 ? stiffness_ : 0;
     pressing.along_damping = viscosity_;
@@ -92,16 +106,47 @@ void NurbsRigid::remember(const hsp_probe& probe, const Touch& touch, uint32_t i
 /// What the surface does along itself: dry friction and drag.
 Eigen::Vector3d NurbsRigid::along(const Touch& touch, const Eigen::Vector3d& velocity, double wall_force,
                                   contact::Friction& friction) const noexcept HSP_RT {
-  const contact::FrictionLaw law{std::max(friction_static_, friction_dynamic_), friction_dynamic_, stiffness_,
-                                 viscosity_};
+  const contact::FrictionLaw law{friction_static_, friction_dynamic_, stiffness_, viscosity_};
   return friction.step(law, touch.foot.point, touch.normal, wall_force, velocity);
 }
 
-/// Height [m] of the ridges at a foot: a product of two waves along the model's axes would swim on a moving foot, so
-/// the waves run over the foot point itself, in the model's frame.
+std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const trace::Model& model) {
+  constexpr int kSamples = 16;
+  std::vector<Extent> extents;
+  spline::SurfacePoint E;
+  for (int surface = 0; surface < model.surfaceCount(); ++surface) {
+    Extent extent;
+    extent.lo = model.patch(model.firstPatch(surface)).lo;
+    Eigen::Array2d hi = model.patch(model.firstPatch(surface)).hi;
+    for (int i = model.firstPatch(surface); i < model.lastPatch(surface); ++i) {
+      extent.lo = extent.lo.min(model.patch(i).lo);
+      hi = hi.max(model.patch(i).hi);
+    }
+    extent.range = hi - extent.lo;
+    extent.length.setZero();
+    for (int i = model.firstPatch(surface); i < model.lastPatch(surface); ++i) {
+      const trace::Patch& patch = model.patch(i);
+      const double share = ((patch.hi - patch.lo) / extent.range).prod() / (kSamples * kSamples);
+      for (int k = 0; k < kSamples * kSamples; ++k) {
+        const Eigen::Array2d middle(k / kSamples + 0.5, k % kSamples + 0.5);
+        const Eigen::Array2d uv = patch.lo + (patch.hi - patch.lo) * middle / kSamples;
+        patch.surface.evaluate1(uv[0], uv[1], E);
+        extent.length += share * extent.range * Eigen::Array2d(E.Su.norm(), E.Sv.norm());
+      }
+    }
+    extents.push_back(extent);
+  }
+  return extents;
+}
+
+/// Height [m] of the bumps at a foot. Waves along u and v, a whole number of them on the surface: their product
+/// vanishes on every side of it, so the skin has no step at seams, common edges and poles.
 double NurbsRigid::texture(const trace::Foot& foot) const noexcept HSP_RT {
-  const Eigen::Array3d phase = foot.point.array() * (2 * std::numbers::pi / texture_wavelength_);
-  return texture_amplitude_ * (std::sin(phase.x()) + std::sin(phase.y()) + std::sin(phase.z())) / 3;
+  const Extent& extent = extents_[static_cast<std::size_t>(foot.surface)];
+  const Eigen::Array2d waves = (extent.length / texture_wavelength_).round().max(1);
+  const Eigen::Array2d phase =
+      2 * std::numbers::pi * waves * (Eigen::Array2d(foot.u, foot.v) - extent.lo) / extent.range;
+  return texture_amplitude_ * std::sin(phase[0]) * std::sin(phase[1]);
 }
 
 const void* NurbsRigid::extension(const char* name) {

@@ -41,7 +41,7 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
             F::real("texture.amplitude", &NurbsRigid::texture_amplitude_, "m", 0, 1e-2, 0,
                     "height of bumps on the surface; 0: smooth", HSP_P_LIVE),
             F::real("texture.wavelength", &NurbsRigid::texture_wavelength_, "m", 1e-5, 1, 2e-3,
-                    "length of a bump along the model's axes", HSP_P_LIVE),
+                    "length of a bump along u and v; a surface holds a whole number of them", HSP_P_LIVE),
             F::real("pop_through", &NurbsRigid::pop_through_, "N", 0, 1e3, 0,
                     "a shell (sides: both) gives way above this force; 0: never")},
         motionFields<NurbsRigid>());
@@ -62,6 +62,12 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
                 const Eigen::Vector3d& rub) noexcept HSP_RT;
   Eigen::Vector3d along(const Touch& touch, const Eigen::Vector3d& velocity, double wall_force,
                         contact::Friction& friction) const noexcept HSP_RT;
+  /// A surface's parameters as lengths, for the bumps along them.
+  struct Extent {
+    Eigen::Array2d lo, range;  ///< of (u, v)
+    Eigen::Array2d length;     ///< [m] along u and along v, on average
+  };
+  static std::vector<Extent> extentsOf(const trace::Model& model);
   double texture(const trace::Foot& foot) const noexcept HSP_RT;
 
   int motion_ = kStatic;
@@ -69,6 +75,7 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
   double friction_static_ = 0, friction_dynamic_ = 0;
   double viscosity_ = 0, texture_amplitude_ = 0, texture_wavelength_ = 2e-3, pop_through_ = 0;
   std::vector<contact::Friction> friction_;  ///< one a probe, empty if nothing rubs
+  std::vector<Extent> extents_;              ///< by surface
   std::optional<DynamicBody> body_;          ///< of a dynamic model
   double stored_ = 0;                        ///< [J] in the wall
   hsp_ext_energy energy_extension_{};

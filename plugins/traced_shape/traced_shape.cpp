@@ -44,6 +44,8 @@ trace::TraceOptions TracedShape::optionsOf(const hsp_step& step) const noexcept 
   options.method = method_ == 0 || step.order == 1 ? trace::Method::kDirect : trace::Method::kNewton;
   options.iterations = iterations_;
   options.tolerance = step.tolerance_m > 0 ? step.tolerance_m : tolerance_;
+  options.hold = hold_;
+  options.unite = sides_ == kFront;  // the other side of a union of solids is no union
   if (step.max_iterations > 0)
     options.max_evaluations = static_cast<int>(std::min<uint32_t>(step.max_iterations, options.max_evaluations));
   return options;
@@ -97,12 +99,17 @@ void TracedShape::popThrough(uint32_t probe) noexcept HSP_RT {
   if (sides_ == kBoth && probe < entered_.size()) entered_[probe] = -entered_[probe];
 }
 
+/// One record a surface, then rivals: other feet on the same surfaces, which come as second offers.
 int64_t TracedShape::nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const {
-  std::vector<trace::Near> found(static_cast<std::size_t>(std::min<uint64_t>(cap, model_->surfaceCount())));
-  const int64_t count = model_->nearby(Eigen::Vector3d(p_model), radius, found.data(), found.size());
-  for (std::size_t i = 0; i < found.size() && static_cast<int64_t>(i) < count; ++i)
-    out[i] = {static_cast<uint32_t>(found[i].surface), 0, {found[i].u, found[i].v}, found[i].distance};
-  return count;
+  trace::Found found;
+  model_->search(Eigen::Vector3d(p_model), radius, found);
+  uint64_t count = 0;
+  for (const auto* records : {&found.nearest, &found.rivals})
+    for (const trace::Near& near : *records) {
+      if (count < cap) out[count] = {static_cast<uint32_t>(near.surface), 0, {near.u, near.v}, near.distance};
+      ++count;
+    }
+  return static_cast<int64_t>(count);
 }
 
 hsp_status TracedShape::start(const hsp_near& near) noexcept HSP_RT {

@@ -46,7 +46,10 @@ class TracedShape : public Shape {
                   HSP_P_ACCURACY),
         F::integer("iterations", &TracedShape::iterations_, "", 1, 4, 1, "steps a tick of method dpt", HSP_P_ACCURACY),
         F::real("tolerance", &TracedShape::tolerance_, "m", 1e-12, 1e-3, 1e-9,
-                "error of the foot point at which method newton stops", HSP_P_ACCURACY | HSP_P_LIVE)};
+                "error of the foot point at which method newton stops", HSP_P_ACCURACY | HSP_P_LIVE),
+        F::real("hold", &TracedShape::hold_, "m", 0, 1, 0,
+                "a contact goes over to another face only when that is nearer by this: 0 the nearest face always; more "
+                "than a wall is thick: the probe does not come out of its far side")};
   }
 
   void deactivate();
@@ -75,7 +78,7 @@ class TracedShape : public Shape {
 
   std::string geometry_;
   int sides_ = kFront, method_ = 1, iterations_ = 1;
-  double tolerance_ = 1e-9;
+  double tolerance_ = 1e-9, hold_ = 0;
 
  private:
   static constexpr const char* kSideNames[] = {"front", "back", "both"};
