@@ -88,6 +88,7 @@ DynamicBody::DynamicBody(const MotionParameters& parameters, const dynamics::Mas
             parameters.gravity_ ? Vector3d(activation.gravity) : Vector3d::Zero()),
       probes_(std::max(activation.max_probes, 1u)),
       presses_(std::max(activation.max_probes, 1u)) {
+  dynamics::validateSwing(body_.swingRate(), activation.rate_hz);
   body_.setVelocity(Vector3d(parameters.velocity_.data()), Vector3d(parameters.spin_.data()));
   now_ = frame();
 }

@@ -23,6 +23,7 @@ void Pendulum::activate(const hsp_activation& activation, hsp_report& report) {
     throw std::invalid_argument(
         "pendulum: inertia: a point mass of length 0 has none; expected inertia or length above 0");
   dynamics::validate(law_);
+  dynamics::validateSwing(std::sqrt(law_.frequencySquared()), activation.rate_hz);
   state_ = {angle_, rate_};
   stored_ = 0;
   probes_.emplace(std::max(activation.max_probes, 1u));
@@ -50,8 +51,8 @@ MovingFrame Pendulum::frame() const noexcept HSP_RT {
   return now;
 }
 
-/// The hand's torque about the axis [N m], held through the step: that of its end, as the pendulum gives way.
-double Pendulum::torqueOf(std::span<const dynamics::Press> presses, double dt) const noexcept HSP_RT {
+/// The hand's impulse about the axis [N m s] in a step: of its force at the end, as the pendulum gives way.
+double Pendulum::impulseOf(std::span<const dynamics::Press> presses, double dt) const noexcept HSP_RT {
   double resisting = law_.inertia + dt * law_.damping;
   double impulse = -dt * (law_.mass * law_.gravity * law_.length * std::sin(state_.angle) + law_.damping * state_.rate);
   for (const dynamics::Press& press : presses) {
@@ -65,7 +66,7 @@ double Pendulum::torqueOf(std::span<const dynamics::Press> presses, double dt) c
     const Eigen::Vector3d moment = axis_world_.cross(press.point - pivot_world_);
     torque += moment.dot(dynamics::forceAfter(press, change * moment));
   }
-  return torque;
+  return dt * torque;
 }
 
 hsp_status Pendulum::step(const hsp_step& step) noexcept HSP_RT {
@@ -74,8 +75,8 @@ hsp_status Pendulum::step(const hsp_step& step) noexcept HSP_RT {
     return state_.rate * axis_world_.cross(point - pivot_world_);
   };
   if (step.dt_s > 0) {
-    const double torque = torqueOf(presses_->foresee(step, before, velocity_at), step.dt_s);
-    state_ = dynamics::advance(law_, state_, torque, step.dt_s);
+    state_.rate += impulseOf(presses_->foresee(step, before, velocity_at), step.dt_s) / law_.inertia;
+    state_ = dynamics::advance(law_, state_, 0, step.dt_s);
     state_.angle = std::remainder(state_.angle, 2 * M_PI);  // one that goes round keeps the digits of its angle
   }
   const MovingFrame now = frame();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 #include "kernels/dynamics/splitting.hpp"
@@ -55,6 +56,17 @@ void validate(const PendulumLaw& law) {
   if (!finite || !(law.mass > 0) || !(law.inertia > 0) || law.length < 0 || law.damping < 0)
     throw std::invalid_argument(
         "pendulum: expected mass and inertia above 0, length and damping not below 0, all finite");
+}
+
+void validateSwing(double swing_rate, double rate_hz) {
+  if (!(rate_hz > 0) || swing_rate <= kLargestSwing * rate_hz) return;
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "it swings at %.4g rad/s, expected at most %.4g rad/s at %.4g Hz: more inertia, a weaker pull, or a rate "
+      "of %.0f Hz",
+      swing_rate, kLargestSwing * rate_hz, rate_hz, std::ceil(swing_rate / kLargestSwing));
+  throw std::invalid_argument(text);
 }
 
 PendulumState advance(const PendulumLaw& law, PendulumState state, double torque, double dt) noexcept {

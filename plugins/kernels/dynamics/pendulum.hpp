@@ -21,6 +21,14 @@ struct PendulumState {
 /// [any] @throws std::invalid_argument unless all is finite, mass and inertia above 0, length and damping not below 0.
 void validate(const PendulumLaw& law);
 
+/// [rad] of the linear swing in one step, up to which advance() is stable (test Pendulum.IsStableUpToItsLargestSwing);
+/// accurate it is up to a tenth of that.
+inline constexpr double kLargestSwing = 32;
+
+/// [main] @throws std::invalid_argument with the bound if something that swings at `swing_rate` [rad/s] is too fast for
+/// steps at `rate_hz`; a rate of 0 is not known yet.
+void validateSwing(double swing_rate, double rate_hz);
+
 /// [rt] One step of dt [s] with a constant torque of the user [N m], split where the motion is faster than the step.
 /// Without damping a splitting of fourth order, whose energy stays; with weak damping Runge-Kutta of fourth order;
 /// where damping/inertia times the substep exceeds 0.05 an exponential step of second order, stable however strong the

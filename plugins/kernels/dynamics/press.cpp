@@ -15,12 +15,15 @@ Press foresee(const Pressing& last, const Vector3d& probe_now, double closing_sp
   press.outward = last.normal;
   const Vector3d slide = probe_now - last.probe - dt * point_velocity;  // of the probe against the body
   const double depth = last.depth - last.normal.dot(slide);
-  const contact::WallForce wall = contact::wallForce(last.law, depth, closing_speed);
+  // Where the body leaves by itself, its change of velocity may bring it back: the line goes on below no force.
+  const double deepest = std::max(depth, last.depth - last.normal.dot(probe_now - last.probe));
+  const contact::WallForce wall = contact::wallForce(last.law, deepest, closing_speed);
   if (!(wall.force > 0)) return press;
   // The chord to depth 0 for n < 1: where the law is steeper than that, a light body would be thrown out.
-  const double chord = wall.force / depth * std::max(1.0, last.law.exponent);
+  const double chord = wall.force / deepest * std::max(1.0, last.law.exponent);
+  const double force = wall.force - chord * (deepest - depth);
   const Matrix3d across = last.normal * last.normal.transpose();
-  press.force = -wall.force * last.normal;
+  press.force = -force * last.normal;
   press.give = (chord * dt + wall.damping) * across;
   if (last.along_stiffness > 0 || last.along_damping > 0) {
     Vector3d along = last.along - last.along_stiffness * (slide - across * slide);

@@ -20,8 +20,8 @@ struct Pressing {
 };
 
 /// One contact in the coming step, world frame. A force held through a step pushes the body on after it has given way:
-/// that gains e^(pi w h/4) a half swing (w^2 = k/m, step h), without end for a light body. So the force of the step's
-/// end is taken, as the body's own motion changes it.
+/// that gains e^(pi w h/4) a half swing (w^2 = k/m, step h), without end for a light body. So the force at the step's
+/// end is taken, and what the body's own change of velocity takes off it.
 struct Press {
   Eigen::Vector3d point{0, 0, 0};                  ///< [m]
   Eigen::Vector3d outward{0, 0, 1};                ///< unit: the body is never pulled this way

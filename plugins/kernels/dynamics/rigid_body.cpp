@@ -66,21 +66,17 @@ RigidBody::RigidBody(const RigidBodyLaw& law, const Vector3d& position, const Qu
   x_ = start_ = position + model * law.center;
   pivot_world_ = position + model * law.pivot;
   axis_world_ = law.joint == Joint::kFree ? Vector3d::UnitY() : Vector3d(model * law.axis.normalized());
-  if (law.joint == Joint::kHinge) {
-    const Vector3d axis = law.axis.normalized();
-    hinge_inertia_ = axis.dot(law.inertia * axis) + law.mass * axis.cross(law.center - law.pivot).squaredNorm();
-  }
+  if (law.joint == Joint::kHinge) hang();
+  start_turn_ = turn_.quaternion();
 }
 
 void RigidBody::step(const Vector3d& force, const Vector3d& torque, double dt) noexcept {
   if (!(dt > 0) || !std::isfinite(dt)) return;
-  const Vector3d f = (force.allFinite() ? force : Vector3d::Zero().eval()) + law_.mass * gravity_;
+  const Vector3d pushed = force.allFinite() ? force : Vector3d::Zero().eval();
   const Vector3d t = torque.allFinite() ? torque : Vector3d::Zero().eval();
-  if (law_.joint == Joint::kHinge) return swing(f, t, dt);
-  if (law_.joint == Joint::kSlider) {
-    const Vector3d axis = worldAxis();
-    return translate(axis * axis.dot(f), dt);
-  }
+  if (law_.joint == Joint::kHinge) return swing(pushed, t, dt);
+  const Vector3d f = pushed + law_.mass * gravity_;
+  if (law_.joint == Joint::kSlider) return translate(axis_world_ * axis_world_.dot(f), dt);
   translate(f, dt);
   rotate(t, dt);
 }
@@ -127,7 +123,6 @@ RigidBody::Vector6d RigidBody::changeUnder(const Matrix6d& resisting, const Vect
 }
 
 void RigidBody::step(std::span<const Press> presses, double dt) noexcept {
-  Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero();
   if (!presses.empty() && dt > 0) {
     Matrix6d resisting = ownResistance(dt);
     Vector6d impulse = ownImpulse(dt);
@@ -137,14 +132,31 @@ void RigidBody::step(std::span<const Press> presses, double dt) noexcept {
       impulse += dt * rows.transpose() * press.force;
     }
     const Vector6d change = changeUnder(resisting, impulse);
+    Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero();
     for (const Press& press : presses) {
       const Vector3d lever = press.point - x_;
       const Vector3d felt = forceAfter(press, pointRows(lever) * change);
       force += felt;
       torque += lever.cross(felt);
     }
+    kick(dt * force, dt * torque);
   }
-  step(force, torque, dt);
+  step(Vector3d::Zero(), Vector3d::Zero(), dt);
+}
+
+/// An impulse [N s] and one of torque [N m s] about the centre, as far as the joint lets it through.
+void RigidBody::kick(const Vector3d& impulse, const Vector3d& turning) noexcept {
+  if (!impulse.allFinite() || !turning.allFinite()) return;
+  if (law_.joint == Joint::kHinge) {
+    hinge_rate_ += axis_world_.dot(turning + (x_ - pivot_world_).cross(impulse)) / hinge_.inertia;
+    return setHingeVelocities();
+  }
+  if (law_.joint == Joint::kSlider) {
+    v_ += axis_world_ * (axis_world_.dot(impulse) / law_.mass);
+    return;
+  }
+  v_ += impulse / law_.mass;
+  l_ += turning;
 }
 
 Vector3d RigidBody::velocityAt(const Vector3d& point) const noexcept {
@@ -179,22 +191,28 @@ void RigidBody::decay(double time) noexcept {
 }
 
 void RigidBody::swing(const Vector3d& force, const Vector3d& torque, double dt) noexcept {
-  const Vector3d axis = worldAxis();
-  // the lever turns within the step: half a step of motion first makes it of second order and free of drift in energy
-  const auto turnBy = [&](double angle) {
-    turn_.turnWorld(angle * axis);
-    x_ = pivot_world_ + rotationBy(angle * axis) * (x_ - pivot_world_);
-  };
-  turnBy(hinge_rate_ * dt / 2);
-  const Vector3d lever = x_ - pivot_world_;
-  const double moment = axis.dot(torque + lever.cross(force - law_.tether * (x_ - start_)));
-  // b about the pivot: drag of the centre on its circle, and the joint's own
-  const double drag = law_.angular_damping + law_.damping * axis.cross(lever).squaredNorm();
-  const double c = drag / hinge_inertia_;
-  const double phi = c * dt > 1e-12 ? -std::expm1(-c * dt) / c : dt;
-  hinge_rate_ += phi * (moment / hinge_inertia_ - c * hinge_rate_);
-  turnBy(hinge_rate_ * dt / 2);
+  const double moment = axis_world_.dot(torque + (x_ - pivot_world_).cross(force));
+  const PendulumState next = advance(hinge_, {hinge_angle_ - hinge_rest_, hinge_rate_}, moment, dt);
+  hinge_angle_ = std::remainder(next.angle + hinge_rest_, 2 * M_PI);  // one that goes round keeps its digits
+  hinge_rate_ = next.rate;
+  // turned by an angle from the start, never by steps: the pose has the angle's error only
+  const Quaterniond turn = rotationBy(hinge_angle_ * axis_world_);
+  turn_.set(turn * start_turn_);
+  x_ = pivot_world_ + turn * (start_ - pivot_world_);
   setHingeVelocities();
+}
+
+/// A hinge is a pendulum: weight and tether pull the centre, on its circle, to one lowest point.
+void RigidBody::hang() noexcept {
+  const Vector3d out = (start_ - pivot_world_) - axis_world_ * axis_world_.dot(start_ - pivot_world_);
+  const double down = law_.tether * out.squaredNorm() + law_.mass * gravity_.dot(out);
+  const double aside = law_.mass * gravity_.dot(axis_world_.cross(out));
+  const Vector3d axis = law_.axis.normalized();
+  hinge_.inertia = axis.dot(law_.inertia * axis) + law_.mass * out.squaredNorm();
+  hinge_.mass = hinge_.length = 1;
+  hinge_.gravity = std::hypot(down, aside);  // of which the law makes a torque: [N m]
+  hinge_.damping = law_.angular_damping + law_.damping * out.squaredNorm();
+  hinge_rest_ = hinge_.gravity > 0 ? std::atan2(aside, down) : 0;
 }
 
 void RigidBody::setHingeVelocities() noexcept {

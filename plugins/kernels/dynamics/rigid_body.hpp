@@ -1,8 +1,10 @@
 /// A rigid body with its full inertia, free or on a joint to the world.
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
 #include <span>
 
+#include "kernels/dynamics/pendulum.hpp"
 #include "kernels/dynamics/press.hpp"
 #include "kernels/dynamics/rotation.hpp"
 #include "kernels/dynamics/top.hpp"
@@ -30,7 +32,8 @@ struct RigidBodyLaw {
 
 /// Translation is exact under a force that is constant in the step (parabola, decay, or the oscillator's exponential).
 /// Rotation keeps the angular momentum in the world, which no integrator then can change, and turns the body by a
-/// Lie-group Runge-Kutta method of fourth order (Munthe-Kaas 1999) in its principal axes.
+/// splitting of fourth order whose energy error stays bounded (top.hpp); torque and angular drag act around it, of
+/// second order (tests FreeTop.*, RigidBody.DampedTopConvergesWithSecondOrder). A hinge is a pendulum (pendulum.hpp).
 class RigidBody {
  public:
   /// [main] @param position, orientation of the model's frame in the world  @param gravity world [m/s^2]
@@ -57,6 +60,9 @@ class RigidBody {
   const Eigen::Vector3d& momentum() const noexcept { return l_; }  ///< [rt] angular, about the centre, world
   Eigen::Vector3d bodyRate() const noexcept;  ///< [rt] angular velocity in the model's frame [rad/s]
   double energy() const noexcept;             ///< [rt] kinetic, tether, and gravity from the start [J]
+  /// [any] How fast a hinge swings about its lowest point [rad/s], 0 for other joints: a step of more than
+  /// kLargestSwing rad of it is not stable (pendulum.hpp).
+  double swingRate() const noexcept { return std::sqrt(law_.joint == Joint::kHinge ? hinge_.frequencySquared() : 0); }
 
   /// [rt] Velocity of the centre (world) and angular velocity (model's frame); a joint keeps what it lets through.
   void setVelocity(const Eigen::Vector3d& center_velocity, const Eigen::Vector3d& body_rate) noexcept;
@@ -65,24 +71,26 @@ class RigidBody {
   void translate(const Eigen::Vector3d& force, double dt) noexcept;
   void rotate(const Eigen::Vector3d& torque, double dt) noexcept;
   void decay(double time) noexcept;
+  void hang() noexcept;
   void setHingeVelocities() noexcept;
+  void kick(const Eigen::Vector3d& impulse, const Eigen::Vector3d& turning) noexcept;
   void swing(const Eigen::Vector3d& force, const Eigen::Vector3d& torque, double dt) noexcept;
   using Vector6d = Eigen::Matrix<double, 6, 1>;
   using Matrix6d = Eigen::Matrix<double, 6, 6>;
   Vector6d changeUnder(const Matrix6d& resisting, const Vector6d& impulse) const noexcept;
   Matrix6d ownResistance(double dt) const noexcept;
   Vector6d ownImpulse(double dt) const noexcept;
-  Eigen::Vector3d worldAxis() const noexcept { return axis_world_; }
 
   RigidBodyLaw law_;
   Eigen::Vector3d gravity_, start_, pivot_world_, axis_world_;
   Eigen::Vector3d principal_;     // moments of inertia
   Eigen::Quaterniond from_axes_;  // principal axes to the model's frame
   Top top_;
-  double hinge_inertia_ = 1;
   Rotation turn_;  // principal axes to the world
   Eigen::Vector3d x_{0, 0, 0}, v_{0, 0, 0}, l_{0, 0, 0};
-  double hinge_rate_ = 0;
+  PendulumLaw hinge_;  ///< about the axis, from its lowest point, which is at hinge_rest_
+  double hinge_angle_ = 0, hinge_rate_ = 0, hinge_rest_ = 0;  // from the start [rad]
+  Eigen::Quaterniond start_turn_{1, 0, 0, 0};
 };
 
 }  // namespace hapticd::dynamics

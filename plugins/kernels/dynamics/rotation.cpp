@@ -44,6 +44,33 @@ HalfTurn halfTurn(const Vector3d& turn) noexcept {
   return {(s * tail + square.low) / 48, -s / 8 * cosine};
 }
 
+/// a1 b1 + a2 b2 + a3 b3 and, added to `rest`, what rounding took from it.
+double exactDot(const Vector3d& a, const Vector3d& b, double& rest) noexcept {
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    const double product = a[i] * b[i];
+    const double total = sum + product;
+    const double part = total - sum;
+    rest += std::fma(a[i], b[i], -product) + (sum - (total - part)) + (product - part);
+    sum = total;
+  }
+  return sum;
+}
+
+/// |q|^2 - 1 of the exact sum q + carry.
+double excessLength(const Vector4d& q, const Vector4d& carry) noexcept {
+  double excess = -1, low = 0;
+  for (int i = 0; i < 4; ++i) {
+    const double square = q[i] * q[i];
+    low += std::fma(q[i], q[i], -square) + 2 * q[i] * carry[i];
+    const double sum = excess + square;
+    const double part = sum - excess;
+    low += (excess - (sum - part)) + (square - part);
+    excess = sum;
+  }
+  return excess + low;
+}
+
 }  // namespace
 
 Quaterniond rotationBy(const Vector3d& turn) noexcept {
@@ -58,36 +85,27 @@ void Rotation::set(const Quaterniond& q) noexcept {
 }
 
 /// q (or its product with the turn from the other side) changes by (cos - 1) q + the part of the vector: a small
-/// change, which is added with its rounding kept (Fast2Sum), and then the length is put right to first order.
-/// The vector is given as v + rest.
+/// change, which is added with its rounding kept (Knuth's TwoSum), and then the length is put right to first order. The
+/// vector is given as v + rest. The products with v are kept exact: their roundings repeat with q and would add up.
 void Rotation::apply(const Vector3d& v, const Vector3d& rest, double cosine_less_one, bool world) noexcept {
-  const Vector4d now = q_.coeffs() + carry_;
-  const Vector3d vec = now.head<3>();
-  const double hand = world ? 1 : -1;
-  Vector4d change, small;
-  change.head<3>() = now.w() * v + hand * v.cross(vec);
-  change.w() = -v.dot(vec);
-  small.head<3>() = cosine_less_one * vec + now.w() * rest + hand * rest.cross(vec);
-  small.w() = cosine_less_one * now.w() - rest.dot(vec);
-  // |q|^2 - 1 of the exact pair q_ + carry_, with fused products so that it is known beyond rounding
   const Vector4d q = q_.coeffs();
-  double excess = -1;
-  double low = 0;
-  for (int i = 0; i < 4; ++i) {
-    const double square = q[i] * q[i];
-    low += std::fma(q[i], q[i], -square) + 2 * q[i] * carry_[i];
-    const double sum = excess + square;
-    const double part = sum - excess;
-    low += (excess - (sum - part)) + (square - part);
-    excess = sum;
+  const Vector3d vec = q.head<3>(), carried = carry_.head<3>(), turned = world ? v : Vector3d(-v);
+  Vector4d change, small;  // small: all that is far below change
+  small.head<3>() = cosine_less_one * vec + q.w() * rest + (world ? rest : Vector3d(-rest)).cross(vec) +
+                    carry_.w() * v + turned.cross(carried);
+  small.w() = cosine_less_one * q.w() - rest.dot(vec) - v.dot(carried);
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    change[i] = exactDot({v[i], turned[j], -turned[k]}, {q.w(), vec[k], vec[j]}, small[i]);
   }
-  small += carry_ - (excess + low) / 2 * q;
-  change += small;
+  change.w() = exactDot(-v, vec, small.w());
+  small += carry_ - excessLength(q, carry_) / 2 * (q + change);
   for (int i = 0; i < 4; ++i) {
     const double sum = q[i] + change[i];
     const double part = sum - q[i];
-    carry_[i] = (q[i] - (sum - part)) + (change[i] - part);
-    q_.coeffs()[i] = sum;
+    const double left = (q[i] - (sum - part)) + (change[i] - part) + small[i];
+    q_.coeffs()[i] = sum + left;
+    carry_[i] = left - (q_.coeffs()[i] - sum);
   }
   if (!q_.coeffs().allFinite()) set(Quaterniond::Identity());
 }
