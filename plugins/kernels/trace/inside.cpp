@@ -18,7 +18,7 @@ inline void setSurfaceNormal(const Patch& piece, const LocalFoot& foot, Vector3d
   constexpr double kVanishing = 1e-9;  // sine of the angle of the tangents, or their ratio: a pole or a cusp
   const Vector3d n = foot.Su.cross(foot.Sv);
   const double length = n.norm();
-  if (length > kVanishing * (foot.Su.squaredNorm() + foot.Sv.squaredNorm())) [[likely]] {
+  if (foot.regular || length > kVanishing * (foot.Su.squaredNorm() + foot.Sv.squaredNorm())) [[likely]] {
     normal = n * (piece.sign / length);
   } else {
     normal = piece.normalAt(foot.uv);

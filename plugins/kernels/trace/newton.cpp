@@ -23,8 +23,6 @@ constexpr double kFlatTangent = 1e-12;
 
 /// Of coordinates, in the difference of two points.
 constexpr double kRounding = 8 * kEpsilon;
-/// [m^2] Squares of squares beyond would overflow.
-constexpr double kLargest2 = 1e60;
 
 /// Quadratic model of f = |S - p|^2 / 2 about an evaluated point.
 struct QuadraticModel {
@@ -230,11 +228,11 @@ void evaluateInto(const void* patch, double u, double v, double* point) noexcept
 }
 
 /// The common tick. False: `at` is at least as near as before, but the steps below have to find the foot.
-bool quickly(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance2, int max_evaluations,
+bool quickly(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
              LocalFoot& foot) noexcept {
   static const QuickKernels& kernels = quickKernels(spline::Instructions::kFastest);
   constexpr int kAttempts = 3;
-  const QuickTask task{&patch, evaluateInto, p.data(), patch.lo.data(), patch.hi.data(), tolerance2};
+  const QuickTask task{&patch, evaluateInto, p.data(), patch.lo.data(), patch.hi.data(), tolerance * tolerance};
   for (int i = 0; i < kAttempts && foot.evaluations + 2 <= max_evaluations; ++i) {
     if (!at.has_forms) kernels.forms(at.E.S.data(), at.forms);
     at.has_forms = true;
@@ -245,7 +243,7 @@ bool quickly(const Patch& patch, const Vector3d& p, Iterate& at, double toleranc
         [[fallthrough]];
       case QuickResult::kSameFoot:
         foot.sides = 0;
-        return foot.converged = true;
+        return foot.converged = foot.regular = true;
       case QuickResult::kNearer:
         ++foot.evaluations;
         continue;
@@ -326,14 +324,13 @@ bool quickly(const Patch& patch, const Vector3d& p, Iterate& at, double toleranc
 void newtonFoot(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
                 LocalFoot& foot) noexcept {
   foot.evaluations = 0;
-  foot.converged = false;
+  foot.converged = foot.regular = false;
   if (!at.valid) {
     evaluate(patch, at.uv, at);
     foot.evaluations = 1;
   }
-  const double rounding2 = kRounding * kRounding * (p.squaredNorm() + at.E.S.squaredNorm());
-  const double enough2 = std::max(tolerance * tolerance, rounding2);
-  if (rounding2 < kLargest2 && quickly(patch, p, at, enough2, max_evaluations, foot)) return;
+  if (p.cwiseAbs().maxCoeff() * kRounding <= tolerance && quickly(patch, p, at, tolerance, max_evaluations, foot))
+    return;
   descend(patch, p, at, tolerance, max_evaluations, foot);
 }
 

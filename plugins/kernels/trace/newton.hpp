@@ -26,6 +26,7 @@ struct LocalFoot {
   SideMask sides = 0;               ///< sides that hold the foot and keep it from going on
   int evaluations = 0;
   bool converged = false;
+  bool regular = false;  ///< the tangents certainly span a plane
 };
 
 /// [rt] Nearest point of the patch near `at`: Newton on |S(u,v) - p|^2 over the parameter rectangle. The step solves

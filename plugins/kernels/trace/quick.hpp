@@ -11,7 +11,7 @@ namespace hapticd::trace {
 /// What a step from an evaluated point needs and no probe changes, kept from one tick to the next.
 struct alignas(32) QuickForms {
   double tangents[3][4];  ///< x, y, z of Su, Sv, Suu, Suv
-  double G[4];            ///< first fundamental form G11, G12, G22 [m^2]; then 1 if the tangents span a plane, else 0
+  double G[3];            ///< first fundamental form G11, G12, G22 [m^2]
   double bend[3][2];      ///< gradient of second order along u and v, for du^2, du dv, dv^2 [m^2]
 };
 

@@ -35,9 +35,8 @@ inline V2 swapped(V2 a) {
 struct Forms {
   V4 x, y, z;  // of Su, Sv, Suu, Suv
   V2 G1;       // G11, G12
-  double G22;
+  double G22;  // not-a-number where the tangents span no plane: then no test passes
   V2 bend[3];
-  bool regular;
 };
 
 /// First and second fundamental quantities of an evaluated point.
@@ -55,7 +54,9 @@ inline Forms makeForms(const double* E) {
   const V2 vv = both(E[kSvv]) * low(F.x) + both(E[kSvv + 1]) * low(F.y) + both(E[kSvv + 2]) * low(F.z);
   F.G1 = low(along_u);
   F.G22 = along_v[1];
-  F.regular = F.G1[0] * F.G22 - F.G1[1] * F.G1[1] > kShear2 * F.G1[0] * F.G22;
+  const bool regular = F.G1[0] * F.G22 - F.G1[1] * F.G1[1] > kShear2 * F.G1[0] * F.G22;
+  if (!regular) [[unlikely]]
+    F.G22 = __builtin_nan("");
   // The second-order part of (S(d) - p) . (Su(d), Sv(d)) on the quadratic surface about this point:
   // du^2 (3/2 a0, a1 + b0/2) + du dv (2 a1 + b0, 2 b1 + c1) + dv^2 (b1 + c0/2, 3/2 c1).
   const double a0 = along_u[2], a1 = along_u[3], b0 = along_v[2], b1 = along_v[3];  // Su, Sv on Suu, Suv
@@ -70,7 +71,7 @@ inline void keep(const Forms& F, QuickForms& out) {
   store(out.tangents[1], F.y);
   store(out.tangents[2], F.z);
   store2(out.G, F.G1);
-  store2(out.G + 2, V2{F.G22, F.regular ? 1.0 : 0.0});
+  out.G[2] = F.G22;
   for (int i = 0; i < 3; ++i) store2(out.bend[i], F.bend[i]);
 }
 
@@ -80,8 +81,7 @@ inline Forms kept(const QuickForms& in) {
           get(in.tangents[2]),
           get2(in.G),
           in.G[2],
-          {get2(in.bend[0]), get2(in.bend[1]), get2(in.bend[2])},
-          in.G[3] != 0};
+          {get2(in.bend[0]), get2(in.bend[1]), get2(in.bend[2])}};
 }
 
 struct Step {
@@ -112,7 +112,7 @@ inline Step stepFrom(const double* E, const Forms& F, const double* p) {
   step.length2 = F.G1[0] * dd[0] + F.G22 * dd[1] + 2 * G12 * d12;
   const V2 K1 = H1 - both(kCurvature) * F.G1;
   const double K22 = H22 - kCurvature * F.G22;
-  step.good = F.regular & (K1[0] > 0) & (K1[0] * K22 > K1[1] * K1[1]);
+  step.good = (K1[0] > 0) & (K1[0] * K22 > K1[1] * K1[1]);
   if constexpr (kBent) {
     const V2 k = F.bend[0] * both(dd[0]) + F.bend[2] * both(dd[1]) + F.bend[1] * both(d12);
     const V2 bend = (swapped(k) * across - k * diagonal) * inverse;

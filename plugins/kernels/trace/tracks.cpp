@@ -176,17 +176,4 @@ void Tracks::countAnew() noexcept {
   way_ = 0;
 }
 
-int Tracks::mostPromising(double best, int part) const noexcept {
-  double lowest = best + way_;
-  int found = -1;
-  for (std::size_t slot = 0; slot < key_.size(); ++slot) {
-    if (!(key_[slot] < lowest)) continue;
-    const Track& t = (*this)[active_[slot]];
-    if (t.tick == tick_ || (part >= 0 && t.part != part)) continue;
-    lowest = key_[slot];
-    found = active_[slot];
-  }
-  return found;
-}
-
 }  // namespace hapticd::trace

@@ -57,7 +57,7 @@ class Tracks {
     if (way_ > kLongestWay) [[unlikely]]
       countAnew();
   }
-  double way() const noexcept { return way_; }           ///< [rt] [m] gone since the last clear(), or so
+  double way() const noexcept { return way_; }  ///< [rt] [m] gone since the last clear(), or so
   /// [rt] Notes the distance of a foot that was refined in this tick.
   void refined(int index) noexcept {
     Track& t = (*this)[index];
@@ -66,7 +66,18 @@ class Tracks {
   }
   /// [rt] The foot not refined in this tick that could be nearer than `best` and has the smallest bound; -1: none.
   /// @param part only feet of this part; -1: all.
-  int mostPromising(double best, int part) const noexcept;
+  int mostPromising(double best, int part) const noexcept {
+    double lowest = best + way_;
+    int found = -1;
+    for (std::size_t slot = 0; slot < key_.size(); ++slot) {
+      if (!(key_[slot] < lowest)) continue;
+      const Track& t = (*this)[active_[slot]];
+      if (t.tick == tick_ || (part >= 0 && t.part != part)) continue;
+      lowest = key_[slot];
+      found = active_[slot];
+    }
+    return found;
+  }
 
  private:
   static constexpr int kRivals = 32;
