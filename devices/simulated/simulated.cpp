@@ -1,4 +1,5 @@
 /// The device module `simulated`: an arm at torque level and the hand that holds it, driven by the time it is given.
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -38,6 +39,7 @@ class SimulatedArm : public Device, public Parameters {
     sequence_ = 0;
     noise_ = static_cast<uint64_t>(seed);
     written_ = 0;
+    cut_ = false;
     written_ns_ = how.time_ns;
     const JointVector off = JointVector::Zero(arm_->jointCount());
     drives_.fill({false, off, off, off});
@@ -69,6 +71,7 @@ class SimulatedArm : public Device, public Parameters {
     const bool follows = last.position_mode && now_ns > written_ns_;  // otherwise the reference has no rate yet
     const double since = static_cast<double>(now_ns - written_ns_) * 1e-9;
     written_ns_ = now_ns;
+    if (command.mode == HDV_OFF) cut_.store(false);
     drive.position_mode = command.mode == HDV_POSITION && joints_.stiffness.size() > 0;
     for (int i = 0; i < arm_->jointCount(); ++i) {
       const bool on = command.mode != HDV_OFF && std::isfinite(command.torque[i]);
@@ -82,6 +85,7 @@ class SimulatedArm : public Device, public Parameters {
 
   const void* extension(const char* name) {
     if (std::strcmp(name, HDV_EXT_HAND) == 0) return &kHand;
+    if (std::strcmp(name, HDV_EXT_CUT) == 0) return &kCut;
     if (std::strcmp(name, HDV_EXT_KINEMATICS) != 0) return nullptr;
     try {
       arm_ = makeArm(*this);
@@ -113,6 +117,8 @@ class SimulatedArm : public Device, public Parameters {
     Eigen::Map<Vector3d>(force, 3) = plant->handForce();
     return HSP_OK;
   }
+  static void cut(hdv_device* device) noexcept HSP_RT { self(device).cut_.store(true); }
+  static constexpr hdv_ext_cut kCut = {sizeof(hdv_ext_cut), 0, &cut};
   static constexpr hdv_ext_hand kHand = {sizeof(hdv_ext_hand), 0, &guide, &truth};
 
   /// What the arm says of itself; what it does not publish follows from its own kinematics at the neutral pose.
@@ -165,7 +171,11 @@ class SimulatedArm : public Device, public Parameters {
     target_ = hand_->at(static_cast<double>(now_ns - start_ns_) * 1e-9);
     now_ns_ = now_ns;
     const auto late = static_cast<uint64_t>(delay);
-    const Drive& drive = drives_[(written_ + drives_.size() - late) % drives_.size()];
+    Drive drive = drives_[(written_ + drives_.size() - late) % drives_.size()];
+    if (cut_.load()) {
+      drive.position_mode = false;
+      drive.torque.setZero();
+    }
     const bool holds = hand_->holds();
     Pull pull;
     pull.stiffness = holds ? hand_->settings().stiffness : 0;
@@ -196,6 +206,7 @@ class SimulatedArm : public Device, public Parameters {
   JointSettings joints_;
   HandTarget target_;
   std::array<Drive, kMaxDelay + 1> drives_;  ///< the newest is at written_
+  std::atomic<bool> cut_{false};             ///< by the watchdog, until a write of HDV_OFF
   uint64_t written_ = 0, written_ns_ = 0, start_ns_ = 0, now_ns_ = 0, sequence_ = 0, noise_ = 1;
 };
 

@@ -98,6 +98,14 @@ typedef struct hdv_ext_calibration {
   hsp_status (*calibrate)(hdv_device *); /* HSP_OK: samples carry HDV_S_CALIBRATED from now on */
 } hdv_ext_calibration;
 
+#define HDV_EXT_CUT "hdv.cut/1" /* for the watchdog and for a crash */
+typedef struct hdv_ext_cut {
+  uint32_t struct_size, reserved;
+  /* [any], also in a signal handler and while another thread is inside write(): motors free at once. They stay so,
+   * whatever a command asks, until a write() with HDV_OFF: a thread that was stuck cannot undo the cut. */
+  void (*cut)(hdv_device *) HSP_RT;
+} hdv_ext_cut;
+
 typedef struct hdv_entry {
   uint32_t magic, abi_major, abi_minor, class_count;
   const hdv_class *const *classes;
