@@ -16,6 +16,7 @@ constexpr int kColdStarts = 8;          ///< samples that Newton starts from in 
 constexpr int kColdEvaluations = 60;
 constexpr double kSteepest = 0.99;        ///< slope of the radius beyond which spheres are nested
 constexpr double kLeastCurvature = 0.05;  ///< of a Hessian over that of the metric: below it a step would go too far
+constexpr double kOnSkeleton = 1e-9;      ///< [m] a query nearer than this is on the skeleton: d has no direction
 constexpr double kSingular = 1e-14;       ///< share of the trace that keeps a collapsed direction solvable
 
 using Box = std::array<std::array<double, 2>, 2>;
@@ -190,7 +191,7 @@ void Search::finish(const State& q, const Vector2d& x, SkeletonFoot& foot) const
   const Vector3d cross = q.s.Su.cross(q.s.Sv);
   const double area = cross.norm();
   if (area > 0) foot.across = cross / area;
-  if (q.distance > 0) {
+  if (q.distance > kOnSkeleton || (q.distance > 0 && foot.rim)) {
     foot.normal = q.d / q.distance;
   } else if (area > 0) {
     foot.normal = foot.across;

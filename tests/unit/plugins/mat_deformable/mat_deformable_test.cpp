@@ -1,0 +1,275 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstring>
+
+#include "hapticd/shape.h"
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// The plugin through its C ABI alone, as the host uses it.
+class Plugin {
+ public:
+  explicit Plugin(const std::string& geometry = "soft-plate.yaml") : shape_(kind().create(&kind(), nullptr)) {
+    set("geometry", HAPTICD_SOURCE_DIR "/config/models/" + geometry);
+  }
+  ~Plugin() {
+    kind().deactivate(shape_);
+    kind().destroy(shape_);
+  }
+
+  hsp_status set(const char* id, double number) { return put(id, {0, 0, number, nullptr, nullptr}); }
+  hsp_status set(const char* id, const std::string& text) { return put(id, {0, 0, 0, text.c_str(), nullptr}); }
+  hsp_status activate(uint32_t probes = 1) {
+    hsp_activation activation{};
+    activation.struct_size = sizeof activation;
+    activation.max_probes = probes;
+    report = {};
+    report.struct_size = sizeof report;
+    return kind().activate(shape_, &activation, &report);
+  }
+  template <class Extension>
+  const Extension& extension(const char* name) {
+    return *static_cast<const Extension*>(kind().extension(shape_, name));
+  }
+  double energy() { return extension<hsp_ext_energy>(HSP_EXT_ENERGY).stored(shape_); }
+  hsp_shape* handle() { return shape_; }
+
+  /// The search of the simulation side, for probe `i`.
+  void search(const Vector3d& p, uint32_t i = 0) {
+    const auto& surfaces = extension<hsp_ext_surfaces>(HSP_EXT_SURFACES);
+    hsp_near near{};
+    if (surfaces.nearby(shape_, p.data(), 0.15, &near, 1) != 1) return;
+    near.probe = i;
+    EXPECT_EQ(surfaces.activate(shape_, &near), HSP_OK);
+  }
+  std::vector<hsp_contact> step(const std::vector<Vector3d>& at, const Vector3d& velocity = Vector3d::Zero(),
+                                double dt = 1e-3, uint32_t flags = 0) {
+    std::vector<hsp_probe> probes(at.size());
+    std::vector<hsp_contact> contacts(at.size());
+    time_ += dt;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      Eigen::Map<Vector3d>(probes[i].position) = at[i];
+      Eigen::Map<Vector3d>(probes[i].velocity) = velocity;
+      probes[i].time_ns = static_cast<uint64_t>(1e9 * time_);
+      probes[i].flags = flags;
+    }
+    hsp_step step{};
+    step.struct_size = sizeof step;
+    step.count = static_cast<uint32_t>(at.size());
+    step.in = probes.data();
+    step.out = contacts.data();
+    step.in_stride = sizeof(hsp_probe);
+    step.out_stride = sizeof(hsp_contact);
+    step.dt_s = dt;
+    status = kind().step(shape_, &step);
+    return contacts;
+  }
+  hsp_contact touch(const Vector3d& p, const Vector3d& velocity = Vector3d::Zero()) { return step({p}, velocity)[0]; }
+  void rest(double seconds) { time_ += seconds; }
+
+  hsp_status status = HSP_OK;
+  hsp_report report{};
+
+ private:
+  static const hsp_class& kind() { return *hsp_plugin_entry.classes[0]; }
+  hsp_status put(const char* id, hsp_value value) {
+    for (uint32_t i = 0; i < kind().param_count; ++i) {
+      if (std::strcmp(kind().params[i].id, id) != 0) continue;
+      value.kind = kind().params[i].kind;
+      return kind().set(shape_, i, &value);
+    }
+    return HSP_E_ARG;
+  }
+  hsp_shape* shape_;
+  double time_ = 0;
+};
+
+Vector3d forceOf(const hsp_contact& contact) {
+  return Vector3d(contact.force);
+}
+
+TEST(MatDeformable, PushesOutAsDeepAsItIsPressed) {
+  Plugin plate;
+  plate.set("shear_offset", 0.0);
+  ASSERT_EQ(plate.activate(), HSP_OK);
+  plate.search({.01, .02, .03});
+  EXPECT_EQ(forceOf(plate.touch({.01, .02, .0101})).norm(), 0);
+  const hsp_contact contact = plate.touch({.01, .02, .006});
+  EXPECT_NEAR(contact.depth_m, .004, 1e-12);
+  EXPECT_NEAR(contact.force[2], .004 * 200, 1e-9);
+  EXPECT_NEAR(contact.point[2], .01, 1e-12);
+  EXPECT_TRUE((contact.flags & HSP_OUT_CONTACT) != 0);
+}
+
+TEST(MatDeformable, AStaticHoldIsConstant) {
+  for (const char* model : {"soft-plate.yaml", "palpation.yaml", "leaf.yaml", "rope.yaml"}) {
+    Plugin body(model);
+    ASSERT_EQ(body.activate(), HSP_OK) << model;
+    const Vector3d p = std::strcmp(model, "rope.yaml") == 0 ? Vector3d(0, .014, -.002) : Vector3d(.012, .003, .009);
+    body.search(p);
+    body.touch(p);
+    const Vector3d first = forceOf(body.touch(p));
+    ASSERT_GT(first.norm(), 0) << model;
+    for (int i = 0; i < 3000; ++i) ASSERT_LT((forceOf(body.touch(p)) - first).norm(), 1e-12) << model << " " << i;
+  }
+}
+
+TEST(MatDeformable, AStruckBodyLeftAloneLosesItsEnergyAndSleeps) {
+  Plugin plate;
+  ASSERT_EQ(plate.activate(), HSP_OK);
+  plate.search({0, 0, .03});
+  for (int i = 0; i < 40; ++i) plate.touch({0, 0, .011 - 1e-4 * i}, {0, 0, -.1});
+  plate.touch({0, 0, .02});
+  double before = plate.energy();
+  EXPECT_GT(before, 0);
+  for (int i = 0; i < 3000; ++i) {
+    plate.touch({0, 0, .02});
+    ASSERT_LE(plate.energy(), before);
+    before = plate.energy();
+  }
+  EXPECT_EQ(before, 0);
+}
+
+TEST(MatDeformable, CatchesUpWithTheTimeItWasNotStepped) {
+  Plugin stepped, left;
+  for (Plugin* plate : {&stepped, &left}) {
+    ASSERT_EQ(plate->activate(), HSP_OK);
+    plate->search({0, 0, .03});
+    for (int i = 0; i < 40; ++i) plate->touch({0, 0, .011 - 1e-4 * i}, {0, 0, -.1});
+    plate->touch({0, 0, .02});
+  }
+  for (int i = 0; i < 50; ++i) stepped.touch({0, 0, .02});
+  left.rest(.049);
+  left.touch({0, 0, .02});
+  EXPECT_NEAR(left.energy(), stepped.energy(), 1e-9 * stepped.energy());
+}
+
+TEST(MatDeformable, ProbePushedThroughTheSkeletonIsStillPushedBack) {
+  Plugin plate;
+  ASSERT_EQ(plate.activate(), HSP_OK);
+  plate.search({0, 0, .03});
+  double before = 0;
+  for (int i = 0; i < 180; ++i) {  // from 0.1 mm below the top to 2 mm above the bottom
+    const hsp_contact contact = plate.touch({.01, .01, .0099 - 1e-4 * i});
+    ASSERT_GT(contact.force[2], before) << i;
+    before = contact.force[2];
+  }
+  EXPECT_EQ(plate.touch({.01, .01, -.0101}).force[2], 0);
+  EXPECT_LT(plate.touch({.01, .01, -.0099}).force[2], 0);  // it came from below
+}
+
+TEST(MatDeformable, SeveralProbesAreAnsweredAtOnce) {
+  Plugin plate;
+  ASSERT_EQ(plate.activate(2), HSP_OK);
+  const std::vector<Vector3d> at{{-.02, 0, .007}, {.03, .01, -.008}};
+  for (uint32_t i = 0; i < 2; ++i) plate.search(at[i], i);
+  const std::vector<hsp_contact> contacts = plate.step(at);
+  EXPECT_NEAR(contacts[0].depth_m, .003, 1e-12);
+  EXPECT_NEAR(contacts[1].depth_m, .002, 1e-12);
+  EXPECT_GT(contacts[0].force[2], 0);
+  EXPECT_LT(contacts[1].force[2], 0);
+}
+
+TEST(MatDeformable, FrictionHoldsAProbeBackAlongTheSurface) {
+  Plugin plate;
+  plate.set("friction_static", .5);
+  plate.set("friction_dynamic", .4);
+  ASSERT_EQ(plate.activate(), HSP_OK);
+  plate.search({0, 0, .03});
+  hsp_contact contact{};
+  for (int i = 0; i < 100; ++i) contact = plate.touch({1e-4 * i, 0, .006}, {.1, 0, 0});
+  EXPECT_LT(contact.force[0], -.4 * contact.force[2]);
+  EXPECT_GT(contact.force[0], -.5 * contact.force[2]);
+}
+
+TEST(MatDeformable, WarmAndBinarySearchAgree) {
+  Plugin newton("palpation.yaml"), binary("palpation.yaml");
+  binary.set("search", 1.0);
+  binary.set("depth", 24.0);
+  for (Plugin* body : {&newton, &binary}) {
+    ASSERT_EQ(body->activate(), HSP_OK);
+    body->search({0, 0, .03});
+  }
+  for (int i = 0; i < 200; ++i) {
+    const Vector3d p(1e-4 * i, -5e-5 * i, .012);
+    const hsp_contact a = newton.touch(p), b = binary.touch(p);
+    EXPECT_NEAR(a.depth_m, b.depth_m, 1e-9);
+    EXPECT_LT((forceOf(a) - forceOf(b)).norm(), 1e-4 * forceOf(a).norm());
+    if (i > 1) {
+      EXPECT_LE(a.iterations, 5u);
+    }
+  }
+}
+
+TEST(MatDeformable, AProbeThatJumpsIsFoundAgainInTheSameStep) {
+  Plugin plate;
+  ASSERT_EQ(plate.activate(), HSP_OK);
+  plate.search({0, 0, .03});
+  plate.touch({-.04, -.03, .007});
+  EXPECT_NEAR(plate.step({Vector3d(.04, .03, -.006)}, Vector3d::Zero(), 1e-3, HSP_IN_JUMP)[0].depth_m, .004, 1e-9);
+}
+
+TEST(MatDeformable, AnswersNothingToABadSampleAndGoesOn) {
+  Plugin plate;
+  ASSERT_EQ(plate.activate(), HSP_OK);
+  plate.search({0, 0, .03});
+  const Vector3d p(.01, .02, .006);
+  const double good = plate.touch(p).force[2];
+  EXPECT_EQ(plate.step({p}, Vector3d::Zero(), 1e-3, HSP_IN_INVALID)[0].force[2], 0);
+  plate.step({Vector3d(NAN, 0, 0)});
+  EXPECT_EQ(plate.status, HSP_E_NUMERIC);
+  EXPECT_EQ(plate.touch(p, {NAN, NAN, NAN}).force[2], good);
+  EXPECT_EQ(plate.touch(p).force[2], good);
+}
+
+TEST(MatDeformable, DrawsTheDentOfAPress) {
+  Plugin plate;
+  ASSERT_EQ(plate.activate(), HSP_OK);
+  const auto& geometry = plate.extension<hsp_ext_geometry>(HSP_EXT_GEOMETRY);
+  hsp_mesh mesh{};
+  mesh.struct_size = sizeof mesh;
+  plate.search({0, 0, .03});
+  const auto highest = [&] {
+    EXPECT_EQ(geometry.tessellate(plate.handle(), 2e-4, &mesh), HSP_OK);
+    float z = 1;  // of the top, at its middle
+    for (uint32_t i = 0; i < mesh.vertex_count; ++i)
+      if (std::hypot(mesh.xyz[3 * i], mesh.xyz[3 * i + 1]) < 1e-3F && mesh.normals[3 * i + 2] > 0)
+        z = std::min(z, mesh.xyz[3 * i + 2]);
+    return z;
+  };
+  EXPECT_NEAR(highest(), .01, 1e-6);
+  for (int i = 0; i < 100; ++i) plate.touch({0, 0, .006});
+  EXPECT_NEAR(highest(), .006, 1e-5);
+  double low[3], high[3];
+  EXPECT_EQ(geometry.bounds(plate.handle(), low, high), HSP_OK);
+  EXPECT_NEAR(high[2], .01, 1e-9);
+}
+
+TEST(MatDeformable, WritesVerticesInTheStepOnlyWhereAsked) {
+  Plugin silent, drawn;
+  drawn.set("display_tolerance", 1e-3);
+  ASSERT_EQ(silent.activate(), HSP_OK);
+  ASSERT_EQ(drawn.activate(), HSP_OK);
+  EXPECT_EQ(silent.report.viz_vertices, 0u);
+  EXPECT_GT(drawn.report.viz_vertices, 100u);
+}
+
+TEST(MatDeformable, ReportsWhatItNeeds) {
+  Plugin plate;
+  ASSERT_EQ(plate.activate(), HSP_OK);
+  EXPECT_TRUE((plate.report.flags & HSP_R_VELOCITY) != 0);  // it damps
+  EXPECT_NEAR(plate.report.size_m, Vector3d(.12, .10, .02).norm(), 1e-9);
+  EXPECT_LT(plate.report.locked_bytes, 40'000u);
+  EXPECT_GE(plate.report.max_stiffness, 200);
+}
+
+TEST(MatDeformable, RefusesAModelWithoutAMedialAxis) {
+  Plugin body("sphere.yaml");
+  EXPECT_EQ(body.activate(), HSP_E_ARG);
+}
+
+}  // namespace
