@@ -1,9 +1,11 @@
-/// `hapticd check`: validates files and prints every problem; also prints the JSON Schema of a format.
+/// `hapticd check`: validates files and prints every problem, warns of what cannot be stable; also prints the JSON Schema of a format.
 #include <memory>
 #include <vector>
 
 #include "cli/command.hpp"
 #include "cli/trial.hpp"
+#include "host/device_instance.hpp"
+#include "tune/stability.hpp"
 
 namespace hapticd::cli {
 namespace {
@@ -19,6 +21,26 @@ int printSchema(const std::string& format) {
   return kWorked;
 }
 
+/// What cannot be stable. Only simulated arms are opened: `check` touches no hardware; `run` warns of it as well.
+scene::Problems unstable(const scene::Scene& scene, const std::vector<double>& stiffness) {
+  scene::Problems warnings;
+  for (const scene::Device& device : scene.devices) {
+    if (device.module != "simulated") continue;
+    auto arm = host::DeviceInstance::create(device, nullptr);
+    if (!arm || !(*arm)->open()) continue;
+    const scene::Problems found = tune::unstableSettings(scene, device, (*arm)->info(), stiffness);
+    warnings.insert(warnings.end(), found.begin(), found.end());
+  }
+  return warnings;
+}
+
+void printWarnings(const scene::Problems& warnings) {
+  for (scene::Problem warning : warnings) {
+    warning.what = "warning: " + warning.what;
+    std::printf("%s\n", warning.text().c_str());
+  }
+}
+
 int check(const Options& options) {
   if (!options.schema.empty()) return printSchema(options.schema);
   if (options.files.empty()) return fail(kBadInput, "no file given, expected `hapticd check FILE...`");
@@ -26,8 +48,10 @@ int check(const Options& options) {
   for (const std::string& file : options.files) {
     std::optional<scene::Scene> scene;
     scene::Problems found = scene::checkFile(file, catalog(), &scene);
-    if (scene && !options.files_only) found = tryModels(*scene);
+    std::vector<double> stiffness;
+    if (scene && !options.files_only) found = tryModels(*scene, &stiffness);
     printProblems(found, stdout);
+    if (scene && found.empty()) printWarnings(unstable(*scene, stiffness));
     if (found.empty() && !options.quiet) std::printf("%s: ok\n", file.c_str());
     problems += found.size();
     bad_files += found.empty() ? 0 : 1;
@@ -53,7 +77,8 @@ void addCheck(CLI::App& app, int& exit_code) {
   command->footer(
       "Each problem is a line: file:line:column: key: what is wrong, and what was expected.\n"
       "Exit code 2 if there is any. The models of a scene without problems are set up once, so that\n"
-      "what only a plugin can judge, such as a geometry file, is judged too.\n\n"
+      "what only a plugin can judge, such as a geometry file, is judged too. Settings that cannot be stable on\n"
+      "the device are warned of, with the bound and the nearest stable setting; warnings leave the exit code.\n\n"
       "Example:\n  hapticd check config/scenes/teapot.yaml config/devices/simulated-premium15.yaml\n"
       "  hapticd check --schema scene > scene.schema.json");
   command->callback([options, &exit_code] { exit_code = check(*options); });

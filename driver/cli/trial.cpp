@@ -26,31 +26,35 @@ hsp_activation activationOf(const scene::Scene& scene, const scene::Model& model
 }
 
 /// Nothing, or what the plugin says against a model.
-std::string objection(const scene::Scene& scene, const scene::Model& model) {
+std::string objection(const scene::Scene& scene, const scene::Model& model, double& stiffness) {
   auto shape = host::ShapeInstance::create(model, nullptr);
   if (!shape) return shape.error();
   const auto activated = (*shape)->activate(activationOf(scene, model));
-  return activated ? "" : activated.error();
+  if (!activated) return activated.error();
+  stiffness = (*shape)->report().max_stiffness;
+  return "";
 }
 
 std::string tryAll(const scene::Scene& scene) {
   host::Packer out;
   uint32_t count = 0;
-  host::Packer list;
+  host::Packer list, claims;
   for (size_t i = 0; i < scene.models.size(); ++i) {
-    const std::string text = objection(scene, scene.models[i]);
+    double stiffness = 0;
+    const std::string text = objection(scene, scene.models[i], stiffness);
+    claims.number(stiffness);
     if (text.empty()) continue;
     ++count;
     list.number(static_cast<uint32_t>(i));
     list.text(text);
   }
   out.number(count);
-  return out.take() + list.take();
+  return out.take() + list.take() + claims.take();
 }
 
 }  // namespace
 
-scene::Problems tryModels(const scene::Scene& scene) {
+scene::Problems tryModels(const scene::Scene& scene, std::vector<double>* stiffness) {
   scene::Problems problems;
   if (scene.models.empty()) return problems;
   const auto told = host::runInChild([&] { return tryAll(scene); }, kLimitMs);
@@ -65,6 +69,8 @@ scene::Problems tryModels(const scene::Scene& scene) {
     if (index >= scene.models.size()) break;
     scene::report(problems, scene.models[index].place, "models[" + std::to_string(index) + "]", text);
   }
+  if (stiffness != nullptr)
+    for (size_t i = 0; i < scene.models.size() && in.good(); ++i) stiffness->push_back(in.real());
   return problems;
 }
 

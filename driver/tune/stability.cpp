@@ -1,0 +1,72 @@
+#include "tune/stability.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "servo/passivity/isolated.hpp"
+
+namespace hapticd::tune {
+namespace {
+
+constexpr double kBuzz = 0.1;  ///< [N] a step of force between neighbouring counts that a hand feels
+
+std::string text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.4g", value);
+  return buffer;
+}
+
+/// Two digits, rounded down: a setting that a person would write.
+double roundedDown(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::floor(value / unit) * unit;
+}
+
+int windowOf(const scene::Velocity& velocity) {
+  return velocity.estimator == "window" ? static_cast<int>(velocity.parameter) : 1;
+}
+
+void judgeModel(const scene::Scene& scene, size_t index, const scene::Device& device, const hdv_info& info,
+                double alone, double stiffness, scene::Problems& problems) {
+  const scene::Model& model = scene.models[index];
+  const std::string key = "models[" + std::to_string(index) + "]";
+  const auto warn = [&](const std::string& what) { scene::report(problems, model.place, key, what); };
+  const std::string claim = model.name + " pushes with up to " + text(stiffness) + " N/m";
+  if (info.max_stiffness > 0 && stiffness > info.max_stiffness)
+    warn(claim + ", and " + device.name + " is stable up to " + text(info.max_stiffness) +
+         " N/m; nearest: " + text(roundedDown(info.max_stiffness)) + " N/m");
+  if (alone > 0 && stiffness > alone)
+    warn(claim + ", and at " + text(scene.servo.rate) + " Hz a felt mass of " + text(info.mass_kg) +
+         " kg bears at most " + text(alone) + " N/m by itself; nearest: " + text(roundedDown(alone)) + " N/m, or " +
+         text(std::ceil(scene.servo.rate * std::sqrt(stiffness / alone) / 100) * 100) + " Hz");
+  if (info.resolution_m > 0 && stiffness * info.resolution_m > kBuzz)
+    warn(claim + ", so one count of " + text(info.resolution_m * 1e6) + " um is a step of " +
+         text(stiffness * info.resolution_m) +
+         " N, which a hand feels as buzz; nearest: " + text(roundedDown(kBuzz / info.resolution_m)) + " N/m");
+}
+
+}  // namespace
+
+scene::Problems unstableSettings(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
+                                 const std::vector<double>& stiffness) {
+  scene::Problems problems;
+  const double period = 1 / scene.servo.rate;
+  const double alone =
+      info.mass_kg > 0 ? passivity::maxStiffnessAlone(info.mass_kg, windowOf(scene.servo.velocity), period) : 0;
+  for (size_t i = 0; i < scene.models.size() && i < stiffness.size(); ++i)
+    judgeModel(scene, i, device, info, alone, stiffness[i], problems);
+  const std::string file = scene.file.string();
+  if (scene.servo.budget_us > period * 1e6)
+    scene::report(problems, file, 0, 0, "servo.budget_us",
+                  text(scene.servo.budget_us) + " us is longer than the period of " + text(period * 1e6) +
+                      " us, so every tick may be late; nearest: " + text(0.8 * period * 1e6) + " us");
+  constexpr double kSlack = 1.001;
+  if (info.rate_hz > 0 && scene.servo.rate > kSlack * info.rate_hz && (info.capabilities & HDV_C_SIMULATED) == 0)
+    scene::report(problems, file, 0, 0, "servo.rate",
+                  text(scene.servo.rate) + " Hz is faster than the samples of " + device.name + " (" +
+                      text(info.rate_hz) + " Hz): ticks between see no news; nearest: " + text(info.rate_hz) + " Hz");
+  return problems;
+}
+
+}  // namespace hapticd::tune

@@ -1,0 +1,21 @@
+/// Settings that cannot be stable on a device at a rate, found before any force.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "hapticd/device.h"
+#include "scene/problem.hpp"
+#include "scene/scene.hpp"
+
+namespace hapticd::tune {
+
+/// [main] What to warn of: a stiffness beyond what the device was found to bear, or beyond what its mass bears by
+/// itself at this rate and with this window of the velocity estimator (Colgate & Schenkel 1997 give the bound with
+/// damping); a force step of one count that a hand feels as buzz; a budget beyond the period; a rate beyond the
+/// device's own. Each names the bound and the nearest setting that keeps it.
+/// @param device the arm, with what it said of itself when opened
+/// @param stiffness [N/m] that each model claims, in scene order
+scene::Problems unstableSettings(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
+                                 const std::vector<double>& stiffness);
+
+}  // namespace hapticd::tune

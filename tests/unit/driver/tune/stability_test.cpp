@@ -1,0 +1,75 @@
+/// Warnings of settings that cannot be stable, and the bound behind them.
+#include "tune/stability.hpp"
+
+#include <gtest/gtest.h>
+
+#include "servo/passivity/isolated.hpp"
+
+namespace hapticd::tune {
+namespace {
+
+/// From a root finder over the characteristic polynomial: largest K T^2 / m for a window of n samples.
+TEST(MassAlone, BearsTheStiffnessOfTheRootsOfItsPolynomial) {
+  const std::pair<int, double> truth[] = {{1, 0.684}, {2, 0.343}, {3, 0.213}, {5, 0.109}, {15, 0.0207}, {50, 0.0026}};
+  for (const auto& [n, k] : truth) EXPECT_NEAR(passivity::maxStiffnessAlone(1, n, 1) / k, 1, 0.01) << n;
+  EXPECT_NEAR(passivity::maxStiffnessAlone(0.075, 1, 1e-3), 0.684 * 0.075 * 1e6, 600);
+}
+
+TEST(MassAlone, ComesToRestBelowItsBoundAndNotAbove) {
+  const double bound = passivity::maxStiffnessAlone(2, 3, 1e-3), damping = 0.35 * 2 / 1e-3;
+  EXPECT_TRUE(passivity::stableAlone(2, 0.97 * bound, damping, 3, 1e-3));
+  EXPECT_FALSE(passivity::stableAlone(2, 1.05 * bound, damping, 3, 1e-3));
+  EXPECT_FALSE(passivity::stableAlone(2, 0.1 * bound, 0, 3, 1e-3));  // an undamped sampled wall gives energy
+}
+
+struct Case {
+  scene::Scene scene;
+  scene::Device device;
+  hdv_info info{};
+  Case() {
+    scene.file = "scene.yaml";
+    scene.models.emplace_back().name = "wall";
+    device.name = "arm";
+    info.mass_kg = 0.075;
+    info.max_stiffness = 3500;
+    info.resolution_m = 30e-6;
+    info.rate_hz = 1000;
+  }
+  std::string told(double stiffness) const {
+    std::string all;
+    for (const auto& problem : unstableSettings(scene, device, info, {stiffness})) all += problem.text() + "\n";
+    return all;
+  }
+};
+
+TEST(UnstableSettings, AreNoneWhereTheArmBearsThem) {
+  EXPECT_EQ(Case().told(800), "");
+}
+
+TEST(UnstableSettings, NameTheBoundAndTheNearestSetting) {
+  const std::string text = Case().told(5000);
+  EXPECT_NE(text.find("stable up to 3500 N/m"), std::string::npos) << text;
+  EXPECT_NE(text.find("nearest: 3300 N/m"), std::string::npos) << text;  // of the buzz
+  EXPECT_NE(text.find("models[0]"), std::string::npos) << text;
+}
+
+TEST(UnstableSettings, SayThatAWindowIsTooLong) {
+  Case slow;
+  slow.scene.servo.velocity = {"window", 15};
+  const std::string text = slow.told(2000);
+  EXPECT_NE(text.find("by itself"), std::string::npos) << text;
+  slow.scene.servo.velocity.parameter = 3;
+  EXPECT_EQ(slow.told(2000), "");
+}
+
+TEST(UnstableSettings, SayThatABudgetIsBeyondThePeriodAndARateBeyondTheDevice) {
+  Case late;
+  late.scene.servo.budget_us = 1500;
+  late.scene.servo.rate = 2000;
+  const std::string text = late.told(100);
+  EXPECT_NE(text.find("servo.budget_us"), std::string::npos) << text;
+  EXPECT_NE(text.find("servo.rate"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace hapticd::tune
