@@ -17,6 +17,7 @@ Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOption
   Sewing(*this, options).run();
   part_ = groupShells(*this);
   part_count_ = 1 + *std::max_element(part_.begin(), part_.end());
+  has_gaps_ = findGaps(*this);
 }
 
 void Model::split(const std::vector<spline::SurfaceData>& surfaces) {

@@ -79,6 +79,8 @@ class Model {
   /// together.
   int part(int shell) const noexcept { return part_[static_cast<std::size_t>(shell)]; }
   int partCount() const noexcept { return part_count_; }
+  /// [any] True if the part is not closed, but its openings are small against its area, as around the lid of a pot.
+  bool hasGaps(int part) const noexcept { return has_gaps_[static_cast<std::size_t>(part)] != 0; }
   const PoleFan& pole(int index) const noexcept { return poles_[static_cast<std::size_t>(index)]; }
 
   const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }
@@ -97,6 +99,7 @@ class Model {
   std::vector<char> shell_closed_;
   std::vector<int> part_;  ///< by shell
   int part_count_ = 1;
+  std::vector<char> has_gaps_;  ///< by part
   std::vector<std::string> warnings_;
   std::vector<std::string> names_;
   BoxTree tree_;

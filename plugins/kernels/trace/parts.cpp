@@ -110,4 +110,30 @@ std::vector<int> groupShells(const Model& model) {
   return part;
 }
 
+std::vector<char> findGaps(const Model& model) {
+  constexpr int kSamples = 8;
+  constexpr double kSmall = 0.1;  // of the area
+  std::vector<Vector3d> sum(static_cast<std::size_t>(model.partCount()), Vector3d::Zero());
+  std::vector<double> area(sum.size(), 0);
+  std::vector<char> gaps(sum.size(), 0);
+  spline::SurfacePoint E;
+  for (int i = 0; i < model.patchCount(); ++i) {
+    const Patch& patch = model.patch(i);
+    const auto part = static_cast<std::size_t>(model.part(patch.shell));
+    if (!model.closed(patch.shell)) gaps[part] = 1;
+    const double share = (patch.hi - patch.lo).prod() / (kSamples * kSamples);
+    for (int k = 0; k < kSamples * kSamples; ++k) {
+      const Array2d middle(k / kSamples + 0.5, k % kSamples + 0.5);
+      const Array2d uv = patch.lo + (patch.hi - patch.lo) * middle / kSamples;
+      patch.surface.evaluate1(uv[0], uv[1], E);
+      const Vector3d piece = share * patch.sign * E.Su.cross(E.Sv);
+      sum[part] += piece;
+      area[part] += piece.norm();
+    }
+  }
+  for (std::size_t part = 0; part < sum.size(); ++part)
+    if (!(sum[part].norm() < kSmall * area[part])) gaps[part] = 0;
+  return gaps;
+}
+
 }  // namespace hapticd::trace

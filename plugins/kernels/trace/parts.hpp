@@ -10,4 +10,8 @@ namespace hapticd::trace {
 /// inside from outside for shells with openings too. Models of very many shells make one part.
 std::vector<int> groupShells(const Model& model);
 
+/// [main] Model::hasGaps() of each part. The normals of a closed surface, weighted by area, sum up to nothing; what
+/// they sum up to is the area of the openings.
+std::vector<char> findGaps(const Model& model);
+
 }  // namespace hapticd::trace

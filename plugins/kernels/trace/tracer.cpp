@@ -49,6 +49,17 @@ void Tracer::reset() noexcept {
   has_last_ = false;
 }
 
+void Tracer::prefetch() const noexcept {
+  constexpr std::size_t kLine = 64;
+  if (nearest_ < 0) return;
+  const Track& t = tracks_[nearest_];
+  for (std::size_t at = 0; at < sizeof(Track); at += kLine) __builtin_prefetch(reinterpret_cast<const char*>(&t) + at);
+  const Patch& patch = model_.patch(t.patch);
+  for (std::size_t at = 0; at < sizeof(Patch); at += kLine)
+    __builtin_prefetch(reinterpret_cast<const char*>(&patch) + at);
+  patch.surface.prefetch(t.at.E);
+}
+
 bool Tracer::active(int surface) const noexcept {
   if (surface < 0 || surface >= model_.surfaceCount()) return false;
   for (int i = model_.firstPatch(surface); i < model_.lastPatch(surface); ++i)
@@ -119,17 +130,34 @@ void Tracer::stepNewton(const Vector3d& p, const TraceOptions& options) noexcept
 int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions& options) noexcept {
   double best = kInfinity;
   int nearest = -1;
+  if (part >= 0)  // what the search of all parts has refined already
+    for (int index : tracks_.active()) {
+      const Track& t = tracks_[index];
+      if (t.part != part || t.tick != tracks_.tick() || !(t.foot.distance < best)) continue;
+      best = t.foot.distance;
+      nearest = index;
+    }
+  bool touching = false;  // track `start` holds a contact
   for (int index = start >= 0 ? start : tracks_.mostPromising(best, part); index >= 0 && budget_ > 0;
        index = tracks_.mostPromising(best, part)) {
     const bool last = index == start;
     index = refine(index, p, options.tolerance);
+    if (touching && isGap(index, start, p)) continue;
     if (nearest < 0 || tracks_[nearest].slot < 0 || tracks_[index].foot.distance < best) nearest = index;
     best = std::min(best, tracks_[index].foot.distance);
     if (index != nearest && tracks_.isRival(index) && isHopeless(tracks_[index], best)) tracks_.drop(index);
-    // What holds a contact is left only for what is nearer by so much.
-    if (last && options.hold > 0 && describe(index, p).depth > 0) best -= options.hold;
+    if (!last || !(options.hold > 0 || model_.hasGaps(tracks_[index].part))) continue;
+    touching = describe(index, p).depth > 0;
+    if (touching) best -= options.hold;  // it is left only for what is nearer by so much
   }
   return nearest >= 0 ? cross(nearest, p, options.tolerance) : start;
+}
+
+/// Whether a foot is the rim of a gap in the part that `touching` lies on: a contact is not lost through gaps.
+bool Tracer::isGap(int track, int touching, const Vector3d& p) const noexcept {
+  const Track& t = tracks_[track];
+  if (t.foot.sides == 0 || t.part != tracks_[touching].part || !model_.hasGaps(t.part)) return false;
+  return describe(track, p).aside > 0 && !(describe(track, p).depth > 0);
 }
 
 /// Whether a rival cannot become the nearest before the next search, or left for another patch, which follows it.

@@ -65,6 +65,9 @@ class Tracer {
   /// [rt] Nearest foot of probe `p` (model frame). A probe that is no finite position leaves all tracks unchanged.
   Foot step(const Eigen::Vector3d& p, const TraceOptions& options = {}) noexcept;
 
+  /// [rt] Brings to the cache what the next step() will read if the probe stays near. For the time before a tick.
+  void prefetch() const noexcept;
+
   bool active(int surface) const noexcept;
   int activeCount() const noexcept { return static_cast<int>(tracks_.active().size()); }
   const Model& model() const noexcept { return model_; }
@@ -87,6 +90,7 @@ class Tracer {
   int crossSide(int track, int side, const Eigen::Vector3d& p, double tolerance) noexcept;
   bool leavePole(int track, int side, const Eigen::Vector3d& p, double tolerance) noexcept;
   void drop(int track) noexcept;
+  bool isGap(int track, int touching, const Eigen::Vector3d& p) const noexcept;
   bool isHopeless(const Track& rival, double best) const noexcept;
 
   Foot answer(const Eigen::Vector3d& p, const TraceOptions& options, int budget) noexcept;
