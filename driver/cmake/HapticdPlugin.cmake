@@ -18,6 +18,10 @@ function(_hapticd_add_module name kind)
   else()
     set_target_properties(${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${HAPTICD_MODULE_DIR}/${kind})
     install(TARGETS ${name} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/hapticd/${kind})
+    if(NOT TARGET modules)
+      add_custom_target(modules) # every plugin and device module that ships
+    endif()
+    add_dependencies(modules ${name})
   endif()
 endfunction()
 
