@@ -1,0 +1,22 @@
+/// Kinematics of an arm from the parameters of its device file.
+#pragma once
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "kinematics/arm.hpp"
+
+namespace hapticd::usb {
+
+enum class Kind { kPhantom, kDelta, kChain };
+
+struct MechanismParameters {
+  int kind = 0;
+  std::array<double, 3> origin{};
+  std::vector<double> base_orientation, lengths, masses, angles, dh, limits;
+};
+
+/// [main] Throws std::invalid_argument with a message for the user.
+std::unique_ptr<kinematics::Arm> makeMechanism(const MechanismParameters& p);
+
+}  // namespace hapticd::usb

@@ -1,0 +1,12 @@
+/// Arms with bulk or interrupt endpoints of their own, through libusb.
+#pragma once
+#include <memory>
+
+#include "usb_arm/transport.hpp"
+
+namespace hapticd::usb {
+
+/// [main] A transport over libusb; nothing is opened yet.
+std::unique_ptr<Transport> makeBulkTransport();
+
+}  // namespace hapticd::usb

@@ -1,0 +1,149 @@
+#include "usb_hid/hid_transport.hpp"
+
+#include <fcntl.h>
+#include <hidapi/hidapi.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <mutex>
+
+namespace hapticd::usb {
+namespace {
+
+/// hidapi keeps its start-up and its last message in process-wide variables: one call of these at a time.
+std::mutex& libraryMutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+std::string narrow(const wchar_t* text) {
+  std::string out;
+  for (; text != nullptr && *text != 0; ++text) out += *text < 128 ? static_cast<char>(*text) : '?';
+  return out;
+}
+
+std::string idText(const Address& address) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%04x:%04x", address.vendor, address.product);
+  return text;
+}
+
+/// The kernel counts HID devices as they come: the number in "0003:1234:0006.0007" is new with each plugging-in.
+std::string epochOf(const std::string& node) {
+  std::error_code error;
+  const auto link = std::filesystem::read_symlink(
+      "/sys/class/hidraw/" + std::filesystem::path(node).filename().string() + "/device", error);
+  return error ? node : link.filename().string();
+}
+
+class HidTransport final : public Transport {
+ public:
+  HidTransport() {
+    const std::lock_guard lock(libraryMutex());
+    hid_init();
+  }
+  ~HidTransport() override { HidTransport::close(); }
+
+  Result<Identity> open(const Address& address, const codec::Wire& wire) override {
+    const std::lock_guard lock(libraryMutex());
+    numbered_ = wire.output.id >= 0;
+    hid_device_info* all = hid_enumerate(address.vendor, address.product);
+    std::string refused, serials;
+    Identity identity;
+    for (hid_device_info* at = all; at != nullptr && handle_ == nullptr; at = at->next) {
+      const std::string serial = narrow(at->serial_number);
+      serials += (serials.empty() ? "" : ", ") + serial;
+      if (!address.serial.empty() && address.serial != serial) continue;
+      if (address.interface >= 0 && at->interface_number >= 0 && at->interface_number != address.interface) continue;
+      if (!takeAlone(at->path, refused)) continue;
+      handle_ = hid_open_path(at->path);
+      if (handle_ == nullptr) {
+        refused = std::string(at->path) + ": " + std::strerror(errno);
+        release();
+        continue;
+      }
+      char release_text[16];
+      std::snprintf(release_text, sizeof release_text, "%x.%02x", at->release_number >> 8, at->release_number & 0xff);
+      identity = {serial, narrow(at->product_string), release_text, epochOf(at->path)};
+    }
+    hid_free_enumeration(all);
+    if (handle_ != nullptr) return identity;
+    return Error{missing(address, refused, serials)};
+  }
+
+  void close() noexcept override {
+    if (handle_ != nullptr) hid_close(handle_);
+    handle_ = nullptr;
+    release();
+  }
+
+  Status receive(std::span<uint8_t> to, size_t& size, Nanoseconds wait) noexcept override {
+    constexpr Nanoseconds kMillisecond = 1'000'000;
+    const int got =
+        hid_read_timeout(handle_, to.data(), to.size(), static_cast<int>((wait + kMillisecond - 1) / kMillisecond));
+    size = got > 0 ? static_cast<size_t>(got) : 0;
+    if (got > 0) return Status::kOk;
+    return got == 0 ? Status::kNothing : Status::kGone;  // hidapi has no other words for any error
+  }
+
+  Status send(std::span<const uint8_t> bytes) noexcept override {
+    const size_t shift = numbered_ ? 0 : 1;  // hidapi wants a report id in any case
+    if (bytes.size() + shift > out_.size()) return Status::kFailed;
+    out_[0] = 0;
+    std::memcpy(out_.data() + shift, bytes.data(), bytes.size());
+    errno = 0;
+    if (hid_write(handle_, out_.data(), bytes.size() + shift) >= 0) return Status::kOk;
+    return errno == EPIPE ? Status::kStalled : Status::kGone;
+  }
+
+  Status control(const codec::StartStep&) noexcept override { return Status::kFailed; }
+
+ private:
+  /// Two programs that write torques to one arm would fight: an advisory lock keeps a second hapticd away.
+  bool takeAlone(const char* node, std::string& refused) {
+    lock_ = ::open(node, O_RDWR | O_CLOEXEC | O_NOCTTY);
+    const bool mine = lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) == 0;
+    if (mine || (lock_ >= 0 && errno != EWOULDBLOCK)) return true;
+    refused = std::string(node) + ": " + (lock_ >= 0 ? "in use by another program" : std::strerror(errno));
+    release();
+    return false;
+  }
+  void release() noexcept {
+    if (lock_ >= 0) ::close(lock_);
+    lock_ = -1;
+  }
+
+  static std::string missing(const Address& address, const std::string& refused, const std::string& serials) {
+    const std::string who =
+        "HID device " + idText(address) + (address.serial.empty() ? "" : " serial " + address.serial);
+    if (!refused.empty())
+      return who + " cannot be opened: " + refused +
+             "\n  the arm stays off\n  fix: install the udev rules (udev/70-hapticd.rules), join the group haptic, "
+             "plug "
+             "it in again; hapticd doctor tells more";
+    if (!serials.empty())
+      return who + " not found: other ones have the serial numbers " + serials +
+             "\n  the arm stays off\n  fix: correct usb.serial in the device file";
+    return who +
+           " not found\n  nothing is plugged in that answers to this id\n  the arm stays off\n  fix: plug it in and "
+           "switch it on; hapticd device list";
+  }
+
+  hid_device* handle_ = nullptr;
+  int lock_ = -1;
+  bool numbered_ = false;
+  std::array<uint8_t, codec::kMaxReportBytes + 2> out_{};
+};
+
+}  // namespace
+
+std::unique_ptr<Transport> makeHidTransport() {
+  return std::make_unique<HidTransport>();
+}
+
+}  // namespace hapticd::usb
