@@ -14,6 +14,9 @@ Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOption
   split(surfaces);
   tree_.build();
   bounds_ = tree_.bounds();
+  constexpr double kFarthest = 1e60;  // [m] beyond it, products of four lengths overflow
+  if (!(bounds_.min().cwiseAbs().maxCoeff() <= kFarthest && bounds_.max().cwiseAbs().maxCoeff() <= kFarthest))
+    throw std::invalid_argument("model: a coordinate beyond 1e60 m, expected smaller ones");
   Sewing(*this, options).run();
   part_ = groupShells(*this);
   part_count_ = 1 + *std::max_element(part_.begin(), part_.end());

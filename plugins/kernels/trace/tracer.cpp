@@ -138,11 +138,14 @@ int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions
       nearest = index;
     }
   bool touching = false;  // track `start` holds a contact
+  int crossed = -1;       // where it has gone on to
   for (int index = start >= 0 ? start : tracks_.mostPromising(best, part); index >= 0 && budget_ > 0;
        index = tracks_.mostPromising(best, part)) {
     const bool last = index == start;
     index = refine(index, p, options.tolerance);
-    if (touching && isGap(index, start, p)) continue;
+    if (last)
+      index = crossed = cross(index, p, options.tolerance);  // first things first: there may be no budget left for it
+    if (touching && isGap(index, crossed, p)) continue;
     if (nearest < 0 || tracks_[nearest].slot < 0 || tracks_[index].foot.distance < best) nearest = index;
     best = std::min(best, tracks_[index].foot.distance);
     if (index != nearest && tracks_.isRival(index) && isHopeless(tracks_[index], best)) tracks_.drop(index);
@@ -150,7 +153,8 @@ int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions
     touching = describe(index, p).depth > 0;
     if (touching) best -= options.hold;  // it is left only for what is nearer by so much
   }
-  return nearest >= 0 ? cross(nearest, p, options.tolerance) : start;
+  if (nearest < 0) return start;
+  return nearest == crossed ? nearest : cross(nearest, p, options.tolerance);
 }
 
 /// Whether a foot is the rim of a gap in the part that `touching` lies on: a contact is not lost through gaps.

@@ -1,0 +1,34 @@
+/// A surface model, a probe path, and the true distance at every tick.
+#pragma once
+#include <Eigen/Core>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "kernels/spline/surface_data.hpp"
+
+namespace hapticd::extremes {
+
+struct Case {
+  std::string name;
+  std::vector<spline::SurfaceData> surfaces;
+  double rate = 1000;  ///< [Hz]
+  bool started = false;
+  double start_u = 0, start_v = 0;     ///< parameters of the first foot, where they are given
+  std::vector<Eigen::Vector3d> probe;  ///< a point a tick
+  std::vector<double> distance;        ///< [m] true one; not-a-number where there is none
+  double allowed = 1e-4;               ///< [m] a foot farther than this from the best one is wrong
+  bool bifurcation = false;            ///< the nearest point truly jumps: 5 ms to recover
+};
+
+/// Reads one file, see tests/cases/extremes/README.md. @throws std::exception
+Case readCase(const std::filesystem::path& file);
+
+/// Cases with closed forms: sizes from subnormal to 1e59 m, weights, knots, degenerate patches, speeds and rates.
+std::vector<Case> closedForms();
+
+/// Random walks near random patches; the truth is the global search. `ticks` in all.
+std::vector<Case> randomWalks(int ticks);
+
+}  // namespace hapticd::extremes
