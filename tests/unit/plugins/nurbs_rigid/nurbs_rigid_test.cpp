@@ -32,10 +32,10 @@ class Plugin {
 
   hsp_contact at(double x, double y, double z, double vx = 0) {
     const double p[3] = {x, y, z};
-    hsp_near near[8];
+    hsp_near near[64];
     const hsp_ext_surfaces& s = surfaces();
-    const int64_t count = s.nearby(shape_, p, 0.15, near, 8);
-    for (int64_t i = 0; i < count && i < 8; ++i) s.activate(shape_, &near[i]);
+    const int64_t count = s.nearby(shape_, p, 0.15, near, 64);
+    for (int64_t i = 0; i < count && i < 64; ++i) s.activate(shape_, &near[i]);
     hsp_probe probe{};
     std::memcpy(probe.position, p, sizeof p);
     probe.velocity[0] = vx;
@@ -108,6 +108,54 @@ TEST(NurbsRigid, FrictionHoldsBackAProbeThatSlides) {
   for (int i = 0; i <= 100; ++i) contact = plugin.at(1e-4 * i, 0.049, 0);
   EXPECT_NEAR(contact.force[1], 0.8, 1e-6);
   EXPECT_NEAR(contact.force[0], -0.3 * 0.8, 0.02);
+}
+
+TEST(NurbsRigid, SlidingFrictionAboveStickingFrictionIsRefused) {
+  Plugin plugin;
+  plugin.set("geometry", kModels + "box.yaml");
+  plugin.set("friction_static", 0.2);
+  plugin.set("friction_dynamic", 0.4);
+  EXPECT_LT(plugin.activate(), 0);
+  plugin.set("friction_dynamic", 0.2);
+  EXPECT_EQ(plugin.activate(), HSP_OK);
+}
+
+TEST(NurbsRigid, TextureRunsAlongTheParametersAndVanishesOnSidesAndSeams) {
+  Plugin plugin;
+  plugin.set("geometry", kModels + "torus.yaml");
+  plugin.set("stiffness", 1000);
+  plugin.set("texture.amplitude", 1e-4);
+  plugin.set("texture.wavelength", 5e-3);
+  ASSERT_EQ(plugin.activate(), HSP_OK);
+  double lowest = 1, highest = -1, last = 0;
+  constexpr int kSteps = 20000;
+  for (int i = 0; i <= kSteps; ++i) {  // 1 mm deep, twice round over both seams
+    const double a = 4 * M_PI * i / kSteps, b = 3 * a, r = 0.05 + 0.019 * std::cos(b);
+    const hsp_contact contact = plugin.at(r * std::sin(a), 0.019 * std::sin(b), r * std::cos(a));
+    const double bump = std::hypot(contact.force[0], contact.force[1], contact.force[2]) / 1000 - 0.001;
+    if (i > 0) {
+      EXPECT_NEAR(bump, last, 2e-5);
+    }
+    last = bump;
+    lowest = std::min(lowest, bump);
+    highest = std::max(highest, bump);
+  }
+  EXPECT_NEAR(highest, 1e-4, 2e-6);
+  EXPECT_NEAR(lowest, -1e-4, 2e-6);
+  EXPECT_NEAR(plugin.at(0, 0, 0.069).force[2], 1, 1e-9);  // where both seams meet
+}
+
+TEST(NurbsRigid, AHeldContactKeepsItsFace) {
+  for (double hold : {0.0, 0.05}) {
+    Plugin plugin;
+    plugin.set("geometry", kModels + "box.yaml");
+    plugin.set("hold", hold);
+    ASSERT_EQ(plugin.activate(), HSP_OK);
+    hsp_contact contact{};
+    for (int i = 0; i < 600; ++i) contact = plugin.at(0.047, 0.0505 - 1e-5 * i, 0);  // 5.5 mm deep, 3 mm off the side
+    EXPECT_EQ(contact.force[1] > 0, hold > 0);
+    EXPECT_EQ(contact.force[0] > 0, hold == 0);
+  }
 }
 
 TEST(NurbsRigid, SidesSayWhereTheSolidIs) {
