@@ -87,12 +87,13 @@ inline Forms kept(const QuickForms& in) {
 struct Step {
   V2 d;              // in the parameters
   double distance2;  // from the point to the probe
-  double length2;    // of the step in space
+  double length2;    // of the step in space, unbent
+  double bend2;      // of its bend
   bool good;         // the quadratic model is convex and to be trusted so far; if not, the rest may be anything
 };
 
-/// Newton's step on |S - p|^2. Bent, it takes in what the second derivatives say of the gradient at its end, and so
-/// converges with third order where the probe is near; the inverse of the Hessian serves twice.
+/// Newton's step on |S - p|^2. Bent by what the second derivatives say of the gradient at its end, it converges with
+/// third order where the probe is near; the inverse of the Hessian serves twice.
 template <bool kBent>
 inline Step stepFrom(const double* E, const Forms& F, const double* p) {
   constexpr double kCurvature = 0.05;  // least 1 + depth * curvature: nearer to a centre of curvature, others decide
@@ -116,10 +117,10 @@ inline Step stepFrom(const double* E, const Forms& F, const double* p) {
   if constexpr (kBent) {
     const V2 k = F.bend[0] * both(dd[0]) + F.bend[2] * both(dd[1]) + F.bend[1] * both(d12);
     const V2 bend = (swapped(k) * across - k * diagonal) * inverse;
-    const double bend2 = F.G1[0] * bend[0] * bend[0] + 2 * G12 * bend[0] * bend[1] + F.G22 * bend[1] * bend[1];
+    step.bend2 = F.G1[0] * bend[0] * bend[0] + 2 * G12 * bend[0] * bend[1] + F.G22 * bend[1] * bend[1];
     step.d += bend;
     // The next foot is no farther from the probe than this one, so it is at most twice the distance away.
-    step.good &= (bend2 <= kBend2 * step.length2) & (step.length2 <= 4 * step.distance2);
+    step.good &= (step.bend2 <= kBend2 * step.length2) & (step.length2 <= 4 * step.distance2);
   }
   return step;
 }
@@ -164,10 +165,11 @@ QuickResult quickFoot(const QuickTask& task, const QuickPoint& at, const QuickFo
   keep(F, *at.forms);
   store2(at.uv, uv);
   const V2 there = uv + next.d;
-  // Newton squares the error: what is left after this step is about length * (length / last length)^2. A tenth of the
-  // tolerance is left for that.
+  // Newton squares the error. After this step, about length * (length / last length)^2 is left of what grows with the
+  // distance, and last bend * (length / last length)^2 of the rest. A tenth of the tolerance may be.
   const double now = next.length2, last = step.length2, enough = task.tolerance2;
-  const bool converged = (now <= enough) | ((now < 0.01 * last) & (100 * now * now * now <= enough * last * last));
+  const bool converged =
+      (now <= enough) | ((now < 0.01 * last) & (100 * (now + step.bend2) * now * now <= enough * last * last));
   if (!(converged & next.good & inside(there, task))) return QuickResult::kNearer;
   finish(E, task.p, next.d, there, now < enough ? now : enough, foot);
   return QuickResult::kFoot;

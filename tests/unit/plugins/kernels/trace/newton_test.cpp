@@ -1,0 +1,210 @@
+#include "kernels/trace/newton.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+
+#include "shapes.hpp"
+
+namespace hapticd::trace {
+namespace {
+
+using Eigen::Array2d;
+using Eigen::Vector3d;
+
+constexpr int kMostEvaluations = 12;
+
+Vector3d anyProbe(std::mt19937& random, double spread) {
+  std::uniform_real_distribution<double> place(-spread, spread);
+  return Vector3d(0.05 + place(random), 0.05 + place(random), place(random));
+}
+
+/// A point of the patch and a probe at most 2.5 mm off it along its normal: the point is the probe's foot.
+struct Pair {
+  Array2d uv;
+  Vector3d foot, probe;
+};
+Pair anyPair(const Patch& patch, std::mt19937& random) {
+  std::uniform_real_distribution<double> fraction(0.05, 0.95), depth(-2.5e-3, 2.5e-3);
+  Pair pair;
+  pair.uv = patch.lo + Array2d(fraction(random), fraction(random)) * (patch.hi - patch.lo);
+  spline::SurfacePoint E;
+  patch.surface.evaluate1(pair.uv[0], pair.uv[1], E);
+  pair.foot = E.S;
+  pair.probe = E.S + depth(random) * E.Su.cross(E.Sv).normalized();
+  return pair;
+}
+
+TEST(Newton, DistanceNeverIncreasesWhateverTheProbeDoes) {
+  std::mt19937 random(1);
+  for (int model = 0; model < 20; ++model) {
+    const Model one({randomPatch(random, 8, model % 2 == 1)});
+    const Patch& patch = one.patch(0);
+    Iterate at;
+    at.uv = 0.5 * (patch.lo + patch.hi);
+    LocalFoot foot;
+    newtonFoot(patch, Vector3d(0.05, 0.05, 0), at, 1e-9, kMostEvaluations, foot);
+    for (int tick = 0; tick < 2000; ++tick) {
+      const Vector3d p = anyProbe(random, tick % 3 == 0 ? 1.0 : 0.06);
+      const double before = (at.E.S - p).norm();
+      newtonFoot(patch, p, at, 1e-9, kMostEvaluations, foot);
+      ASSERT_LE(foot.evaluations, kMostEvaluations);
+      ASSERT_LE((at.E.S - p).norm(), before * (1 + 1e-13) + 1e-14);
+      ASSERT_LE(foot.distance, before * (1 + 1e-12) + 1e-10);
+      ASSERT_TRUE(((foot.uv >= patch.lo) && (foot.uv <= patch.hi)).all());
+      spline::SurfacePoint E;
+      patch.surface.evaluate2(at.uv[0], at.uv[1], E);
+      ASSERT_EQ((E.S - at.E.S).norm(), 0) << "the kept point is not the point of its parameters";
+    }
+  }
+}
+
+TEST(Newton, FindsANearFootToFarBelowTheToleranceInOneEvaluation) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> off(-3e-4, 3e-4);
+  int evaluations = 0, feet = 0;
+  for (int model = 0; model < 20; ++model) {
+    const Model one({randomPatch(random, 8, model % 2 == 1)});
+    const Patch& patch = one.patch(0);
+    for (int i = 0; i < 500; ++i) {
+      const Pair pair = anyPair(patch, random);
+      Iterate at;
+      at.uv = (pair.uv + Array2d(off(random), off(random)) * 10 * (patch.hi - patch.lo)).max(patch.lo).min(patch.hi);
+      const LocalFoot foot = newtonFoot(patch, pair.probe, at, 1e-9, kMostEvaluations);
+      ASSERT_TRUE(foot.converged);
+      EXPECT_LT((foot.S - pair.foot).norm(), 1e-9);
+      EXPECT_LE(foot.residual, 1e-9);
+      EXPECT_NEAR(foot.distance, (foot.S - pair.probe).norm(), 1e-15);
+      evaluations += foot.evaluations - 1;  // the first one is that of the start
+      ++feet;
+    }
+  }
+  EXPECT_LT(evaluations, 1.1 * feet);
+}
+
+TEST(Newton, ToleranceZeroGivesAllDigitsThereAre) {
+  std::mt19937 random(3);
+  const Model one({randomPatch(random)});
+  for (int i = 0; i < 500; ++i) {
+    const Pair pair = anyPair(one.patch(0), random);
+    Iterate at;
+    at.uv = pair.uv + 1e-3;
+    const LocalFoot foot = newtonFoot(one.patch(0), pair.probe, at, 0, kMostEvaluations);
+    EXPECT_LT((foot.S - pair.foot).norm(), 1e-15);
+  }
+}
+
+TEST(Newton, ARestingProbeCostsNoEvaluation) {
+  std::mt19937 random(4);
+  const Model one({randomPatch(random)});
+  const Pair pair = anyPair(one.patch(0), random);
+  Iterate at;
+  at.uv = pair.uv;
+  LocalFoot foot;
+  newtonFoot(one.patch(0), pair.probe, at, 1e-9, kMostEvaluations, foot);
+  newtonFoot(one.patch(0), pair.probe + Vector3d(1e-10, 0, 0), at, 1e-9, kMostEvaluations, foot);
+  EXPECT_EQ(foot.evaluations, 0);
+  EXPECT_LT((foot.S - pair.foot).norm(), 1e-9);
+}
+
+TEST(Newton, SmallBudgetsAreKept) {
+  std::mt19937 random(5);
+  const Model one({randomPatch(random)});
+  for (int budget = 1; budget < 5; ++budget) {
+    Iterate at;
+    at.uv = one.patch(0).lo;
+    for (int i = 0; i < 200; ++i)
+      EXPECT_LE(newtonFoot(one.patch(0), anyProbe(random, 0.1), at, 1e-9, budget).evaluations, budget);
+  }
+}
+
+TEST(Newton, HugeAndMeaninglessProbesLeaveAPointOfThePatch) {
+  std::mt19937 random(6);
+  const Model one({randomPatch(random)});
+  const Patch& patch = one.patch(0);
+  Iterate at;
+  at.uv = 0.5 * (patch.lo + patch.hi);
+  for (const double far :
+       {1e10, 1e100, 1e149, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
+    newtonFoot(patch, Vector3d(far, -far, far), at, 1e-9, kMostEvaluations);
+    EXPECT_TRUE(((at.uv >= patch.lo) && (at.uv <= patch.hi)).all()) << far;
+    EXPECT_TRUE(at.E.S.allFinite()) << far;
+  }
+  const Pair pair = anyPair(patch, random);
+  LocalFoot foot;
+  for (int tick = 0; tick < 5; ++tick) newtonFoot(patch, pair.probe, at, 1e-9, kMostEvaluations, foot);
+  EXPECT_LE(foot.distance, (at.E.S - pair.probe).norm() + 1e-9);
+  EXPECT_TRUE(foot.S.allFinite());
+}
+
+/// One call of a quick kernel from `uv`; what it writes, in one array.
+struct Quick {
+  QuickResult result = QuickResult::kNoStep;
+  alignas(32) std::array<double, 24> point{};
+  alignas(32) std::array<double, 16> foot{};
+  std::array<double, 2> distance{};
+};
+Quick runQuick(spline::Instructions instructions, const Patch& patch, const Array2d& start, const Vector3d& p) {
+  const QuickKernels& kernels = quickKernels(instructions);
+  const QuickEvaluate evaluate = [](const void* piece, double u, double v, double* out) noexcept {
+    spline::SurfacePoint E;
+    static_cast<const Patch*>(piece)->surface.evaluate2(u, v, E);
+    for (const Vector3d* part : {&E.S, &E.Su, &E.Sv, &E.Suu, &E.Suv, &E.Svv}) {
+      out = std::copy_n(part->data(), 3, out);
+      *out++ = 0;
+    }
+  };
+  Quick quick;
+  Array2d uv = start;
+  QuickForms forms;
+  evaluate(&patch, uv[0], uv[1], quick.point.data());
+  kernels.forms(quick.point.data(), forms);
+  const QuickTask task{&patch, evaluate, p.data(), patch.lo.data(), patch.hi.data(), 1e-18};
+  quick.result = kernels.foot(task, {uv.data(), quick.point.data(), &forms},
+                              {&quick.foot[12], quick.foot.data(), quick.distance.data()});
+  return quick;
+}
+
+TEST(Newton, EveryInstructionSetFindsTheSameFoot) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> off(-0.02, 0.02);
+  int found = 0;
+  for (int model = 0; model < 10; ++model) {
+    const Model one({randomPatch(random, 8, model % 2 == 1)});
+    const Patch& patch = one.patch(0);
+    for (int i = 0; i < 200; ++i) {
+      const Pair pair = anyPair(patch, random);
+      const Array2d start = (pair.uv + Array2d(off(random), off(random))).max(patch.lo).min(patch.hi);
+      const Quick fast = runQuick(spline::Instructions::kFastest, patch, start, pair.probe);
+      const Quick plain = runQuick(spline::Instructions::kPortable, patch, start, pair.probe);
+      ASSERT_EQ(fast.result, plain.result);
+      if (fast.result != QuickResult::kFoot) continue;
+      ++found;
+      for (std::size_t k = 0; k < 14; ++k)
+        if (k % 4 != 3) {
+          EXPECT_NEAR(fast.foot[k], plain.foot[k], 1e-13);
+        }
+      EXPECT_NEAR(fast.distance[0], plain.distance[0], 1e-15);
+    }
+  }
+  EXPECT_GT(found, 1000);
+}
+
+TEST(Newton, TheCommonTickIsNotTriedWhereTangentsSpanNoPlaneOrTheProbeIsAtACentre) {
+  const Model sphere = solid("sphere");
+  const Patch& patch = sphere.patch(0);
+  const Array2d middle = 0.5 * (patch.lo + patch.hi);
+  EXPECT_EQ(runQuick(spline::Instructions::kFastest, patch, middle, Vector3d(1e-4, 2e-4, 0)).result,
+            QuickResult::kNoStep);
+  spline::SurfaceData flat;
+  flat.degree = {1, 1};
+  flat.knots[0] = flat.knots[1] = {0, 0, 1, 1};
+  flat.points = {{0, 0, 0}, {0.05, 0, 0}, {0.1, 0, 0}, {0.15, 0, 1e-8}};
+  const Model needle({flat});
+  EXPECT_EQ(runQuick(spline::Instructions::kFastest, needle.patch(0), {0.5, 0.5}, Vector3d(0.06, 0, 0)).result,
+            QuickResult::kNoStep);
+}
+
+}  // namespace
+}  // namespace hapticd::trace
