@@ -84,9 +84,10 @@ void putRaw(const Field& field, double raw, uint8_t* bytes) noexcept {
 
 /// Sets one bit of what the bytes of a field hold already; several fields share the bytes.
 void putBit(const Field& field, bool on, uint8_t* bytes) noexcept {
+  if (field.type == Type::kNibble && bytes[field.at] == 0)
+    putRaw(field, 0, bytes);  // a nibble of no bits is a letter too
   if (on == field.inverted) return;
-  const double before = field.type == Type::kNibble && bytes[field.at] == 0 ? 0 : rawOf(field, bytes);
-  const auto whole = static_cast<uint64_t>(static_cast<int64_t>(before));
+  const auto whole = static_cast<uint64_t>(static_cast<int64_t>(rawOf(field, bytes)));
   putRaw(field, static_cast<double>(whole | uint64_t{1} << field.bit), bytes);
 }
 

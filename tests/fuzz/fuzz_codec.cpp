@@ -1,0 +1,66 @@
+/// A million mutated reports through every shipped codec: decoder, framer and session must stay finite and in bounds.
+/// Usage: fuzz_codec [REPORTS]. Not a coverage-guided fuzzer: the formats are flat, and it must run in every build.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+
+#include "emulators/wire_file.hpp"
+#include "usb_arm/session.hpp"
+
+namespace {
+
+using hapticd::Nanoseconds;
+
+/// Bytes that are nearly a report: right ones with some changed, cut, or drawn out.
+std::vector<uint8_t> mutated(const hapticd::codec::Report& report, std::mt19937_64& random) {
+  std::vector<uint8_t> bytes(report.bytes());
+  hapticd::codec::Order order;
+  order.enable = true;
+  for (double& torque : order.torque) torque = std::ldexp(static_cast<double>(random() % 2001) - 1000, -8);
+  (void)hapticd::codec::encode(report, order, bytes);  // constants and checksum are right, the rest is zero
+  const auto changes = random() % 6;
+  for (uint64_t i = 0; i < changes && !bytes.empty(); ++i)
+    bytes[random() % bytes.size()] = static_cast<uint8_t>(random());
+  if (random() % 8 == 0) bytes.resize(random() % 1200);
+  if (random() % 64 == 0)
+    for (uint8_t& byte : bytes) byte = static_cast<uint8_t>(random());
+  return bytes;
+}
+
+/// @return 0 if all went well
+int run(const std::filesystem::path& file, long reports) {
+  const auto wire = hapticd::codec::readWire(hapticd::emulator::wireOf(file), 3);
+  hapticd::usb::Session session(wire, {});
+  std::mt19937_64 random(1);
+  Nanoseconds now = 1;
+  session.attach(now, {}, true);
+  long good = 0;
+  for (long i = 0; i < reports; ++i) {
+    now += random() % 3'000'000;
+    good += session.receive(now, mutated(wire.input, random)) ? 1 : 0;
+    session.watch(now);
+    hapticd::usb::Wish wish;
+    wish.time = now, wish.sequence = 1, wish.on = true;
+    wish.torque.fill(random() % 16 == 0 ? std::nan("") : 1.0);
+    std::array<uint8_t, hapticd::codec::kMaxReportBytes + 1> out;
+    if (session.command(now, wish, out) != wire.output.bytes()) return std::printf("%s: no command\n", file.c_str());
+    for (const double position : session.sample().position)
+      if (!std::isfinite(position)) return std::printf("%s: %g in report %ld\n", file.c_str(), position, i);
+    if (random() % 100'000 == 0) session.attach(now, {}, true);
+  }
+  std::printf("%-22s %ld reports, %ld taken, %s\n", file.filename().c_str(), reports, good,
+              describe(session.trouble()));
+  return good == 0 ? 1 : 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const long reports = argc > 1 ? std::atol(argv[1]) : 1'000'000;
+  int failed = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(HAPTICD_SOURCE_DIR "/config/devices"))
+    if (YAML::LoadFile(entry.path())["parameters"]["wire"]) failed |= run(entry.path(), reports);
+  return failed != 0 ? 1 : 0;
+}

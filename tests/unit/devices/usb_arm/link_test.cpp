@@ -1,0 +1,162 @@
+/// The I/O thread over a transport that a test plays: nothing here asserts times.
+#include "usb_arm/link.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+
+#include "board.hpp"
+#include "emulators/wire_file.hpp"
+#include "usb_arm/calibration.hpp"
+
+namespace hapticd::usb {
+namespace {
+
+/// A board that streams at 1 kHz of the real clock.
+struct FakeBoard {
+  std::atomic<bool> plugged{true}, pushed{false}, stalled{false};
+  std::atomic<int> opened{0};
+  emulator::BoardState state;
+  Nanoseconds next = 0;
+};
+
+class FakeTransport final : public Transport {
+ public:
+  explicit FakeTransport(FakeBoard& board) : board_(board) {}
+  Result<Identity> open(const Address&, const codec::Wire&) override {
+    if (!board_.plugged) return Error{"not found"};
+    ++board_.opened;
+    return Identity{"7", "fake board", "1.0", "plug " + std::to_string(board_.opened)};
+  }
+  void close() noexcept override {}
+  Status receive(std::span<uint8_t> to, size_t& size, Nanoseconds wait) noexcept override {
+    size = 0;
+    if (!board_.plugged) return Status::kGone;
+    if (board_.stalled) return Status::kStalled;
+    RealClock clock(0);
+    const Nanoseconds now = clock.now();
+    if (board_.next > now + wait) return clock.waitUntil(now + wait), Status::kNothing;
+    clock.waitUntil(board_.next);
+    board_.next = std::max(board_.next, now - 5'000'000) + 1'000'000;
+    ++board_.state.sequence;
+    const auto bytes = board_.state.bytes();
+    std::copy(bytes.begin(), bytes.end(), to.begin());
+    size = bytes.size();
+    return Status::kOk;
+  }
+  Status send(std::span<const uint8_t> bytes) noexcept override {
+    const emulator::BoardCommand command(bytes);
+    board_.pushed = command.pushes();
+    return !board_.plugged ? Status::kGone : command.valid ? Status::kOk : Status::kFailed;
+  }
+  Status control(const codec::StartStep&) noexcept override { return Status::kOk; }
+
+ private:
+  FakeBoard& board_;
+};
+
+class LinkTest : public ::testing::Test {
+ protected:
+  LinkSettings settings(Calibration calibration) {
+    LinkSettings s;
+    s.session.calibration = calibration;
+    s.session.health.least_rate = 0;  // a busy machine may well be slow
+    s.log = [this](int, const std::string& text) {
+      const std::lock_guard lock(mutex);
+      said += text + "\n";
+    };
+    s.zero = [this](const Identity& identity) { return loadZero(folder, Address{}, identity, 3); };
+    return s;
+  }
+  std::unique_ptr<Link> make(Calibration calibration = Calibration::kDevice) {
+    return std::make_unique<Link>(std::make_unique<FakeTransport>(board), wire, settings(calibration));
+  }
+  /// Pushes until `done` or five seconds.
+  bool pushUntil(Link& link, const std::function<bool(const Sample&)>& done) {
+    RealClock clock(0);
+    Sample sample;
+    for (int i = 0; i < 5000; ++i) {
+      link.read(sample);
+      wish.time = clock.now(), ++wish.sequence, wish.on = true, wish.torque = {0.5, 0, 0};
+      link.write(wish);
+      if (done(sample)) return true;
+      clock.waitUntil(clock.now() + 1'000'000);
+    }
+    return false;
+  }
+  std::string words() {
+    const std::lock_guard lock(mutex);
+    return said;
+  }
+
+  FakeBoard board;
+  codec::Wire wire = codec::readWire(emulator::wireOf(HAPTICD_SOURCE_DIR "/config/devices/premium15.yaml"), 3);
+  std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "hapticd-link-test";
+  std::mutex mutex;
+  std::string said;
+  Wish wish;
+};
+
+TEST_F(LinkTest, PushesLosesFindsAndPushesAgain) {
+  auto link = make();
+  ASSERT_TRUE(link->open());
+  const auto started = link->start();
+  ASSERT_TRUE(started) << started.error();
+  ASSERT_TRUE(pushUntil(*link, [&](const Sample&) { return board.pushed.load(); }));
+  board.plugged = false;
+  ASSERT_TRUE(pushUntil(*link, [](const Sample& s) { return s.trouble == Trouble::kUnplugged; }));
+  EXPECT_NE(words().find("unplugged"), std::string::npos);
+  board.pushed = false;
+  board.plugged = true;
+  ASSERT_TRUE(pushUntil(*link, [&](const Sample& s) { return s.trouble == Trouble::kNone && board.pushed; }));
+  EXPECT_EQ(board.opened, 2);
+  link->stop();
+  EXPECT_FALSE(board.pushed) << "motors are off when the thread ends";
+}
+
+TEST_F(LinkTest, AStalledEndpointIsNamedAndReopened) {
+  auto link = make();
+  ASSERT_TRUE(link->open());
+  ASSERT_TRUE(link->start());
+  board.stalled = true;
+  ASSERT_TRUE(pushUntil(*link, [](const Sample& s) { return s.trouble == Trouble::kStalled; }));
+  board.stalled = false;
+  ASSERT_TRUE(pushUntil(*link, [](const Sample& s) { return s.trouble == Trouble::kNone; }));
+}
+
+TEST_F(LinkTest, APoseCalibrationHoldsUntilTheArmIsPluggedInAnew) {
+  std::filesystem::remove_all(folder);
+  {
+    auto link = make(Calibration::kPose);
+    ASSERT_TRUE(link->open());
+    board.state.counts = {100, 200, 300};
+    ASSERT_TRUE(link->start());
+    ASSERT_TRUE(pushUntil(*link, [](const Sample& s) { return s.sequence > 5; }));
+    EXPECT_FALSE(board.pushed);
+    const auto offset = link->calibrateAt({0.1, 0.2, 0.3});
+    ASSERT_TRUE(offset) << offset.error();
+    ASSERT_TRUE(storeZero(folder, Address{}, link->identity(), *offset, 3));
+    Sample last;
+    ASSERT_TRUE(pushUntil(*link, [&](const Sample& s) { return last = s, s.calibrated && board.pushed; }));
+    EXPECT_NEAR(last.position[1], 0.2, 1e-12);
+    EXPECT_TRUE(loadZero(folder, Address{}, link->identity(), 3).known);
+  }
+  auto link = make(Calibration::kPose);
+  ASSERT_TRUE(link->open());  // opened a second time: the fake says that it was plugged in anew
+  EXPECT_FALSE(loadZero(folder, Address{}, link->identity(), 3).known);
+}
+
+TEST_F(LinkTest, ADeviceThatSendsNothingDoesNotStart) {
+  board.next = monotonicNow() + 100'000'000'000;
+  auto link = make();
+  ASSERT_TRUE(link->open());
+  const auto started = link->start();
+  ASSERT_FALSE(started);
+  EXPECT_NE(started.error().find("no new reports"), std::string::npos) << started.error();
+}
+
+}  // namespace
+}  // namespace hapticd::usb
