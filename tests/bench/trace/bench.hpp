@@ -13,12 +13,18 @@ namespace hapticd::bench {
 
 /// The surfaces of the tables: bicubic sheet, rational sphere and torus, degree 5, finely ridged sheet. About 0.2 m.
 std::vector<spline::SurfaceData> surfaces();
+/// `count` x `count` bicubic tiles of one wavy sheet, each a surface of its own.
+std::vector<spline::SurfaceData> tiles(int count);
 
 /// A probe that keeps contact: each true foot is known because the probe is built from it.
 struct Path {
   std::vector<Eigen::Vector3d> probe, foot;
   std::vector<std::array<double, 2>> uv;
 };
+/// The walk of all tables.
+inline constexpr int kTicks = 4000;
+inline constexpr double kStep = 0.3e-3;   ///< [m] a tick: 0.3 m/s at 1 kHz
+inline constexpr double kDepth = 2.5e-3;  ///< [m] to either side
 /// `step` [m] a tick along the surface, up to `depth` [m] to either side of it.
 Path contactPath(const spline::SurfaceData& data, double step, double depth, int ticks);
 
@@ -31,7 +37,6 @@ class Solver {
   virtual Eigen::Vector3d step(const Eigen::Vector3d& probe) = 0;
   /// Most evaluations in any tick so far; 0 where the solver does not say.
   virtual int worstEvaluations() const { return 0; }
-  virtual std::size_t bytes() const { return 0; }
 };
 
 std::vector<std::unique_ptr<Solver>> ourSolvers(const spline::SurfaceData& data);
@@ -40,6 +45,9 @@ std::vector<std::unique_ptr<Solver>> sislSolvers(const spline::SurfaceData& data
 
 void printEvaluations();
 void printTicks();
+void printCold();
+void printMany();
+void printScale();
 
 /// Nanoseconds of `work()`, divided by `count`.
 template <class Work>

@@ -64,7 +64,26 @@ SurfaceData torus(double ring, double tube) {
   return revolution("torus 60/20", profile);
 }
 
+constexpr double kTile = 0.02;  // [m]
+
+/// Neighbours share the control points of their common side.
+SurfaceData tile(int i, int j) {
+  SurfaceData data = sheet("tile", 3, 4, 0, 1);
+  for (std::size_t k = 0; k < data.points.size(); ++k) {
+    const double x = kTile * (i + static_cast<double>(k / 4) / 3), y = kTile * (j + static_cast<double>(k % 4) / 3);
+    data.points[k] = {x, y, 0.004 * std::sin(40 * x) * std::cos(40 * y)};
+  }
+  return data;
+}
+
 }  // namespace
+
+std::vector<SurfaceData> tiles(int count) {
+  std::vector<SurfaceData> result;
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < count; ++j) result.push_back(tile(i - count / 2, j - count / 2));
+  return result;
+}
 
 std::vector<SurfaceData> surfaces() {
   return {sheet("bicubic 10x10", 3, 10, 0.015, 1), sphere(0.05), torus(0.06, 0.02),

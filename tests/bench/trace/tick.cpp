@@ -8,10 +8,7 @@
 namespace hapticd::bench {
 namespace {
 
-constexpr int kTicks = 4000;
 constexpr int kRounds = 5;
-constexpr double kStep = 0.3e-3;   // [m] a tick: 0.3 m/s at 1 kHz
-constexpr double kDepth = 2.5e-3;  // [m] to either side
 
 class OurSolver : public Solver {
  public:
@@ -28,7 +25,6 @@ class OurSolver : public Solver {
     return foot.point;
   }
   int worstEvaluations() const override { return worst_; }
-  std::size_t bytes() const override { return model_.patch(0).surface.bytes(); }
 
  private:
   std::string name_;
@@ -39,8 +35,19 @@ class OurSolver : public Solver {
 };
 
 struct Result {
-  double ns = HUGE_VAL, error_p99 = 0, error_worst = 0;
+  double ns = HUGE_VAL, latency = HUGE_VAL, error_p99 = 0, error_worst = 0;
 };
+
+/// One walk along the path on which each probe waits for the foot before, as a servo's force does.
+double waitingWalk(Solver& solver, const Path& path) {
+  solver.start(path.uv[0][0], path.uv[0][1]);
+  Eigen::Vector3d foot(0, 0, 0);
+  const double ns = nanoseconds(static_cast<int>(path.probe.size()), [&] {
+    for (const Eigen::Vector3d& probe : path.probe) foot = solver.step(probe + 1e-200 * foot);
+  });
+  keep(foot[0]);
+  return ns;
+}
 
 /// One walk along the path; the first walk also measures the errors.
 void walk(Solver& solver, const Path& path, bool measure, Result& result) {
@@ -50,6 +57,7 @@ void walk(Solver& solver, const Path& path, bool measure, Result& result) {
     for (std::size_t i = 0; i < path.probe.size(); ++i) feet[i] = solver.step(path.probe[i]);
   });
   result.ns = std::min(result.ns, ns);
+  result.latency = std::min(result.latency, waitingWalk(solver, path));
   if (!measure) return;
   std::vector<double> errors;
   for (std::size_t i = 0; i < feet.size(); ++i) {
@@ -72,36 +80,15 @@ std::vector<std::unique_ptr<Solver>> allSolvers(const spline::SurfaceData& data)
   return solvers;
 }
 
-/// Cost of a surface when `count` of them are traced at once, all about equally near.
-double costOfMany(int count) {
-  const spline::SurfaceData data = surfaces()[0];
-  std::vector<spline::SurfaceData> models(static_cast<std::size_t>(count), data);
-  for (int i = 0; i < count; ++i) {
-    for (auto& point : models[static_cast<std::size_t>(i)].points) point.z() += 1e-4 * i;
-  }
-  const trace::Model model(models);
-  trace::Tracer tracer(model);
-  const Path path = contactPath(data, kStep, kDepth, kTicks);
-  double best = HUGE_VAL;
-  for (int round = 0; round < kRounds; ++round) {
-    tracer.reset();
-    for (int i = 0; i < count; ++i) tracer.activate(i, path.uv[0][0], path.uv[0][1]);
-    best = std::min(best, nanoseconds(kTicks * count, [&] {
-                      for (const auto& probe : path.probe) keep(tracer.step(probe).depth);
-                    }));
-  }
-  return best;
-}
-
 }  // namespace
 
 std::vector<std::unique_ptr<Solver>> ourSolvers(const spline::SurfaceData& data) {
-  trace::TraceOptions direct, newton, loose;
+  trace::TraceOptions direct, newton, tight;
   direct.method = trace::Method::kDirect;
-  loose.tolerance = 1e-6;
+  tight.tolerance = 1e-15;
   std::vector<std::unique_ptr<Solver>> solvers;
-  solvers.push_back(std::make_unique<OurSolver>("hapticd newton 1 nm", data, newton));
-  solvers.push_back(std::make_unique<OurSolver>("hapticd newton 1 um", data, loose));
+  solvers.push_back(std::make_unique<OurSolver>("hapticd newton, 1 nm (default)", data, newton));
+  solvers.push_back(std::make_unique<OurSolver>("hapticd newton, 1 fm", data, tight));
   for (int iterations : {1, 2, 3}) {
     direct.iterations = iterations;
     solvers.push_back(std::make_unique<OurSolver>("hapticd dpt x" + std::to_string(iterations), data, direct));
@@ -110,10 +97,10 @@ std::vector<std::unique_ptr<Solver>> ourSolvers(const spline::SurfaceData& data)
 }
 
 void printTicks() {
-  std::printf(
-      "\nOne tick: closest point, %.1f mm a tick, up to %.1f mm from the surface; best of %d interleaved rounds\n",
-      1e3 * kStep, 1e3 * kDepth, kRounds);
-  std::printf("  %-28s %9s %8s %13s %13s %6s %9s\n", "", "ns", "ratio", "p99 error mm", "worst mm", "evals", "bytes");
+  std::printf("\n## One tick: the closest point near the last one\n\n");
+  std::printf("%.1f mm a tick, up to %.1f mm from the surface, each true foot known; best of %d interleaved rounds.\n",
+              1e3 * kStep, 1e3 * kDepth, kRounds);
+  std::printf("\"waiting\": the next probe waits for this foot. Ratio: to the first row of the surface.\n");
   for (const auto& data : surfaces()) {
     const Path path = contactPath(data, kStep, kDepth, kTicks);
     auto solvers = allSolvers(data);
@@ -121,16 +108,17 @@ void printTicks() {
     for (int round = 0; round < kRounds; ++round) {
       for (std::size_t i = 0; i < solvers.size(); ++i) walk(*solvers[i], path, round == 0, results[i]);
     }
-    std::printf("%s\n", data.name.c_str());
+    std::printf(
+        "\n| %s | ns | ratio | waiting ns | p99 error mm | worst mm | most evaluations "
+        "|\n|---|---|---|---|---|---|---|\n",
+        data.name.c_str());
     for (std::size_t i = 0; i < solvers.size(); ++i) {
-      std::printf("  %-28s %9.1f %8.1f %13.1e %13.1e %6d %9zu\n", solvers[i]->name().c_str(), results[i].ns,
-                  results[i].ns / results[0].ns, 1e3 * results[i].error_p99, 1e3 * results[i].error_worst,
-                  solvers[i]->worstEvaluations(), solvers[i]->bytes());
+      std::printf("| %s | %.1f | %.1f | %.1f | %.1e | %.1e | ", solvers[i]->name().c_str(), results[i].ns,
+                  results[i].ns / results[0].ns, results[i].latency, 1e3 * results[i].error_p99,
+                  1e3 * results[i].error_worst);
+      std::printf(solvers[i]->worstEvaluations() > 0 ? "%d |\n" : "- |\n", solvers[i]->worstEvaluations());
     }
   }
-  std::printf("\nBicubic sheets traced at once, 0.1 mm apart [ns a surface]\n ");
-  for (int count : {1, 2, 4, 8, 16, 32}) std::printf("  %d: %.1f", count, costOfMany(count));
-  std::printf("\n");
 }
 
 }  // namespace hapticd::bench
