@@ -43,7 +43,7 @@ class Histogram {
     return std::ldexp(1 + fraction, kLowest + bucket / kSteps);
   }
 
- private:
+  /// [rt] The bucket that counts a value.
   static int bucketOf(double value) noexcept HSP_RT {
     if (!(value > 0)) return 0;
     int exponent = 0;
@@ -51,6 +51,8 @@ class Histogram {
     const int step = static_cast<int>((2 * mantissa - 1) * kSteps);
     return std::clamp((exponent - 1 - kLowest) * kSteps + step, 0, kBuckets - 1);
   }
+
+ private:
   static double middleOf(int bucket) noexcept { return 0.5 * (edgeOf(bucket) + edgeOf(bucket + 1)); }
 
   std::array<uint64_t, kBuckets> counts_{};

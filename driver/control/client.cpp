@@ -1,0 +1,70 @@
+#include "control/client.hpp"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace hapticd::control {
+
+namespace {
+
+/// A connected socket, or -1.
+int connected(const std::string& file) {
+  sockaddr_un address{};
+  if (!socketAddress(file, address)) return -1;
+  const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (fd >= 0 && connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return fd;
+  const int code = errno;
+  if (fd >= 0) close(fd);
+  errno = code;
+  return -1;
+}
+
+}  // namespace
+
+bool socketAddress(const std::string& file, sockaddr_un& address) {
+  address.sun_family = AF_UNIX;
+  if (file.size() >= sizeof address.sun_path) {
+    errno = ENAMETOOLONG;
+    return false;
+  }
+  std::memcpy(address.sun_path, file.c_str(), file.size() + 1);
+  return true;
+}
+
+bool connectTo(const std::string& file) {
+  const int fd = connected(file);
+  if (fd >= 0) close(fd);
+  return fd >= 0;
+}
+
+Result<std::string> ask(const std::string& file, const std::string& line, double seconds) {
+  const int fd = connected(file);
+  if (fd < 0)
+    return Error{"no daemon answers at " + file + ": " + std::strerror(errno) +
+                 "\n  fix: start one with hapticd run, or name it with --name; its group may talk to it, no one else"};
+  const std::string out = line + "\n";
+  size_t sent = 0;
+  while (sent < out.size()) {
+    const ssize_t now = send(fd, out.data() + sent, out.size() - sent, MSG_NOSIGNAL);
+    if (now <= 0) break;
+    sent += static_cast<size_t>(now);
+  }
+  std::string answer;
+  char buffer[4096];
+  pollfd polled{fd, POLLIN, 0};
+  while (answer.find('\n') == std::string::npos && poll(&polled, 1, static_cast<int>(seconds * 1e3)) == 1) {
+    const ssize_t got = recv(fd, buffer, sizeof buffer, 0);
+    if (got <= 0) break;
+    answer.append(buffer, static_cast<size_t>(got));
+  }
+  close(fd);
+  const size_t end = answer.find('\n');
+  if (end == std::string::npos) return Error{"the daemon at " + file + " did not answer"};
+  return answer.substr(0, end);
+}
+
+}  // namespace hapticd::control

@@ -1,0 +1,45 @@
+/// One request to a running daemon: a line of JSON, checked before anything is done with it.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/result.hpp"
+
+namespace hapticd::control {
+
+constexpr size_t kMaxRequestBytes = 64 * 1024;
+
+struct Request {
+  enum class Kind {
+    kStatus,
+    kList,
+    kEnable,
+    kDisable,
+    kMove,
+    kSet,
+    kAdd,
+    kRemove,
+    kReload,
+    kHold,
+    kClear,
+    kDump,
+    kStop
+  };
+  Kind kind = Kind::kStatus;
+  std::string model, device, parameter, file;     ///< as the kind needs them
+  double value = 0;                               ///< kSet
+  bool consent = false;                           ///< kSet: the operator agrees to change what is felt
+  std::array<double, 3> position{};               ///< [m] kMove, world frame
+  std::array<double, 4> orientation{1, 0, 0, 0};  ///< kMove: unit quaternion w,x,y,z
+  bool turns = false;                             ///< kMove: an orientation was given
+  std::optional<double> seconds;                  ///< kMove: how long it takes
+};
+
+/// [main] Parses and checks a line. An error says what is wrong and what was expected.
+Result<Request> parseRequest(std::string_view line);
+
+std::string refusal(const std::string& why);  ///< [main] {"ok":false,"error":WHY}
+
+}  // namespace hapticd::control

@@ -1,0 +1,151 @@
+#include "control/server.hpp"
+
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <thread>
+
+#include "control/client.hpp"
+#include "control/request.hpp"
+
+namespace hapticd::control {
+namespace {
+
+struct Rig {
+  explicit Rig(const char* name, std::string answer = "")
+      : file(testing::TempDir() + name + std::to_string(getpid()) + ".sock") {
+    auto listening = Server::listen(file);
+    EXPECT_TRUE(listening) << (listening ? "" : listening.error());
+    server = std::move(*listening);
+    server->start([answer](const std::string& line) { return answer.empty() ? "you said " + line : answer; });
+  }
+  std::string file;
+  std::unique_ptr<Server> server;
+};
+
+int connectRaw(const std::string& file) {
+  sockaddr_un address{};
+  socketAddress(file, address);
+  const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  EXPECT_EQ(connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  return fd;
+}
+
+/// Everything until the server closes or nothing comes for a second.
+std::string readAll(int fd) {
+  std::string text;
+  char buffer[4096];
+  pollfd polled{fd, POLLIN, 0};
+  while (poll(&polled, 1, 1000) == 1) {
+    const ssize_t got = recv(fd, buffer, sizeof buffer, 0);
+    if (got <= 0) break;
+    text.append(buffer, static_cast<size_t>(got));
+  }
+  return text;
+}
+
+TEST(Server, AnswersEachLineInOrderHoweverItIsCut) {
+  Rig rig("lines");
+  EXPECT_EQ(*ask(rig.file, "hello"), "you said hello");
+  const int fd = connectRaw(rig.file);
+  for (const char* part : {"on", "e\ntw", "o\n\nfour\nrest"}) {
+    ASSERT_GT(send(fd, part, strlen(part), MSG_NOSIGNAL), 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  shutdown(fd, SHUT_WR);
+  EXPECT_EQ(readAll(fd), "you said one\nyou said two\nyou said \nyou said four\n");
+  close(fd);
+}
+
+TEST(Server, IsForItsOwnerAndGroupAlone) {
+  Rig rig("mode");
+  struct stat info {};
+  ASSERT_EQ(stat(rig.file.c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777, 0660u);
+}
+
+TEST(Server, LeavesAServedSocketAndAFileAloneAndReplacesADeadOne) {
+  Rig rig("taken");
+  const auto second = Server::listen(rig.file);
+  ASSERT_FALSE(second);
+  EXPECT_NE(second.error().find("another daemon"), std::string::npos);
+  EXPECT_TRUE(ask(rig.file, "still"));
+  const std::string plain = testing::TempDir() + "plain" + std::to_string(getpid());
+  std::ofstream(plain) << "mine";
+  EXPECT_FALSE(Server::listen(plain));
+  EXPECT_TRUE(std::ifstream(plain).good());
+  const pid_t child = fork();
+  if (child == 0) {
+    auto dead = Server::listen(rig.file + "2");
+    kill(getpid(), SIGKILL);
+  }
+  waitpid(child, nullptr, 0);
+  EXPECT_TRUE(Server::listen(rig.file + "2"));
+  EXPECT_FALSE(Server::listen(std::string(200, 'x')));
+}
+
+TEST(Server, EndsAClientThatSendsALineWithoutEnd) {
+  Rig rig("long");
+  const int fd = connectRaw(rig.file);
+  const std::string piece(4096, 'x');
+  for (int i = 0; i < 64 && send(fd, piece.data(), piece.size(), MSG_NOSIGNAL | MSG_DONTWAIT) > 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_NE(readAll(fd).find("longer than"), std::string::npos);
+  close(fd);
+  EXPECT_TRUE(ask(rig.file, "others go on"));
+}
+
+TEST(Server, DoesNotGrowForAClientThatNeverReads) {
+  Rig rig("slow", std::string(100000, 'a'));
+  const int fd = connectRaw(rig.file);
+  std::string lines;
+  for (int i = 0; i < 20000; ++i) lines += "x\n";
+  [[maybe_unused]] const ssize_t sent = send(fd, lines.data(), lines.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(ask(rig.file, "me")->size(), 100000u) << "others are served meanwhile";
+  std::ifstream statm("/proc/self/statm");
+  size_t total = 0, resident = 0;
+  statm >> total >> resident;
+  EXPECT_LT(resident * 4096, 500u << 20);
+  close(fd);
+}
+
+TEST(Server, ServesManyClientsAndOutlivesThoseThatDie) {
+  Rig rig("many");
+  std::vector<int> idle;
+  for (int i = 0; i < 20; ++i) idle.push_back(connectRaw(rig.file));
+  for (int i = 0; i < 10; ++i) {
+    const pid_t child = fork();
+    if (child == 0) {
+      const int fd = connectRaw(rig.file);
+      [[maybe_unused]] const ssize_t sent = send(fd, "half a li", 9, MSG_NOSIGNAL);
+      kill(getpid(), SIGKILL);
+    }
+    waitpid(child, nullptr, 0);
+    EXPECT_EQ(*ask(rig.file, "alive"), "you said alive");
+  }
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 8; ++i)
+    threads.emplace_back([&] {
+      for (int k = 0; k < 50; ++k) EXPECT_EQ(*ask(rig.file, "t"), "you said t");
+    });
+  for (std::thread& thread : threads) thread.join();
+  for (const int fd : idle) close(fd);
+}
+
+TEST(Server, WakesUpToStop) {
+  Rig rig("stop");
+  EXPECT_TRUE(ask(rig.file, "x"));
+  rig.server.reset();
+  EXPECT_FALSE(ask(rig.file, "x"));
+  EXPECT_FALSE(std::ifstream(rig.file).good());
+}
+
+}  // namespace
+}  // namespace hapticd::control
