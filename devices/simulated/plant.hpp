@@ -54,6 +54,7 @@ class PlantOf final : public Plant {
     qd_ = Vector::Zero(q.size());
     motor_ = Vector::Zero(q.size());
     transmitted_ = Vector::Zero(q.size());
+    drive_stiffness_ = drive_damping_ = Vector::Zero(q.size());
     hand_force_.setZero();
     mechanism_.evaluate(q_, qd_);
   }
@@ -68,13 +69,18 @@ class PlantOf final : public Plant {
     K_ = pull.stiffness * A_;
     D_ = pull.damping * A_;
     tau_ = mechanism_.J.transpose() * force - mechanism_.bias;
+    drive_stiffness_.setZero();
+    drive_damping_.setZero();
     addMotors(h, drive);
     addFriction();
     addStops();
     A_ = mechanism_.M + h * D_ + (h * h) * K_;
     tau_ -= h * (K_ * qd_);
+    const Vector before = qd_;
     qd_ += h * A_.ldlt().solve(tau_);
     qd_ = qd_.cwiseMax(-kMaxJointRate).cwiseMin(kMaxJointRate);
+    // What the links felt is the torque at the end of the step, as the step itself took it.
+    transmitted_ -= drive_damping_.cwiseProduct(qd_ - before) + h * drive_stiffness_.cwiseProduct(qd_);
     q_ += h * qd_;
   }
 
@@ -94,6 +100,8 @@ class PlantOf final : public Plant {
         wanted += joints_.stiffness[i] * (drive.reference[i] - q_[i]) +
                   joints_.rate_damping[i] * (drive.reference_rate[i] - qd_[i]);
         if (std::abs(wanted) < joints_.max_torque[i]) {  // saturated, the loop is open
+          drive_stiffness_[i] += joints_.stiffness[i];
+          drive_damping_[i] += joints_.rate_damping[i];
           K_(i, i) += joints_.stiffness[i];
           D_(i, i) += joints_.rate_damping[i];
         }
@@ -109,7 +117,9 @@ class PlantOf final : public Plant {
     for (Eigen::Index i = 0; i < q_.size(); ++i) {
       const double shape = std::tanh(qd_[i] / joints_.friction_speed);
       const double lost = joints_.damping[i] * qd_[i] + joints_.friction[i] * shape;
-      D_(i, i) += joints_.damping[i] + joints_.friction[i] / joints_.friction_speed * (1 - shape * shape);
+      const double slope = joints_.damping[i] + joints_.friction[i] / joints_.friction_speed * (1 - shape * shape);
+      drive_damping_[i] += slope;
+      D_(i, i) += slope;
       transmitted_[i] -= lost;
       tau_[i] -= lost;
     }
@@ -126,6 +136,7 @@ class PlantOf final : public Plant {
 
   Mechanism mechanism_;
   Vector q_, qd_, motor_, transmitted_, tau_;
+  Vector drive_stiffness_, drive_damping_;  ///< what motors and friction added to K_ and D_
   Matrix A_, K_, D_;
   Eigen::Vector3d hand_force_{0, 0, 0};
 };

@@ -55,10 +55,18 @@ constexpr Key kModelKeys[] = {
                           "CSV file t,x,y,z,qw,qx,qy,qz of a kinematic model; poses between rows are interpolated."),
 };
 
+constexpr Key kAdmittanceKeys[] = {
+    real<&Admittance::mass>("mass", {1e-3, 1000, "kg"}, "1", "Virtual mass that measured forces move."),
+    real<&Admittance::damping>("damping", {0, 1e4, "N s/m"}, "10", "Virtual damping."),
+};
+constexpr Table kAdmittance{kAdmittanceKeys};
+
 constexpr Key kDeviceReferenceKeys[] = {
     required(file<&DeviceReference::file>("file", "Device file.")),
     name<&DeviceReference::name>("name", "Name in this scene instead of the file's; two arms of one kind need it."),
     object<&DeviceReference::mount>("mount", kPose, "Frame of the device in the world instead of the file's."),
+    object<&DeviceReference::admittance>("admittance", kAdmittance,
+                                         "Compliance control in this scene, instead of the file's."),
     any<&DeviceReference::hand>("hand", "a mapping of the hand's parameters",
                                 "Settings of the simulated hand that replace the file's."),
 };
@@ -86,12 +94,6 @@ constexpr Key kLimitKeys[] = {
     boolean<&Limits::passivity>("passivity", "true", "Passivity observer and controller."),
 };
 constexpr Table kLimits{kLimitKeys};
-
-constexpr Key kAdmittanceKeys[] = {
-    real<&Admittance::mass>("mass", {1e-3, 1000, "kg"}, "1", "Virtual mass that measured forces move."),
-    real<&Admittance::damping>("damping", {0, 1e4, "N s/m"}, "10", "Virtual damping."),
-};
-constexpr Table kAdmittance{kAdmittanceKeys};
 
 constexpr Key kDeviceKeys[] = {
     required(integer<&DeviceText::version>("hapticd-device", kVersion, nullptr, "Version of the format.")),

@@ -25,6 +25,7 @@ struct DeviceReference {
   std::string name;
   std::optional<Pose> mount;
   const Node* hand = nullptr;
+  std::optional<Admittance> admittance = std::nullopt;
 };
 
 struct SceneText {

@@ -35,7 +35,7 @@ std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceRefer
   device.name = !reference.name.empty() ? reference.name : !text.name.empty() ? text.name : in.file().stem().string();
   device.mount = reference.mount.value_or(text.mount);
   device.limits = text.limits;
-  device.admittance = text.admittance;
+  device.admittance = reference.admittance ? reference.admittance : text.admittance;
   if (text.module.empty()) return std::nullopt;
 
   auto found = catalog.device(text.module);

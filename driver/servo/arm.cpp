@@ -31,6 +31,11 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   if (auto opened = (*device)->open(); !opened) return Error{opened.error()};
   const Limiter limiter(described.limits, (*device)->info().max_force);
   std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter));
+  if (described.admittance) {
+    if (const std::string no = Admittance::refusal(arm->info()); !no.empty())
+      return Error{"device '" + described.name + "': " + no};
+    arm->admittance_.emplace(*described.admittance, *arm->device_);
+  }
   if (described.limits.passivity && (arm->info().capabilities & HDV_C_UNVERIFIED) != 0) {
     const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
     arm->passivity_.emplace(mass * options.rate / 2, arm->info().damping);
@@ -58,6 +63,7 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
   read_status_ = device_->read(now, sample_);
   probe_.valid = judge(read_status_, now) && locate();
   if (!probe_.valid) return probe_;
+  if (admittance_) takeVirtualProbe();
   if (velocity_) {
     probe_.velocity = velocity_->update(probe_.position, dt);
     limiter_.watchSpeed(probe_.velocity.norm());
@@ -116,6 +122,34 @@ std::optional<Eigen::Vector3d> Arm::handForce() const noexcept HSP_RT {
   return R_world_device_ * force_device;
 }
 
+/// Under compliance control shapes meet the virtual mass, not the arm that is on its way there.
+void Arm::takeVirtualProbe() noexcept HSP_RT {
+  if (limiter_.fault() != Fault::kNone) return admittance_->stop();  // force alone from now on: it can be faded
+  if (!admittance_->started() && !admittance_->start(sample_.position)) return;
+  const Eigen::Vector4d& q = admittance_->orientation();
+  probe_.position = R_world_device_ * admittance_->position() + origin_world_;
+  probe_.orientation = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  probe_.velocity = R_world_device_ * admittance_->velocity();
+}
+
+/// Compliance control: `force` of the contacts and the hand's push move the virtual mass; the arm shall follow. False:
+/// not now, and the force goes to the motors.
+bool Arm::comply(double dt, const Eigen::Vector3d& force) noexcept HSP_RT {
+  if (!admittance_ || !admittance_->started()) return false;
+  const auto hand = handForce();
+  Eigen::Vector3d tip;
+  std::array<double, 4> turn{};
+  const bool measured = device_->kinematics().forward(device_->handle(), sample_.position, tip.data(), turn.data()) >= 0;
+  if (!hand || !measured) return false;
+  admittance_->step(R_world_device_.transpose() * (force + *hand), tip, dt);
+  command_.mode = HDV_POSITION;
+  for (uint32_t i = 0; i < device_->info().joint_count; ++i) command_.position[i] = admittance_->joints()[i];
+  std::array<double, HDV_MAX_JOINTS> gravity{};  // the arm adds it to its own loop, which then need not sag to carry it
+  if (device_->kinematics().gravity(device_->handle(), sample_.position, gravity_device_.data(), gravity.data()) == HSP_OK)
+    std::copy(gravity.begin(), gravity.end(), command_.torque);
+  return true;
+}
+
 void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque,
                 const passivity::Exchange& exchange) noexcept HSP_RT {
   if (passivity_ && probe_.valid) force = passivity_->update(probe_.position, force, dt, exchange);
@@ -131,7 +165,7 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
   command.mode = HDV_OFF;
   const bool located = std::isfinite(sample_.position[0]) &&
                        kinematics.jacobian(device_->handle(), sample_.position, J.data()) == HSP_OK && J.allFinite();
-  if (located && !limiter_.silent()) {
+  if (located && !limiter_.silent() && !comply(dt, force)) {
     command.mode = HDV_TORQUE;
     Eigen::Map<Eigen::VectorXd> tau(command.torque, joints);
     const Eigen::Vector3d force_device = R_world_device_.transpose() * force;

@@ -8,6 +8,7 @@
 #include "base/result.hpp"
 #include "host/device_instance.hpp"
 #include "scene/scene.hpp"
+#include "servo/admittance.hpp"
 #include "servo/core.hpp"
 #include "servo/limiter.hpp"
 #include "servo/passivity/controller.hpp"
@@ -54,6 +55,8 @@ class Arm {
   /// arm's own weight: -pinv(J^T) (tau - gravity). Nothing: the device measures no torque. In motion it has the inertia of
   /// what lies beyond the load cells in it.
   std::optional<Eigen::Vector3d> handForce() const noexcept HSP_RT;
+  /// Compliance control; nullptr: this arm is driven by force.
+  const Admittance* admittance() const noexcept { return admittance_ ? &*admittance_ : nullptr; }
   /// The passivity controller; nullptr: this arm needs none.
   const passivity::PassivityController* passivity() const noexcept { return passivity_ ? &*passivity_ : nullptr; }
   bool estimatesVelocity() const { return velocity_.has_value(); }
@@ -64,6 +67,8 @@ class Arm {
   Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter);
   bool judge(hsp_status status, Nanoseconds now) noexcept HSP_RT;
   bool locate() noexcept HSP_RT;
+  bool comply(double dt, const Eigen::Vector3d& force) noexcept HSP_RT;
+  void takeVirtualProbe() noexcept HSP_RT;
   void scaleToMotors(hdv_command& command) const noexcept HSP_RT;
 
   std::unique_ptr<host::DeviceInstance> device_;
@@ -73,6 +78,7 @@ class Arm {
   Eigen::Vector3d gravity_device_ = Eigen::Vector3d::Zero();
   std::optional<VelocityEstimator> velocity_;
   std::optional<passivity::PassivityController> passivity_;
+  std::optional<Admittance> admittance_;
   Limiter limiter_;
   hdv_sample sample_{};
   hdv_command command_{};

@@ -27,4 +27,14 @@ TipInverse::TipInverse(const TipJacobian& J) noexcept : J_(J), inverse_(Eigen::M
   }
 }
 
+JointVector TipInverse::rates(const Eigen::Vector3d& velocity) const noexcept {
+  return J_.transpose() * (inverse_ * velocity);
+}
+
+Eigen::Vector3d TipInverse::force(const JointVector& torque) const noexcept {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < J_.cols(); ++i) sum += torque[i] * J_.col(i);
+  return inverse_ * sum;
+}
+
 }  // namespace hapticd::servo

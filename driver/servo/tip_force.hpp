@@ -20,9 +20,10 @@ class TipInverse {
   explicit TipInverse(const TipJacobian& J) noexcept;
 
   /// [rt] pinv(J) v: the smallest joint rates that move the tip with v.
-  JointVector rates(const Eigen::Vector3d& velocity) const noexcept { return J_.transpose() * (inverse_ * velocity); }
-  /// [rt] pinv(J^T) tau: the force at the tip that explains the torques best (Thompson et al. 1999, Eq. 9 turned round).
-  Eigen::Vector3d force(const JointVector& torque) const noexcept { return inverse_ * (J_ * torque); }
+  JointVector rates(const Eigen::Vector3d& velocity) const noexcept;
+  /// [rt] pinv(J^T) tau: the force at the tip that explains the torques best (Thompson et al. 1999, Eq. 9 turned
+  /// round).
+  Eigen::Vector3d force(const JointVector& torque) const noexcept;
   /// [rt] 1: far from singular. Below 1 some direction is damped; 0: the arm cannot move along it.
   double health() const noexcept { return health_; }
 
