@@ -51,22 +51,25 @@ MovingFrame Pendulum::frame() const noexcept HSP_RT {
   return now;
 }
 
-/// The hand's impulse about the axis [N m s] in a step: of its force at the end, as the pendulum gives way.
-double Pendulum::impulseOf(std::span<const dynamics::Press> presses, double dt) const noexcept HSP_RT {
-  double resisting = law_.inertia + dt * law_.damping;
-  double impulse = -dt * (law_.mass * law_.gravity * law_.length * std::sin(state_.angle) + law_.damping * state_.rate);
+/// A step under the hand by backward Euler: all torques are those of its end, so no pendulum is too light for it.
+void Pendulum::push(std::span<const dynamics::Press> presses, double dt) noexcept HSP_RT {
+  const double weight = law_.mass * law_.gravity * law_.length, here = state_.angle + dt * state_.rate;
+  const double own = law_.inertia + dt * (law_.damping + dt * weight * std::max(0.0, std::cos(state_.angle)));
+  const double own_impulse = -dt * (weight * std::sin(here) + law_.damping * state_.rate);
+  double resisting = own, impulse = own_impulse;
   for (const dynamics::Press& press : presses) {
     const Eigen::Vector3d moment = axis_world_.cross(press.point - pivot_world_);  // velocity of the point at 1 rad/s
     resisting += dt * moment.dot(press.give * moment);
     impulse += dt * moment.dot(press.force);
   }
   const double change = impulse / resisting;
-  double torque = 0;
+  impulse = own_impulse;
   for (const dynamics::Press& press : presses) {
     const Eigen::Vector3d moment = axis_world_.cross(press.point - pivot_world_);
-    torque += moment.dot(dynamics::forceAfter(press, change * moment));
+    impulse += dt * moment.dot(dynamics::forceAfter(press, change * moment));
   }
-  return dt * torque;
+  state_.rate += impulse / own;
+  state_.angle += dt * state_.rate;
 }
 
 hsp_status Pendulum::step(const hsp_step& step) noexcept HSP_RT {
@@ -75,8 +78,8 @@ hsp_status Pendulum::step(const hsp_step& step) noexcept HSP_RT {
     return state_.rate * axis_world_.cross(point - pivot_world_);
   };
   if (step.dt_s > 0) {
-    state_.rate += impulseOf(presses_->foresee(step, before, velocity_at), step.dt_s) / law_.inertia;
-    state_ = dynamics::advance(law_, state_, 0, step.dt_s);
+    const auto presses = presses_->foresee(step, before, velocity_at);
+    presses.empty() ? void(state_ = dynamics::advance(law_, state_, 0, step.dt_s)) : push(presses, step.dt_s);
     state_.angle = std::remainder(state_.angle, 2 * M_PI);  // one that goes round keeps the digits of its angle
   }
   const MovingFrame now = frame();

@@ -91,6 +91,13 @@ Eigen::Matrix<double, 3, 6> pointRows(const Vector3d& lever) noexcept {
   return rows;
 }
 
+/// A contact whose normal turns with the body pushes it back toward facing the probe: torque lost for a turn [N m/rad].
+/// Where it would push the body over instead (a press from behind the centre) nothing is stiff.
+Matrix3d facing(const Press& press, const Vector3d& lever) noexcept {
+  const double push = std::max(0.0, -press.outward.dot(press.force)) * std::max(0.0, press.outward.dot(lever));
+  return push * (Matrix3d::Identity() - press.outward * press.outward.transpose());
+}
+
 }  // namespace
 
 /// Mass and inertia, and what tether and drag take of a change of velocity within the step.
@@ -123,40 +130,45 @@ RigidBody::Vector6d RigidBody::changeUnder(const Matrix6d& resisting, const Vect
 }
 
 void RigidBody::step(std::span<const Press> presses, double dt) noexcept {
-  if (!presses.empty() && dt > 0) {
-    Matrix6d resisting = ownResistance(dt);
-    Vector6d impulse = ownImpulse(dt);
-    for (const Press& press : presses) {
-      const Eigen::Matrix<double, 3, 6> rows = pointRows(press.point - x_);
-      resisting += dt * rows.transpose() * press.give * rows;
-      impulse += dt * rows.transpose() * press.force;
-    }
-    const Vector6d change = changeUnder(resisting, impulse);
-    Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero();
-    for (const Press& press : presses) {
-      const Vector3d lever = press.point - x_;
-      const Vector3d felt = forceAfter(press, pointRows(lever) * change);
-      force += felt;
-      torque += lever.cross(felt);
-    }
-    kick(dt * force, dt * torque);
+  if (presses.empty() || !(dt > 0)) return step(Vector3d::Zero(), Vector3d::Zero(), dt);
+  const Matrix6d own = ownResistance(dt);
+  Matrix6d resisting = own;
+  Vector6d own_impulse = ownImpulse(dt);
+  Vector6d impulse = own_impulse;
+  const Vector3d rate = angular();
+  for (const Press& press : presses) {
+    const Vector3d lever = press.point - x_;
+    const Eigen::Matrix<double, 3, 6> rows = pointRows(lever);
+    resisting += dt * rows.transpose() * press.give * rows;
+    impulse += dt * rows.transpose() * press.force;
+    const Matrix3d back = dt * dt * facing(press, lever);
+    resisting.bottomRightCorner<3, 3>() += back;
+    impulse.tail<3>() -= back * rate;
   }
-  step(Vector3d::Zero(), Vector3d::Zero(), dt);
+  const Vector6d change = changeUnder(resisting, impulse);
+  for (const Press& press : presses) {
+    const Vector3d lever = press.point - x_;
+    const Eigen::Matrix<double, 3, 6> rows = pointRows(lever);
+    own_impulse += dt * rows.transpose() * forceAfter(press, rows * change);
+    own_impulse.tail<3>() -= dt * dt * facing(press, lever) * (rate + change.tail<3>());
+  }
+  drift(changeUnder(own, own_impulse), dt);
 }
 
-/// An impulse [N s] and one of torque [N m s] about the centre, as far as the joint lets it through.
-void RigidBody::kick(const Vector3d& impulse, const Vector3d& turning) noexcept {
-  if (!impulse.allFinite() || !turning.allFinite()) return;
+/// The second half of a backward Euler step: the velocity of the end, and the way at that velocity. So a body at rest
+/// on a probe has no velocity.
+void RigidBody::drift(const Vector6d& change, double dt) noexcept {
+  if (!change.allFinite()) return step(Vector3d::Zero(), Vector3d::Zero(), dt);
   if (law_.joint == Joint::kHinge) {
-    hinge_rate_ += axis_world_.dot(turning + (x_ - pivot_world_).cross(impulse)) / hinge_.inertia;
-    return setHingeVelocities();
+    hinge_rate_ += axis_world_.dot(change.tail<3>());
+    return poseHinge(hinge_angle_ + dt * hinge_rate_);
   }
-  if (law_.joint == Joint::kSlider) {
-    v_ += axis_world_ * (axis_world_.dot(impulse) / law_.mass);
-    return;
-  }
-  v_ += impulse / law_.mass;
-  l_ += turning;
+  v_ += change.head<3>();
+  x_ += dt * v_;
+  if (law_.joint == Joint::kSlider) return;
+  const Matrix3d axes = turn_.matrix();
+  l_ += axes * principal_.cwiseProduct(axes.transpose() * change.tail<3>());
+  spin(dt);
 }
 
 Vector3d RigidBody::velocityAt(const Vector3d& point) const noexcept {
@@ -172,14 +184,19 @@ void RigidBody::translate(const Vector3d& force, double dt) noexcept {
 void RigidBody::rotate(const Vector3d& torque, double dt) noexcept {
   l_ += dt / 2 * torque;
   decay(dt / 2);
+  spin(dt);
+  decay(dt / 2);
+  l_ += dt / 2 * torque;
+}
+
+/// Free of torque.
+void RigidBody::spin(double dt) noexcept {
   const double turn = top_.symmetric() ? 0 : top_.bodyRate() * l_.norm() * dt;
   const int steps = turn < kMaxSubsteps * kLargestTurn ? 1 + static_cast<int>(turn / kLargestTurn) : kMaxSubsteps;
   for (int i = 0; i < steps; ++i) {
     turn_.turnBody(top_.bodyTurn(turn_.quaternion().conjugate() * l_, dt / steps));
     turn_.turnWorld(dt / steps * top_.worldRate() * l_);
   }
-  decay(dt / 2);
-  l_ += dt / 2 * torque;
 }
 
 /// Angular drag: the momentum about each principal axis decays by itself.
@@ -193,8 +210,12 @@ void RigidBody::decay(double time) noexcept {
 void RigidBody::swing(const Vector3d& force, const Vector3d& torque, double dt) noexcept {
   const double moment = axis_world_.dot(torque + (x_ - pivot_world_).cross(force));
   const PendulumState next = advance(hinge_, {hinge_angle_ - hinge_rest_, hinge_rate_}, moment, dt);
-  hinge_angle_ = std::remainder(next.angle + hinge_rest_, 2 * M_PI);  // one that goes round keeps its digits
   hinge_rate_ = next.rate;
+  poseHinge(next.angle + hinge_rest_);
+}
+
+void RigidBody::poseHinge(double angle) noexcept {
+  hinge_angle_ = std::remainder(angle, 2 * M_PI);  // one that goes round keeps its digits
   // turned by an angle from the start, never by steps: the pose has the angle's error only
   const Quaterniond turn = rotationBy(hinge_angle_ * axis_world_);
   turn_.set(turn * start_turn_);

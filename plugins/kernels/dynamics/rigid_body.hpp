@@ -45,8 +45,9 @@ class RigidBody {
   /// in the step. Not-a-number counts as nothing.
   void step(const Eigen::Vector3d& force, const Eigen::Vector3d& torque, double dt) noexcept;
 
-  /// [rt] One step of dt [s] under contacts, each of which gives as the body moves (implicit in the change of
-  /// velocity): bounded for every mass and stiffness.
+  /// [rt] One step of dt [s] under contacts, by backward Euler: all forces are those of its end. Bounded for every mass
+  /// and stiffness, at the price of w dt/2 of critical damping, w^2 = k/m. Held forces would need damping B > k dt/2
+  /// and a mass above B dt/2 (test Coupling.HeldForcesAreStableOnlyAboveTheirBounds).
   void step(std::span<const Press> presses, double dt) noexcept;
 
   /// [rt] Velocity [m/s] of the body's point that is at `point` [m], world.
@@ -73,13 +74,15 @@ class RigidBody {
   void decay(double time) noexcept;
   void hang() noexcept;
   void setHingeVelocities() noexcept;
-  void kick(const Eigen::Vector3d& impulse, const Eigen::Vector3d& turning) noexcept;
+  void poseHinge(double angle) noexcept;
+  void spin(double dt) noexcept;
   void swing(const Eigen::Vector3d& force, const Eigen::Vector3d& torque, double dt) noexcept;
   using Vector6d = Eigen::Matrix<double, 6, 1>;
   using Matrix6d = Eigen::Matrix<double, 6, 6>;
   Vector6d changeUnder(const Matrix6d& resisting, const Vector6d& impulse) const noexcept;
   Matrix6d ownResistance(double dt) const noexcept;
   Vector6d ownImpulse(double dt) const noexcept;
+  void drift(const Vector6d& change, double dt) noexcept;
 
   RigidBodyLaw law_;
   Eigen::Vector3d gravity_, start_, pivot_world_, axis_world_;

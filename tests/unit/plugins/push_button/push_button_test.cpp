@@ -1,0 +1,201 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "../plugin_under_test.hpp"
+#include "kernels/dynamics/button.hpp"
+
+namespace hapticd::test {
+namespace {
+
+constexpr double kTop = 0.05;  // of the box, along y; and of the ball
+
+struct Button {
+  double k1 = 2000, end = 8000;
+  std::vector<double> detent = {0, 0, 0.003, 6, 0.004, 2};
+  std::string model = "box.yaml";
+
+  dynamics::DetentCurve curve() const {
+    std::vector<dynamics::DetentCurve::Knot> knots;
+    for (size_t i = 0; i + 1 < detent.size(); i += 2) knots.push_back({detent[i], detent[i + 1]});
+    return dynamics::DetentCurve(knots, end);
+  }
+  void make(PluginUnderTest& plugin) const {
+    ASSERT_EQ(plugin.set("geometry", kModels + model), HSP_OK);
+    ASSERT_EQ(plugin.set("stiffness", k1), HSP_OK);
+    ASSERT_EQ(plugin.set("detent", detent), HSP_OK);
+    ASSERT_EQ(plugin.set("end_stiffness", end), HSP_OK);
+    ASSERT_EQ(plugin.activate(), HSP_OK);
+  }
+};
+
+/// The largest stable x2 below, or the smallest above, that is an equilibrium: what a slow press or release meets.
+double forceOnBranch(const Button& button, double travel, bool from_below) {
+  const auto all = dynamics::buttonEquilibria(button.k1, button.curve(), travel);
+  double force = NAN;
+  for (int i = 0; i < all.count; ++i) {
+    const auto& e = all.at[static_cast<size_t>(i)];
+    if (e.stable && (!from_below || std::isnan(force))) force = e.force;
+  }
+  return force;
+}
+
+TEST(PushButton, ForceAgainstTravelIsTheClosedFormOnBothBranches) {
+  for (const double k1 : {500.0, 2000.0, 6000.0}) {
+    Button button;
+    button.k1 = k1;
+    PluginUnderTest plugin;
+    button.make(plugin);
+    plugin.tick({{0, kTop + 1e-3, 0}});
+    double worst = 0;
+    const auto goTo = [&](double travel, bool inward) {
+      plugin.tick({{0.01, kTop - travel, -0.02}});
+      worst = std::fmax(worst, std::fabs(plugin.force().y() - forceOnBranch(button, travel, inward)));
+    };
+    const double last = 0.03;
+    for (int i = 1; i <= 3000; ++i) goTo(last * i / 3000, true);
+    EXPECT_LT(worst, 1e-9) << "in, k1 " << k1;
+    worst = 0;
+    for (int i = 3000; i >= 1; --i) goTo(last * i / 3000, false);
+    EXPECT_LT(worst, 1e-9) << "out, k1 " << k1;
+  }
+}
+
+TEST(PushButton, ClicksInTheVeryTickItSnapsAndBackWithHysteresis) {
+  const Button button;  // falls with 4000 N/m: steeper than k1, so it snaps
+  PluginUnderTest plugin;
+  button.make(plugin);
+  plugin.tick({{0, kTop + 1e-3, 0}});
+  const double in = 0.003 + 6 / button.k1, out = 0.004 + 2 / button.k1;  // where a branch ends
+  std::vector<double> clicks;
+  constexpr double kWay = 1.003e-5;  // a tick, so that none ends on the snap itself
+  const auto goTo = [&](double travel) {
+    plugin.tick({{0, kTop - travel, 0}});
+    if ((plugin.contacts[0].flags & HSP_OUT_EVENT) != 0) clicks.push_back(travel);
+  };
+  for (int i = 1; i <= 1000; ++i) goTo(kWay * i);
+  ASSERT_EQ(clicks.size(), 1u);
+  EXPECT_GE(clicks[0], in * (1 - 1e-12));
+  EXPECT_LT(clicks[0] - kWay, in) << "not a tick late";
+  clicks.clear();
+  for (int i = 999; i >= 0; --i) goTo(kWay * i);
+  ASSERT_EQ(clicks.size(), 1u);
+  EXPECT_LE(clicks[0], out * (1 + 1e-12));
+  EXPECT_GT(clicks[0] + kWay, out) << "not a tick late";
+  EXPECT_LT(out, in) << "hysteresis";
+}
+
+TEST(PushButton, AGentleDetentClicksWithoutAJump) {
+  Button button;
+  button.k1 = 6000;  // the fall of 4000 N/m is followed all the way
+  PluginUnderTest plugin;
+  button.make(plugin);
+  plugin.tick({{0, kTop + 1e-3, 0}});
+  int events = 0;
+  double last = 0, steepest = 0;
+  for (int i = 1; i <= 8000; ++i) {
+    plugin.tick({{0, kTop - 1e-6 * i, 0}});
+    events += (plugin.contacts[0].flags & HSP_OUT_EVENT) != 0;
+    steepest = std::fmax(steepest, std::fabs(plugin.force().y() - last));
+    last = plugin.force().y();
+  }
+  EXPECT_EQ(events, 1);
+  EXPECT_LT(steepest, 1e-6 * 6000 * 4000 / 2000 * 1.01) << "slope k1 k2/(k1 + k2), Eq. 10";
+}
+
+TEST(PushButton, AnyCapPressesTheSameAtItsMiddleAndAnyCurveIsTaken) {
+  for (const char* model : {"box.yaml", "sphere.yaml", "cylinder.yaml"}) {
+    Button button;
+    button.model = model;
+    button.k1 = 3000;
+    button.detent = {0, 0, 0.001, 1, 0.002, 3, 0.0025, 1.5, 0.004, 2};
+    button.end = 20000;
+    PluginUnderTest plugin;
+    button.make(plugin);
+    plugin.tick({{0, kTop + 1e-3, 0}});
+    for (int i = 1; i <= 900; ++i) {
+      plugin.tick({{0, kTop - 1e-5 * i, 0}});
+      EXPECT_NEAR(plugin.force().y(), forceOnBranch(button, 1e-5 * i, true), 1e-7) << model << " at " << i;
+      EXPECT_LT(std::hypot(plugin.force().x(), plugin.force().z()), 1e-6);
+    }
+  }
+}
+
+TEST(PushButton, ASlopingCapBalancesAlongItsAxis) {
+  Button button;
+  button.model = "sphere.yaml";
+  PluginUnderTest plugin;
+  button.make(plugin);
+  const Vector3d out = Vector3d(0.4, 1, -0.2).normalized();
+  plugin.tick({(kTop + 1e-3) * out});
+  for (int i = 1; i <= 300; ++i) plugin.tick({kTop * out - 1e-5 * i * Vector3d::UnitY()});
+  const double x2 = -plugin.position().y();
+  ASSERT_GT(x2, 5e-4);
+  for (int i = 0; i < 50; ++i) plugin.tick({kTop * out - 3e-3 * Vector3d::UnitY()});  // the foot settles
+  EXPECT_NEAR(plugin.force().y(), button.curve().force(-plugin.position().y()), 1e-6);
+}
+
+TEST(PushButton, WorksInAnyPose) {
+  const Button button;
+  PluginUnderTest plugin;
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(1.1, Vector3d(1, 2, 3).normalized()));
+  const Vector3d origin(0.3, -0.2, 0.5);
+  for (int i = 0; i < 3; ++i) plugin.pose.position[i] = origin[i];
+  const double q[4] = {turn.w(), turn.x(), turn.y(), turn.z()};
+  std::copy(q, q + 4, plugin.pose.orientation);
+  button.make(plugin);
+  const Vector3d up = turn * Vector3d::UnitY();
+  plugin.tick({origin + (kTop + 1e-3) * up});
+  for (int i = 1; i <= 500; ++i) {
+    plugin.tick({origin + (kTop - 1e-5 * i) * up});
+    EXPECT_LT((plugin.force() - forceOnBranch(button, 1e-5 * i, true) * up).norm(), 1e-9);
+  }
+}
+
+TEST(PushButton, ABadSampleLeavesItPressedAndLettingGoBringsItBack) {
+  const Button button;
+  PluginUnderTest plugin;
+  button.make(plugin);
+  plugin.tick({{0, kTop + 1e-3, 0}});
+  for (int i = 0; i < 5; ++i) plugin.tick({{0, kTop - 0.008, 0}});
+  const double pressed = plugin.position().y();
+  EXPECT_LT(pressed, -0.004);
+  plugin.tick({{0, kTop - 0.008, 0}}, {}, HSP_IN_INVALID);
+  EXPECT_EQ(plugin.force(), Vector3d::Zero());
+  EXPECT_EQ(plugin.position().y(), pressed);
+  plugin.tick({{0, kTop + 0.01, 0}});
+  EXPECT_EQ(plugin.position().y(), 0);
+  plugin.tick({{0, kTop - 0.001, 0}});
+  EXPECT_NEAR(plugin.force().y(), forceOnBranch(button, 0.001, true), 1e-9);
+}
+
+TEST(PushButton, EnergyOverAPressIsNeverGained) {
+  const Button button;
+  PluginUnderTest plugin;
+  button.make(plugin);
+  plugin.tick({{0, kTop + 1e-3, 0}});
+  double work = 0, force = 0, last = kTop + 1e-3;
+  for (int i = 0; i <= 40'000; ++i) {
+    const double y = kTop + 1e-3 - 5e-3 * (1 - std::cos(2 * M_PI * i / 20'000));
+    plugin.tick({{0, y, 0}});
+    work -= (force + plugin.force().y()) / 2 * (y - last);
+    force = plugin.force().y(), last = y;
+    ASSERT_GE(work, plugin.energy() - 1e-5) << i;
+  }
+  EXPECT_GT(work, 1e-3) << "two clicks in, two out: each takes its loop";
+}
+
+TEST(PushButton, SaysWhatIsWrongWithACurve) {
+  for (const auto& [detent, what] : {std::pair{std::vector<double>{0, 0, 0.003, 4, 0.002, 3}, "point 2"},
+                                     {std::vector<double>{0, 0, 0.003, 0}, "above 0 N"},
+                                     {std::vector<double>{0, 1}, "point 0"}}) {
+    PluginUnderTest plugin;
+    plugin.set("geometry", kModels + "box.yaml");
+    ASSERT_EQ(plugin.set("detent", detent), HSP_OK);
+    EXPECT_LT(plugin.activate(), 0);
+    EXPECT_NE(plugin.log.find(what), std::string::npos) << plugin.log;
+  }
+}
+
+}  // namespace
+}  // namespace hapticd::test
