@@ -1,9 +1,12 @@
 /// What the parts of bench_trace share: surfaces, clock, solvers of one closest point a tick.
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -57,6 +60,28 @@ double nanoseconds(int count, Work work) {
   const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - begin;
   return time.count() / count;
 }
+
+/// The cost of a step of a walk of `kTicks`: the mean over short stretches of the best time of each in any round, so
+/// that a busy machine interrupts few of them.
+class Stretches {
+ public:
+  /// Walks once: step(i) for every i.
+  template <class Step>
+  void walk(Step step) {
+    for (std::size_t k = 0; k < best_.size(); ++k) {
+      const double ns = nanoseconds(kStretch, [&] {
+        for (std::size_t i = k * kStretch; i < (k + 1) * kStretch; ++i) step(i);
+      });
+      best_[k] = std::min(best_[k], ns);
+    }
+  }
+  double mean() const { return std::accumulate(best_.begin(), best_.end(), 0.0) / static_cast<double>(best_.size()); }
+
+ private:
+  static constexpr int kStretch = 100;
+  static_assert(kTicks % kStretch == 0);
+  std::vector<double> best_ = std::vector<double>(kTicks / kStretch, HUGE_VAL);
+};
 
 /// Keeps a result alive without storing it.
 template <class T>
