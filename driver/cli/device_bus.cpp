@@ -19,6 +19,8 @@ constexpr Known kKnown[] = {
     {"0403", "cb48", "Novint Falcon", "usb_bulk"},
     {"1234", "0006", "WoodenHaptics (mbed, HID)", "usb_hid"},
     {"16c0", "0486", "WoodenHaptics / Polhem (Teensy, HID)", "usb_hid"},
+    {"1209", "0005", "hapticd interface board (HID)", "usb_hid"},
+    {"1209", "0006", "hapticd interface board (bulk)", "usb_bulk"},
     {"2988", "", "3D Systems Touch (closed protocol: no module)", ""},
     {"1451", "", "Force Dimension (closed protocol: no module)", ""},
 };

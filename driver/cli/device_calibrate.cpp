@@ -1,0 +1,81 @@
+/// `hapticd device calibrate`: lets an arm find its zero, with the user's help. No force while it does.
+#include <unistd.h>
+
+#include <memory>
+#include <string>
+
+#include "base/clock.hpp"
+#include "cli/command.hpp"
+#include "host/device_instance.hpp"
+#include "scene/reader.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+struct Options {
+  std::string file;
+  bool yes = false;
+};
+
+/// Waits for the user, if one is there.
+void waitForUser(const char* instructions, bool yes) {
+  std::printf("%s\n", instructions);
+  if (yes || isatty(STDIN_FILENO) == 0) return;
+  std::printf("Press Enter when you are ready. ");
+  std::fflush(stdout);
+  for (int c = std::getchar(); c != '\n' && c != EOF; c = std::getchar()) {
+  }
+}
+
+void printWhere(host::DeviceInstance& device) {
+  hdv_sample sample{};
+  std::array<double, 3> tip{};
+  std::array<double, 4> orientation{};
+  if (device.read(monotonicNow(), sample) < 0) return;
+  std::printf("calibrated; joints");
+  for (uint32_t i = 0; i < device.info().joint_count; ++i) std::printf(" %.4f", sample.position[i]);
+  if (device.kinematics().forward(device.handle(), sample.position, tip.data(), orientation.data()) >= 0)
+    std::printf(", tip at (%.4f, %.4f, %.4f) m in the device frame", tip[0], tip[1], tip[2]);
+  std::printf("\n");
+}
+
+int calibrate(const Options& options) {
+  const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
+  printProblems(loaded.problems, stderr);
+  if (!loaded.device) return kBadInput;
+  auto device = host::DeviceInstance::create(*loaded.device, logToTerminal);
+  if (!device) return fail(kFailed, device.error());
+  const hdv_ext_calibration* calibration = (*device)->calibration();
+  if (calibration == nullptr) {
+    std::printf("%s needs no calibration: its positions are absolute\n", loaded.device->name.c_str());
+    return kWorked;
+  }
+  if (auto opened = (*device)->open(); !opened) return fail(kFailed, opened.error());
+  hdv_start how{};
+  how.struct_size = sizeof how;
+  how.rate_hz = (*device)->info().rate_hz;
+  how.time_ns = monotonicNow();
+  if (auto started = (*device)->start(how); !started) return fail(kFailed, started.error());
+  waitForUser(calibration->instructions, options.yes);
+  if (calibration->calibrate((*device)->handle()) < 0)
+    return fail(kFailed, "device '" + loaded.device->name +
+                             "': not calibrated\n  it stays without force\n  fix: follow the instructions above, then "
+                             "hapticd device calibrate " +
+                             options.file);
+  printWhere(**device);
+  return kWorked;
+}
+
+}  // namespace
+
+void addDeviceCalibrate(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.get_subcommand("device")->add_subcommand(
+      "calibrate", "Let an arm find its zero; it has no force before. Says what you must do with it.");
+  command->add_option("file", options->file, "device file (YAML)")->required();
+  command->add_flag("-y,--yes", options->yes, "do not wait for Enter");
+  command->footer("Example:\n  hapticd device calibrate config/devices/simulated-premium15.yaml");
+  command->callback([options, &exit_code] { exit_code = calibrate(*options); });
+}
+
+}  // namespace hapticd::cli
