@@ -16,8 +16,8 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kLargestTurn = 0.05;  // [rad] of a substep
-constexpr int kMaxSubsteps = 8;        // bounds the time of a tick; faster bodies stay bounded but lose digits
+constexpr double kLargestTurn = 0.15;  // [rad] of a substep
+constexpr int kMaxSubsteps = 4;        // bounds the time of a tick; faster bodies stay bounded but lose digits
 
 /// One coordinate under a constant force: x'' = (force - b x' - k x)/m, exactly.
 void drive(double mass, double damping, double stiffness, const Vector3d& force, double dt, Vector3d& x, Vector3d& v) {
@@ -152,7 +152,10 @@ void RigidBody::step(std::span<const Press> presses, double dt) noexcept {
     own_impulse += dt * rows.transpose() * forceAfter(press, rows * change);
     own_impulse.tail<3>() -= dt * dt * facing(press, lever) * (rate + change.tail<3>());
   }
-  drift(changeUnder(own, own_impulse), dt);
+  if (law_.joint != Joint::kFree) return drift(changeUnder(own, own_impulse), dt);
+  Vector6d alone;  // by itself a body moves and turns independently
+  alone << own_impulse.head<3>() / own(0, 0), own.bottomRightCorner<3, 3>().llt().solve(own_impulse.tail<3>());
+  drift(alone, dt);
 }
 
 /// The second half of a backward Euler step: the velocity of the end, and the way at that velocity. So a body at rest
@@ -195,8 +198,8 @@ void RigidBody::spin(double dt) noexcept {
   const int steps = turn < kMaxSubsteps * kLargestTurn ? 1 + static_cast<int>(turn / kLargestTurn) : kMaxSubsteps;
   for (int i = 0; i < steps; ++i) {
     turn_.turnBody(top_.bodyTurn(turn_.quaternion().conjugate() * l_, dt / steps));
-    turn_.turnWorld(dt / steps * top_.worldRate() * l_);
   }
+  turn_.turnWorld(dt * top_.worldRate() * l_);  // leaves the momentum in the body as it is
 }
 
 /// Angular drag: the momentum about each principal axis decays by itself.
