@@ -14,13 +14,19 @@ namespace {
 using hapticd::Nanoseconds;
 
 /// Bytes that are nearly a report: right ones with some changed, cut, or drawn out.
-std::vector<uint8_t> mutated(const hapticd::codec::Report& report, std::mt19937_64& random) {
+std::vector<uint8_t> mutated(hapticd::codec::Report report, uint32_t sequence, std::mt19937_64& random) {
+  using hapticd::codec::Role;
+  for (hapticd::codec::Field& field : report.fields) {  // as the arm would write it: positions are what it knows
+    if (field.role == Role::kPosition) field.role = Role::kTorque;
+    if (field.role == Role::kCalibrated || field.role == Role::kButton) field.role = Role::kEnable;
+  }
   std::vector<uint8_t> bytes(report.bytes());
   hapticd::codec::Order order;
   order.enable = true;
-  for (double& torque : order.torque) torque = std::ldexp(static_cast<double>(random() % 2001) - 1000, -8);
-  (void)hapticd::codec::encode(report, order, bytes);  // constants and checksum are right, the rest is zero
-  const auto changes = random() % 6;
+  order.sequence = sequence;
+  for (double& torque : order.torque) torque = 0.6 + std::ldexp(static_cast<double>(random() % 2001) - 1000, -14);
+  (void)hapticd::codec::encode(report, order, bytes);
+  const auto changes = random() % 8 == 0 ? random() % 6 : 0;
   for (uint64_t i = 0; i < changes && !bytes.empty(); ++i)
     bytes[random() % bytes.size()] = static_cast<uint8_t>(random());
   if (random() % 8 == 0) bytes.resize(random() % 1200);
@@ -38,8 +44,10 @@ int run(const std::filesystem::path& file, long reports) {
   session.attach(now, {}, true);
   long good = 0;
   for (long i = 0; i < reports; ++i) {
-    now += random() % 3'000'000;
-    good += session.receive(now, mutated(wire.input, random)) ? 1 : 0;
+    now += random() % 2'000'000;
+    std::vector<uint8_t> bytes = mutated(wire.input, static_cast<uint32_t>(i), random);
+    if (wire.framing.used) bytes.insert(bytes.begin(), wire.framing.header, 1);
+    good += session.receive(now, bytes) ? 1 : 0;
     session.watch(now);
     hapticd::usb::Wish wish;
     wish.time = now, wish.sequence = 1, wish.on = true;

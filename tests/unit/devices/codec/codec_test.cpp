@@ -57,7 +57,7 @@ TEST(Codec, FalconCommandsAreTextBetweenMarks) {
   order.enable = true;
   order.torque = {-0.1, 0, 10};  // 1000 = 0x3e8; clamped to -4096 = 0xf000
   const auto bytes = encoded(wire.output, order);
-  EXPECT_EQ(std::string(bytes.begin(), bytes.end()), "<IODAAAAAAAAPAAA>");
+  EXPECT_EQ(std::string(bytes.begin(), bytes.end()), "<IODAAAAAAAAPAA>");
 }
 
 TEST(Codec, WoodenHapticsReportsAreSevenLittleEndianNumbers) {

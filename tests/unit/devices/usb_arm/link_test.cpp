@@ -8,7 +8,7 @@
 #include <functional>
 #include <mutex>
 
-#include "board.hpp"
+#include "emulators/board.hpp"
 #include "emulators/wire_file.hpp"
 #include "usb_arm/calibration.hpp"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "board.hpp"
+#include "emulators/board.hpp"
 #include "emulators/wire_file.hpp"
 
 namespace hapticd::usb {

@@ -1,0 +1,100 @@
+/// The HID transport and its I/O thread with the real hidapi: open by serial number, push, lose, find again.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <mutex>
+
+#include "emulators/wire_file.hpp"
+#include "played_hidraw.hpp"
+#include "usb_arm/link.hpp"
+#include "usb_hid/hid_transport.hpp"
+
+namespace hapticd::usb {
+namespace {
+
+class HidrawTest : public ::testing::Test {
+ protected:
+  HidrawTest() : testbed(umockdev_testbed_new()) {}
+  ~HidrawTest() override { g_object_unref(testbed); }
+  void SetUp() override {
+    if (umockdev_in_mock_environment() == FALSE) GTEST_SKIP() << "umockdev's preload library is not in this process";
+  }
+
+  std::unique_ptr<Link> make(const std::string& serial) {
+    LinkSettings s;
+    s.address.vendor = 0x1234, s.address.product = 0x0006, s.address.serial = serial;
+    s.session.calibration = Calibration::kNone;
+    s.session.health.least_rate = 0;  // a busy machine may well be slow
+    s.log = [](int, const std::string&) {};
+    return std::make_unique<Link>(makeHidTransport(), wire, std::move(s));
+  }
+
+  /// Pushes at 1 kHz until `done`, or five seconds.
+  static bool pushUntil(Link& link, const std::function<bool(const Sample&)>& done) {
+    RealClock clock(0);
+    Sample sample;
+    Wish wish;
+    for (int i = 0; i < 5000; ++i) {
+      link.read(sample);
+      wish.time = clock.now(), ++wish.sequence, wish.on = true, wish.torque = {0.1, 0, 0};
+      link.write(wish);
+      if (done(sample)) return true;
+      clock.waitUntil(clock.now() + 1'000'000);
+    }
+    return false;
+  }
+
+  UMockdevTestbed* testbed;
+  codec::Wire wire = codec::readWire(emulator::wireOf(HAPTICD_SOURCE_DIR "/config/devices/woodenhaptics.yaml"), 3);
+  emulator::EmulatedArm left{"woodenhaptics", emulator::defaultHand("woodenhaptics")};
+  emulator::EmulatedArm right{"woodenhaptics", emulator::defaultHand("woodenhaptics")};
+};
+
+TEST_F(HidrawTest, FindsTheArmByItsSerialNumberAmongTwo) {
+  emulator::PlayedHidraw a(testbed, 0, left, "A1"), b(testbed, 1, right, "B2");
+  a.plug();
+  b.plug();
+  auto link = make("B2");
+  const auto opened = link->open();
+  ASSERT_TRUE(opened) << opened.error();
+  EXPECT_EQ(opened->serial, "B2");
+  const auto started = link->start();
+  ASSERT_TRUE(started) << started.error();
+  ASSERT_TRUE(pushUntil(*link, [&](const Sample&) { return b.pushed.load(); }));
+  EXPECT_FALSE(a.pushed);
+  auto other = make("A1");
+  EXPECT_TRUE(other->open()) << "the other arm is free";
+  auto third = make("C3");
+  const auto missing = third->open();
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().find("A1"), std::string::npos) << missing.error();
+}
+
+TEST_F(HidrawTest, AnArmInUseIsNotTakenTwice) {
+  emulator::PlayedHidraw a(testbed, 0, left, "A1");
+  a.plug();
+  auto first = make(""), second = make("");
+  ASSERT_TRUE(first->open());
+  const auto refused = second->open();
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().find("in use"), std::string::npos) << refused.error();
+}
+
+TEST_F(HidrawTest, PushesLosesFindsAndPushesAgain) {
+  emulator::PlayedHidraw a(testbed, 0, left, "A1");
+  a.plug();
+  auto link = make("A1");
+  ASSERT_TRUE(link->open());
+  ASSERT_TRUE(link->start());
+  ASSERT_TRUE(pushUntil(*link, [&](const Sample&) { return a.pushed.load(); }));
+  a.unplug();
+  ASSERT_TRUE(pushUntil(*link, [](const Sample& s) { return s.trouble == Trouble::kUnplugged; }));
+  a.pushed = false;
+  a.plug();
+  ASSERT_TRUE(pushUntil(*link, [&](const Sample& s) { return s.trouble == Trouble::kNone && a.pushed; }));
+  link->close();
+  EXPECT_FALSE(a.pushed) << "motors are off at the end";
+}
+
+}  // namespace
+}  // namespace hapticd::usb
