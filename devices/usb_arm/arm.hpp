@@ -138,9 +138,11 @@ class Arm : public Device, public Parameters {
     to.buttons = sample_.buttons;
     to.flags = (sample_.calibrated ? uint32_t{HDV_S_CALIBRATED} : 0u) | (velocity_ ? uint32_t{HDV_S_VELOCITY} : 0u) |
                (torque_ ? uint32_t{HDV_S_TORQUE} : 0u);
+    // Silence is judged by the host, which sees no new sequence number; the motors are off by then, and come back in a
+    // ramp if it was short.
     if (sample_.trouble == Trouble::kUnplugged)
       to.flags |= HDV_S_LOST;
-    else if (sample_.trouble != Trouble::kNone)
+    else if (sample_.trouble != Trouble::kNone && sample_.trouble != Trouble::kStale)
       to.flags |= HDV_S_FAULT;
     if (now_ns > sample_.time + kHung && sample_.trouble == Trouble::kNone) to.flags |= HDV_S_FAULT;
     for (size_t i = 0; i < HDV_MAX_JOINTS; ++i) {
