@@ -13,8 +13,9 @@ namespace {
 using Eigen::Vector3d;
 using medial::SkeletonFoot;
 
-constexpr double kNewPlace = 0.25;   ///< a probe that moved by this share of a cell is looked for all over the body
-constexpr double kOtherFoot = 0.02;  ///< difference of parameters from which an offered foot is another one
+constexpr double kNewPlace = 0.25;     ///< a probe that moved by this share of a cell is looked for all over the body
+constexpr double kWithinReach = 0.02;  ///< [m] farther bodies wait for the search of the simulation side
+constexpr double kOtherFoot = 0.02;    ///< difference of parameters from which an offered foot is another one
 constexpr double kShowPeriod = 1.0 / 60;  ///< [s] between two sets of displacements for drawing
 constexpr double kFinestMesh = 1e-6;      ///< [m] finer meshes are for files, not for drawing
 constexpr double kGapFactor = 1.5;        ///< so many ticks without a step: the body was left alone meanwhile
@@ -173,8 +174,9 @@ void MatDeformable::find(const Vector3d& p, uint32_t flags, const medial::Newton
     }
     const bool far = (p - track.last).squaredNorm() > std::pow(kNewPlace * skeleton.spacing(), 2);
     const bool lost = !track.known || far || jumped;
-    if (!lost) track.foot = skeleton.nearest(p, track.foot.u, track.foot.v, options);
-    if (lost || !track.foot.converged) {
+    const bool matters = skeleton.leastDistance(p) < kWithinReach;
+    if (!lost || !matters) track.foot = skeleton.nearest(p, track.foot.u, track.foot.v, options);
+    if (matters && (lost || !track.foot.converged)) {
       track.foot = skeleton.search(p, options);
     } else if (track.offered &&
                std::fabs(track.offered_u - track.foot.u) + std::fabs(track.offered_v - track.foot.v) > kOtherFoot) {

@@ -231,40 +231,51 @@ SkeletonFoot Skeleton::nearest(const Vector3d& p, double u, double v, const Newt
   return foot;
 }
 
-SkeletonFoot Skeleton::search(const Vector3d& p, const NewtonOptions& options) const noexcept {
-  struct Start {
-    double value = HUGE_VAL, u = 0, v = 0;
-    int i = 0, j = 0;
-  };
-  std::array<Start, kColdStarts> starts;
-  const auto offer = [&starts](Start start) {
-    for (Start& kept : starts) {
-      if (start.value < kept.value) std::swap(start, kept);
-    }
-  };
+namespace {
+
+/// A sample of the skeleton from which a cold search may start.
+struct Start {
+  double value = HUGE_VAL, u = 0, v = 0;
+};
+using Starts = std::array<Start, kColdStarts>;
+
+/// Keeps the best samples, best first.
+void offer(Start start, Starts& starts) noexcept {
+  for (Start& kept : starts)
+    if (start.value < kept.value) std::swap(start, kept);
+}
+
+double sampleAt(const std::vector<double>& t, int i) noexcept {
+  const auto cell = static_cast<std::size_t>(i / kSamplesPerInterval);
+  if (cell + 1 >= t.size()) return t.back();
+  return t[cell] + (t[cell + 1] - t[cell]) * (i % kSamplesPerInterval) / kSamplesPerInterval;
+}
+
+Starts coldStarts(const Skeleton& skeleton, const Vector3d& p, Envelope envelope) noexcept {
+  const auto& [tu, tv] = skeleton.parameters();
+  const int rows = skeleton.curve() ? 1 : kSamplesPerInterval * (static_cast<int>(tu.size()) - 1) + 1;
+  const int columns = kSamplesPerInterval * (static_cast<int>(tv.size()) - 1) + 1;
+  Starts starts;
   spline::SurfacePoint s;
-  const auto at = [this](std::size_t axis, int i) {
-    const std::vector<double>& t = parameters_[axis];
-    const auto cell = static_cast<std::size_t>(i / kSamplesPerInterval);
-    return cell + 1 < t.size() ? t[cell] + (t[cell + 1] - t[cell]) * (i % kSamplesPerInterval) / kSamplesPerInterval
-                               : t.back();
-  };
-  const int rows = curve_ ? 1 : kSamplesPerInterval * (static_cast<int>(parameters_[0].size()) - 1) + 1;
-  const int columns = kSamplesPerInterval * (static_cast<int>(parameters_[1].size()) - 1) + 1;
   for (int i = 0; i < rows; ++i) {
     for (int j = 0; j < columns; ++j) {
-      const double u = at(0, i), v = at(1, j);
-      surface_->evaluate1(u, v, s);
-      const double radius = options.envelope == Envelope::kExact ? radius_.evaluate(u, v).f : 0;
-      offer({(p - s.S).norm() - radius, u, v, i, j});
+      const double u = sampleAt(tu, i), v = sampleAt(tv, j);
+      skeleton.surface().evaluate1(u, v, s);
+      offer({(p - s.S).norm() - (envelope == Envelope::kExact ? skeleton.radius().evaluate(u, v).f : 0), u, v}, starts);
     }
   }
+  return starts;
+}
+
+}  // namespace
+
+SkeletonFoot Skeleton::search(const Vector3d& p, const NewtonOptions& options) const noexcept {
   NewtonOptions cold = options;
   cold.max_evaluations = kColdEvaluations;
   SkeletonFoot best;
   double least = HUGE_VAL;
   int evaluations = 0;
-  for (const Start& start : starts) {
+  for (const Start& start : coldStarts(*this, p, options.envelope)) {
     if (start.value == HUGE_VAL) break;
     const SkeletonFoot foot = nearest(p, start.u, start.v, cold);
     evaluations += foot.evaluations;
