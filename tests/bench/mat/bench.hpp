@@ -1,0 +1,31 @@
+/// Figures of the soft bodies: tables of text, and how times are taken.
+#pragma once
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <vector>
+
+namespace hapticd::bench_mat {
+
+/// The paper's table of six scenes, and more bodies than it had. Markdown.
+std::string gardenTable();
+/// Searches on ten skeletons against brute force. Markdown.
+std::string skeletonTable();
+/// Accuracy against speed, a table a knob. Markdown.
+std::string knobTables();
+
+/// Median time [s] of `batches` batches of calls `work(i)`, per call.
+template <class Work>
+double medianTime(int batches, int calls, Work&& work) {
+  std::vector<double> times;
+  int count = 0;
+  for (int b = 0; b < batches; ++b) {
+    const auto begun = std::chrono::steady_clock::now();
+    for (int i = 0; i < calls; ++i) work(count++);
+    times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() / calls);
+  }
+  std::nth_element(times.begin(), times.begin() + batches / 2, times.end());
+  return times[static_cast<std::size_t>(batches / 2)];
+}
+
+}  // namespace hapticd::bench_mat

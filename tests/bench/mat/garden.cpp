@@ -1,0 +1,209 @@
+/// The paper's Table 1: scenes of 1 to 35 bodies, through the whole servo core.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "bench.hpp"
+#include "kernels/medial/body.hpp"
+#include "scene/load.hpp"
+#include "servo/lockstep.hpp"
+#include "servo/world.hpp"
+
+namespace hapticd::bench_mat {
+namespace {
+
+using Eigen::Vector3d;
+namespace fs = std::filesystem;
+
+struct Kind {
+  int rows, columns, count;
+};
+struct Row {
+  std::vector<Kind> kinds;
+  std::string paper_preprocessing, paper_memory;
+  double paper_us;  ///< rate and share of the time in the haptics loop, together
+};
+
+/// As many bodies and points as the paper's rows have; what its bodies looked like is not known.
+std::vector<Row> rows() {
+  return {{{{7, 7, 1}}, "2 s", "400 KB", 204},
+          {{{7, 15, 1}}, "3 s", "1.0 MB", 266},
+          {{{7, 7, 3}, {6, 11, 1}}, "6 s", "1.8 MB", 253},
+          {{{5, 6, 9}, {3, 13, 1}}, "9 s", "2.1 MB", 276},
+          {{{4, 7, 16}, {1, 17, 1}}, "25 s", "3.0 MB", 308},
+          {{{5, 5, 34}, {7, 11, 1}}, "56 s", "4.1 MB", 367},
+          {{{5, 5, 1000}}, "", "", 0}};
+}
+
+medial::BodyData bodyOf(const Kind& kind) {
+  medial::BodyData data;
+  data.grid.count = {kind.rows, kind.columns};
+  for (int i = 0; i < kind.rows; ++i) {
+    for (int j = 0; j < kind.columns; ++j) {
+      const double s = i / std::max(kind.rows - 1.0, 1.0) - .5, t = j / std::max(kind.columns - 1.0, 1.0) - .5;
+      data.grid.points.emplace_back(.03 * t, .03 * s, .01 * s * t);
+      data.grid.radius.push_back(.008 + .004 * std::cos(2 * s) * std::cos(2 * t));
+    }
+  }
+  const std::size_t total = data.grid.points.size();
+  data.stiffness.assign(total, 400);
+  data.damping.assign(total, .05);
+  data.mass.assign(total, .05);
+  return data;
+}
+
+void writeModel(const medial::BodyData& data, const fs::path& file) {
+  std::string points, radius;
+  const auto columns = static_cast<std::size_t>(data.grid.count[1]);
+  for (std::size_t i = 0; i < data.grid.points.size(); ++i) {
+    const char* open = i % columns == 0 ? (i > 0 ? "], [" : "[") : ", ";
+    const Vector3d& p = data.grid.points[i];
+    points += fmt::format("{}[{:.9f}, {:.9f}, {:.9f}]", open, p.x(), p.y(), p.z());
+    radius += fmt::format("{}{:.9f}", open, data.grid.radius[i]);
+  }
+  std::ofstream(file) << fmt::format(
+      "format: hapticd-model/1\nmedial:\n  points: [{}]]\n  radius: [{}]]\n  stiffness: {}\n  damping: {}\n  mass: "
+      "{}\n",
+      points, radius, data.stiffness[0], data.damping[0], data.mass[0]);
+}
+
+Vector3d placeOf(int body) {
+  const int side = body < 49 ? 7 : 32;
+  return {.07 * (body % side - side / 2), .07 * (body / side - side / 2), 0};
+}
+
+struct Setting {
+  const char* radius;  ///< of activation [m]
+  const char* dynamics;
+};
+
+std::unique_ptr<servo::World> build(const Row& row, const Setting& setting, const fs::path& folder, double& seconds) {
+  std::string models;
+  int body = 0;
+  for (std::size_t k = 0; k < row.kinds.size(); ++k) {
+    writeModel(bodyOf(row.kinds[k]), folder / fmt::format("kind{}.yaml", k));
+    for (int i = 0; i < row.kinds[k].count; ++i, ++body) {
+      const Vector3d at = placeOf(body);
+      models += fmt::format(
+          "  - name: body{}\n    plugin: mat_deformable\n    pose: {{position: [{}, {}, {}]}}\n"
+          "    parameters: {{geometry: kind{}.yaml, dynamics: {}}}\n",
+          body, at.x(), at.y(), at.z(), k, setting.dynamics);
+    }
+  }
+  std::ofstream(folder / "scene.yaml") << fmt::format(
+      "hapticd: 1\nservo: {{rate: 1000, activation_radius: {}, hysteresis: 0.05}}\nmodels:\n{}", setting.radius,
+      models);
+  host::Catalog catalog;
+  scene::Loaded loaded = scene::load(folder / "scene.yaml", catalog, {.default_device = false, .device_file = {}});
+  std::string problems;
+  for (const scene::Problem& problem : loaded.problems) problems += problem.text() + "\n";
+  if (!loaded.scene) throw std::runtime_error(problems);
+  const auto begun = std::chrono::steady_clock::now();
+  auto world = servo::World::build(*loaded.scene, {1000, 1, false}, [](int, const auto&, const auto&) {});
+  seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  if (!world) throw std::runtime_error(world.error());
+  return std::move(*world);
+}
+
+/// Ticks a world by a probe that is put anywhere.
+class Hand {
+ public:
+  explicit Hand(servo::World& world) : world_(world), lockstep_(world) { probe_.valid = true; }
+
+  void tick(const Vector3d& at) {
+    prepare(at);
+    run();
+  }
+  /// Median time of a tick alone [us], while the probe strokes body 0, 3 mm deep, at 0.1 m/s.
+  double stroke(int ticks) {
+    std::vector<double> times;
+    for (int i = 0; i < ticks; ++i) {
+      prepare(placeOf(0) + Vector3d(.008 * std::sin(.0125 * i), .008 * std::cos(.0125 * i), .008));
+      const auto begun = std::chrono::steady_clock::now();
+      run();
+      times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
+    }
+    std::nth_element(times.begin(), times.begin() + ticks / 2, times.end());
+    return 1e6 * times[static_cast<std::size_t>(ticks / 2)];
+  }
+
+ private:
+  void prepare(const Vector3d& at) {
+    probe_.velocity = count_ == 0 ? Vector3d(Vector3d::Zero()) : Vector3d((at - probe_.position) * 1e3);
+    probe_.position = at;
+    world_.core().publish(1e-3 * count_, {&probe_, 1});
+    lockstep_.before(1e-3 * count_);
+  }
+  void run() {
+    world_.core().tick(1e-3 * count_, count_ == 0 ? 0 : 1e-3, {&probe_, 1});
+    ++count_;
+  }
+
+  servo::World& world_;
+  servo::Lockstep lockstep_;
+  servo::Probe probe_;
+  int count_ = 0;
+};
+
+/// Pokes every body deeply, at all parts of it.
+void wakeAll(Hand& hand, int bodies) {
+  for (int body = 0; body < bodies; ++body)
+    for (int i = 0; i < 81; ++i)
+      hand.tick(placeOf(body) + Vector3d(.015 * (i % 9 - 4) / 4, .015 * (i / 9 - 4) / 4, .004));
+}
+
+std::string line(const Row& row, const fs::path& folder) {
+  int bodies = 0, points = 0;
+  double fit = 0;
+  for (const Kind& kind : row.kinds) {
+    bodies += kind.count;
+    points += kind.count * kind.rows * kind.columns;
+    const medial::BodyData data = bodyOf(kind);
+    fit += kind.count * medianTime(5, 3, [&](int) { medial::Body body(data, {}); });
+  }
+  double load = 0, unused = 0;
+  const auto world = build(row, {"0.10", "on"}, folder, load);
+  const double memory = static_cast<double>(world->lockedBytes()) / 1024;
+  Hand hand(*world);
+  hand.stroke(500);
+  const double one = hand.stroke(2000);
+  const auto still = build(row, {"0.10", "off"}, folder, unused);
+  Hand still_hand(*still);
+  still_hand.stroke(500);
+  const double without = still_hand.stroke(2000);
+  std::string followed = "", awake = "";
+  if (bodies <= 100) {  // all of them followed, however far
+    const auto wide = build(row, {"2", "on"}, folder, unused);
+    Hand wide_hand(*wide);
+    wide_hand.stroke(500);
+    followed = fmt::format("{:.1f}", wide_hand.stroke(2000));
+    wakeAll(wide_hand, bodies);
+    awake = fmt::format("{:.1f}", wide_hand.stroke(400));
+  }
+  return fmt::format("| {} | {} | {} | {:.1f} ms | {:.0f} ms | {} | {:.0f} kB | {} | {:.1f} | {:.1f} | {} | {} |\n",
+                     bodies, points, row.paper_preprocessing, 1e3 * fit, 1e3 * load, row.paper_memory, memory,
+                     row.paper_us > 0 ? fmt::format("{:.0f}", row.paper_us) : "", without, one, followed, awake);
+}
+
+}  // namespace
+
+std::string gardenTable() {
+  const fs::path folder = fs::temp_directory_path() / fmt::format("hapticd-bench-mat-{}", ::getpid());
+  fs::create_directories(folder);
+  std::string text =
+      "## The paper's scenes\n\nCorso et al. ran on a Pentium III of 700 MHz; their haptic time is the rate and the "
+      "share of run time of their Table 1. Times are medians of a whole servo tick [us], the probe stroking one body "
+      "3 mm deep at 0.1 m/s. *followed*: an activation radius of 2 m, so that every body is traced, however far. "
+      "*awake*: so, and every body has been poked and still swings.\n\n"
+      "| bodies | points | paper: preprocessing | fit | load and check | paper: memory | memory | paper: haptic time | "
+      "no dynamics | one touched | followed | all awake |\n|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+  for (const Row& row : rows()) text += line(row, folder);
+  fs::remove_all(folder);
+  return text + "\n";
+}
+
+}  // namespace hapticd::bench_mat
