@@ -10,6 +10,7 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
+#include "cli/outside.hpp"
 #include "record/picture.hpp"
 #include "record/report.hpp"
 #include "servo/runner.hpp"
@@ -19,7 +20,7 @@ namespace hapticd::cli {
 namespace {
 
 struct Options {
-  std::string scene, device, report, picture, record;
+  std::string scene, device, report, picture, record, name;
   std::optional<double> duration, rate;
   std::optional<int> cpu;
   std::optional<int> priority;
@@ -100,19 +101,24 @@ int run(const Options& options) {
   how.priority = options.priority.value_or(daemonSettings().priority.value_or(os::kServoPriority));
   how.allow_non_rt = options.allow_non_rt;
   how.record = options.record;
+  std::optional<Outside> outside;  // a virtual run is over before anybody looks, unless it was given a name
+  if (!options.virtual_time || !options.name.empty()) outside.emplace(options.name, how);
   auto world = servo::Runner::buildWorld(*scene, how, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   auto runner = servo::Runner::prepare(*scene, how, std::move(*world), logToTerminal);
   if (!runner) return fail(kFailed, runner.error());
   running = runner->get();
   os::onStopSignal(onStop);
+  if (outside) outside->serve(**runner, options.device);
 
   const bool terminal = isatty(STDERR_FILENO) != 0;
   size_t told = 0;
   auto done = (*runner)->run([&](const servo::Runner& r) {
     for (; told < r.warnings().size(); ++told) std::fprintf(stderr, "warning: %s\n", r.warnings()[told].c_str());
     if (terminal) showStatus(r);
+    if (outside) outside->look();
   });
+  if (outside) outside->end();
   if (terminal) std::fputs("\r\033[K", stderr);
   if (!done) return fail(kFailed, done.error());
   return conclude(options, **runner);
@@ -138,6 +144,12 @@ void addRun(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 98));
   command->add_option("--report", options->report, "write a report (JSON)");
   command->add_option("--picture", options->picture, "write a picture of depth, force and lateness over time (SVG)");
+  command->add_option("--name", options->name, "name of this daemon for top and ctl; without it hapticd")
+      ->check([](const std::string& name) {
+        const bool plain = name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_") ==
+                           std::string::npos;
+        return plain && name.size() <= 32 ? std::string() : "expected up to 32 letters, digits, - and _";
+      });
   command->add_option("--record", options->record, "record every tick (HDF5), for replay, plot, Python and MATLAB");
   command->add_flag("--allow-non-rt", options->allow_non_rt, "push with real hardware even without real-time rights");
   command->footer("Example:\n  hapticd run config/scenes/teapot.yaml --for 10 --report report.json --picture run.svg");

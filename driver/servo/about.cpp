@@ -124,6 +124,7 @@ record::About aboutRun(const scene::Scene& scene, const World& world, const std:
                        const RunFacts& facts, const std::vector<record::StreamSpec>& streams) {
   Json models = Json::array(), devices = Json::array();
   for (const auto& shape : world.shapes()) {
+    if (!shape) continue;
     const hsp_class& c = shape->description();
     models.push_back({{"name", shape->name()}, {"plugin", c.name}, {"id", c.id}, {"version", c.version}});
   }

@@ -28,8 +28,8 @@ Core::Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& 
     : settings_(settings),
       link_(link),
       probe_count_(probe_count),
-      models_(models.size()),
-      contacts_(models.size() * probe_count),
+      models_(models.size() + settings.spare_models),
+      contacts_(models_.size() * probe_count),
       inputs_(probe_count),
       outputs_(probe_count),
       last_position_(probe_count, Vector3d::Zero()),
@@ -38,22 +38,25 @@ Core::Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& 
       forces_(probe_count, Vector3d::Zero()),
       torques_(probe_count, Vector3d::Zero()),
       exchanges_(probe_count) {
-  for (size_t i = 0; i < models.size(); ++i) {
-    ModelState& model = models_[i];
-    const scene::Model& described = scene.models[i];
-    model.shape = models[i];
-    Map(model.pose.position) = described.pose.position;
-    const Eigen::Quaterniond& q = described.pose.orientation;
-    model.pose.orientation[0] = q.w(), model.pose.orientation[1] = q.x();
-    model.pose.orientation[2] = q.y(), model.pose.orientation[3] = q.z();
-    model.frame = Frame::of(model.pose);
-    const bool moves_itself = (models[i]->report().flags & HSP_R_MOVES) != 0;
-    if (described.kinematic) model.path = Path(described.path);
-    model.moves = moves_itself || described.kinematic;
-    model.always = moves_itself || models[i]->surfaces() == nullptr;
-  }
+  for (size_t i = 0; i < models.size(); ++i) models_[i] = stateOf(*models[i], scene.models[i]);
   live_.reserve(models_.size());
   listLive();
+}
+
+ModelState Core::stateOf(host::ShapeInstance& shape, const scene::Model& described) {
+  ModelState model;
+  model.shape = &shape;
+  Map(model.pose.position) = described.pose.position;
+  const Eigen::Quaterniond& q = described.pose.orientation;
+  model.pose.orientation[0] = q.w(), model.pose.orientation[1] = q.x();
+  model.pose.orientation[2] = q.y(), model.pose.orientation[3] = q.z();
+  model.frame = Frame::of(model.pose);
+  const bool moves_itself = (shape.report().flags & HSP_R_MOVES) != 0;
+  model.kinematic = described.kinematic;
+  if (described.kinematic) model.path = Path(described.path);
+  model.moves = moves_itself || described.kinematic;
+  model.always = moves_itself || shape.surfaces() == nullptr;
+  return model;
 }
 
 void Core::publish(double t, std::span<const Probe> probes) noexcept HSP_RT {
@@ -81,13 +84,17 @@ void Core::tick(double t, double dt, std::span<const Probe> probes) noexcept HSP
   for (const uint32_t i : live_) {
     ModelState& model = models_[i];
     if (model.moves) model.before = model.frame;
-    if (!model.path.empty()) {
-      model.path.at(t, model.pose);
+    if (model.glide.active() || !model.path.empty()) {
+      if (model.glide.active())
+        model.glide.at(t, model.pose);
+      else
+        model.path.at(t, model.pose);
       model.frame = Frame::of(model.pose);
     }
     if (model.always || model.active_surfaces > 0) stepModel(i, t, dt, probes);
     if (model.moves) sendTransform(model, i);
   }
+  releaseLeaving();
 }
 
 void Core::listLive() noexcept HSP_RT {
@@ -107,6 +114,7 @@ void Core::receiveRecords() noexcept HSP_RT {
        ++received_count_) {
     const link::ActivationRecord& record = received_[received_count_];
     ModelState& model = models_[record.model];
+    if (model.shape == nullptr) continue;  // it has left
     const hsp_ext_surfaces& surfaces = *model.shape->surfaces();
     if (record.order == link::ActivationRecord::Order::kStop) {
       surfaces.deactivate(model.shape->handle(), record.near.probe, record.near.surface);
@@ -178,6 +186,9 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   step.dt_s = dt;
   step.budget_ns = budget_left_ns_;
   step.pose = &pose;
+  step.changes = model.changes.data();
+  step.change_count = model.change_count;
+  model.change_count = 0;
 
   const Nanoseconds before = settings_.measure ? monotonicNow() : 0;
   model.status = model.guard.quarantined() ? HSP_E_STATE : model.shape->step(step);
@@ -195,7 +206,7 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   const Trouble trouble = model.guard.judge(model.status, answers_finite);
   if (trouble == Trouble::kBadStatus && model.failed_status == HSP_OK) model.failed_status = model.status;
   const double gain_before = model.guard.gain();
-  const double gain = model.guard.gain(trouble == Trouble::kNone, dt);
+  const double gain = model.guard.gain(trouble == Trouble::kNone && model.enabled, dt);
   if (trouble == Trouble::kLost) {
     model.shape->reset();
     wants_search_ = true;

@@ -11,7 +11,9 @@
 #include "link/link.hpp"
 #include "scene/scene.hpp"
 #include "servo/frame.hpp"
+#include "servo/glide.hpp"
 #include "servo/guard.hpp"
+#include "servo/order.hpp"
 #include "servo/passivity/controller.hpp"
 #include "servo/path.hpp"
 
@@ -38,6 +40,12 @@ struct ModelState {
   Frame frame;
   Frame before;                  ///< a tick ago; kept where the model moves
   Path path;                     ///< kinematic models
+  Glide glide;                   ///< where a person moved a kinematic model; goes before its path
+  bool kinematic = false;
+  bool enabled = true;           ///< felt; otherwise faded out and only traced
+  bool leaving = false;          ///< fades out and then leaves its place
+  std::array<hsp_change, 8> changes{};  ///< live parameters for the next step
+  uint32_t change_count = 0;
   uint32_t active_surfaces = 0;  ///< over all probes
   bool always = false;           ///< stepped every tick: it traces itself, or moves by itself
   bool moves = false;            ///< its pose may change
@@ -50,6 +58,7 @@ struct ModelState {
 struct CoreSettings {
   uint64_t budget_ns = 0;       ///< of all shapes in a tick; 0: none
   double max_probe_speed = 20;  ///< [m/s] faster between two samples is a jump, not a motion
+  uint32_t spare_models = 0;    ///< empty places for models that come while it runs
   bool measure = false;         ///< take the CPU time of each step
 };
 
@@ -61,6 +70,15 @@ class Core {
 
   /// [rt] One tick at time t [s], dt [s] after the last (0: the first). Fills contacts() and force().
   void tick(double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
+
+  /// [main] What the servo must know of an active shape before its first tick.
+  static ModelState stateOf(host::ShapeInstance& shape, const scene::Model& described);
+
+  /// [rt] Obeys an order to a model, before tick(). False: it cannot be.
+  bool obey(const Order& order, double t) noexcept HSP_RT;
+
+  /// [any] One reader: a place whose model has left, so that its shape may be destroyed.
+  bool takeReleased(uint32_t& model) noexcept { return released_.pop(model); }
 
   /// [rt] Tells the simulation side where the probes are; before tick(), so that a search in lockstep sees them.
   void publish(double t, std::span<const Probe> probes) noexcept HSP_RT;
@@ -85,6 +103,9 @@ class Core {
   uint32_t probeCount() const noexcept { return probe_count_; }
 
  private:
+  bool adopt(ModelState& place, const Order& order) noexcept HSP_RT;
+  bool change(ModelState& model, const Order& order) noexcept HSP_RT;
+  void releaseLeaving() noexcept HSP_RT;
   void receiveRecords() noexcept HSP_RT;
   void findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT;
   void stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
@@ -112,6 +133,8 @@ class Core {
   std::vector<uint8_t> jumped_, seen_;
   std::vector<Vector3d> forces_, torques_;
   std::vector<passivity::Exchange> exchanges_;
+  SpscRing<uint32_t> released_{256};
+  uint32_t leaving_ = 0;
   bool wants_search_ = true;
   uint32_t transforms_ = 0;
   uint64_t budget_left_ns_ = 0;

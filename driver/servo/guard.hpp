@@ -38,6 +38,9 @@ class Guard {
     return gain_;
   }
 
+  /// [rt] Silent from now on, until gain() lets it in.
+  void silence() noexcept HSP_RT { gain_ = 0; }
+
   /// The factor of the last tick.
   double gain() const noexcept { return gain_; }
   bool quarantined() const noexcept { return trouble_ == Trouble::kNotFinite || trouble_ == Trouble::kBadStatus; }

@@ -77,6 +77,22 @@ bool Loop::simulated() const noexcept HSP_RT {
   return std::all_of(arms_.begin(), arms_.end(), [](const auto& arm) { return arm->simulated(); });
 }
 
+void Loop::obey(double t) noexcept HSP_RT {
+  constexpr int kOrdersPerTick = 16;
+  Order order;
+  for (int i = 0; i < kOrdersPerTick && orders_.pop(order); ++i) {
+    const bool to_arm = order.kind == Order::Kind::kClear || order.kind == Order::Kind::kHold;
+    if (!to_arm) {
+      world_.core().obey(order, t);
+    } else if (order.target < arms_.size()) {
+      Limiter& limiter = arms_[order.target]->limiter();
+      order.kind == Order::Kind::kClear ? limiter.clear() : limiter.trip(Fault::kStopped);
+    }
+    telemetry_.order(order);
+    orders_done_.store(orders_done_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+  }
+}
+
 void Loop::search(double t) noexcept {
   const Nanoseconds begun = monotonicNow();
   const uint64_t allocations = allocationsOfThread();
@@ -95,6 +111,7 @@ Nanoseconds Loop::skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HS
 }
 
 void Loop::tick(Nanoseconds now, double t, double dt) noexcept HSP_RT {
+  obey(t);
   for (size_t i = 0; i < arms_.size(); ++i) probes_[i] = arms_[i]->read(now, dt);
   world_.core().publish(t, probes_);
   if (settings_.lockstep) search(t);

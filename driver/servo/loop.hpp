@@ -27,6 +27,11 @@ class Loop {
   /// [rt] Runs until the ticks are done or a stop has ramped the forces down. Call once.
   void run() noexcept;
 
+  /// [any] One writer: what a person asks for; obeyed at the start of a tick, in order. False: too many wait.
+  bool give(const Order& order) noexcept { return orders_.push(order); }
+  /// [any] Orders obeyed or refused so far.
+  uint64_t ordersDone() const noexcept { return orders_done_.load(std::memory_order_acquire); }
+
   /// [any] Asks for an end: forces ramp to zero first. Async-signal-safe.
   void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
 
@@ -40,6 +45,7 @@ class Loop {
 
  private:
   void tick(Nanoseconds now, double t, double dt) noexcept HSP_RT;
+  void obey(double t) noexcept HSP_RT;
   void search(double t) noexcept;
   void trip(Fault fault) noexcept HSP_RT;
   bool allSilent() const noexcept HSP_RT;
@@ -57,6 +63,8 @@ class Loop {
   // In virtual time the simulation side works in this thread too; what it takes is not the servo's.
   Nanoseconds search_time_ = 0;
   uint64_t search_allocations_ = 0;
+  SpscRing<Order> orders_{256};
+  std::atomic<uint64_t> orders_done_{0};
   std::atomic<bool> stop_{false}, wants_search_{true}, finished_{false};
   std::atomic<uint64_t> tick_count_{0};
   std::atomic<Nanoseconds> first_tick_{0};

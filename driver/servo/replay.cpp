@@ -74,19 +74,23 @@ class Replay::Player final : public Clock {
     compared_.resize(recorded_.size());
     outcome.recorded_ticks = ticks_.rows();
     now_ = timeOf(0);
+    end_ = std::min(ticks_.rows(), endOfScene());
+    if (end_ < ticks_.rows())
+      outcome.note = "models came or left in tick " + std::to_string(end_) + ": the replay ends there";
   }
 
   Nanoseconds now() noexcept HSP_RT override { return now_; }
 
   Nanoseconds waitUntil(Nanoseconds deadline) noexcept HSP_RT override {
     compare();
-    if (tick_ >= ticks_.rows()) {
+    if (tick_ >= end_) {
       replay_.loop_->stop();
       return now_ = std::max(deadline, now_);
     }
     now_ = std::max(timeOf(tick_), deadline);
     feedArms();
     feedRecords();
+    feedOrders();
     ++tick_;
     return now_;
   }
@@ -94,7 +98,7 @@ class Replay::Player final : public Clock {
   void compare() {
     for (const size_t stream : {kContacts, kPoses, kActivations, kOrders, kTicks}) {  // causes before sums
       const RecordedStream& then = *recorded_[stream];
-      for (uint64_t& row = compared_[stream]; row < ring_.written(stream) && row < then.rows(); ++row)
+      for (uint64_t& row = compared_[stream]; row < ring_.written(stream) && row < then.rows() && at<uint64_t>(then.row(row), 0) < end_; ++row)
         compareRow(stream, row);
     }
     outcome.ticks = compared_[kTicks];
@@ -141,6 +145,33 @@ class Replay::Player final : public Clock {
       const hsp_near near{row.surface, row.probe, {row.u, row.v}, row.distance};
       replay_.world_->link().records.push({row.model, static_cast<link::ActivationRecord::Order>(row.order), near});
     }
+  }
+
+  void feedOrders() {
+    const RecordedStream& stream = *recorded_[kOrders];
+    for (; order_ < stream.rows(); ++order_) {
+      const auto row = at<OrderRow>(stream.row(order_), 0);
+      if (row.tick > tick_) return;
+      Order order;
+      order.kind = static_cast<Order::Kind>(row.kind);
+      order.target = row.target;
+      order.param = row.param;
+      order.value = row.value;
+      order.seconds = row.seconds;
+      std::memcpy(order.position, row.position, sizeof order.position);
+      std::memcpy(order.orientation, row.orientation, sizeof order.orientation);
+      replay_.loop_->give(order);
+    }
+  }
+
+  /// The tick in which a model came or left: what came is not in the recording.
+  uint64_t endOfScene() const {
+    const RecordedStream& stream = *recorded_[kOrders];
+    for (uint64_t i = 0; i < stream.rows(); ++i) {
+      const auto row = at<OrderRow>(stream.row(i), 0);
+      if (row.kind >= static_cast<uint32_t>(Order::Kind::kAdopt)) return row.tick;
+    }
+    return UINT64_MAX;
   }
 
   void compareRow(size_t stream, uint64_t row) {
@@ -207,7 +238,7 @@ class Replay::Player final : public Clock {
   std::vector<const RecordedStream*> recorded_;
   std::vector<SampleColumns> arms_;
   std::vector<uint64_t> compared_;
-  uint64_t tick_ = 0, activation_ = 0;
+  uint64_t tick_ = 0, activation_ = 0, order_ = 0, end_ = 0;
   Nanoseconds now_ = 0;
 };
 

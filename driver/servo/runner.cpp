@@ -52,6 +52,7 @@ Result<std::unique_ptr<World>> Runner::buildWorld(const scene::Scene& scene, con
   world_options.rate = options.rate;
   world_options.probe_count = static_cast<uint32_t>(scene.devices.size());
   world_options.measure = true;
+  world_options.spare_models = options.spare_models;
   world_options.budgets = !options.virtual_time;  // a budget of real time would make virtual runs differ
   return World::build(scene, world_options, log);
 }
@@ -65,7 +66,7 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
     return Error{
         "--virtual-time runs faster than any clock, and the scene names real hardware; expected simulated devices "
         "only"};
-  runner->telemetry_ = std::make_unique<Telemetry>(runner->scene_, options.rate);
+  runner->telemetry_ = std::make_unique<Telemetry>(runner->scene_, options.rate, runner->world_->places());
 
   LoopSettings settings;
   settings.period_ns = static_cast<Nanoseconds>(std::llround(1e9 / options.rate));
@@ -90,6 +91,11 @@ Result<void> Runner::openBlackBox(const LoopSettings& settings) {
   auto ring = record::FlightRing::create(streams, aboutRun(scene_, *world_, arms_, facts, streams), options_.black_box);
   if (!ring) return Error{ring.error()};
   telemetry_->attach(std::make_unique<Flight>(std::move(*ring), arms_));
+  if (!options_.status.empty()) {
+    auto page = status::PageFile::create(options_.status);
+    if (!page) return Error{page.error()};
+    telemetry_->attach(std::make_unique<StatusWriter>(std::move(*page), scene_, arms_, options_.rate));
+  }
   if (options_.record.empty()) return {};
   auto recorder = record::Recorder::create(telemetry_->flight()->ring(), options_.record);
   if (!recorder) return Error{recorder.error()};
@@ -170,6 +176,11 @@ void Runner::enterRealTime() {
                           code.message());
   if (const auto code = os::setFifo(options_.priority))
     warnings_.push_back(noFifo(options_.priority, code, !onlySimulated()));
+}
+
+void Runner::nameModel(uint32_t place, const std::string& name, const std::string& plugin) {
+  if (!name.empty()) telemetry_->name(place, name, plugin);  // the report tells of those that left too
+  if (telemetry_->statusWriter() != nullptr) telemetry_->statusWriter()->name(place, name, plugin);
 }
 
 bool Runner::onlySimulated() const {

@@ -20,6 +20,8 @@ struct RunOptions {
   bool virtual_time = false;
   std::optional<int> cpu;  ///< pins the servo thread
   int priority = os::kServoPriority;
+  uint32_t spare_models = 0;  ///< places for models that come while it runs
+  std::string status;     ///< file of the status page; empty: none
   std::string record;     ///< file that takes every tick; empty: none
   std::string black_box;  ///< file in memory that keeps the last seconds; empty: memory of the process
   bool allow_non_rt = false;  ///< run real hardware without real-time rights all the same
@@ -40,6 +42,14 @@ class Runner {
 
   /// [any] Asks for an end: forces ramp to zero first. Async-signal-safe.
   void stop() noexcept { loop_->stop(); }
+
+  World& world() { return *world_; }
+  /// [any] One thread: an order for the servo.
+  bool giveOrder(const Order& order) { return loop_->give(order); }
+  /// [main] After the run: nothing is left behind.
+  void endBlackBox() { telemetry_->flight()->ring().removeFile(); }
+  /// [any] The same thread: a model takes a place; "": it has left.
+  void nameModel(uint32_t place, const std::string& name, const std::string& plugin);
 
   const Telemetry& telemetry() const { return *telemetry_; }
   const Loop& loop() const { return *loop_; }

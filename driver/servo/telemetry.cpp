@@ -4,12 +4,19 @@
 
 namespace hapticd::servo {
 
-Telemetry::Telemetry(const scene::Scene& scene, double rate)
-    : rate_(rate), models_(scene.models.size()), rows_(static_cast<size_t>(std::ceil(kBlackBoxSeconds * rate))) {
+Telemetry::Telemetry(const scene::Scene& scene, double rate, uint32_t places)
+    : rate_(rate), models_(std::max<size_t>(scene.models.size(), places)), rows_(static_cast<size_t>(std::ceil(kBlackBoxSeconds * rate))) {
   for (const scene::Model& model : scene.models) {
     names_.push_back(model.name);
     plugins_.push_back(model.plugin);
   }
+  names_.resize(models_.size());
+  plugins_.resize(models_.size());
+}
+
+void Telemetry::name(uint32_t place, const std::string& name, const std::string& plugin) {
+  names_[place] = name;
+  plugins_[place] = plugin;
 }
 
 void Telemetry::tick(double t, double dt, Nanoseconds late, Nanoseconds spent, const Core& core,
@@ -23,6 +30,8 @@ void Telemetry::tick(double t, double dt, Nanoseconds late, Nanoseconds spent, c
   compute_us_.add(row.compute_us);
   bookModels(dt, core, row);
   if (flight_) flight_->tick(t, dt, late, spent, core, arms);
+  if (status_) status_->tick({booked_, overruns_, missed_, t}, late, spent, core, arms);
+  ++booked_;
   if (!arms.empty()) {
     const Arm& arm = *arms.front();
     for (int i = 0; i < 3; ++i) {
@@ -74,7 +83,8 @@ record::RunReport Telemetry::report(const std::vector<std::string>& faults) cons
   report.compute_us = compute_us_;
   report.page_faults = page_faults_;
   report.servo_allocations = allocations_;
-  for (size_t i = 0; i < models_.size(); ++i) report.models.push_back({names_[i], plugins_[i], models_[i]});
+  for (size_t i = 0; i < models_.size(); ++i)
+    if (!names_[i].empty()) report.models.push_back({names_[i], plugins_[i], models_[i]});
   report.faults = faults;
   return report;
 }

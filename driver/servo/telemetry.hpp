@@ -13,6 +13,7 @@
 #include "servo/arm.hpp"
 #include "servo/core.hpp"
 #include "servo/flight.hpp"
+#include "servo/status_writer.hpp"
 
 namespace hapticd::servo {
 
@@ -33,16 +34,29 @@ class Telemetry {
   static constexpr double kBlackBoxSeconds = 10;
 
   /// [main] Allocates and touches everything.
-  Telemetry(const scene::Scene& scene, double rate);
+  /// @param places models that there may be; 0: those of the scene
+  Telemetry(const scene::Scene& scene, double rate, uint32_t places = 0);
+
+  /// [main] A model takes an empty place; before the servo adopts it.
+  void name(uint32_t place, const std::string& name, const std::string& plugin);
 
   /// [main] Keeps every tick in a black box too.
   void attach(std::unique_ptr<Flight> flight) { flight_ = std::move(flight); }
+  /// [main] Shows every tick on a page for others too.
+  void attach(std::unique_ptr<StatusWriter> status) { status_ = std::move(status); }
+  StatusWriter* statusWriter() { return status_.get(); }
+  const StatusWriter* statusWriter() const { return status_.get(); }
   Flight* flight() { return flight_.get(); }
   const Flight* flight() const { return flight_.get(); }
 
   /// [rt] Before a tick at time `now`.
   void begin(Nanoseconds now, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
     if (flight_) flight_->begin(now, arms);
+  }
+
+  /// [rt] An order of a person, obeyed in this tick.
+  void order(const Order& order) noexcept HSP_RT {
+    if (flight_) flight_->order(order);
   }
 
   /// [rt] Books one tick.
@@ -80,6 +94,8 @@ class Telemetry {
   long page_faults_ = 0;
   Nanoseconds elapsed_ = 0;
   std::unique_ptr<Flight> flight_;
+  std::unique_ptr<StatusWriter> status_;
+  uint64_t booked_ = 0;
 };
 
 }  // namespace hapticd::servo

@@ -38,7 +38,8 @@ Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const Wor
                                             const host::Services::Log& log) {
   std::unique_ptr<World> world(new World);
   const uint64_t budget_ns = options.budgets ? budgetNs(scene.servo, options.rate) : 0;
-  hsp_activation activation = activationFor(scene, options, budget_ns);
+  hsp_activation& activation = world->activation_;
+  activation = activationFor(scene, options, budget_ns);
   std::vector<host::ShapeInstance*> models;
   std::vector<hsp_pose> poses;
   for (const scene::Model& described : scene.models) {
@@ -62,8 +63,29 @@ Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const Wor
   settings.budget_ns = budget_ns;
   settings.max_probe_speed = kMaxProbeSpeed;
   settings.measure = options.measure;
+  settings.spare_models = options.spare_models;
   world->core_ = std::make_unique<Core>(models, scene, options.probe_count, settings, *world->link_);
+  world->shapes_.resize(models.size() + options.spare_models);
   return world;
+}
+
+Result<std::unique_ptr<host::ShapeInstance>> World::prepare(const scene::Model& model,
+                                                            const host::Services::Log& log) const {
+  auto shape = host::ShapeInstance::create(model, log);
+  if (!shape) return Error{shape.error()};
+  hsp_activation activation = activation_;
+  activation.pose = startPose(model);
+  if (auto done = (*shape)->activate(activation); !done) return Error{done.error()};
+  const uint32_t needs = (*shape)->report().flags;
+  if ((needs & HSP_R_VELOCITY) != 0 && !needsVelocity())
+    return Error{"model '" + model.name + "': needs the velocity of the probe, which this run does not estimate because "
+                 "no model needed it at the start\n  fix: start the daemon with a scene that has such a model"};
+  return shape;
+}
+
+void World::keep(uint32_t place, std::unique_ptr<host::ShapeInstance> shape, const scene::Model& model) {
+  shapes_[place] = std::move(shape);
+  proximity_->add(place, *shapes_[place], startPose(model), activation_.max_probes);
 }
 
 }  // namespace hapticd::servo

@@ -16,6 +16,7 @@ namespace hapticd::servo {
 struct WorldOptions {
   double rate = 1000;  ///< [Hz]
   uint32_t probe_count = 1;
+  uint32_t spare_models = 0;  ///< places for models that come while it runs
   bool measure = false;  ///< take the CPU time of every step
   bool budgets = false;  ///< tell every step how much CPU time is left of the tick
 };
@@ -26,10 +27,25 @@ class World {
   static Result<std::unique_ptr<World>> build(const scene::Scene& scene, const WorldOptions& options,
                                               const host::Services::Log& log);
 
+  /// [main] Creates and activates one more model while the others run; it is felt once the servo adopts it.
+  Result<std::unique_ptr<host::ShapeInstance>> prepare(const scene::Model& model, const host::Services::Log& log) const;
+
+  /// [main] Keeps the shape of an empty place alive, and has it searched from now on.
+  void keep(uint32_t place, std::unique_ptr<host::ShapeInstance> shape, const scene::Model& model);
+
+  /// [main] The model of a place is searched no more; before the servo is told to release it.
+  void forget(uint32_t place) { proximity_->remove(place); }
+
+  /// [main] Destroys the shape of a place that the servo has released.
+  void destroy(uint32_t place) { shapes_[place].reset(); }
+
   Core& core() { return *core_; }
   sim::Proximity& proximity() { return *proximity_; }
   link::Link& link() { return *link_; }
   const std::vector<std::unique_ptr<host::ShapeInstance>>& shapes() const { return shapes_; }
+
+  /// Models that there may be at a time.
+  uint32_t places() const { return static_cast<uint32_t>(core_->models().size()); }
 
   /// Some shape reads velocities: an estimator must run.
   bool needsVelocity() const { return (needs_ & HSP_R_VELOCITY) != 0; }
@@ -41,6 +57,7 @@ class World {
 
  private:
   World() = default;
+  hsp_activation activation_{};
   std::vector<std::unique_ptr<host::ShapeInstance>> shapes_;
   std::unique_ptr<link::Link> link_;
   std::unique_ptr<sim::Proximity> proximity_;

@@ -9,41 +9,60 @@ using link::ActivationRecord;
 Proximity::Proximity(const std::vector<host::ShapeInstance*>& models, const std::vector<hsp_pose>& poses,
                      uint32_t probe_count, const ProximitySettings& settings, link::Link& link)
     : settings_(settings), link_(link), of_scene_(models.size(), UINT32_MAX) {
-  uint32_t most_surfaces = 0;
-  for (uint32_t i = 0; i < models.size(); ++i) {
-    const hsp_ext_surfaces* surfaces = models[i]->surfaces();
-    if (surfaces == nullptr) continue;
-    Model model{i, models[i]->handle(), surfaces, {}, {}, false, {}, {}, {}, 0};
-    if (const hsp_ext_geometry* geometry = models[i]->geometry())
-      model.has_box = geometry->bounds(models[i]->handle(), model.box_min.data(), model.box_max.data()) == HSP_OK;
-    model.position = Eigen::Vector3d(poses[i].position);
-    const double* q = poses[i].orientation;
-    model.orientation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-    model.active.assign(size_t{probe_count} * surfaces->surface_count, 0);
-    most_surfaces = std::max(most_surfaces, surfaces->surface_count);
-    of_scene_[i] = static_cast<uint32_t>(models_.size());
-    models_.push_back(std::move(model));
-  }
+  for (uint32_t i = 0; i < models.size(); ++i) addModel(i, *models[i], poses[i], probe_count);
+}
+
+void Proximity::addModel(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count) {
+  const hsp_ext_surfaces* surfaces = shape.surfaces();
+  if (surfaces == nullptr) return;
+  Model model{place, shape.handle(), surfaces, {}, {}, false, {}, {}, {}, 0};
+  if (const hsp_ext_geometry* geometry = shape.geometry())
+    model.has_box = geometry->bounds(shape.handle(), model.box_min.data(), model.box_max.data()) == HSP_OK;
+  model.position = Eigen::Vector3d(pose.position);
+  const double* q = pose.orientation;
+  model.orientation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  model.active.assign(size_t{probe_count} * surfaces->surface_count, 0);
   constexpr uint32_t kRivals = 32;  // a plugin may offer several feet on a surface, after one on each
-  found_.resize(most_surfaces + kRivals);
-  seen_.resize(most_surfaces);
+  found_.resize(std::max<size_t>(found_.size(), surfaces->surface_count + kRivals));
+  seen_.resize(std::max<size_t>(seen_.size(), surfaces->surface_count));
+  if (of_scene_.size() <= place) of_scene_.resize(place + 1, UINT32_MAX);
+  const auto gone = std::find_if(models_.begin(), models_.end(), [](const Model& m) { return m.index == UINT32_MAX; });
+  of_scene_[place] = static_cast<uint32_t>(gone - models_.begin());
+  if (gone == models_.end())
+    models_.push_back(std::move(model));
+  else
+    *gone = std::move(model);
+}
+
+void Proximity::add(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count) {
+  const std::lock_guard lock(mutex_);
+  addModel(place, shape, pose, probe_count);
+}
+
+void Proximity::remove(uint32_t place) {
+  const std::lock_guard lock(mutex_);
+  if (place >= of_scene_.size() || of_scene_[place] == UINT32_MAX) return;
+  models_[of_scene_[place]].index = UINT32_MAX;
+  of_scene_[place] = UINT32_MAX;
 }
 
 void Proximity::search() {
+  const std::lock_guard lock(mutex_);
   receiveTransforms();
   link_.arm.update();
   const link::ArmState& arm = link_.arm.front();
   for (uint32_t probe = 0; probe < arm.probe_count; ++probe) {
     if (!arm.valid[probe]) continue;
     const Eigen::Vector3d p_world(arm.position[probe].data());
-    for (Model& model : models_) searchModel(model, probe, p_world);
+    for (Model& model : models_)
+      if (model.index != UINT32_MAX) searchModel(model, probe, p_world);
   }
 }
 
 void Proximity::receiveTransforms() {
   link::ModelTransform transform;
   while (link_.transforms.pop(transform)) {
-    const uint32_t index = of_scene_[transform.model];
+    const uint32_t index = transform.model < of_scene_.size() ? of_scene_[transform.model] : UINT32_MAX;
     if (index == UINT32_MAX) continue;
     models_[index].position = Eigen::Vector3d(transform.position.data());
     const auto& q = transform.orientation;

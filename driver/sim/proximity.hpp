@@ -3,6 +3,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <mutex>
 #include <vector>
 
 #include "host/shape_instance.hpp"
@@ -24,6 +25,12 @@ class Proximity {
   Proximity(const std::vector<host::ShapeInstance*>& models, const std::vector<hsp_pose>& poses, uint32_t probe_count,
             const ProximitySettings& settings, link::Link& link);
 
+  /// [main] A model that came while searches go on, in a place of the scene that is empty.
+  void add(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count);
+
+  /// [main] The model of a place is searched no more: nothing is sent for it after the return.
+  void remove(uint32_t place);
+
   /// [sim] One search with the newest state of the arm: starts, offers and stops tracing.
   void search();
 
@@ -31,8 +38,9 @@ class Proximity {
   size_t modelCount() const { return models_.size(); }
 
  private:
+  std::mutex mutex_;  ///< models come and leave between two searches
   struct Model {
-    uint32_t index;  ///< in the scene
+    uint32_t index;  ///< in the scene; UINT32_MAX: it has left
     const hsp_shape* shape;
     const hsp_ext_surfaces* surfaces;
     Eigen::Vector3d box_min, box_max;  ///< model frame; empty when unknown: always searched
@@ -43,6 +51,7 @@ class Proximity {
     uint32_t active_count = 0;
   };
 
+  void addModel(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count);
   void receiveTransforms();
   void searchModel(Model& model, uint32_t probe, const Eigen::Vector3d& p_world);
   void stopLeft(Model& model, uint32_t probe);

@@ -4,8 +4,8 @@
 #pragma once
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <type_traits>
 
@@ -20,8 +20,7 @@ class Slot {
  public:
   /// [rt] Only one thread writes.
   void write(const T& value) noexcept HSP_RT {
-    std::array<uint64_t, kWords> words;
-    std::memcpy(words.data(), &value, sizeof value);
+    const auto words = std::bit_cast<std::array<uint64_t, kWords>>(value);
     const uint64_t sequence = sequence_.load(std::memory_order_relaxed);
     sequence_.store(sequence + 1, std::memory_order_relaxed);
     // release on each word: whoever sees one of them sees the odd number too
@@ -37,9 +36,7 @@ class Slot {
       std::array<uint64_t, kWords> words;
       for (size_t w = 0; w < kWords; ++w) words[w] = words_[w].load(std::memory_order_acquire);
       if (before % 2 != 0 || sequence_.load(std::memory_order_relaxed) != before) continue;
-      T value;
-      std::memcpy(&value, words.data(), sizeof value);
-      return value;
+      return std::bit_cast<T>(words);
     }
     return std::nullopt;
   }

@@ -1,0 +1,124 @@
+/// `hapticd ctl`: asks a running daemon.
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "control/client.hpp"
+#include "status/page_file.hpp"
+
+namespace hapticd::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string name = "hapticd", model, device, parameter, file, line;
+  std::vector<double> position, orientation;
+  std::optional<double> seconds;
+  double value = 0;
+  bool consent = false;
+};
+
+int send(const Options& options, const std::string& line) {
+  const std::string socket = status::runtimeFolder(false) + "/" + options.name + ".sock";
+  auto answer = control::ask(socket, line);
+  if (!answer) return fail(kFailed, answer.error());
+  const Json json = Json::parse(*answer, nullptr, false);
+  if (!json.is_object()) return fail(kFailed, "the answer cannot be read: " + *answer);
+  if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
+  std::printf("%s\n", json.dump(2).c_str());
+  return kWorked;
+}
+
+/// A subcommand that sends what `build` makes of the options.
+template <class Build>
+CLI::App* addRequest(CLI::App& parent, const char* word, const char* doc, const std::shared_ptr<Options>& options,
+                     int& exit_code, Build build) {
+  CLI::App* command = parent.add_subcommand(word, doc);
+  command->callback([options, &exit_code, build, word] {
+    Json json = {{"do", word}};
+    build(json);
+    exit_code = send(*options, json.dump(-1, ' ', false, Json::error_handler_t::replace));
+  });
+  return command;
+}
+
+std::string absolute(const std::string& file) {
+  return std::filesystem::absolute(file).lexically_normal().string();
+}
+
+void addModelRequests(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
+  const auto model = [options](Json& json) { json["model"] = options->model; };
+  for (const auto& [word, doc] : {std::pair{"enable", "Let a model be felt again; its force fades in."},
+                                  std::pair{"disable", "Fade a model's force out; it is traced on."},
+                                  std::pair{"remove", "Fade a model out and take it away."}})
+    addRequest(ctl, word, doc, options, exit_code, model)->add_option("model", options->model, "its name")->required();
+
+  CLI::App* set = addRequest(ctl, "set", "Set a live parameter of a model.", options, exit_code, [options](Json& json) {
+    json["model"] = options->model, json["parameter"] = options->parameter, json["value"] = options->value;
+    if (options->consent) json["consent"] = true;
+  });
+  set->add_option("model", options->model, "its name")->required();
+  set->add_option("parameter", options->parameter, "one that `ctl list` shows")->required();
+  set->add_option("value", options->value, "a number in the parameter's unit")->required();
+  set->add_flag("--consent", options->consent, "whoever holds the arm agrees: for what a hand may feel suddenly");
+
+  CLI::App* move = addRequest(ctl, "move", "Move a kinematic model.", options, exit_code, [options](Json& json) {
+    json["model"] = options->model, json["position"] = options->position;
+    if (!options->orientation.empty()) json["orientation"] = options->orientation;
+    if (options->seconds) json["seconds"] = *options->seconds;
+  });
+  move->add_option("model", options->model, "its name")->required();
+  move->add_option("--position", options->position, "x y z in m, world frame")->required()->expected(3);
+  move->add_option("--orientation", options->orientation, "w x y z, a unit quaternion")->expected(4);
+  move->add_option("--seconds", options->seconds, "how long it takes; without it at most 0.2 m/s");
+}
+
+void addSceneRequests(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
+  CLI::App* add = addRequest(ctl, "add", "Add models of a scene file.", options, exit_code, [options](Json& json) {
+    json["file"] = absolute(options->file);
+    if (!options->model.empty()) json["model"] = options->model;
+  });
+  add->add_option("file", options->file, "scene file")->required();
+  add->add_option("model", options->model, "only this one");
+  CLI::App* reload = addRequest(ctl, "reload", "Load the scene again, or another, with a cross-fade.", options,
+                                exit_code, [options](Json& json) {
+                                  if (!options->file.empty()) json["file"] = absolute(options->file);
+                                });
+  reload->add_option("file", options->file, "scene file with the same devices");
+}
+
+void addDeviceRequests(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
+  const auto device = [options](Json& json) {
+    if (!options->device.empty()) json["device"] = options->device;
+  };
+  for (const auto& [word, doc] : {std::pair{"hold", "Ramp the force of a device out, until it is cleared."},
+                                  std::pair{"clear", "Forgive a latched fault: the force ramps in again."}})
+    addRequest(ctl, word, doc, options, exit_code, device)
+        ->add_option("device", options->device, "its name; all without");
+}
+
+}  // namespace
+
+void addCtl(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* ctl = app.add_subcommand("ctl", "Ask a running daemon: status, models, parameters, black box.");
+  ctl->require_subcommand(1);
+  ctl->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
+  const auto nothing = [](Json&) {};
+  addRequest(*ctl, "status", "How it is.", options, exit_code, nothing);
+  addRequest(*ctl, "list", "Its models and what of them can change.", options, exit_code, nothing);
+  addModelRequests(*ctl, options, exit_code);
+  addSceneRequests(*ctl, options, exit_code);
+  addDeviceRequests(*ctl, options, exit_code);
+  addRequest(*ctl, "dump", "Write the black box: the last 10 s of every tick.", options, exit_code, nothing);
+  addRequest(*ctl, "stop", "End the run in order.", options, exit_code, nothing);
+  ctl->footer("Example:\n  hapticd ctl set teapot stiffness 600 --consent");
+}
+
+}  // namespace hapticd::cli

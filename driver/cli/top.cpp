@@ -1,0 +1,245 @@
+/// `hapticd top`: what a running daemon does, from its status page. Maps the page read-only: it may be killed at any
+/// time.
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "servo/limiter.hpp"
+#include "status/page_file.hpp"
+
+namespace hapticd::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string name = "hapticd", sort = "step";
+  double every = 0.5;
+  bool once = false, json = false;
+};
+
+struct ModelLine {
+  std::string name, plugin;
+  status::ModelNow now;
+  double p50 = 0, p99 = 0, max = 0;  ///< [us] of a step
+  bool traced = false;
+};
+
+struct ArmLine {
+  std::string name, module;
+  status::ArmNow now;
+  double force() const { return std::hypot(now.force[0], now.force[1], now.force[2]); }
+  std::string fault() const {
+    const auto fault = static_cast<servo::Fault>(now.fault);
+    return fault == servo::Fault::kNone ? "" : servo::describe(fault);
+  }
+};
+
+struct View {
+  status::Now now;
+  double rate = 0, held = 0;  ///< [Hz] asked for, and ticks a second since the view before
+  double late[3] = {}, compute[3] = {};
+  std::vector<ArmLine> arms;
+  std::vector<ModelLine> models;
+};
+
+std::string textOf(const char* text, size_t size) {
+  return {text, strnlen(text, size)};
+}
+
+void quantiles(const status::SharedHistogram& histogram, double* to) {
+  to[0] = histogram.quantile(0.5), to[1] = histogram.quantile(0.99), to[2] = histogram.max();
+}
+
+View look(const status::Page& page) {
+  View view;
+  view.now = page.now.read().value_or(status::Now{});
+  view.rate = page.rate;
+  quantiles(page.lateness_us, view.late);
+  quantiles(page.compute_us, view.compute);
+  for (uint32_t i = 0; i < std::min(page.arms, status::kMaxArms); ++i) {
+    const auto name = page.arm[i].name.read().value_or(status::Name{});
+    view.arms.push_back({textOf(name.text, sizeof name.text), textOf(name.kind, sizeof name.kind),
+                         page.arm[i].now.read().value_or(status::ArmNow{})});
+  }
+  for (uint32_t i = 0; i < status::kMaxModels; ++i) {
+    const auto name = page.model[i].name.read().value_or(status::Name{});
+    if (name.text[0] == '\0') continue;
+    ModelLine line{textOf(name.text, sizeof name.text),
+                   textOf(name.kind, sizeof name.kind),
+                   page.model[i].now.read().value_or(status::ModelNow{}),
+                   0,
+                   0,
+                   0,
+                   false};
+    const status::SharedHistogram& step = page.model[i].step_us;
+    line.p50 = step.quantile(0.5), line.p99 = step.quantile(0.99), line.max = step.max();
+    constexpr uint64_t kFresh = 50;  // ticks: what was not stepped since is far away
+    line.traced = line.now.tick + kFresh >= view.now.tick && std::isfinite(line.now.depth);
+    if (!line.traced) line.now.force = 0;
+    view.models.push_back(line);
+  }
+  return view;
+}
+
+void sortModels(std::vector<ModelLine>& models, const std::string& by) {
+  std::stable_sort(models.begin(), models.end(), [&](const ModelLine& a, const ModelLine& b) {
+    if (by == "force") return a.now.force > b.now.force;
+    if (by == "name") return a.name < b.name;
+    if (by == "depth") {
+      const auto depth = [](const ModelLine& m) { return m.traced ? m.now.depth : -HUGE_VAL; };
+      return depth(a) > depth(b);
+    }
+    return a.p99 > b.p99;
+  });
+}
+
+Json toJson(const View& view) {
+  const auto three = [](const double* q) { return Json{{"p50", q[0]}, {"p99", q[1]}, {"max", q[2]}}; };
+  Json devices = Json::array(), models = Json::array();
+  for (const ArmLine& arm : view.arms)
+    devices.push_back({{"name", arm.name},
+                       {"module", arm.module},
+                       {"force_n", arm.force()},
+                       {"samples", arm.now.sequence},
+                       {"valid", arm.now.valid != 0},
+                       {"fault", arm.now.fault == 0 ? Json() : Json(arm.fault())}});
+  for (const ModelLine& m : view.models)
+    models.push_back({{"name", m.name},
+                      {"plugin", m.plugin},
+                      {"step_us", {{"p50", m.p50}, {"p99", m.p99}, {"max", m.max}}},
+                      {"force_n", m.now.force},
+                      {"depth_mm", m.traced ? Json(m.now.depth * 1e3) : Json()},
+                      {"iterations", m.now.iterations},
+                      {"gain", m.now.gain},
+                      {"status", m.now.status}});
+  return {{"seconds", view.now.t},
+          {"ticks", view.now.tick},
+          {"rate_hz", view.rate},
+          {"overruns", view.now.overruns},
+          {"missed_ticks", view.now.missed},
+          {"lateness_us", three(view.late)},
+          {"compute_us", three(view.compute)},
+          {"devices", devices},
+          {"models", models}};
+}
+
+std::string table(const View& view, size_t rows) {
+  std::string text = fmt::format(
+      "{:10.1f} s   {:.0f} Hz asked, {:.0f} held   {} missed   late {:.1f} / {:.1f} / {:.0f} us   tick {:.1f} / {:.1f} "
+      "/ "
+      "{:.0f} us  (p50 / p99 / max)\n\n",
+      view.now.t, view.rate, view.held, view.now.missed, view.late[0], view.late[1], view.late[2], view.compute[0],
+      view.compute[1], view.compute[2]);
+  text += fmt::format("{:<28} {:<16} {:>9} {:>12}  {}\n", "DEVICE", "MODULE", "FORCE N", "SAMPLES", "FAULT");
+  for (const ArmLine& arm : view.arms)
+    text += fmt::format("{:<28.28} {:<16.16} {:9.3f} {:12}  {}\n", arm.name, arm.module, arm.force(), arm.now.sequence,
+                        arm.fault());
+  text += fmt::format("\n{:<28} {:<16} {:>9} {:>9} {:>8} {:>8} {:>8} {:>5} {:>6}\n", "MODEL", "PLUGIN", "FORCE N",
+                      "DEPTH mm", "p50 us", "p99 us", "max us", "ITER", "STATUS");
+  for (size_t i = 0; i < std::min(rows, view.models.size()); ++i) {
+    const ModelLine& m = view.models[i];
+    const std::string depth = m.traced ? fmt::format("{:.3f}", m.now.depth * 1e3) : "-";
+    text += fmt::format("{:<28.28} {:<16.16} {:9.3f} {:>9} {:8.2f} {:8.2f} {:8.1f} {:5} {:6}\n", m.name, m.plugin,
+                        m.now.force, depth, m.p50, m.p99, m.max, m.now.iterations, m.now.status);
+  }
+  if (view.models.size() > rows) text += fmt::format("... and {} more\n", view.models.size() - rows);
+  return text;
+}
+
+/// Keys at once and without echo, as long as it lives.
+class RawKeys {
+ public:
+  RawKeys() : raw_(isatty(STDIN_FILENO) != 0 && tcgetattr(STDIN_FILENO, &before_) == 0) {
+    termios now = before_;
+    now.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+    if (raw_) tcsetattr(STDIN_FILENO, TCSANOW, &now);
+  }
+  ~RawKeys() {
+    if (raw_) tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+  }
+  RawKeys(const RawKeys&) = delete;
+  RawKeys& operator=(const RawKeys&) = delete;
+
+  /// The key pressed within a time; 0: none.
+  char wait(double seconds) const {
+    pollfd polled{STDIN_FILENO, static_cast<short>(raw_ ? POLLIN : 0), 0};
+    char key = 0;
+    if (poll(&polled, 1, static_cast<int>(seconds * 1e3)) == 1 && read(STDIN_FILENO, &key, 1) != 1) return 'q';
+    return key;
+  }
+
+ private:
+  termios before_{};
+  bool raw_;
+};
+
+int watch(const Options& options, const status::Page& page) {
+  const RawKeys keys;
+  std::string sort = options.sort;
+  constexpr size_t kRows = 30;
+  status::Now before = page.now.read().value_or(status::Now{});
+  for (char key = 0; key != 'q'; key = keys.wait(options.every)) {
+    if (key == 'n') sort = "name";
+    if (key == 'f') sort = "force";
+    if (key == 'd') sort = "depth";
+    if (key == 's') sort = "step";
+    View view = look(page);
+    const double passed = view.now.t - before.t;
+    view.held = passed > 0 ? static_cast<double>(view.now.tick - before.tick) / passed : 0;
+    before = view.now;
+    sortModels(view.models, sort);
+    std::printf("\033[H\033[J%s\nsort: s step, f force, d depth, n name (now %s); q ends\n", table(view, kRows).c_str(),
+                sort.c_str());
+    std::fflush(stdout);
+    if (kill(static_cast<pid_t>(page.pid), 0) != 0 && errno == ESRCH) {
+      std::puts("the daemon has ended");
+      return kWorked;
+    }
+  }
+  return kWorked;
+}
+
+int top(const Options& options) {
+  const std::string file = status::runtimeFolder(false) + "/" + options.name + ".status";
+  auto opened = status::PageFile::open(file);
+  if (!opened)
+    return fail(kFailed, opened.error() + "\n  fix: start a daemon with hapticd run, or name it with --name");
+  const status::Page& page = std::as_const(**opened).page();
+  if (!options.once) return watch(options, page);
+  View view = look(page);
+  view.held = view.now.t > 0 ? static_cast<double>(view.now.tick) / view.now.t : 0;
+  sortModels(view.models, options.sort);
+  std::fputs(options.json ? (toJson(view).dump(2) + "\n").c_str() : table(view, view.models.size()).c_str(), stdout);
+  return kWorked;
+}
+
+}  // namespace
+
+void addTop(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("top", "Watch a running daemon: time, lateness, force, depth per model and device.");
+  command->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
+  command->add_option("--sort", options->sort, "models by step time, force, depth or name")
+      ->check(CLI::IsMember({"step", "force", "depth", "name"}));
+  command->add_option("--every", options->every, "seconds between two looks")->check(CLI::Range(0.05, 60.0));
+  command->add_flag("--once", options->once, "one look, then end");
+  command->add_flag("--json", options->json, "with --once: as JSON");
+  command->footer("Keys: s, f, d, n sort by step time, force, depth, name; q ends.");
+  command->callback([options, &exit_code] { exit_code = top(*options); });
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,71 @@
+#include <algorithm>
+#include <utility>
+
+#include "servo/core.hpp"
+
+namespace hapticd::servo {
+
+bool Core::obey(const Order& order, double t) noexcept HSP_RT {
+  if (order.target >= models_.size()) return false;
+  ModelState& model = models_[order.target];
+  if (order.kind == Order::Kind::kAdopt) return adopt(model, order);
+  if (model.shape == nullptr) return false;
+  switch (order.kind) {
+    case Order::Kind::kEnable:
+      model.enabled = !model.leaving;
+      return !model.leaving;
+    case Order::Kind::kDisable:
+      model.enabled = false;
+      return true;
+    case Order::Kind::kMove:
+      if (!model.kinematic) return false;
+      model.glide.begin(t, order.seconds, model.pose, order.position, order.orientation);
+      return true;
+    case Order::Kind::kSet:
+      return change(model, order);
+    case Order::Kind::kRelease:
+      model.enabled = false;
+      if (!model.leaving) ++leaving_;
+      model.leaving = true;
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool Core::adopt(ModelState& place, const Order& order) noexcept HSP_RT {
+  if (place.shape != nullptr || order.model == nullptr) return false;
+  std::swap(place, *order.model);
+  place.guard.silence();  // fades in
+  listLive();
+  return true;
+}
+
+bool Core::change(ModelState& model, const Order& order) noexcept HSP_RT {
+  auto* const end = model.changes.data() + model.change_count;
+  auto* found = std::find_if(model.changes.data(), end, [&](const hsp_change& c) { return c.param == order.param; });
+  if (found == model.changes.data() + model.changes.size()) return false;
+  if (found == end) ++model.change_count;
+  *found = {order.param, 0, order.value};
+  return true;
+}
+
+void Core::releaseLeaving() noexcept HSP_RT {
+  // Records that still name the model must be gone first: the simulation side was told before the order came.
+  if (leaving_ == 0 || received_count_ == received_.size()) return;
+  for (uint32_t i = 0; i < models_.size() && leaving_ > 0; ++i) {
+    ModelState& model = models_[i];
+    const bool stepped = model.always || model.active_surfaces > 0;
+    if (!model.leaving || (stepped && model.guard.gain() > 0)) continue;
+    if (!released_.push(i)) return;
+    model.leaving = false;
+    model.shape = nullptr;
+    model.guard = Guard();
+    model.moves = model.always = false;
+    model.active_surfaces = 0;
+    --leaving_;
+    listLive();
+  }
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,358 @@
+#include "servo/steward.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "host/nearest.hpp"
+
+namespace hapticd::servo {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using control::Request;
+
+constexpr Nanoseconds kPause = 1'000'000;
+constexpr Nanoseconds kPatience = 2'000'000'000;  ///< for the servo to obey
+constexpr double kMoveSpeed = 0.2;                ///< [m/s] where a move does not say how long it takes
+constexpr double kMostSpeed = 1.0;                ///< [m/s] of a moved model: a hand may be behind it
+constexpr double kPeakOfMean = 1.875;             ///< of a path of least jerk
+
+std::string text(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// True once `done` is, false after a while.
+template <class Done>
+bool waitUntil(Done&& done) {
+  RealClock clock(0);
+  for (const Nanoseconds end = clock.now() + kPatience; clock.now() < end; clock.waitUntil(clock.now() + kPause))
+    if (done()) return true;
+  return done();
+}
+
+/// The parameter of a class by its id; nullptr if there is none.
+const hsp_param* parameterOf(const hsp_class& plugin, const std::string& id, uint32_t& index) {
+  for (index = 0; index < plugin.param_count; ++index) {
+    const hsp_param* param = HSP_AT(const hsp_param, plugin.params, plugin.params[0].struct_size, index);
+    if (id == param->id) return param;
+  }
+  return nullptr;
+}
+
+bool sameDevices(const scene::Scene& a, const scene::Scene& b) {
+  if (a.devices.size() != b.devices.size()) return false;
+  for (size_t i = 0; i < a.devices.size(); ++i)
+    if (a.devices[i].module != b.devices[i].module || a.devices[i].file != b.devices[i].file) return false;
+  return true;
+}
+
+}  // namespace
+
+Steward::Steward(Runner& runner, LoadScene load, host::Services::Log log, std::string dump_folder)
+    : runner_(runner),
+      load_(std::move(load)),
+      log_(std::move(log)),
+      dump_folder_(std::move(dump_folder)),
+      scene_file_(std::filesystem::absolute(runner.scene().file).string()),
+      places_(runner.world().places()) {
+  for (size_t i = 0; i < runner.scene().models.size(); ++i) places_[i] = {runner.scene().models[i], true, true};
+}
+
+std::string Steward::answer(const std::string& line) {
+  const auto request = control::parseRequest(line);
+  if (!request) return control::refusal(request.error());
+  try {
+    sweep();
+    const auto done = obey(*request);
+    return done ? *done : control::refusal(done.error());
+  } catch (const std::exception& error) {
+    return control::refusal(std::string("it failed: ") + error.what());
+  }
+}
+
+Result<std::string> Steward::obey(const Request& request) {
+  const std::string good = text({{"ok", true}});
+  const auto plain = [&](Result<void> done) -> Result<std::string> {
+    if (!done) return Error{done.error()};
+    return good;
+  };
+  switch (request.kind) {
+    case Request::Kind::kStatus:
+      return status();
+    case Request::Kind::kList:
+      return list();
+    case Request::Kind::kEnable:
+      return plain(able(request.model, true));
+    case Request::Kind::kDisable:
+      return plain(able(request.model, false));
+    case Request::Kind::kMove:
+      return plain(move(request));
+    case Request::Kind::kSet:
+      return plain(set(request));
+    case Request::Kind::kAdd:
+      return add(request);
+    case Request::Kind::kRemove: {
+      const auto place = placeOf(request.model);
+      return plain(place ? release(*place) : Result<void>(Error{place.error()}));
+    }
+    case Request::Kind::kReload:
+      return reload(request.file.empty() ? scene_file_ : request.file);
+    case Request::Kind::kHold:
+      return plain(arms(request.device, Order::Kind::kHold));
+    case Request::Kind::kClear:
+      return plain(arms(request.device, Order::Kind::kClear));
+    case Request::Kind::kDump: {
+      auto file = dump("asked for");
+      if (!file) return Error{file.error()};
+      return text({{"ok", true}, {"file", *file}});
+    }
+    case Request::Kind::kStop:
+      runner_.stop();
+      return good;
+  }
+  return Error{"unknown request"};
+}
+
+std::string Steward::status() const {
+  const status::Page& page = runner_.telemetry().statusWriter()->page();
+  const auto now = page.now.read().value_or(status::Now{});
+  Json devices = Json::array();
+  for (size_t i = 0; i < runner_.arms().size(); ++i) {
+    const auto arm = page.arm[i].now.read().value_or(status::ArmNow{});
+    const auto fault = static_cast<Fault>(arm.fault);
+    devices.push_back({{"name", runner_.scene().devices[i].name},
+                       {"fault", fault == Fault::kNone ? Json() : Json(describe(fault))},
+                       {"force_n", {arm.force[0], arm.force[1], arm.force[2]}},
+                       {"position_m", {arm.position[0], arm.position[1], arm.position[2]}}});
+  }
+  return text({{"ok", true},
+               {"scene", scene_file_},
+               {"seconds", now.t},
+               {"tick", now.tick},
+               {"rate_hz", page.rate},
+               {"missed_ticks", now.missed},
+               {"lateness_us", {{"p50", page.lateness_us.quantile(0.5)}, {"p99", page.lateness_us.quantile(0.99)}}},
+               {"devices", devices}});
+}
+
+std::string Steward::list() const {
+  Json models = Json::array();
+  for (uint32_t i = 0; i < places_.size(); ++i) {
+    if (!places_[i].taken) continue;
+    Json live = Json::array();
+    const hsp_class& plugin = runner_.world().shapes()[i]->description();
+    for (uint32_t p = 0; p < plugin.param_count; ++p) {
+      const hsp_param* param = HSP_AT(const hsp_param, plugin.params, plugin.params[0].struct_size, p);
+      if ((param->flags & HSP_P_LIVE) == 0) continue;
+      live.push_back({{"id", param->id},
+                      {"unit", param->unit},
+                      {"min", param->min},
+                      {"max", param->max},
+                      {"safety", (param->flags & HSP_P_SAFETY) != 0}});
+    }
+    models.push_back({{"name", places_[i].model.name},
+                      {"plugin", places_[i].model.plugin},
+                      {"enabled", places_[i].enabled},
+                      {"kinematic", places_[i].model.kinematic},
+                      {"live_parameters", live}});
+  }
+  return text({{"ok", true}, {"models", models}});
+}
+
+Result<uint32_t> Steward::placeOf(const std::string& model) const {
+  std::vector<std::string> names;
+  for (uint32_t i = 0; i < places_.size(); ++i) {
+    if (places_[i].taken && places_[i].model.name == model) return i;
+    if (places_[i].taken) names.push_back(places_[i].model.name);
+  }
+  return Error{"there is no model \"" + model.substr(0, 100) + "\"" + host::suggestion(model.substr(0, 100), names)};
+}
+
+Result<void> Steward::give(Order order) {
+  if (!runner_.giveOrder(order)) return Error{"too many orders wait already; the servo may have stopped"};
+  ++given_;
+  if (!waitUntil([&] { return runner_.loop().ordersDone() >= given_; }))
+    return Error{"the servo has not obeyed within 2 s: it may have stopped; see status"};
+  return {};
+}
+
+Result<void> Steward::able(const std::string& model, bool enabled) {
+  const auto place = placeOf(model);
+  if (!place) return Error{place.error()};
+  Order order;
+  order.kind = enabled ? Order::Kind::kEnable : Order::Kind::kDisable;
+  order.target = *place;
+  places_[*place].enabled = enabled;
+  return give(order);
+}
+
+Result<void> Steward::set(const Request& request) {
+  const auto place = placeOf(request.model);
+  if (!place) return Error{place.error()};
+  const hsp_class& plugin = runner_.world().shapes()[*place]->description();
+  Order order;
+  order.kind = Order::Kind::kSet;
+  order.target = *place;
+  order.value = request.value;
+  const hsp_param* param = parameterOf(plugin, request.parameter, order.param);
+  const std::string what = "parameter \"" + request.parameter.substr(0, 100) + "\" of " + plugin.name;
+  if (param == nullptr) return Error{what + ": there is none of that name; see list"};
+  if ((param->flags & HSP_P_LIVE) == 0)
+    return Error{what + ": cannot change while it runs\n  fix: change the scene and reload it"};
+  const bool whole = param->kind == HSP_REAL || std::floor(request.value) == request.value;
+  if (!(request.value >= param->min && request.value <= param->max) || !whole)
+    return Error{fmt::format("{}: {:g} is out of range, expected {:g} to {:g} {}", what, request.value, param->min,
+                             param->max, param->unit)};
+  if ((param->flags & HSP_P_SAFETY) != 0 && !request.consent)
+    return Error{what +
+                 ": changes what a hand may feel suddenly; whoever holds the arm must agree\n"
+                 "  fix: add \"consent\": true, or hapticd ctl set --consent"};
+  return give(order);
+}
+
+Result<void> Steward::move(const Request& request) {
+  const auto place = placeOf(request.model);
+  if (!place) return Error{place.error()};
+  const scene::Model& model = places_[*place].model;
+  if (!model.kinematic) return Error{"model \"" + model.name + "\" is not kinematic: only such can be moved"};
+  Order order;
+  order.kind = Order::Kind::kMove;
+  order.target = *place;
+  const Eigen::Quaterniond& q = model.pose.orientation;
+  const double kept[4] = {q.w(), q.x(), q.y(), q.z()};
+  std::copy(request.position.begin(), request.position.end(), order.position);
+  std::copy_n(request.turns ? request.orientation.data() : kept, 4, order.orientation);
+  const double distance = (Eigen::Map<const Eigen::Vector3d>(order.position) - model.pose.position).norm();
+  order.seconds = request.seconds.value_or(std::max(0.5, kPeakOfMean * distance / kMoveSpeed));
+  if (kPeakOfMean * distance / order.seconds > kMostSpeed)
+    return Error{fmt::format("\"seconds\": {:g} for {:.3g} m is faster than {:g} m/s, expected {:.2g} or more",
+                             order.seconds, distance, kMostSpeed, kPeakOfMean * distance / kMostSpeed)};
+  if (auto given = give(order); !given) return given;
+  places_[*place].model.pose = {
+      Eigen::Vector3d(order.position),
+      {order.orientation[0], order.orientation[1], order.orientation[2], order.orientation[3]}};
+  return {};
+}
+
+Result<void> Steward::arms(const std::string& device, Order::Kind kind) {
+  const auto& devices = runner_.scene().devices;
+  bool found = false;
+  for (uint32_t i = 0; i < devices.size(); ++i) {
+    if (!device.empty() && devices[i].name != device) continue;
+    found = true;
+    Order order;
+    order.kind = kind;
+    order.target = i;
+    if (auto given = give(order); !given) return given;
+  }
+  return found ? Result<void>() : Error{"there is no device \"" + device.substr(0, 100) + "\""};
+}
+
+Result<std::string> Steward::add(const Request& request) {
+  auto scene = load_(request.file);
+  if (!scene) return Error{scene.error()};
+  std::vector<scene::Model> models;
+  for (const scene::Model& model : scene->models)
+    if (request.model.empty() || model.name == request.model) models.push_back(model);
+  if (models.empty()) return Error{request.file + ": has no model" + (request.model.empty() ? "" : " of that name")};
+  for (const scene::Model& model : models)
+    if (placeOf(model.name)) return Error{"a model named \"" + model.name + "\" is there already"};
+  if (auto done = adopt(models); !done) return Error{done.error()};
+  return text({{"ok", true}, {"models", models.size()}});
+}
+
+/// All of them or none: everything that can fail is done before the first is given to the servo.
+Result<void> Steward::adopt(const std::vector<scene::Model>& models) {
+  std::vector<uint32_t> empty;
+  for (uint32_t i = 0; i < places_.size(); ++i)
+    if (!places_[i].taken && runner_.world().shapes()[i] == nullptr) empty.push_back(i);
+  if (empty.size() < models.size())
+    return Error{fmt::format("there is room for {} more models, not for {}", empty.size(), models.size())};
+  std::vector<std::unique_ptr<host::ShapeInstance>> shapes;
+  for (const scene::Model& model : models) {
+    auto shape = runner_.world().prepare(model, log_);
+    if (!shape) return Error{shape.error()};
+    shapes.push_back(std::move(*shape));
+  }
+  for (size_t i = 0; i < models.size(); ++i) {
+    const uint32_t place = empty[i];
+    prepared_.push_back(std::make_unique<ModelState>(Core::stateOf(*shapes[i], models[i])));
+    runner_.nameModel(place, models[i].name, models[i].plugin);
+    Order order;
+    order.kind = Order::Kind::kAdopt;
+    order.target = place;
+    order.model = prepared_.back().get();
+    const auto given = give(order);
+    places_[place] = {models[i], true, true};
+    runner_.world().keep(place, std::move(shapes[i]), models[i]);  // also where it was late: it may obey yet
+    if (!given) return given;
+    prepared_.pop_back();
+  }
+  return {};
+}
+
+Result<void> Steward::release(uint32_t place) {
+  runner_.world().forget(place);
+  places_[place].taken = false;
+  Order order;
+  order.kind = Order::Kind::kRelease;
+  order.target = place;
+  if (auto given = give(order); !given) return given;
+  waitUntil([&] {
+    sweep();
+    return runner_.world().shapes()[place] == nullptr;
+  });
+  return {};
+}
+
+Result<std::string> Steward::reload(const std::string& file) {
+  auto scene = load_(file);
+  if (!scene) return Error{scene.error()};
+  if (!sameDevices(*scene, runner_.scene()))
+    return Error{file +
+                 ": names other devices than those that run\n  fix: stop the daemon and start it with this scene"};
+  std::vector<uint32_t> old;
+  for (uint32_t i = 0; i < places_.size(); ++i)
+    if (places_[i].taken) old.push_back(i);
+  if (auto done = adopt(scene->models); !done) return Error{file + ": nothing was changed: " + done.error()};
+  for (const uint32_t place : old)
+    if (auto done = release(place); !done) return Error{done.error()};
+  scene_file_ = file;
+  return text({{"ok", true}, {"models", scene->models.size()}});
+}
+
+void Steward::sweep() {
+  uint32_t place = 0;
+  while (runner_.world().core().takeReleased(place)) {
+    runner_.world().destroy(place);
+    runner_.nameModel(place, "", "");
+  }
+}
+
+Result<std::string> Steward::dump(const std::string& why) {
+  std::error_code error;
+  std::filesystem::create_directories(dump_folder_, error);
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  char stamp[32] = "";
+  std::strftime(stamp, sizeof stamp, "%Y%m%dT%H%M%SZ", &parts);
+  std::string file;
+  for (int i = 0; i < 100; ++i) {
+    file = dump_folder_ + "/blackbox-" + stamp + (i == 0 ? "" : "-" + std::to_string(i)) + ".h5";
+    if (!std::filesystem::exists(file, error)) break;
+  }
+  if (auto done = runner_.telemetry().flight()->ring().dump(file); !done) return Error{done.error()};
+  log_(HSP_LOG_INFO, "black box", file + " (" + why + ")");
+  return file;
+}
+
+}  // namespace hapticd::servo
