@@ -75,8 +75,11 @@ class Skeleton {
   const std::array<std::vector<double>, 2>& parameters() const noexcept { return parameters_; }
   double spacing() const noexcept { return spacing_; }  ///< [m] greatest distance of neighbouring points
   const ControlGrid& control() const noexcept { return control_; }
-  /// [main] Frees what only set-up needs: the positions of the control points.
-  void trim() { control_.points = {}; }
+  /// [main] Frees what only set-up needs: where the control points stand.
+  void trim() {
+    control_.points = {};
+    control_.greville = {};
+  }
   std::size_t bytes() const noexcept;  ///< [any] memory behind this skeleton
 
  private:
