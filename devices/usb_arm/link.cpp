@@ -214,7 +214,7 @@ void Link::lookForIt() noexcept {
 
 void Link::tell() noexcept {
   const Trouble now = session_.trouble();
-  if (now == told_) return;
+  if (now == told_ || session_.sample().sequence == 0) return;  // before the first report, start() does the talking
   told_ = now;
   try {
     if (now == Trouble::kNone)
