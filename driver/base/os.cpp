@@ -5,13 +5,16 @@
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <sstream>
 
 namespace hapticd::os {
@@ -153,6 +156,56 @@ bool inVirtualMachine() {
   for (std::string line; std::getline(in, line);)
     if (line.rfind("flags", 0) == 0) return line.find(" hypervisor") != std::string::npos;
   return false;
+}
+
+clockid_t cpuClockOfThread() {
+  clockid_t clock = CLOCK_THREAD_CPUTIME_ID;
+  pthread_getcpuclockid(pthread_self(), &clock);
+  return clock;
+}
+
+uint64_t cpuTime(clockid_t clock) noexcept {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return static_cast<uint64_t>(time.tv_sec) * 1'000'000'000u + static_cast<uint64_t>(time.tv_nsec);
+}
+
+int threadId() noexcept {
+  return static_cast<int>(syscall(SYS_gettid));
+}
+
+bool wasPreempted() noexcept {
+  static thread_local long known = 0;
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  const bool preempted = usage.ru_nivcsw != known;
+  known = usage.ru_nivcsw;
+  return preempted;
+}
+
+void onCrashSignals(void (*handler)(int)) {
+  struct sigaction action {};
+  action.sa_handler = handler != nullptr ? handler : SIG_DFL;
+  action.sa_flags = SA_ONSTACK | SA_NODEFER;
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGXCPU}) sigaction(signal, &action, nullptr);
+}
+
+void prepareSignalStack() {
+  constexpr size_t kBytes = 64 * 1024;
+  // Lives as long as its thread may crash, which is to the end of the process.
+  static thread_local std::unique_ptr<std::byte[]> stack(new std::byte[kBytes]());
+  stack_t signal_stack{};
+  signal_stack.ss_sp = stack.get();
+  signal_stack.ss_size = kBytes;
+  sigaltstack(&signal_stack, nullptr);
+}
+
+std::error_code limitRealTimeRun(uint64_t us) {
+  rlimit limit{};
+  getrlimit(RLIMIT_RTTIME, &limit);
+  limit.rlim_cur = std::min<rlim_t>(limit.rlim_cur, us);
+  limit.rlim_max = std::min<rlim_t>(limit.rlim_max, 2 * us);
+  return error(setrlimit(RLIMIT_RTTIME, &limit) == 0 ? 0 : errno);
 }
 
 void onStopSignal(void (*handler)(int)) {

@@ -2,8 +2,10 @@
 /// mlockall, getrusage and their kind; pthread calls return their error and never set errno.
 #pragma once
 #include <pthread.h>
+#include <time.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -77,6 +79,26 @@ std::string realTimeRights();
 
 /// True inside a virtual machine, where spinning buys nothing against pauses of the host.
 bool inVirtualMachine();
+
+/// CPU clock of the calling thread, for other threads to read.
+clockid_t cpuClockOfThread();
+/// [any] CPU time [ns] that the thread of a clock has used; async-signal-safe.
+uint64_t cpuTime(clockid_t clock) noexcept;
+/// [any] Number of the calling thread; async-signal-safe.
+int threadId() noexcept;
+
+/// [any] The thread lost its processor since it last asked: what it did took time of others. A system call.
+bool wasPreempted() noexcept;
+
+/// Installs a handler for SIGSEGV, SIGBUS, SIGFPE, SIGILL and SIGXCPU; nullptr: the system's own again.
+void onCrashSignals(void (*handler)(int));
+
+/// Gives the calling thread a stack of its own for such handlers, so that they run even when its own is full.
+void prepareSignalStack();
+
+/// A real-time thread that runs this long without sleeping gets SIGXCPU, and twice as long SIGKILL: a machine must not
+/// freeze because of a plugin that loops. Lower limits stay.
+std::error_code limitRealTimeRun(uint64_t us);
 
 /// Installs `onStop` for SIGINT and SIGTERM (async-signal-safe: it stores to a flag only) and ignores SIGPIPE.
 void onStopSignal(void (*handler)(int));

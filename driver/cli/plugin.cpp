@@ -5,6 +5,7 @@
 
 #include "cli/class_info.hpp"
 #include "cli/command.hpp"
+#include "watch/quarantine.hpp"
 
 namespace hapticd::cli {
 namespace {
@@ -24,6 +25,21 @@ int info(const std::string& name) {
   return kWorked;
 }
 
+int clear(const std::string& name) {
+  const auto dir = watch::stateDir();
+  if (dir.empty()) return fail(kFailed, "no state folder can be written; nothing is in quarantine here");
+  auto cleared = watch::clearQuarantine(dir, name);
+  if (!cleared) return fail(kFailed, cleared.error());
+  if (*cleared) {
+    std::printf("plugin '%s' may run again\n", name.c_str());
+    return kWorked;
+  }
+  std::string known;
+  for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir)) known += " " + entry.plugin;
+  return fail(kBadInput, "plugin '" + name + "' is not in quarantine; " +
+                             (known.empty() ? "no plugin is" : "expected one of:" + known));
+}
+
 }  // namespace
 
 void addPlugin(CLI::App& app, int& exit_code) {
@@ -38,6 +54,12 @@ void addPlugin(CLI::App& app, int& exit_code) {
   list_command->add_flag("--files", *details, "show the file and licence of each");
   list_command->footer("Example:\n  HAPTICD_PLUGIN_PATH=~/my-plugins/build hapticd plugin list --files");
   list_command->callback([details, &exit_code] { exit_code = list(*details); });
+
+  auto crashed = std::make_shared<std::string>();
+  CLI::App* clear_command = command->add_subcommand("clear", "Lets a plugin run again that crashed the daemon.");
+  clear_command->add_option("name", *crashed, "name of the plugin, as the crash message gives it")->required();
+  clear_command->footer("Example:\n  hapticd plugin clear my_shape");
+  clear_command->callback([crashed, &exit_code] { exit_code = clear(*crashed); });
 
   auto name = std::make_shared<std::string>();
   CLI::App* info_command = command->add_subcommand("info", "A plugin's parameters with unit, range and default.");

@@ -14,6 +14,7 @@
 #include "record/picture.hpp"
 #include "record/report.hpp"
 #include "servo/runner.hpp"
+#include "watch/quarantine.hpp"
 
 namespace hapticd::cli {
 
@@ -63,15 +64,26 @@ std::vector<record::Sample> samplesOf(const servo::Telemetry& telemetry) {
   return samples;
 }
 
+record::LimitReport limitsOf(const std::string& device, const servo::Limiter& limiter) {
+  record::LimitReport report{device, limiter.clips().any, {}};
+  for (size_t i = 0; i < servo::kLimitCount; ++i)
+    if (const uint64_t ticks = limiter.clips().ticks[i]; ticks > 0)
+      report.ticks.emplace_back(servo::nameOf(static_cast<servo::Limit>(i)), ticks);
+  return report;
+}
+
 /// Writes what was asked for and prints the summary; the run's own exit code unless a file fails.
-int conclude(const Options& options, const servo::Runner& runner) {
-  const std::vector<std::string> faults = runner.faults();
+int conclude(const Options& options, const servo::Runner& runner, const std::vector<std::string>& left_out) {
+  std::vector<std::string> faults = runner.faults();
+  faults.insert(faults.end(), left_out.begin(), left_out.end());
   record::RunReport report = runner.telemetry().report(faults);
   report.scene = options.scene;
   report.virtual_time = options.virtual_time;
   report.wall_seconds = static_cast<double>(runner.wallTime()) * kSecondsPerNanosecond;
   report.start_ms = static_cast<double>(runner.loop().firstTick() - program_start) * 1e-6;
   report.resident_bytes = runner.residentBytes();
+  for (size_t i = 0; i < runner.arms().size(); ++i)
+    report.limits.push_back(limitsOf(runner.scene().devices[i].name, runner.arms()[i]->limiter()));
   std::fputs(record::summary(report).c_str(), stdout);
   if (const record::Recorder* recorder = runner.recorder())
     std::printf("  recorded  %s: %llu ticks, %llu rows lost\n", options.record.c_str(),
@@ -83,6 +95,30 @@ int conclude(const Options& options, const servo::Runner& runner) {
     if (auto drawn = record::drawRun(report, samplesOf(runner.telemetry()), options.picture); !drawn)
       return fail(kFailed, drawn.error());
   return faults.empty() ? kWorked : kFailed;
+}
+
+/// Models of a plugin that crashed the daemon stay out until the user clears it. @return a message for each
+std::vector<std::string> leaveOutQuarantined(scene::Scene& scene, const std::filesystem::path& dir) {
+  std::vector<std::string> messages;
+  if (dir.empty()) return messages;
+  for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir))
+    std::erase_if(scene.models, [&](const scene::Model& model) {
+      if (model.plugin != entry.plugin) return false;
+      messages.push_back("model " + model.name + ": plugin '" + entry.plugin + "' ended an earlier run by " +
+                         entry.reason + "; the model is left out; when the plugin is good again: hapticd plugin clear " +
+                         entry.plugin);
+      return true;
+    });
+  return messages;
+}
+
+/// A fault is told once, when it latches.
+void tellFaults(const servo::Runner& runner, std::vector<std::string>& told) {
+  for (size_t i = 0; i < told.size(); ++i) {
+    const std::string text = runner.faultOf(i);
+    if (!text.empty() && told[i].empty()) std::fprintf(stderr, "\nfault: %s\n", text.c_str());
+    told[i] = text;
+  }
 }
 
 int run(const Options& options) {
@@ -103,6 +139,9 @@ int run(const Options& options) {
   how.record = options.record;
   std::optional<Outside> outside;  // a virtual run is over before anybody looks, unless it was given a name
   if (!options.virtual_time || !options.name.empty()) outside.emplace(options.name, how);
+  how.state_dir = watch::stateDir().string();
+  const std::vector<std::string> left_out = leaveOutQuarantined(*scene, how.state_dir);
+  for (const std::string& text : left_out) std::fprintf(stderr, "warning: %s\n", text.c_str());
   auto world = servo::Runner::buildWorld(*scene, how, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   auto runner = servo::Runner::prepare(*scene, how, std::move(*world), logToTerminal);
@@ -113,15 +152,17 @@ int run(const Options& options) {
 
   const bool terminal = isatty(STDERR_FILENO) != 0;
   size_t told = 0;
+  std::vector<std::string> alarms((*runner)->arms().size());
   auto done = (*runner)->run([&](const servo::Runner& r) {
     for (; told < r.warnings().size(); ++told) std::fprintf(stderr, "warning: %s\n", r.warnings()[told].c_str());
+    tellFaults(r, alarms);
     if (terminal) showStatus(r);
     if (outside) outside->look();
   });
   if (outside) outside->end();
   if (terminal) std::fputs("\r\033[K", stderr);
   if (!done) return fail(kFailed, done.error());
-  return conclude(options, **runner);
+  return conclude(options, **runner, left_out);
 }
 
 }  // namespace

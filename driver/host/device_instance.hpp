@@ -43,6 +43,13 @@ class DeviceInstance {
     return playback_ == nullptr ? class_->write(device_, now_ns, &command) : playback_->write_status;
   }
 
+  /// [any] Motors free at once, by the module's own means; async-signal-safe. False: the module has none.
+  bool cut() noexcept {
+    if (cut_ == nullptr || playback_ != nullptr) return playback_ != nullptr;
+    cut_->cut(device_);
+    return true;
+  }
+
   const std::string& name() const { return name_; }
   const hdv_class& description() const { return *class_; }
   const hdv_info& info() const { return info_; }                         ///< valid once open
@@ -60,6 +67,7 @@ class DeviceInstance {
   hdv_info info_{};
   const hdv_ext_kinematics* kinematics_ = nullptr;
   const hdv_ext_calibration* calibration_ = nullptr;
+  const hdv_ext_cut* cut_ = nullptr;
   const Playback* playback_ = nullptr;
   bool open_ = false, started_ = false;
 };

@@ -52,6 +52,15 @@ std::string modelText(const ModelReport& model, const RunReport& report) {
   return text;
 }
 
+std::string limitText(const LimitReport& device, uint64_t ticks) {
+  if (device.any == 0 || ticks == 0) return "";
+  std::string text = fmt::format("limits of {}: the force was cut in {:.2g} % of the ticks (", device.device,
+                                 100.0 * static_cast<double>(device.any) / static_cast<double>(ticks));
+  for (size_t i = 0; i < device.ticks.size(); ++i)
+    text += fmt::format("{}{}: {}", i > 0 ? ", " : "", device.ticks[i].first, device.ticks[i].second);
+  return text + ")\n";
+}
+
 }  // namespace
 
 Result<void> writeJson(const RunReport& report, const std::string& file) {
@@ -71,6 +80,12 @@ Result<void> writeJson(const RunReport& report, const std::string& file) {
                {"virtual_time", report.virtual_time},
                {"resident_bytes", report.resident_bytes},
                {"start_ms", report.start_ms}};
+  json["limits"] = Json::object();
+  for (const LimitReport& device : report.limits) {
+    Json& ticks = json["limits"][device.device];
+    ticks = {{"clipped_ticks", device.any}};
+    for (const auto& [limit, count] : device.ticks) ticks["by_limit"][limit] = count;
+  }
   for (const ModelReport& model : report.models) json["models"][model.name] = modelJson(model);
   const std::string text = json.dump(2) + "\n", part = file + ".part";
   std::FILE* out = std::fopen(part.c_str(), "w");
@@ -102,6 +117,7 @@ std::string summary(const RunReport& report) {
   for (const ModelReport& model : report.models)
     if ((model.contact.contactTicks() > 0 || report.models.size() <= kMostModels) && shown++ < kMostModels)
       text += modelText(model, report);
+  for (const LimitReport& device : report.limits) text += limitText(device, report.ticks);
   for (const std::string& fault : report.faults) text += "fault: " + fault + "\n";
   return text;
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/result.hpp"
@@ -13,6 +14,13 @@ namespace hapticd::record {
 struct ModelReport {
   std::string name, plugin;
   ContactStatistics contact;
+};
+
+/// In how many ticks limits made the force of one device smaller than the scene asked for.
+struct LimitReport {
+  std::string device;
+  uint64_t any = 0;                                     ///< ticks in which at least one limit did
+  std::vector<std::pair<std::string, uint64_t>> ticks;  ///< by limit, those that did
 };
 
 struct RunReport {
@@ -27,6 +35,7 @@ struct RunReport {
   uint64_t resident_bytes = 0;
   double start_ms = 0;  ///< from the start of the program to the first tick
   std::vector<ModelReport> models;
+  std::vector<LimitReport> limits;  ///< a line a device
   std::vector<std::string> faults;
 };
 

@@ -92,6 +92,16 @@ scene::Model toModel(const Json& json) {
   return model;
 }
 
+/// The numbers of each motor in the order of scene::Motor.
+Json motorsJson(const std::vector<scene::Motor>& motors) {
+  Json json = Json::array();
+  for (const scene::Motor& m : motors)
+    json.push_back({real(m.ratio), real(m.torque_constant), real(m.resistance), real(m.winding_housing),
+                    real(m.housing_air), real(m.winding_time), real(m.housing_time), real(m.max_temperature),
+                    real(m.ambient)});
+  return json;
+}
+
 Json deviceJson(const scene::Device& device) {
   const scene::Limits& limits = device.limits;
   Json json = {{"name", device.name},
@@ -107,7 +117,14 @@ Json deviceJson(const scene::Device& device) {
                  {"workspace", real(limits.workspace)},
                  {"ramp_in", real(limits.ramp_in)},
                  {"ramp_out", real(limits.ramp_out)},
-                 {"passivity", limits.passivity}}},
+                 {"passivity", limits.passivity},
+                 {"torque_slew", real(limits.torque_slew)},
+                 {"power", real(limits.power)},
+                 {"impulse", real(limits.impulse)},
+                 {"enable", limits.enable.button ? Json{{"button", *limits.enable.button},
+                                                        {"toggle", limits.enable.mode == scene::EnableMode::kToggle}}
+                                                 : Json()},
+                 {"motors", motorsJson(limits.motors)}}},
                {"parameters", values(device.parameters)}};
   if (device.admittance)
     json["admittance"] = {{"mass", real(device.admittance->mass)}, {"damping", real(device.admittance->damping)}};
@@ -130,6 +147,19 @@ scene::Device toDevice(const Json& json) {
   device.limits.ramp_in = toReal(limits.at("ramp_in"));
   device.limits.ramp_out = toReal(limits.at("ramp_out"));
   device.limits.passivity = limits.at("passivity");
+  device.limits.torque_slew = toReal(limits.at("torque_slew"));
+  device.limits.power = toReal(limits.at("power"));
+  device.limits.impulse = toReal(limits.at("impulse"));
+  if (const Json& enable = limits.at("enable"); !enable.is_null())
+    device.limits.enable = {enable.at("button").get<int>(),
+                            enable.at("toggle") ? scene::EnableMode::kToggle : scene::EnableMode::kHold};
+  for (const Json& motor : limits.at("motors")) {
+    scene::Motor& m = device.limits.motors.emplace_back();
+    size_t i = 0;
+    for (double* value : {&m.ratio, &m.torque_constant, &m.resistance, &m.winding_housing, &m.housing_air,
+                          &m.winding_time, &m.housing_time, &m.max_temperature, &m.ambient})
+      *value = toReal(motor.at(i++));
+  }
   device.parameters = toValues(json.at("parameters"));
   if (json.contains("admittance"))
     device.admittance = {toReal(json["admittance"].at("mass")), toReal(json["admittance"].at("damping"))};

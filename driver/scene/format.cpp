@@ -82,16 +82,44 @@ constexpr Key kSceneKeys[] = {
     required(list<&SceneText::models>("models", kModelTable, {0, kMaxModels}, "What can be touched.")),
 };
 
+constexpr std::string_view kEnableModes[] = {"hold", "toggle"};
+constexpr Key kEnableKeys[] = {
+    required(integer<&Enable::button>("button", {0, 31}, nullptr, "Button of the device, from 0.")),
+    choice<&Enable::mode>("mode", kEnableModes, "hold",
+                          "hold: forces only while it is down (dead-man switch); toggle: on and off at each press."),
+};
+constexpr Table kEnable{kEnableKeys};
+
+constexpr Key kMotorKeys[] = {
+    real<&Motor::ratio>("ratio", {1e-3, 1e4}, "1", "Torque at the joint over torque at the motor."),
+    required(real<&Motor::torque_constant>("torque_constant", {1e-6, 1e3, "N m/A"}, nullptr, "Torque constant.")),
+    required(real<&Motor::resistance>("resistance", {1e-6, 1e6, "ohm"}, nullptr, "Resistance at 25 degC.")),
+    real<&Motor::winding_housing>("winding_housing", {1e-3, 1e3, "K/W"}, "1",
+                                  "Thermal resistance from winding to housing."),
+    real<&Motor::housing_air>("housing_air", {1e-3, 1e3, "K/W"}, "10", "Thermal resistance from housing to air."),
+    real<&Motor::winding_time>("winding_time", {0.5, 1e5, "s"}, "10", "Thermal time constant of the winding."),
+    real<&Motor::housing_time>("housing_time", {0.5, 1e6, "s"}, "600", "Thermal time constant of the motor."),
+    real<&Motor::max_temperature>("max_temperature", {30, 400, "degC"}, "100", "Hottest that the winding may be."),
+    real<&Motor::ambient>("ambient", {-50, 100, "degC"}, "25", "Temperature of the air."),
+};
+constexpr Table kMotor{kMotorKeys};
+
 constexpr Key kLimitKeys[] = {
     real<&Limits::force>("force", {0, 1000, "N"}, "0", "Largest force on the hand; 0: the device's own maximum."),
     real<&Limits::torque>("torque", {0, 1000, "N m"}, "0", "Largest torque on the hand; 0: the motors' limit alone."),
-    real<&Limits::slew>("slew", {0, 1e6, "N/s"}, "2000", "Fastest change of force; 0: no limit."),
+    real<&Limits::slew>("slew", {0, 1e6, "N/s"}, "2000", "Fastest growth of force; 0: no limit."),
+    real<&Limits::torque_slew>("torque_slew", {0, 1e6, "N m/s"}, "0", "Fastest growth of torque; 0: no limit."),
+    real<&Limits::power>("power", {0, 1e4, "W"}, "0", "Most power that the arm gives to the hand; 0: no limit."),
+    real<&Limits::impulse>("impulse", {0, 100, "N s"}, "0",
+                           "Most impulse within 0.1 s, so a lasting force of ten times as many N; 0: no limit."),
     real<&Limits::velocity>("velocity", {0, 100, "m/s"}, "0", "A faster tip latches a fault; 0: no limit."),
     real<&Limits::workspace>("workspace", {0, 100, "m"}, "0",
                              "Forces fade outside this radius about the device's origin; 0: no limit."),
     real<&Limits::ramp_in>("ramp_in", {0, 10, "s"}, "0.25", "From zero to full force at the start and after a fault."),
-    real<&Limits::ramp_out>("ramp_out", {0, 1, "s"}, "0.02", "From full force to zero at a fault."),
+    real<&Limits::ramp_out>("ramp_out", {0, 0.02, "s"}, "0.02", "From full force to zero at a fault."),
     boolean<&Limits::passivity>("passivity", "true", "Passivity observer and controller."),
+    object<&Limits::enable>("enable", kEnable, "A button of the device that lets forces through."),
+    list<&Limits::motors>("motors", kMotor, {0, 16}, "Motors in the order of the joints, for a model of their heat."),
 };
 constexpr Table kLimits{kLimitKeys};
 

@@ -1,5 +1,6 @@
 #include "servo/arm.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -21,7 +22,8 @@ Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& desc
       R_world_device_(described.mount.orientation.toRotationMatrix()),
       q_world_device_(described.mount.orientation),
       origin_world_(described.mount.position),
-      limiter_(limiter) {}
+      limiter_(limiter),
+      heat_(described.limits.motors) {}
 
 Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const scene::Servo& servo,
                                        const ArmOptions& options, const host::Services::Log& log) {
@@ -40,7 +42,12 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
     const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
     arm->passivity_.emplace(mass * options.rate / 2, arm->info().damping);
   }
-  if (options.needs_velocity || described.limits.velocity > 0) {
+  const auto& button = described.limits.enable.button;
+  if (button && static_cast<uint32_t>(*button) >= arm->info().buttons && options.playback == nullptr)
+    return Error{"device '" + described.name + "': limits.enable.button is " + std::to_string(*button) +
+                 ", but the device has " + std::to_string(arm->info().buttons) +
+                 " buttons; forces could never be enabled; expected a button of the device, counted from 0"};
+  if (options.needs_velocity || described.limits.velocity > 0 || described.limits.power > 0) {
     auto estimator = makeEstimator(servo.velocity, options.rate, arm->info().resolution_m);
     if (!estimator) return Error{estimator.error()};
     arm->velocity_ = *estimator;
@@ -60,13 +67,20 @@ Result<void> Arm::start(Nanoseconds now, const Eigen::Vector3d& gravity_world) {
 }
 
 const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
+  if (cut_.load()) limiter_.cut(Fault::kStuck, cut_after_.load());
+  if (taken_.exchange(true)) {  // the watchdog is writing its zero force
+    probe_.valid = false;
+    return probe_;
+  }
   read_status_ = device_->read(now, sample_);
+  taken_.store(false);
+  limiter_.watchButtons(read_status_ < 0 ? 0 : sample_.buttons);
   probe_.valid = judge(read_status_, now) && locate();
   if (!probe_.valid) return probe_;
   if (admittance_) takeVirtualProbe();
   if (velocity_) {
     probe_.velocity = velocity_->update(probe_.position, dt);
-    limiter_.watchSpeed(probe_.velocity.norm());
+    limiter_.watchVelocity(probe_.velocity);
   }
   return probe_;
 }
@@ -83,7 +97,7 @@ bool Arm::judge(hsp_status status, Nanoseconds now) noexcept HSP_RT {
     last_sequence_ = sample_.sequence;
     fresh_at_ = now;
   } else if (static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond > kStaleAfter) {
-    limiter_.trip(Fault::kStale);
+    limiter_.trip(Fault::kStale, static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond);
     return false;
   }
   for (uint32_t i = 0; i < device_->info().joint_count; ++i) {
@@ -171,23 +185,66 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
     const Eigen::Vector3d force_device = R_world_device_.transpose() * force;
     tau.noalias() = J.topRows<3>().transpose() * force_device;  // Thompson et al. 1999, Eq. 9
     if (joints > 3) tau.noalias() += J.bottomRows<3>().transpose() * (R_world_device_.transpose() * torque);
-    scaleToMotors(command);
     std::array<double, HDV_MAX_JOINTS> gravity{};
-    if (kinematics.gravity(device_->handle(), sample_.position, gravity_device_.data(), gravity.data()) == HSP_OK)
-      for (uint32_t i = 0; i < joints; ++i) command.torque[i] += gravity[i];
+    if (kinematics.gravity(device_->handle(), sample_.position, gravity_device_.data(), gravity.data()) != HSP_OK)
+      gravity.fill(0);
+    scaleToMotors(gravity, command);
   }
-  write_status_ = device_->write(now, command);
+  if (!heat_.empty()) heatMotors(dt);
+  send(now);
   if (write_status_ < 0) limiter_.trip(Fault::kDeviceLost);
 }
 
-void Arm::scaleToMotors(hdv_command& command) const noexcept HSP_RT {
-  // All joints by one factor: the direction of the force on the hand stays true when a motor is at its limit.
+void Arm::send(Nanoseconds now) noexcept HSP_RT {
+  if (taken_.exchange(true)) return;  // the watchdog is writing its zero force
+  // After a cut the module waits for this tick's acknowledgement: motors off.
+  if (cut_.load()) command_ = {sizeof command_, HDV_OFF, {}, {}};
+  write_status_ = device_->write(now, command_);
+  taken_.store(false);
+}
+
+void Arm::heatMotors(double dt) noexcept HSP_RT {
+  static constexpr std::array<double, HDV_MAX_JOINTS> kNone{};
+  heat_.heat(command_.mode == HDV_OFF ? kNone.data() : command_.torque, dt);
+  limiter_.spareMotors(heat_.factor());
+  if (heat_.overheated()) limiter_.trip(Fault::kOverheated, heat_.hottest());
+}
+
+void Arm::cut(double after) noexcept {
+  if (cut_.exchange(true)) return;
+  cut_after_.store(after);
+  if (device_->cut()) return;
+  // Without a cut of its own the module may be called by one thread at a time: if the servo is inside it, the
+  // hardware's own watchdog is what is left.
+  if (taken_.exchange(true)) return;
+  hdv_command off{};
+  off.struct_size = sizeof off;
+  off.mode = HDV_OFF;
+  device_->write(monotonicNow(), off);
+  taken_.store(false);
+}
+
+void Arm::clear() noexcept HSP_RT {
+  cut_.store(false);
+  limiter_.clear();
+}
+
+void Arm::scaleToMotors(const std::array<double, HDV_MAX_JOINTS>& gravity, hdv_command& command) noexcept HSP_RT {
+  // All joints by one factor: the direction of the force on the hand stays true when a motor is at its limit. What
+  // carries the arm's own weight comes first, or the arm would fall on the hand.
   double factor = 1;
   for (uint32_t i = 0; i < device_->info().joint_count; ++i) {
-    const double most = device_->info().max_torque[i], asked = std::abs(command.torque[i]);
-    if (most > 0 && asked > most) factor = std::min(factor, most / asked);
+    const double most = device_->info().max_torque[i], asked = command.torque[i];
+    if (most <= 0 || asked == 0) continue;
+    const double held = std::clamp(gravity[i], -most, most);
+    const double room = asked > 0 ? most - held : most + held;
+    if (std::abs(asked) > room) factor = std::min(factor, room / std::abs(asked));
   }
-  for (uint32_t i = 0; i < device_->info().joint_count; ++i) command.torque[i] *= factor;
+  if (factor < 1) limiter_.clippedByMotors();
+  for (uint32_t i = 0; i < device_->info().joint_count; ++i) {
+    const double most = device_->info().max_torque[i], sum = gravity[i] + factor * command.torque[i];
+    command.torque[i] = most > 0 ? std::clamp(sum, -most, most) : sum;
+  }
 }
 
 }  // namespace hapticd::servo

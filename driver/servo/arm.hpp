@@ -1,6 +1,8 @@
 /// One arm: its device, kinematics, velocity estimate and limits. Turns samples into probes and forces into torques.
 #pragma once
 #include <Eigen/Geometry>
+#include <array>
+#include <atomic>
 #include <memory>
 #include <optional>
 
@@ -11,6 +13,7 @@
 #include "servo/admittance.hpp"
 #include "servo/core.hpp"
 #include "servo/limiter.hpp"
+#include "servo/motor_heat.hpp"
 #include "servo/passivity/controller.hpp"
 #include "servo/probe_velocity.hpp"
 #include "servo/tip_force.hpp"
@@ -41,6 +44,12 @@ class Arm {
   void write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque,
              const passivity::Exchange& exchange = {}) noexcept HSP_RT;
 
+  /// [any] Motors free at once, while the servo is stuck or dying; async-signal-safe. They stay so until clear().
+  /// @param after [s] that the servo was stuck
+  void cut(double after) noexcept;
+  /// [rt] Clears the latched fault, and a cut, by the user's order.
+  void clear() noexcept HSP_RT;
+
   const hdv_info& info() const { return device_->info(); }
   host::DeviceInstance& device() { return *device_; }
   Limiter& limiter() noexcept { return limiter_; }
@@ -69,7 +78,9 @@ class Arm {
   bool locate() noexcept HSP_RT;
   bool comply(double dt, const Eigen::Vector3d& force) noexcept HSP_RT;
   void takeVirtualProbe() noexcept HSP_RT;
-  void scaleToMotors(hdv_command& command) const noexcept HSP_RT;
+  void scaleToMotors(const std::array<double, HDV_MAX_JOINTS>& gravity, hdv_command& command) noexcept HSP_RT;
+  void heatMotors(double dt) noexcept HSP_RT;
+  void send(Nanoseconds now) noexcept HSP_RT;
 
   std::unique_ptr<host::DeviceInstance> device_;
   Eigen::Matrix3d R_world_device_;
@@ -80,6 +91,9 @@ class Arm {
   std::optional<passivity::PassivityController> passivity_;
   std::optional<Admittance> admittance_;
   Limiter limiter_;
+  MotorHeat heat_;
+  std::atomic<bool> cut_{false}, taken_{false};  // taken: a thread is inside the module
+  std::atomic<double> cut_after_{0};
   hdv_sample sample_{};
   hdv_command command_{};
   hsp_status read_status_ = HSP_OK, write_status_ = HSP_OK;

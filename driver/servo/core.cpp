@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/clock.hpp"
+#include "base/os.hpp"
 
 namespace hapticd::servo {
 
@@ -29,6 +30,7 @@ Core::Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& 
       link_(link),
       probe_count_(probe_count),
       models_(models.size() + settings.spare_models),
+      claims_(models_.size() * probe_count),
       contacts_(models_.size() * probe_count),
       inputs_(probe_count),
       outputs_(probe_count),
@@ -191,7 +193,9 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   model.change_count = 0;
 
   const Nanoseconds before = settings_.measure ? monotonicNow() : 0;
+  stepping_.store(static_cast<int32_t>(index), std::memory_order_relaxed);
   model.status = model.guard.quarantined() ? HSP_E_STATE : model.shape->step(step);
+  stepping_.store(-1, std::memory_order_relaxed);
   if (settings_.measure) {
     model.step_ns = monotonicNow() - before;
     // a spent budget stays at 1: the next shape may still answer, but must be quick
@@ -203,7 +207,8 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   const bool moves_itself = (model.shape->report().flags & HSP_R_MOVES) != 0;
   if (moves_itself && answers_finite) answers_finite = takePose(model, pose);
   if (model.moves && dt > 0) bookMotion(model, index);
-  const Trouble trouble = model.guard.judge(model.status, answers_finite);
+  Trouble trouble = model.guard.judge(model.status, answers_finite);
+  if (trouble == Trouble::kNone) trouble = holdToClaims(model, index);
   if (trouble == Trouble::kBadStatus && model.failed_status == HSP_OK) model.failed_status = model.status;
   const double gain_before = model.guard.gain();
   const double gain = model.guard.gain(trouble == Trouble::kNone && model.enabled, dt);
@@ -230,6 +235,27 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
     torques_[i] += ConstMap(contact.world.torque);
     bookContact(model, contact, i);
   }
+}
+
+/// What a healthy answer may still break: the time it was given, and the stiffness that was claimed for it.
+Trouble Core::holdToClaims(ModelState& model, uint32_t index) noexcept HSP_RT {
+  constexpr int kOverruns = 4, kJumps = 3;
+  Trouble trouble = Trouble::kNone;
+  const bool moves_itself = (model.shape->report().flags & HSP_R_MOVES) != 0;
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    const Vector3d p_model =
+        moves_itself ? model.frame.pointToModel(last_position_[i]) : Vector3d(ConstMap(inputs_[i].position));
+    const double part = claims_[size_t{index} * probe_count_ + i].judge(model.shape->report(), inputs_[i], outputs_[i],
+                                                                        p_model);
+    if (part >= 1) continue;
+    Map(outputs_[i].force) *= part;
+    Map(outputs_[i].torque) *= part;
+    trouble = model.guard.strike(Trouble::kJump, kJumps);
+  }
+  const bool overran = settings_.budget_ns > 0 && settings_.measure && model.step_ns > settings_.budget_ns;
+  if (overran && !os::wasPreempted() && trouble == Trouble::kNone)
+    trouble = model.guard.strike(Trouble::kOverrun, kOverruns);
+  return trouble;
 }
 
 /// The force of the last tick was held while the model's surface moved on: that work is the model's.
@@ -279,7 +305,10 @@ void Core::takeContact(ModelState& model, uint32_t index, uint32_t probe, double
 }
 
 void Core::clearContacts(uint32_t index) noexcept HSP_RT {
-  for (uint32_t i = 0; i < probe_count_; ++i) contacts_[size_t{index} * probe_count_ + i] = Contact{};
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    contacts_[size_t{index} * probe_count_ + i] = Contact{};
+    claims_[size_t{index} * probe_count_ + i].forget();
+  }
 }
 
 void Core::sendTransform(ModelState& model, uint32_t index) noexcept HSP_RT {

@@ -3,6 +3,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
+#include <atomic>
 #include <memory>
 #include <span>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "host/shape_instance.hpp"
 #include "link/link.hpp"
 #include "scene/scene.hpp"
+#include "servo/claim.hpp"
 #include "servo/frame.hpp"
 #include "servo/glide.hpp"
 #include "servo/guard.hpp"
@@ -100,6 +102,8 @@ class Core {
   std::span<const uint32_t> live() const noexcept { return live_; }
   /// Activation records that the last tick took, for the recording.
   std::span<const link::ActivationRecord> received() const noexcept { return {received_.data(), received_count_}; }
+  /// [any] The model whose plugin runs now; -1: none.
+  int32_t stepping() const noexcept { return stepping_.load(std::memory_order_relaxed); }
   uint32_t probeCount() const noexcept { return probe_count_; }
 
  private:
@@ -110,6 +114,7 @@ class Core {
   void findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT;
   void stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
   void fillProbe(const ModelState& model, const Probe& probe, uint32_t index, double t) noexcept HSP_RT;
+  Trouble holdToClaims(ModelState& model, uint32_t index) noexcept HSP_RT;
   bool takePose(ModelState& model, const hsp_pose& pose) noexcept HSP_RT;
   void bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT;
   void bookContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT;
@@ -123,6 +128,8 @@ class Core {
   uint32_t probe_count_;
   std::vector<ModelState> models_;
   std::vector<uint32_t> live_;     // models with something to do, in scene order: the sum is always the same
+  std::vector<Claim> claims_;      // [model * probe_count + probe]
+  std::atomic<int32_t> stepping_{-1};
   std::vector<Contact> contacts_;  // [model * probe_count + probe]
   std::vector<hsp_probe> inputs_;  // of the model being stepped
   std::vector<hsp_contact> outputs_;

@@ -14,7 +14,9 @@ enum class Trouble : uint8_t {
   kNone,
   kLost,       ///< HSP_E_NUMERIC: reset and tried again
   kNotFinite,  ///< a force or a pose that is not a number: never trusted again
-  kBadStatus   ///< a status that the ABI does not know for step: never trusted again
+  kBadStatus,  ///< a status that the ABI does not know for step: never trusted again
+  kOverrun,    ///< its steps took longer than all shapes may in a tick, again and again: never trusted again
+  kJump        ///< its force jumped beyond the stiffness it claims, again and again: never trusted again
 };
 
 /// Fades the force of one shape. All times in seconds of the tick.
@@ -31,8 +33,16 @@ class Guard {
     return Trouble::kNone;
   }
 
+  /// [rt] One step took longer than all shapes may, or one force was beyond the claim. Now and then that is forgiven,
+  /// `strikes` within a hundred ticks are not.
+  Trouble strike(Trouble trouble, int strikes) noexcept HSP_RT {
+    strikes_ += kForgivenAfter;
+    return strikes_ > (strikes - 1) * kForgivenAfter ? enter(trouble) : Trouble::kNone;
+  }
+
   /// [rt] The factor for the force of this tick; `good` tells whether its step was.
   double gain(bool good, double dt) noexcept HSP_RT {
+    if (strikes_ > 0) --strikes_;
     const double step = good ? dt / kFadeIn : -dt / kFadeOut;
     gain_ = std::clamp(gain_ + step, 0.0, 1.0);
     return gain_;
@@ -43,7 +53,7 @@ class Guard {
 
   /// The factor of the last tick.
   double gain() const noexcept { return gain_; }
-  bool quarantined() const noexcept { return trouble_ == Trouble::kNotFinite || trouble_ == Trouble::kBadStatus; }
+  bool quarantined() const noexcept { return trouble_ > Trouble::kLost; }
   Trouble trouble() const noexcept { return trouble_; }  ///< the gravest so far
 
  private:
@@ -51,6 +61,8 @@ class Guard {
     if (!quarantined()) trouble_ = trouble;
     return trouble;
   }
+  static constexpr int kForgivenAfter = 100;  ///< [ticks]
+  int strikes_ = 0;
   double gain_ = 1;  // the first contact of a healthy shape needs no fade: Eq. 4 starts at zero force
   Trouble trouble_ = Trouble::kNone;
 };

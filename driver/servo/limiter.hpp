@@ -1,32 +1,32 @@
-/// Between contact and motors, whatever the plugins say: finite, ramped, limited in force, slew and speed, and latched
-/// off by a fault until the user clears it.
+/// Between contact and motors, whatever the plugins say: finite, ramped, limited in force, torque, slew, power and
+/// impulse, felt only while the enable switch says so, and latched off by a fault until the user clears it. Nothing
+/// here ever makes a force larger than it was asked for.
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 
 #include "hapticd/abi.h"
 #include "scene/scene.hpp"
+#include "servo/fault.hpp"
 
 namespace hapticd::servo {
 
-/// What took the force away.
-enum class Fault : uint8_t {
-  kNone,
-  kNotFinite,      ///< a force or position that is not a number
-  kDeviceLost,     ///< the device cannot be read or written
-  kDeviceFault,    ///< the hardware reports a fault
-  kStale,          ///< no new sample for too long
-  kTooFast,        ///< the tip moved faster than the limit
-  kLate,           ///< too many ticks missed in a row
-  kNotCalibrated,  ///< the device must be calibrated before it may push
-  kStopped         ///< the daemon is stopping
-};
+/// The limits that can bind, in the order in which they are applied.
+enum class Limit : uint8_t { kWorkspace, kHeat, kForce, kTorque, kPower, kImpulse, kSlew, kMotors };
+constexpr size_t kLimitCount = 8;
+const char* nameOf(Limit limit);  ///< "force": the key under limits
 
-/// Words for a fault: what failed, and the command or act that cures it.
-const char* describe(Fault fault);
+/// In how many ticks each limit made the force smaller.
+struct Clips {
+  std::array<uint64_t, kLimitCount> ticks{};
+  uint64_t any = 0;  ///< ticks in which at least one did
+};
 
 class Limiter {
  public:
+  static constexpr double kImpulseWindow = 0.1;  ///< [s] over which limits.impulse is counted
+
   /// [main] @param device_max_force [N] of the device, 0: unknown
   Limiter(const scene::Limits& limits, double device_max_force);
 
@@ -36,29 +36,55 @@ class Limiter {
 
   /// [rt] Judges the speed of the tip [m/s].
   void watchSpeed(double speed) noexcept HSP_RT;
+  /// [rt] Judges the tip's velocity [m/s], in the frame of the forces, and keeps it for the power limit.
+  void watchVelocity(const Eigen::Vector3d& velocity) noexcept HSP_RT;
+  /// [rt] The buttons of the newest sample, for the enable switch.
+  void watchButtons(uint32_t buttons) noexcept HSP_RT;
+  /// [rt] What the motors leave of the force, 0 to 1: it holds from the next tick on.
+  void spareMotors(double factor) noexcept HSP_RT { heat_factor_ = factor; }
+  /// [rt] The motors' own limit made the force of this tick smaller.
+  void clippedByMotors() noexcept HSP_RT { count(Limit::kMotors); }
 
-  /// [rt] Latches a fault: the force ramps to zero from what it is now. The first one is kept.
-  void trip(Fault fault) noexcept HSP_RT;
+  /// [rt] Latches a fault: the force ramps to zero from what it is now. The first one is kept. @param measured for the
+  /// message, in the unit of the fault
+  void trip(Fault fault, double measured = 0) noexcept HSP_RT;
+
+  /// [rt] The motors were cut already: the fault latches and no force is left to ramp.
+  void cut(Fault fault, double measured) noexcept HSP_RT;
 
   /// [rt] Clears a latched fault by the user's order: the force ramps in again.
   void clear() noexcept HSP_RT;
 
-  Fault fault() const noexcept { return fault_; }
-  double rampOut() const noexcept { return limits_.ramp_out; }                   ///< [s] from full force to none
-  bool silent() const noexcept { return fault_ != Fault::kNone && fade_ == 0; }  ///< ramped all the way down
+  Fault fault() const noexcept { return fault_.get(); }         ///< [any]
+  double measured() const noexcept { return measured_; }        ///< [main] at the fault
+  bool enabled() const noexcept { return enabled_; }            ///< by the enable switch, if there is one
+  double rampOut() const noexcept { return limits_.ramp_out; }  ///< [s] from full force to none
+  const Clips& clips() const noexcept { return clips_; }        ///< [main] after the run
+  double maxForce() const noexcept { return max_force_; }       ///< [N] 0: none
+  bool silent() const noexcept { return fault() != Fault::kNone && fade_ == 0; }  ///< ramped all the way down
 
  private:
-  double workspaceFade(const Eigen::Vector3d& position) const noexcept HSP_RT;
+  using Vector3d = Eigen::Vector3d;
+  void ramp(Vector3d& force, Vector3d& torque, double dt) noexcept HSP_RT;
+  void limit(Vector3d& force, Vector3d& torque, const Vector3d& position, double dt) noexcept HSP_RT;
+  void limitPower(Vector3d& force) noexcept HSP_RT;
+  void limitImpulse(Vector3d& force, double dt) noexcept HSP_RT;
+  double workspaceFade(const Vector3d& position) const noexcept HSP_RT;
+  void count(Limit limit) noexcept HSP_RT;
 
   scene::Limits limits_;
   double max_force_;
   double ramp_ = 0;  // from the start, and after a fault was cleared, to full force
   double fade_ = 0;  // from the force at a fault to none
-  Fault fault_ = Fault::kNone;
-  Eigen::Vector3d fault_force_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d fault_torque_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d last_force_ = Eigen::Vector3d::Zero();
-  Eigen::Vector3d last_torque_ = Eigen::Vector3d::Zero();
+  LatchedFault fault_;
+  double measured_ = 0;
+  bool enabled_ = true, button_was_down_ = true;  // a toggle must be pressed, not be found pressed
+  bool clipped_ = false;                          // in this tick
+  double heat_factor_ = 1, impulse_ = 0;
+  Clips clips_;
+  Vector3d velocity_ = Vector3d::Zero();
+  Vector3d fault_force_ = Vector3d::Zero(), fault_torque_ = Vector3d::Zero();
+  Vector3d last_force_ = Vector3d::Zero(), last_torque_ = Vector3d::Zero();
 };
 
 }  // namespace hapticd::servo

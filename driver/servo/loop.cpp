@@ -35,6 +35,7 @@ void Loop::run() noexcept {
   Nanoseconds deadline = start, last = start;
   const long faults_before = os::pageFaultsOfThread();
   first_tick_ = monotonicNow();
+  cpu_clock_ = os::cpuClockOfThread();
   long faults_warm = faults_before;
   uint64_t allocations_warm = allocationsOfThread();
   for (uint64_t n = 0, done = 0;; ++n) {
@@ -42,9 +43,10 @@ void Loop::run() noexcept {
     const Nanoseconds woke = clock_.waitUntil(deadline);
     deadline = skipMissed(deadline, woke);
     const Nanoseconds begun = monotonicNow();
+    tick_begun_.store(begun, std::memory_order_relaxed);
     search_time_ = 0;
     const double dt = static_cast<double>(deadline - last) * kSecondsPerNanosecond;
-    if (dt > kLateFault && !simulated()) trip(Fault::kLate);
+    if (dt > kLateFault && !simulated()) trip(Fault::kLate, dt);
     const double t = static_cast<double>(deadline - start) * kSecondsPerNanosecond;
     telemetry_.begin(deadline, arms_);
     tick(deadline, t, dt);
@@ -52,6 +54,7 @@ void Loop::run() noexcept {
     last = deadline;
     deadline += settings_.period_ns;
     tick_count_.store(n + 1, std::memory_order_relaxed);
+    tick_begun_.store(0, std::memory_order_relaxed);
     if (n == kWarmUpTicks) {
       search_allocations_ = 0;
       faults_warm = os::pageFaultsOfThread();
@@ -65,8 +68,8 @@ void Loop::run() noexcept {
   finished_.store(true, std::memory_order_release);
 }
 
-void Loop::trip(Fault fault) noexcept HSP_RT {
-  for (const auto& arm : arms_) arm->limiter().trip(fault);
+void Loop::trip(Fault fault, double measured) noexcept HSP_RT {
+  for (const auto& arm : arms_) arm->limiter().trip(fault, measured);
 }
 
 bool Loop::allSilent() const noexcept HSP_RT {
@@ -85,8 +88,8 @@ void Loop::obey(double t) noexcept HSP_RT {
     if (!to_arm) {
       world_.core().obey(order, t);
     } else if (order.target < arms_.size()) {
-      Limiter& limiter = arms_[order.target]->limiter();
-      order.kind == Order::Kind::kClear ? limiter.clear() : limiter.trip(Fault::kStopped);
+      Arm& arm = *arms_[order.target];
+      order.kind == Order::Kind::kClear ? arm.clear() : arm.limiter().trip(Fault::kStopped);
     }
     telemetry_.order(order);
     orders_done_.store(orders_done_.load(std::memory_order_relaxed) + 1, std::memory_order_release);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/clock.hpp"
+#include "base/os.hpp"
 #include "servo/arm.hpp"
 #include "servo/lockstep.hpp"
 #include "servo/telemetry.hpp"
@@ -39,6 +40,10 @@ class Loop {
   uint64_t ticks() const noexcept { return tick_count_.load(std::memory_order_relaxed); }
   /// [any] The core lost a track or saw a jump: search now.
   bool wantsSearch() const noexcept { return wants_search_.load(std::memory_order_relaxed); }
+  /// [any] CLOCK_MONOTONIC of the tick going on; 0: it waits for one.
+  Nanoseconds tickBegun() const noexcept { return tick_begun_.load(std::memory_order_relaxed); }
+  /// [any] CPU time that the thread of run() has used; async-signal-safe.
+  Nanoseconds cpuTime() const noexcept { return os::cpuTime(cpu_clock_.load(std::memory_order_relaxed)); }
   /// [any] CLOCK_MONOTONIC of the first tick, once there was one.
   Nanoseconds firstTick() const noexcept { return first_tick_.load(std::memory_order_relaxed); }
   bool finished() const noexcept { return finished_.load(std::memory_order_acquire); }
@@ -47,7 +52,7 @@ class Loop {
   void tick(Nanoseconds now, double t, double dt) noexcept HSP_RT;
   void obey(double t) noexcept HSP_RT;
   void search(double t) noexcept;
-  void trip(Fault fault) noexcept HSP_RT;
+  void trip(Fault fault, double measured = 0) noexcept HSP_RT;
   bool allSilent() const noexcept HSP_RT;
   bool simulated() const noexcept HSP_RT;
   Nanoseconds skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT;
@@ -67,7 +72,8 @@ class Loop {
   std::atomic<uint64_t> orders_done_{0};
   std::atomic<bool> stop_{false}, wants_search_{true}, finished_{false};
   std::atomic<uint64_t> tick_count_{0};
-  std::atomic<Nanoseconds> first_tick_{0};
+  std::atomic<Nanoseconds> first_tick_{0}, tick_begun_{0};
+  std::atomic<clockid_t> cpu_clock_{CLOCK_MONOTONIC};
 };
 
 }  // namespace hapticd::servo

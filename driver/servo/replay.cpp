@@ -98,7 +98,8 @@ class Replay::Player final : public Clock {
   void compare() {
     for (const size_t stream : {kContacts, kPoses, kActivations, kOrders, kTicks}) {  // causes before sums
       const RecordedStream& then = *recorded_[stream];
-      for (uint64_t& row = compared_[stream]; row < ring_.written(stream) && row < then.rows() && at<uint64_t>(then.row(row), 0) < end_; ++row)
+      for (uint64_t& row = compared_[stream];
+           row < ring_.written(stream) && row < then.rows() && at<uint64_t>(then.row(row), 0) < end_; ++row)
         compareRow(stream, row);
     }
     outcome.ticks = compared_[kTicks];

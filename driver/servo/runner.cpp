@@ -4,13 +4,38 @@
 
 #include "base/os.hpp"
 #include "servo/about.hpp"
+#include "servo/servo_watch.hpp"
 #include "sim/proximity_thread.hpp"
+#include "watch/crash.hpp"
+#include "watch/notify.hpp"
+#include "watch/watchdog.hpp"
 
 namespace hapticd::servo {
 
 namespace {
 
 constexpr Nanoseconds kStatusPeriod = 200'000'000;
+constexpr uint64_t kDryTicks = 2;         ///< the servo lives: the service manager may say so
+constexpr uint64_t kLongestRunUs = 100'000;  ///< of CPU time without sleep; a tick takes a hundredth of it
+
+/// Handles crashes of plugins while one lives. The sanitizers have handlers of their own.
+class CrashGuard {
+ public:
+  CrashGuard(watch::Watched& watched, const std::filesystem::path& dir) {
+#ifndef HAPTICD_SANITIZED
+    watch::guardAgainstCrash(watched, dir);
+#else
+    (void)watched, (void)dir;
+#endif
+  }
+  ~CrashGuard() {
+#ifndef HAPTICD_SANITIZED
+    watch::forgetCrash();
+#endif
+  }
+  CrashGuard(const CrashGuard&) = delete;
+  CrashGuard& operator=(const CrashGuard&) = delete;
+};
 
 Nanoseconds spinFor(const scene::Servo& servo) {
   // Spinning buys regularity on bare metal; in a virtual machine the pauses come from outside.
@@ -35,6 +60,29 @@ class RecordedClock final : public Clock {
   VirtualClock clock_;
   RealClock pause_{0};
 };
+
+/// Why a model was silenced; "" if it was not.
+std::string describe(const ModelState& model) {
+  if (model.shape == nullptr) return "";
+  const std::string who = "model " + model.shape->name() + ": its plugin ";
+  switch (model.guard.trouble()) {
+    case Trouble::kNone:
+    case Trouble::kLost:
+      return "";
+    case Trouble::kNotFinite:
+      return who + "answered a force, pose or foot that is not a number; it was silenced";
+    case Trouble::kBadStatus:
+      return who + "answered status " + std::to_string(model.failed_status) +
+             ", which a step may not answer; it was silenced";
+    case Trouble::kOverrun:
+      return who + "took longer than all shapes may take in a tick, again and again; it was silenced; measure it with: "
+                   "hapticd plugin check FILE.so";
+    case Trouble::kJump:
+      return who + "answered forces that jumped beyond the stiffness it claims; it was silenced; look at it with: "
+                   "hapticd plugin check FILE.so";
+  }
+  return "";
+}
 
 std::string noFifo(int priority, const std::error_code& code, bool hardware) {
   return "cannot run the servo thread at FIFO " + std::to_string(priority) + ": " + code.message() + "\n  " +
@@ -120,10 +168,13 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every) {
   if (recorder_)
     if (const auto code = recorder_->start()) return Error{"cannot start the recording thread: " + code.message()};
   const Nanoseconds begun = monotonicNow();
+  ServoWatch watched(*loop_, *world_, arms_, *telemetry_);
+  const CrashGuard crash(watched, options_.state_dir);
   if (options_.virtual_time) {
+    os::prepareSignalStack();
     loop_->run();
   } else {
-    done = runReal(every);
+    done = runReal(watched, every);
   }
   wall_time_ = monotonicNow() - begun;
   resident_bytes_ = os::residentBytes();
@@ -133,29 +184,39 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every) {
   return done;
 }
 
-Result<void> Runner::runReal(const std::function<void(const Runner&)>& every) {
+Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every) {
   sim::ProximityThread proximity(world_->proximity(), [this] { return loop_->wantsSearch(); });
   if (world_->proximity().modelCount() > 0)
     if (const auto code = proximity.start()) return Error{"cannot start the proximity thread: " + code.message()};
   lockMemory();
   const os::DmaLatencyHold awake;
   std::atomic<bool> ready{false};
+  watch::Watchdog watchdog(watched, [] { watch::dieOf("a step that did not come back"); });
+  if (const auto code = watchdog.start(options_.priority + 1))
+    return Error{"cannot start the watchdog thread: " + code.message()};
   os::Thread servo;
   const auto code = servo.start("hapticd-servo", [this, &ready] {
     host::Services::markServoThread();
     enterRealTime();
+    os::prepareSignalStack();
     os::prefaultStack();
     ready = true;
     if (warnings_.empty() || onlySimulated() || options_.allow_non_rt) loop_->run();
   });
   if (code) return Error{"cannot start the servo thread: " + code.message() + "\n  " + os::realTimeRights()};
   RealClock clock(0);
+  watch::Feeder feeder;
+  bool told = false;
   while (!loop_->finished()) {
+    if (!told && loop_->ticks() > kDryTicks) told = watch::notify("READY=1\nSTATUS=the servo ticks") || true;
+    feeder.feed(clock.now(), loop_->ticks());
     if (ready && !warnings_.empty() && !onlySimulated() && !options_.allow_non_rt) break;
     every(*this);
     clock.waitUntil(clock.now() + kStatusPeriod);
   }
+  watch::notify("STOPPING=1");
   servo.join();
+  watchdog.stop();
   proximity.stop();
   if (!loop_->finished()) return Error{warnings_.back() + "\n  forces stay off (--allow-non-rt runs all the same)"};
   return {};
@@ -176,6 +237,7 @@ void Runner::enterRealTime() {
                           code.message());
   if (const auto code = os::setFifo(options_.priority))
     warnings_.push_back(noFifo(options_.priority, code, !onlySimulated()));
+  (void)os::limitRealTimeRun(kLongestRunUs);  // refused: the limit is lower already
 }
 
 void Runner::nameModel(uint32_t place, const std::string& name, const std::string& plugin) {
@@ -189,21 +251,19 @@ bool Runner::onlySimulated() const {
   return true;
 }
 
+std::string Runner::faultOf(size_t arm) const {
+  const Limiter& limiter = arms_[arm]->limiter();
+  const Fault fault = limiter.fault();
+  if (fault == Fault::kNone || fault == Fault::kStopped) return "";
+  return faultMessage(scene_.devices[arm].name, fault, limiter.measured());
+}
+
 std::vector<std::string> Runner::faults() const {
   std::vector<std::string> faults;
-  for (size_t i = 0; i < arms_.size(); ++i) {
-    const Fault fault = arms_[i]->limiter().fault();
-    if (fault != Fault::kNone && fault != Fault::kStopped)
-      faults.push_back("device " + scene_.devices[i].name + ": " + describe(fault));
-  }
-  for (const ModelState& model : world_->core().models()) {
-    if (model.guard.trouble() == Trouble::kNotFinite)
-      faults.push_back("model " + model.shape->name() +
-                       ": its plugin answered a force, pose or foot that is not a number; it was silenced");
-    if (model.guard.trouble() == Trouble::kBadStatus)
-      faults.push_back("model " + model.shape->name() + ": its plugin answered status " +
-                       std::to_string(model.failed_status) + ", which a step may not answer; it was silenced");
-  }
+  for (size_t i = 0; i < arms_.size(); ++i)
+    if (std::string text = faultOf(i); !text.empty()) faults.push_back(std::move(text));
+  for (const ModelState& model : world_->core().models())
+    if (std::string text = describe(model); !text.empty()) faults.push_back(std::move(text));
   return faults;
 }
 

@@ -11,6 +11,7 @@
 #include "record/recorder.hpp"
 #include "scene/scene.hpp"
 #include "servo/loop.hpp"
+#include "watch/watched.hpp"
 
 namespace hapticd::servo {
 
@@ -24,6 +25,7 @@ struct RunOptions {
   std::string status;     ///< file of the status page; empty: none
   std::string record;     ///< file that takes every tick; empty: none
   std::string black_box;  ///< file in memory that keeps the last seconds; empty: memory of the process
+  std::string state_dir;      ///< for what a crash leaves behind; empty: nothing is written
   bool allow_non_rt = false;  ///< run real hardware without real-time rights all the same
 };
 
@@ -62,6 +64,9 @@ class Runner {
   /// Real time could not be had in full: four-part messages for the user.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
+  /// [main] What took the force of an arm away, in words; "": nothing.
+  std::string faultOf(size_t arm) const;
+
   /// [main] After the run: what ended it early or took the force away, in words.
   std::vector<std::string> faults() const;
 
@@ -69,7 +74,7 @@ class Runner {
   Runner(const scene::Scene& scene, const RunOptions& options) : scene_(scene), options_(options) {}
   Result<void> openBlackBox(const LoopSettings& settings);
   Result<void> openArms(const host::Services::Log& log);
-  Result<void> runReal(const std::function<void(const Runner&)>& every);
+  Result<void> runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every);
   void lockMemory();
   void enterRealTime();
   bool onlySimulated() const;

@@ -78,7 +78,8 @@ Result<std::unique_ptr<host::ShapeInstance>> World::prepare(const scene::Model& 
   if (auto done = (*shape)->activate(activation); !done) return Error{done.error()};
   const uint32_t needs = (*shape)->report().flags;
   if ((needs & HSP_R_VELOCITY) != 0 && !needsVelocity())
-    return Error{"model '" + model.name + "': needs the velocity of the probe, which this run does not estimate because "
+    return Error{"model '" + model.name +
+                 "': needs the velocity of the probe, which this run does not estimate because "
                  "no model needed it at the start\n  fix: start the daemon with a scene that has such a model"};
   return shape;
 }

@@ -17,8 +17,8 @@ struct WorldOptions {
   double rate = 1000;  ///< [Hz]
   uint32_t probe_count = 1;
   uint32_t spare_models = 0;  ///< places for models that come while it runs
-  bool measure = false;  ///< take the CPU time of every step
-  bool budgets = false;  ///< tell every step how much CPU time is left of the tick
+  bool measure = false;       ///< take the CPU time of every step
+  bool budgets = false;       ///< tell every step how much CPU time is left of the tick
 };
 
 class World {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "base/os.hpp"
+
 namespace hapticd::sim {
 
 using link::ActivationRecord;
@@ -47,6 +49,7 @@ void Proximity::remove(uint32_t place) {
 }
 
 void Proximity::search() {
+  thread_.store(os::threadId(), std::memory_order_relaxed);
   const std::lock_guard lock(mutex_);
   receiveTransforms();
   link_.arm.update();
@@ -79,8 +82,10 @@ void Proximity::searchModel(Model& model, uint32_t probe, const Eigen::Vector3d&
 
   const uint32_t count = model.surfaces->surface_count;
   std::fill_n(seen_.begin(), count, uint8_t{0});
+  searching_.store(static_cast<int>(model.index), std::memory_order_relaxed);
   const int64_t found =
       may_be_near ? model.surfaces->nearby(model.shape, p_model.data(), reach, found_.data(), found_.size()) : 0;
+  searching_.store(-1, std::memory_order_relaxed);
   uint8_t* active = &model.active[size_t{probe} * count];
   for (int64_t i = 0; i < std::min(found, static_cast<int64_t>(found_.size())); ++i) {
     hsp_near near = found_[static_cast<size_t>(i)];

@@ -3,6 +3,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <atomic>
 #include <mutex>
 #include <vector>
 
@@ -37,6 +38,11 @@ class Proximity {
   /// Models that have surfaces to search; 0: nothing to do here at all.
   size_t modelCount() const { return models_.size(); }
 
+  /// [any] The model of the scene that is being searched; -1: none. For naming a plugin that crashes.
+  int searching() const noexcept { return searching_.load(std::memory_order_relaxed); }
+  /// [any] The thread of the last search.
+  int thread() const noexcept { return thread_.load(std::memory_order_relaxed); }
+
  private:
   std::mutex mutex_;  ///< models come and leave between two searches
   struct Model {
@@ -61,6 +67,7 @@ class Proximity {
   link::Link& link_;
   std::vector<Model> models_;
   std::vector<uint32_t> of_scene_;  ///< scene index to index in models_
+  std::atomic<int> searching_{-1}, thread_{-1};
   std::vector<hsp_near> found_;
   std::vector<uint8_t> seen_;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace hapticd::servo {
 namespace {
@@ -52,7 +53,7 @@ TEST(Limiter, TheDeviceMaximumHoldsWhateverTheFileAllows) {
   EXPECT_NEAR(limited(limiter, {50, 0, 0}).norm(), 8.5, 1e-12);
 }
 
-TEST(Limiter, NeverChangesFasterThanTheSlewLimit) {
+TEST(Limiter, NeverGrowsOrTurnsFasterThanTheSlewLimitAndNeverHoldsAForceThatIsGone) {
   scene::Limits limits = generous();
   limits.slew = 500;
   Limiter limiter(limits, 0);
@@ -60,14 +61,137 @@ TEST(Limiter, NeverChangesFasterThanTheSlewLimit) {
   std::uniform_real_distribution<double> any(-10, 10);
   Vector3d last = Vector3d::Zero();
   for (int i = 0; i < 10000; ++i) {
-    const Vector3d force = limited(limiter, {any(random), any(random), any(random)});
-    EXPECT_LE((force - last).norm(), 0.5 + 1e-12);
+    const Vector3d asked = i % 7 == 0 ? Vector3d::Zero() : Vector3d(any(random), any(random), any(random));
+    const Vector3d force = limited(limiter, asked);
+    EXPECT_LE(force.norm(), asked.norm() * (1 + 1e-12));
+    EXPECT_LE(force.norm(), last.norm() + 0.5 + 1e-12);
+    if (force.norm() < asked.norm() * (1 - 1e-12)) {
+      EXPECT_LE((force - last).norm(), 0.5 + 1e-12);
+    }
     last = force;
   }
 }
 
+/// Every limit at once, with random bounds.
+scene::Limits anyLimits(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(0, 1);
+  scene::Limits limits;
+  limits.force = unit(random) < 0.2 ? 0 : 10 * unit(random);
+  limits.torque = unit(random) < 0.5 ? 0 : unit(random);
+  limits.slew = unit(random) < 0.3 ? 0 : 3000 * unit(random);
+  limits.torque_slew = unit(random) < 0.3 ? 0 : 100 * unit(random);
+  limits.power = unit(random) < 0.5 ? 0 : 2 * unit(random);
+  limits.impulse = unit(random) < 0.5 ? 0 : 0.5 * unit(random);
+  limits.workspace = unit(random) < 0.5 ? 0 : 0.2 * unit(random);
+  limits.ramp_in = 0.3 * unit(random);
+  limits.ramp_out = 0.02 * unit(random);
+  if (unit(random) < 0.3) limits.enable = {3, scene::EnableMode::kHold};
+  return limits;
+}
+
+TEST(Limiter, NoLimitEverRaisesAForceOrTorqueWhateverComes) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> any(-1, 1);
+  const auto vector = [&](double size) { return Vector3d(size * any(random), size * any(random), size * any(random)); };
+  for (int run = 0; run < 300; ++run) {
+    Limiter limiter(anyLimits(random), 8.5);
+    for (int i = 0; i < 300; ++i) {
+      limiter.watchVelocity(vector(2));
+      limiter.watchButtons(any(random) > -0.9 ? 8 : 0);
+      limiter.spareMotors(std::abs(any(random)));
+      const Vector3d asked = vector(20), asked_torque = vector(2);
+      Vector3d force = asked, torque = asked_torque;
+      limiter.apply(force, torque, vector(0.3), 1e-4 + 2e-3 * std::abs(any(random)));
+      ASSERT_LE(force.norm(), asked.norm() * (1 + 1e-12));
+      ASSERT_LE(torque.norm(), asked_torque.norm() * (1 + 1e-12));
+      ASSERT_LE(force.norm(), 8.5 + 1e-9);
+    }
+  }
+}
+
+TEST(Limiter, EveryFaultAtEveryRateEndsInZeroWithinTwentyMillisecondsAndNeverRaisesTheForce) {
+  for (int fault = 1; fault < kFaultCount; ++fault)
+    for (const double rate : {100.0, 333.0, 500.0, 997.0, 1000.0, 1500.0, 3000.0, 7777.0, 10000.0}) {
+      scene::Limits limits = generous();
+      Limiter limiter(limits, 8.5);
+      limited(limiter, {5, -3, 1}, 1 / rate);
+      limiter.trip(static_cast<Fault>(fault));
+      double last = Vector3d(5, -3, 1).norm(), t = 0;
+      for (; last > 0 && t < 1; t += 1 / rate) {
+        const double force = limited(limiter, {8, 8, 8}, 1 / rate).norm();
+        ASSERT_LE(force, last);
+        last = force;
+      }
+      EXPECT_LE(t, 0.02 + 1 / rate + 1e-9) << rate << " Hz";  // the tick of the fault counts as one
+      EXPECT_TRUE(limiter.silent());
+    }
+}
+
+TEST(Limiter, PowerGivenToTheHandIsBoundedAndPowerTakenIsNot) {
+  scene::Limits limits = generous();
+  limits.power = 0.5;
+  Limiter limiter(limits, 0);
+  limiter.watchVelocity({0.5, 0, 0});
+  EXPECT_NEAR(limited(limiter, {4, 0, 0}).x(), 1.0, 1e-12);
+  EXPECT_EQ(limited(limiter, {-4, 0, 0}).x(), -4) << "a wall that brakes the hand";
+  EXPECT_EQ(limiter.clips().ticks[static_cast<size_t>(Limit::kPower)], 1u);
+}
+
+TEST(Limiter, ImpulseWithinTheWindowStaysBelowItsLimit) {
+  scene::Limits limits = generous();
+  limits.impulse = 0.2;
+  Limiter limiter(limits, 0);
+  std::vector<double> forces;
+  for (int i = 0; i < 1000; ++i) forces.push_back(limited(limiter, {8, 0, 0}).x());
+  EXPECT_EQ(forces.front(), 8) << "a short push is let through";
+  EXPECT_NEAR(forces.back(), 2, 0.02) << "what lasts ends at impulse over window";
+  for (size_t i = 1; i < forces.size(); ++i) EXPECT_LE(forces[i], forces[i - 1] + 1e-9);
+}
+
+TEST(Limiter, CountsTheTicksInWhichALimitBound) {
+  Limiter limiter(generous(), 8.5);
+  limited(limiter, {8, 0, 0});
+  limited(limiter, {9, 0, 0});
+  limited(limiter, {10, 0, 0});
+  EXPECT_EQ(limiter.clips().ticks[static_cast<size_t>(Limit::kForce)], 2u);
+  EXPECT_EQ(limiter.clips().any, 2u);
+}
+
+TEST(Limiter, ForcesFlowOnlyWhileTheDeadManSwitchIsHeld) {
+  scene::Limits limits = generous();
+  limits.enable = {1, scene::EnableMode::kHold};
+  Limiter limiter(limits, 8.5);
+  EXPECT_EQ(limited(limiter, {4, 0, 0}).norm(), 0);
+  limiter.watchButtons(2);
+  EXPECT_EQ(limited(limiter, {4, 0, 0}).norm(), 4);
+  limiter.watchButtons(1);  // another button
+  double last = 4;
+  for (int i = 0; i < 20; ++i) {
+    const double force = limited(limiter, {8, 0, 0}).norm();
+    EXPECT_LE(force, last * (1 + 1e-12));
+    last = force;
+  }
+  EXPECT_EQ(last, 0) << "20 ms after it was let go";
+  EXPECT_EQ(limiter.fault(), Fault::kNone) << "letting go is no fault";
+}
+
+TEST(Limiter, AToggleMustBePressedAndIsNotFoundPressed) {
+  scene::Limits limits = generous();
+  limits.enable = {0, scene::EnableMode::kToggle};
+  Limiter limiter(limits, 8.5);
+  limiter.watchButtons(1);  // held since before the start
+  EXPECT_FALSE(limiter.enabled());
+  limiter.watchButtons(0);
+  limiter.watchButtons(1);
+  limiter.watchButtons(1);
+  EXPECT_TRUE(limiter.enabled());
+  limiter.watchButtons(0);
+  limiter.watchButtons(1);
+  EXPECT_FALSE(limiter.enabled());
+}
+
 TEST(Limiter, AnyFaultEndsInZeroForceWithinTwentyMillisecondsAndNeverRaisesIt) {
-  for (int fault = 1; fault <= static_cast<int>(Fault::kStopped); ++fault) {
+  for (int fault = 1; fault < kFaultCount; ++fault) {
     Limiter limiter(generous(), 8.5);
     limited(limiter, {5, -3, 1});
     limiter.trip(static_cast<Fault>(fault));

@@ -20,7 +20,7 @@ struct Gantry : hapticd::Device {
   double depth, fail_at;
   int failure;
   Log log{};
-  static constexpr const char* kFailures[] = {"none", "lost", "not_finite", "stale", "fault", "uncalibrated"};
+  static constexpr const char* kFailures[] = {"none", "lost", "not_finite", "stale", "fault", "uncalibrated", "random"};
   static constexpr hapticd::DeviceInfo kInfo{"org.hapticd.test.gantry", "gantry", "1.0.0", "MIT", "A gantry."};
   static constexpr auto fields() {
     using F = Fields<Gantry>;
@@ -38,13 +38,33 @@ struct Gantry : hapticd::Device {
   void start(const hdv_start& how) { start_ns_ = how.time_ns; }
   hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
     const bool failed = static_cast<double>(now_ns - start_ns_) * 1e-9 >= fail_at;
+    sample.position[0] = 0;
     sample.position[1] = -depth;
     sample.flags = failure == 5 ? 0u : static_cast<uint32_t>(HDV_S_CALIBRATED);
     if (failed && failure == 1) return HSP_E_IO;
     if (failed && failure == 2) sample.position[0] = std::numeric_limits<double>::quiet_NaN();
     if (failed && failure == 4) sample.flags |= HDV_S_FAULT;
+    if (failure == 6) return failAtRandom(sample);
     if (!failed || failure != 3) ++sample.sequence;
     ++log.reads;
+    return HSP_OK;
+  }
+  /// Once in a thousand reads something goes wrong, for up to 80 reads.
+  hsp_status failAtRandom(hdv_sample& sample) noexcept HSP_RT {
+    random_ = random_ * 6364136223846793005u + 1442695040888963407u;
+    const uint64_t dice = random_ >> 33;
+    sample.flags = HDV_S_CALIBRATED;
+    ++log.reads;
+    if (bad_left_ == 0 && dice % 1000 == 0) {
+      bad_left_ = 1 + static_cast<int>(dice / 1000 % 80);
+      bad_ = static_cast<int>(dice / 80000 % 4);
+    }
+    if (bad_left_ == 0 || bad_ != 2) ++sample.sequence;
+    if (bad_left_ == 0) return HSP_OK;
+    --bad_left_;
+    if (bad_ == 0) return HSP_E_IO;
+    if (bad_ == 1) sample.position[0] = std::numeric_limits<double>::quiet_NaN();
+    if (bad_ == 3) sample.flags |= HDV_S_FAULT;
     return HSP_OK;
   }
   hsp_status write(uint64_t, const hdv_command& command) noexcept HSP_RT {
@@ -77,7 +97,8 @@ struct Gantry : hapticd::Device {
   static constexpr hdv_ext_kinematics kKinematics{sizeof(hdv_ext_kinematics), 3, &forward, &jacobian, &gravity, &inverse};
 
  private:
-  uint64_t start_ns_ = 0;
+  uint64_t start_ns_ = 0, random_ = 1;
+  int bad_left_ = 0, bad_ = 0;
 };
 
 }  // namespace

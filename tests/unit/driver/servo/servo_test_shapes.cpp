@@ -1,5 +1,6 @@
 /// Small shapes with known answers, and shapes that misbehave, for the tests of the servo.
 #include <cmath>
+#include <csignal>
 #include <limits>
 
 #include "hapticd/shape.hpp"
@@ -42,7 +43,7 @@ struct Misbehaving : hapticd::Shape {
   static constexpr auto fields() {
     using F = Fields<Misbehaving>;
     return std::array{F::choice("how", &Misbehaving::how, kHows, 0, "What goes wrong."),
-                      F::integer("after", &Misbehaving::after, "", 0, 1000000, 10, "Good ticks before."),
+                      F::integer("after", &Misbehaving::after, "", 0, 1000000000, 10, "Good ticks before."),
                       F::integer("times", &Misbehaving::times, "", 0, 1000000, 1, "Bad ticks.")};
   }
   void activate(const hsp_activation&, hsp_report&) {}
@@ -88,6 +89,33 @@ struct Allocating : hapticd::Shape {
   }
 };
 
+/// Behaves for ten ticks, and then does what ends or stops a process.
+struct Deadly : hapticd::Shape {
+  int how, ticks = 0;
+  static constexpr const char* kHows[] = {"segv", "fpe", "ill", "bus", "hang", "pause", "jump"};
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.deadly", "deadly", "1.0.0", "MIT", "Crashes."};
+  static constexpr auto fields() {
+    return std::array{Fields<Deadly>::choice("how", &Deadly::how, kHows, 0, "What it does.")};
+  }
+  void activate(const hsp_activation&, hsp_report& report) { report.max_stiffness = 1000; }
+  hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
+    out.force[1] = 1;
+    out.flags = HSP_OUT_TRACED | HSP_OUT_CONTACT;
+    out.normal[1] = 1;
+    if (++ticks < 10) return HSP_OK;
+    volatile int zero = 0;
+    volatile int* volatile nowhere = nullptr;
+    if (how == 0) *nowhere = 1;
+    if (how == 1) std::raise(SIGFPE);
+    if (how == 2) std::raise(SIGILL);
+    if (how == 3) std::raise(SIGBUS);
+    while (how == 4) zero = zero + 1;
+    for (int i = 0; how == 5 && ticks == 10 && i < 100'000'000; ++i) zero = zero + 1;
+    if (how == 6 && ticks % 2 == 0) out.force[1] = 500;
+    return HSP_OK;
+  }
+};
+
 /// Throws what nobody should throw.
 struct Throwing : hapticd::Shape {
   int unused;
@@ -101,4 +129,4 @@ struct Throwing : hapticd::Shape {
 
 }  // namespace
 
-HAPTICD_SHAPES(Wall, Misbehaving, Sliding, Allocating, Throwing)
+HAPTICD_SHAPES(Wall, Misbehaving, Sliding, Allocating, Throwing, Deadly)

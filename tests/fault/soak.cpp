@@ -1,0 +1,104 @@
+/// Millions of virtual ticks with random faults: `soak TICKS [SEED]`. Exit 1 when a fault does not end in zero force
+/// within 20 ms, when a fault raises a force, when anything sent is not finite, or when memory grows.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+
+#include "base/allocation_count.hpp"
+#include "servo/servo_watch.hpp"
+#include "test_rig.hpp"
+
+namespace hapticd::servo {
+namespace {
+
+constexpr double kMaxForce = 8.5;  ///< [N] of the gantry
+
+struct Check {
+  uint64_t faults = 0, bad = 0, zeroed = 0;
+  double force = 0, since = -1;
+
+  void fail(const char* what, double t) {
+    if (bad++ < 10) std::printf("t = %.4f s: %s\n", t, what);
+  }
+  /// After each tick. Clears a fault that has ended well, as a user would.
+  void look(Arm& arm, double t) {
+    const double now = arm.force().norm();
+    if (!std::isfinite(now) || now > kMaxForce * (1 + 1e-9)) fail("a force that is no force or too large", t);
+    const Fault fault = arm.limiter().fault();
+    if (fault == Fault::kNone) {
+      force = now;
+      since = -1;
+      return;
+    }
+    if (since < 0) {
+      since = t;
+      ++faults;
+    }
+    if (now > force * (1 + 1e-12)) fail("a fault raised the force", t);
+    force = now;
+    if (t - since >= 0.02 && now > 0) fail("a force 20 ms after its fault", t);
+    if (arm.limiter().silent() && t - since > 0.1) {
+      ++zeroed;
+      arm.clear();
+      since = -1;
+    }
+  }
+};
+
+int soak(uint64_t ticks, unsigned seed) {
+  constexpr int kModels = 60;
+  std::mt19937 random(seed);
+  Check check;
+  Rig* running = nullptr;
+  uint64_t count = 0, late = 0;
+  size_t memory = 0;
+  uint64_t looked = 0;  // allocations of this program's own look at the memory
+  const auto lateness = [&](Nanoseconds deadline) {
+    const double t = static_cast<double>(deadline) * kSecondsPerNanosecond;
+    if (running != nullptr && count > 0) check.look(*running->arms[0], t - 1e-3);
+    if (++count == ticks / 10) {
+      const uint64_t before = allocationsOfThread();
+      memory = os::residentBytes();
+      looked = allocationsOfThread() - before;
+    }
+    const uint32_t dice = random();
+    late += dice % 500 == 0 ? 1 : 0;
+    return dice % 500 == 0 ? Nanoseconds{dice % 7'000'000} : Nanoseconds{0};
+  };
+  std::vector<scene::Model> more;
+  for (int i = 0; i < kModels; ++i) {  // plugin errors, spread over the run
+    scene::Model model =
+        testModel("misbehaving", {number(0, HSP_ENUM, i % 4),
+                                  number(1, HSP_INT, static_cast<double>(random() % std::max<uint64_t>(1, ticks))),
+                                  number(2, HSP_INT, 1 + static_cast<double>(random() % 40))});
+    model.name += std::to_string(i);
+    more.push_back(model);
+  }
+  Rig rig(6, lateness, ticks, "wall", {}, more);
+  running = &rig;
+  rig.loop->run();
+  running = nullptr;
+  const double grown = (static_cast<double>(os::residentBytes()) - static_cast<double>(memory)) / 1e6;
+  int silenced = 0;
+  for (const ModelState& model : rig.world->core().models()) silenced += model.guard.quarantined() ? 1 : 0;
+  const record::RunReport report = rig.telemetry->report({});
+  std::printf(
+      "%llu ticks, %llu device faults (%llu cleared), %llu late wake-ups, %d of %d plugins silenced, "
+      "%llu allocations, memory %+.3f MB, %llu violations\n",
+      static_cast<unsigned long long>(report.ticks), static_cast<unsigned long long>(check.faults),
+      static_cast<unsigned long long>(check.zeroed), static_cast<unsigned long long>(late), silenced, kModels,
+      static_cast<unsigned long long>(report.servo_allocations - looked), grown,
+      static_cast<unsigned long long>(check.bad));
+  const bool enough = check.faults > ticks / 10000 && silenced >= kModels / 4;
+  if (!enough) std::printf("too few faults came about: this was no test\n");
+  return check.bad == 0 && enough && report.servo_allocations == looked && grown < 1 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace hapticd::servo
+
+int main(int argc, char** argv) {
+  const uint64_t ticks = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 300'000;
+  return hapticd::servo::soak(ticks, argc > 2 ? static_cast<unsigned>(std::atoi(argv[2])) : 1);
+}

@@ -1,0 +1,125 @@
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "watch/notify.hpp"
+#include "watch/quarantine.hpp"
+#include "watch/watchdog.hpp"
+
+namespace hapticd::watch {
+namespace {
+
+struct Fake : Watched {
+  uint64_t tick = 0;
+  Nanoseconds begun = 0, cpu = 0;
+  bool harmless = false;
+  int cuts = 0;
+  uint64_t ticks() const noexcept override { return tick; }
+  Nanoseconds tickBegun() const noexcept override { return begun; }
+  Nanoseconds cpuTime() const noexcept override { return cpu; }
+  bool simulated() const noexcept override { return harmless; }
+  void cut(double) noexcept override { ++cuts; }
+  const char* plugin() const noexcept override { return nullptr; }
+  const char* model() const noexcept override { return nullptr; }
+  const void* blackBox() const noexcept override { return nullptr; }
+  size_t blackBoxBytes() const noexcept override { return 0; }
+};
+
+constexpr Nanoseconds kMs = 1'000'000;
+
+TEST(Watchdog, CutsATickThatDoesNotEndWithinFiveMillisecondsAndOnlyOnce) {
+  for (Nanoseconds phase = 0; phase < kMs; phase += kMs / 10) {  // of the checks against the tick
+    Fake servo;
+    Watchdog watchdog(servo, [] {});
+    servo.begun = 100 * kMs + phase;
+    Nanoseconds cut_at = 0;
+    for (Nanoseconds now = 100 * kMs; now < 130 * kMs; now += kMs)
+      if (watchdog.check(now)) cut_at = now;
+    EXPECT_EQ(servo.cuts, 1);
+    EXPECT_LE(cut_at - servo.begun, 5 * kMs);
+  }
+}
+
+TEST(Watchdog, LeavesAServoAloneThatWaitsOrTicks) {
+  Fake servo;
+  Watchdog watchdog(servo, [] {});
+  for (Nanoseconds now = kMs; now < 1000 * kMs; now += kMs) {
+    servo.begun = now % (3 * kMs) == 0 ? 0 : now - kMs / 2;
+    ++servo.tick;
+    EXPECT_FALSE(watchdog.check(now));
+  }
+  servo.begun = 0;  // a slow rate: it waits for long
+  for (Nanoseconds now = 1000 * kMs; now < 2000 * kMs; now += kMs) EXPECT_FALSE(watchdog.check(now));
+}
+
+TEST(Watchdog, ABusyMachineIsNoFaultOfASimulationButALoopIs) {
+  Fake servo;
+  servo.harmless = true;
+  Watchdog watchdog(servo, [] {});
+  servo.begun = kMs;
+  for (Nanoseconds now = kMs; now < 100 * kMs; now += kMs) EXPECT_FALSE(watchdog.check(now)) << "not scheduled";
+  servo.tick = 1;
+  servo.begun = 200 * kMs;
+  bool cut = false;
+  for (Nanoseconds now = 200 * kMs; now < 210 * kMs; now += kMs) {
+    servo.cpu = now;
+    cut |= watchdog.check(now);
+  }
+  EXPECT_TRUE(cut);
+}
+
+TEST(Watchdog, EndsAServoThatNeverComesBack) {
+  Fake servo;
+  int hung = 0;
+  Watchdog watchdog(servo, [&hung] { ++hung; });
+  servo.begun = kMs;
+  for (Nanoseconds now = kMs; now < 2000 * kMs; now += kMs) watchdog.check(now);
+  EXPECT_EQ(hung, 1);
+}
+
+TEST(Notify, FeedsTheServiceManagerOnlyWhileTicksMove) {
+  const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string path = (std::filesystem::temp_directory_path() / ("notify" + std::to_string(getpid()))).string();
+  std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
+  unlink(path.c_str());
+  ASSERT_EQ(bind(fd, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  setenv("NOTIFY_SOCKET", path.c_str(), 1);
+  setenv("WATCHDOG_USEC", "2000000", 1);
+  Feeder feeder;
+  EXPECT_TRUE(feeder.feed(10'000 * kMs, 5));
+  char got[64] = "";
+  EXPECT_EQ(recv(fd, got, sizeof got, 0), 10);
+  EXPECT_STREQ(got, "WATCHDOG=1");
+  EXPECT_FALSE(feeder.feed(20'000 * kMs, 5)) << "the servo stands still";
+  EXPECT_TRUE(feeder.feed(20'000 * kMs, 6));
+  unsetenv("NOTIFY_SOCKET");
+  unsetenv("WATCHDOG_USEC");
+  EXPECT_FALSE(notify("READY=1"));
+  close(fd);
+  unlink(path.c_str());
+}
+
+TEST(Quarantine, RemembersEachPluginOnceAndForgetsItOnOrder) {
+  const auto dir = std::filesystem::temp_directory_path() / ("quarantine" + std::to_string(getpid()));
+  std::filesystem::create_directories(dir);
+  EXPECT_TRUE(quarantined(dir).empty());
+  std::ofstream(dir / kQuarantineFile) << "a\tSIGSEGV\nb\tSIGFPE\na\tagain\n\n";
+  ASSERT_EQ(quarantined(dir).size(), 2u);
+  EXPECT_EQ(quarantined(dir)[0].reason, "SIGSEGV");
+  EXPECT_TRUE(*clearQuarantine(dir, "a"));
+  EXPECT_FALSE(*clearQuarantine(dir, "a"));
+  ASSERT_EQ(quarantined(dir).size(), 1u);
+  EXPECT_EQ(quarantined(dir)[0].plugin, "b");
+  std::filesystem::remove_all(dir);
+}
+
+}  // namespace
+}  // namespace hapticd::watch
