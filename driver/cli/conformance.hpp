@@ -1,0 +1,23 @@
+/// The conformance tests that a shape plugin must pass, by name.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "cli/conformance_subject.hpp"
+
+namespace hapticd::cli {
+
+struct ConformanceTest {
+  const char* name;
+  const char* doc;
+  /// "": passed; "skip: why": does not apply; otherwise what was wrong.
+  std::string (*run)(const Recipe& recipe, uint64_t seed);
+};
+
+/// In the order in which they run.
+const std::vector<ConformanceTest>& conformanceTests();
+
+/// Random parameters, probes, jumps, resets and bad samples from one seed. "": nothing was wrong.
+std::string fuzzOnce(const Recipe& recipe, uint64_t seed);
+
+}  // namespace hapticd::cli
