@@ -22,7 +22,7 @@ void print(const Finding& finding) {
   std::printf("      %-16s fix: %s\n", "", finding.fix.c_str());
 }
 
-/// 0: all well or warnings only, 1: something fails.
+/// 0: all well, 1: warnings, 2: something fails.
 int doctor(bool json, double seconds) {
   std::vector<Finding> findings = checkSystem();
   if (!json)
@@ -32,8 +32,8 @@ int doctor(bool json, double seconds) {
     findings.push_back(checkLatency(seconds));
     if (!json) print(findings.back());
   }
-  const bool failed =
-      std::any_of(findings.begin(), findings.end(), [](const Finding& f) { return f.verdict == Verdict::kFail; });
+  Verdict worst = Verdict::kOk;
+  for (const Finding& finding : findings) worst = std::max(worst, finding.verdict);
   if (json) {
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
     for (const Finding& f : findings)
@@ -42,9 +42,12 @@ int doctor(bool json, double seconds) {
                      {"state", f.state},
                      {"consequence", f.consequence},
                      {"fix", f.fix}});
-    std::printf("%s\n", nlohmann::ordered_json{{"ok", !failed}, {"checks", all}}.dump(2).c_str());
+    std::printf("%s\n",
+                nlohmann::ordered_json{{"ok", worst != Verdict::kFail}, {"verdict", word(worst)}, {"checks", all}}
+                    .dump(2)
+                    .c_str());
   }
-  return failed ? kFailed : kWorked;
+  return static_cast<int>(worst);
 }
 
 }  // namespace
@@ -58,7 +61,9 @@ void addDoctor(CLI::App& app, int& exit_code) {
   command->add_option("--seconds", *seconds, "length of the latency run; 0: none")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
-  command->footer("Exit code 1 when a check fails.\n\nExample:\n  hapticd doctor --json > doctor.json");
+  command->footer(
+      "Exit code 0 when all is well, 1 with warnings, 2 when a check fails.\n\nExample:\n  hapticd doctor --json > "
+      "doctor.json");
   command->callback([=, &exit_code] { exit_code = doctor(*json, *seconds); });
 }
 

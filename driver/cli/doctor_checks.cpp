@@ -1,12 +1,20 @@
 #include "cli/doctor_checks.hpp"
 
+#include <grp.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <thread>
 
 #include "base/clock.hpp"
 #include "base/os.hpp"
+#include "cli/command.hpp"
+#include "watch/quarantine.hpp"
 
 namespace hapticd::cli {
 
@@ -31,7 +39,7 @@ Finding checkScheduler() {
   return {"scheduler", Verdict::kFail,
           "SCHED_FIFO " + std::to_string(os::kServoPriority) + ": " + code.message() + "; " + os::realTimeRights(),
           "the servo thread waits behind every other program: late ticks that the hand feels",
-          "sudo usermod -aG haptic $USER, then log in again (limits.d/hapticd.conf grants rtprio 80)"};
+          "sudo usermod -aG haptic $USER, then log in again (limits.d/70-hapticd.conf grants rtprio 80)"};
 }
 
 /// With RT_GROUP_SCHED a cgroup of runtime 0 refuses FIFO even to root.
@@ -61,14 +69,80 @@ Finding checkMemory() {
   if (!code) return ok("memory", "can be locked");
   return {"memory", Verdict::kFail, "mlockall: " + code.message() + "; " + os::realTimeRights(),
           "page faults of up to milliseconds inside a tick",
-          "raise memlock to 524288 for the group haptic in /etc/security/limits.d/hapticd.conf"};
+          "raise memlock to 524288 for the group haptic in /etc/security/limits.d/70-hapticd.conf"};
 }
 
 Finding checkThrottling() {
   const std::string runtime = firstLine("/proc/sys/kernel/sched_rt_runtime_us"),
                     period = firstLine("/proc/sys/kernel/sched_rt_period_us");
-  return ok("throttling", "real-time threads may use " + runtime + " of every " + period +
-                              " us; the servo sleeps every period, so this does not bind");
+  constexpr double kServoShare = 0.9;  // of a processor at most: the wait sleeps, it does not only spin
+  const std::string state = "real-time threads may use " + runtime + " of every " + period + " us";
+  const double share = std::strtod(runtime.c_str(), nullptr) / std::max(1.0, std::strtod(period.c_str(), nullptr));
+  if (runtime.empty() || runtime == "-1" || share >= kServoShare)
+    return ok("throttling", (runtime.empty() ? "not limited here" : state) + "; the servo sleeps every period");
+  return {"throttling", Verdict::kFail, state, "the kernel stops the servo for the rest of each period",
+          "sudo sysctl -w kernel.sched_rt_runtime_us=950000"};
+}
+
+bool inGroup(gid_t group) {
+  gid_t groups[256];
+  const int count = getgroups(256, groups);
+  return getegid() == group || std::find(groups, groups + std::max(count, 0), group) != groups + std::max(count, 0);
+}
+
+/// Also root is told: the rights that its users need hang on the group.
+Finding checkGroup() {
+  const struct group* haptic = getgrnam("haptic");
+  if (haptic == nullptr)
+    return {"group", Verdict::kFail, "there is no group haptic on this machine",
+            "nobody but root gets real-time rights and devices; hapticd never needs root",
+            "sudo groupadd --system haptic && sudo usermod -aG haptic $USER, then log in again"};
+  if (inGroup(haptic->gr_gid)) return ok("group", "this process is in group haptic");
+  const bool root = geteuid() == 0;
+  return {"group", root ? Verdict::kWarn : Verdict::kFail,
+          root ? "group haptic is there; this is root, who needs no group and should not run hapticd"
+               : "this process is not in group haptic",
+          root ? "what is ok for root may fail for the user who runs hapticd" : "no real-time rights, no devices",
+          root ? "run hapticd doctor as that user" : "sudo usermod -aG haptic $USER, then log in again"};
+}
+
+/// A limit as `ulimit` shows it; unlimited is the largest number.
+Finding checkLimits() {
+  rlimit priority{}, memory{};
+  getrlimit(RLIMIT_RTPRIO, &priority);
+  getrlimit(RLIMIT_MEMLOCK, &memory);
+  const auto words = [](rlim_t value) {
+    return value == RLIM_INFINITY ? std::string("unlimited") : std::to_string(value);
+  };
+  const std::string state = "RLIMIT_RTPRIO " + words(priority.rlim_cur) + ", RLIMIT_MEMLOCK " + words(memory.rlim_cur);
+  constexpr rlim_t kMemory = 512u << 20;
+  if (priority.rlim_cur >= static_cast<rlim_t>(os::kServoPriority) && memory.rlim_cur >= kMemory)
+    return ok("limits", state);
+  return {"limits", geteuid() == 0 ? Verdict::kWarn : Verdict::kFail,
+          state + "; expected rtprio 80 and memlock 524288 KiB",
+          "the servo thread or its memory is refused what it asks for",
+          "install /etc/security/limits.d/70-hapticd.conf (@haptic - rtprio 80, @haptic - memlock 524288), then log in "
+          "again"};
+}
+
+/// The rules must sort before 73-seat-late, or a person at the seat gets no access.
+Finding checkUdev() {
+  std::string found;
+  for (const char* dir : {"/etc/udev/rules.d", "/run/udev/rules.d", "/usr/lib/udev/rules.d", "/lib/udev/rules.d"}) {
+    std::error_code code;
+    for (const auto& file : std::filesystem::directory_iterator(dir, code)) {
+      const std::string name = file.path().filename().string();
+      if (name.find("haptic") == std::string::npos) continue;
+      if (name < "73" && file.path().extension() == ".rules") return ok("udev", file.path().string());
+      found = file.path().string();
+    }
+  }
+  return {
+      "udev", Verdict::kWarn,
+      found.empty() ? "no rule for haptic devices is installed" : found + " sorts after 73 or does not end in .rules",
+      "devices can be opened by root alone; the simulated ones need none",
+      "sudo install -m 644 udev/70-hapticd.rules /etc/udev/rules.d/ && sudo udevadm control --reload && sudo udevadm "
+      "trigger"};
 }
 
 Finding checkKernel() {
@@ -117,12 +191,80 @@ Finding checkDmaLatency() {
           "sudo chgrp haptic /dev/cpu_dma_latency && sudo chmod 660 /dev/cpu_dma_latency"};
 }
 
+/// Every plugin and module of the search path loads and says who it is.
+Finding checkModules(host::Kind kind) {
+  const bool shapes = kind == host::Kind::kShape;
+  const std::string name = shapes ? "plugins" : "modules";
+  size_t good = 0;
+  std::string bad;
+  for (const host::CatalogFile* file : catalog().files(kind)) {
+    good += file->error.empty() ? 1 : 0;
+    if (!file->error.empty()) bad += (bad.empty() ? "" : "; ") + file->path.string() + ": " + file->error;
+  }
+  if (good == 0)
+    return {name, Verdict::kFail, bad.empty() ? "none was found" : bad, "no scene can run",
+            shapes ? "hapticd plugin list shows where it looked; set HAPTICD_PLUGIN_PATH"
+                   : "hapticd device list shows where it looked; set HAPTICD_PLUGIN_PATH"};
+  if (bad.empty()) return ok(name, std::to_string(good) + " files load");
+  return {name, Verdict::kWarn, bad, "scenes that name it cannot run",
+          shapes ? "hapticd plugin check FILE.so" : "hapticd device list"};
+}
+
+Finding checkQuarantine() {
+  const auto dir = watch::stateDir();
+  std::string names;
+  if (!dir.empty())
+    for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir))
+      names += (names.empty() ? "" : ", ") + entry.plugin;
+  if (names.empty()) return ok("quarantine", "no plugin has crashed");
+  return {"quarantine", Verdict::kWarn, names + " ended an earlier run", "its models are left out of every run",
+          "hapticd plugin clear NAME, when the plugin is good again"};
+}
+
+/// Haptic devices that the maker's id tells, and whether this process may open them.
+Finding checkDevices() {
+  static constexpr const char* kVendors[] = {"0403:cb48", "2988:", "1451:", "16c0:0486", "1234:0006"};
+  std::string open, closed;
+  std::error_code code;
+  for (const auto& entry : std::filesystem::directory_iterator("/sys/bus/usb/devices", code)) {
+    const std::string id = firstLine(entry.path() / "idVendor") + ":" + firstLine(entry.path() / "idProduct");
+    const bool haptic = std::any_of(std::begin(kVendors), std::end(kVendors),
+                                    [&](const char* known) { return id.rfind(known, 0) == 0; });
+    if (!haptic) continue;
+    char node[64];
+    std::snprintf(node, sizeof node, "/dev/bus/usb/%03d/%03d", std::atoi(firstLine(entry.path() / "busnum").c_str()),
+                  std::atoi(firstLine(entry.path() / "devnum").c_str()));
+    std::string& list = access(node, R_OK | W_OK) == 0 ? open : closed;
+    list += (list.empty() ? "" : ", ") + id + " at " + node;
+  }
+  if (!closed.empty())
+    return {"device", Verdict::kFail, closed + " cannot be opened by this user", "the arm stays limp",
+            "install the udev rules (see udev), join group haptic, plug the device in again"};
+  if (!open.empty()) return ok("device", open + "; firmware and calibration: hapticd device info FILE");
+  return {"device", Verdict::kWarn, "no haptic device is plugged in", "only simulated devices can be used",
+          "plug one in, then: hapticd device list"};
+}
+
 }  // namespace
 
 std::vector<Finding> checkSystem() {
-  return {checkKernel(), checkVirtualMachine(), checkScheduler(), checkGroupScheduling(),
-          checkMemory(), checkThrottling(),     checkGovernor(),  checkIsolation(),
-          checkClock(),  checkDmaLatency()};
+  return {checkKernel(),
+          checkVirtualMachine(),
+          checkGroup(),
+          checkLimits(),
+          checkScheduler(),
+          checkGroupScheduling(),
+          checkMemory(),
+          checkThrottling(),
+          checkGovernor(),
+          checkIsolation(),
+          checkClock(),
+          checkDmaLatency(),
+          checkUdev(),
+          checkDevices(),
+          checkModules(host::Kind::kShape),
+          checkModules(host::Kind::kDevice),
+          checkQuarantine()};
 }
 
 Finding checkLatency(double seconds) {
@@ -138,6 +280,7 @@ Finding checkLatency(double seconds) {
     }
   }).join();
   std::sort(late_us.begin(), late_us.end());
+  if (late_us.empty()) return ok("latency", "not measured");
   const double p50 = late_us[late_us.size() / 2], p99 = late_us[late_us.size() * 99 / 100], worst = late_us.back();
   char state[128];
   std::snprintf(state, sizeof state, "1 kHz for %.0f s: lateness p50 %.0f us, p99 %.0f us, max %.0f us", seconds, p50,
