@@ -30,7 +30,7 @@ class SharedHistogram {
     for (int i = 0; i < record::Histogram::kBuckets && total > 0; ++i) {
       seen += static_cast<double>(counts_[static_cast<size_t>(i)].load(std::memory_order_relaxed));
       const double middle = 0.5 * (record::Histogram::edgeOf(i) + record::Histogram::edgeOf(i + 1));
-      if (seen >= q * total) return middle < max() ? middle : max();
+      if (seen >= (q * total > 1 ? q * total : 1)) return middle < max() ? middle : max();
     }
     return 0;
   }
