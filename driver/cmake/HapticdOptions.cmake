@@ -18,9 +18,10 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 
 find_program(HAPTICD_CCACHE ccache)
-if(HAPTICD_CCACHE)
-  set(CMAKE_C_COMPILER_LAUNCHER ${HAPTICD_CCACHE})
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${HAPTICD_CCACHE})
+if(HAPTICD_CCACHE) # paths below the checkout are taken as relative, so that another checkout finds what this one built
+  set(ccache env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${HAPTICD_CCACHE})
+  set(CMAKE_C_COMPILER_LAUNCHER ${ccache})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${ccache})
 endif()
 
 # One tree in the build folder that looks like an installation, so that the daemon finds its plugins in both alike.
