@@ -58,6 +58,14 @@ class Search {
     const Vector3d& tangent = axis == 0 ? q.s.Su : q.s.Sv;
     return q.d.dot(tangent) + (exact_ ? height * (axis == 0 ? q.r.fu : q.r.fv) : 0);
   }
+  /// Takes a last, short step to first order, without an evaluation: what is left is its square.
+  void follow(const Vector2d& move, Vector2d& x, State& q) const noexcept {
+    x += move;
+    q.s.S += q.s.Su * move[0] + q.s.Sv * move[1];
+    q.r.f = std::max(0.0, q.r.f + q.r.fu * move[0] + q.r.fv * move[1]);
+    q.d = p_ - q.s.S;
+    q.distance = q.d.norm();
+  }
   void finish(const State& q, const Vector2d& x, SkeletonFoot& foot) const noexcept;
 
   const Box& box() const noexcept { return box_; }
@@ -227,6 +235,7 @@ SkeletonFoot Skeleton::nearest(const Vector3d& p, double u, double v, const Newt
       move *= 0.5;
     }
   }
+  if (foot.converged) search.follow(move, x, states[now]);
   search.finish(states[now], x, foot);
   return foot;
 }
