@@ -171,7 +171,9 @@ void RigidBody::drift(const Vector6d& change, double dt) noexcept {
   if (law_.joint == Joint::kSlider) return;
   const Matrix3d axes = turn_.matrix();
   l_ += axes * principal_.cwiseProduct(axes.transpose() * change.tail<3>());
-  spin(dt);
+  // Backward Euler is of first order, so a finer turn would add time and no digit.
+  turn_.turnBody(top_.roughBodyTurn(turn_.quaternion().conjugate() * l_, dt));
+  turn_.turnWorld(dt * top_.worldRate() * l_);
 }
 
 Vector3d RigidBody::velocityAt(const Vector3d& point) const noexcept {

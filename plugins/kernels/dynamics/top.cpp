@@ -71,4 +71,12 @@ SmallTurn Top::bodyTurn(Vector3d momentum, double h) const noexcept {
   return turn;
 }
 
+SmallTurn Top::roughBodyTurn(Vector3d momentum, double h) const noexcept {
+  SmallTurn turn;
+  about(a_, h / 2 * rate_a_ * momentum[a_], turn, momentum);
+  about(b_, h * rate_b_ * momentum[b_], turn, momentum);
+  about(a_, h / 2 * rate_a_ * momentum[a_], turn, momentum);
+  return turn;
+}
+
 }  // namespace hapticd::dynamics
