@@ -24,6 +24,7 @@ void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
   tracers_.clear();
   tracers_.reserve(probes);
   for (uint32_t i = 0; i < probes; ++i) tracers_.emplace_back(*model_);
+  offers_.assign(probes, Offers{});
   entered_.assign(probes, 0);
   report.size_m = model_->bounds().diagonal().norm();
   report.locked_bytes = model_->bytes();
@@ -36,6 +37,7 @@ void TracedShape::deactivate() {
 
 void TracedShape::reset() noexcept HSP_RT {
   for (trace::Tracer& tracer : tracers_) tracer.reset();
+  for (Offers& offers : offers_) offers.count = 0;
   std::fill(entered_.begin(), entered_.end(), 0);
 }
 
@@ -59,6 +61,8 @@ Touch TracedShape::trace(const hsp_probe& probe, const hsp_step& step, hsp_conta
     return touch;
   }
   if ((probe.flags & HSP_IN_INVALID) != 0) return touch;
+  if ((probe.flags & HSP_IN_JUMP) != 0) forgetBut(offers_[index], index);
+  offers_[index].count = 0;
   touch.foot = tracers_[index].step(Eigen::Vector3d(probe.position), optionsOf(step));
   if (touch.foot.status == trace::TraceStatus::kInvalid) touch.status = HSP_E_NUMERIC;
   if (touch.foot.status == trace::TraceStatus::kDegraded) touch.status = HSP_DEGRADED;
@@ -79,6 +83,15 @@ Touch TracedShape::trace(const hsp_probe& probe, const hsp_step& step, hsp_conta
   if (touch.depth > 0) contact.flags |= HSP_OUT_CONTACT;
   if (touch.foot.on_edge) contact.flags |= HSP_OUT_EDGE;
   return touch;
+}
+
+/// After a jump what was tracked is no longer near, and a foot on the way from there would push the wrong way: only
+/// what a search has offered since is followed. Until the next search nothing is traced, and nothing pushes.
+void TracedShape::forgetBut(Offers& offers, uint32_t probe) noexcept HSP_RT {
+  tracers_[probe].reset();
+  entered_[probe] = 0;
+  const uint32_t count = offers.count;
+  for (uint32_t i = 0; i < count; ++i) start(offers.near[i]);
 }
 
 /// Depth on the side that is felt, and the sign that turns the surface's outward normal to that side.
@@ -115,6 +128,8 @@ int64_t TracedShape::nearby(const double p_model[3], double radius, hsp_near* ou
 hsp_status TracedShape::start(const hsp_near& near) noexcept HSP_RT {
   if (near.probe >= tracers_.size() || near.surface >= static_cast<uint32_t>(model_->surfaceCount())) return HSP_E_ARG;
   tracers_[near.probe].activate(static_cast<int>(near.surface), near.param[0], near.param[1], near.distance_m);
+  Offers& offers = offers_[near.probe];
+  if (offers.count < offers.near.size()) offers.near[offers.count++] = near;
   return HSP_OK;
 }
 

@@ -84,6 +84,13 @@ class TracedShape : public Shape {
   static constexpr const char* kSideNames[] = {"front", "back", "both"};
   static constexpr const char* kMethodNames[] = {"dpt", "newton"};
 
+  /// What the search offered since the last step: all that holds after a jump.
+  struct Offers {
+    std::array<hsp_near, 64> near;
+    uint32_t count = 0;
+  };
+
+  void forgetBut(Offers& offers, uint32_t probe) noexcept HSP_RT;
   trace::TraceOptions optionsOf(const hsp_step& step) const noexcept HSP_RT;
   int64_t nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const;
   hsp_status start(const hsp_near& near) noexcept HSP_RT;
@@ -94,6 +101,7 @@ class TracedShape : public Shape {
 
   std::unique_ptr<trace::Model> model_;
   std::vector<trace::Tracer> tracers_;  ///< one a probe
+  std::vector<Offers> offers_;          ///< by probe
   std::vector<double> entered_;         ///< by probe, sides both: +1 the front is felt, -1 the back, 0 not known yet
   Mesh mesh_;
   hsp_ext_surfaces surfaces_extension_{};

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <cmath>
 #include <cstring>
 
@@ -30,15 +31,21 @@ class Plugin {
   }
   hsp_shape* handle() { return shape_; }
 
-  hsp_contact at(double x, double y, double z, double vx = 0) {
+  hsp_contact at(double x, double y, double z, double vx = 0, uint32_t flags = 0) {
     const double p[3] = {x, y, z};
     hsp_near near[64];
     const hsp_ext_surfaces& s = surfaces();
     const int64_t count = s.nearby(shape_, p, 0.15, near, 64);
     for (int64_t i = 0; i < count && i < 64; ++i) s.activate(shape_, &near[i]);
+    return step(p, vx, flags);
+  }
+
+  /// Without a search.
+  hsp_contact step(const double (&p)[3], double vx, uint32_t flags) {
     hsp_probe probe{};
     std::memcpy(probe.position, p, sizeof p);
     probe.velocity[0] = vx;
+    probe.flags = flags;
     hsp_contact contact{};
     hsp_step step{};
     step.struct_size = sizeof step;
@@ -191,6 +198,28 @@ TEST(NurbsRigid, ANanSampleGivesNoForceAndTheNextOneIsTraced) {
   EXPECT_EQ(plugin.status, HSP_E_NUMERIC);
   EXPECT_EQ(bad.force[0], 0);
   EXPECT_NEAR(plugin.at(0.069, 0, 0).force[0], before.force[0], 1e-9);
+}
+
+/// A foot that was on its way there would push from the wrong side, tens of millimetres deep.
+TEST(NurbsRigid, AfterAJumpNothingPushesUntilASearchHasAnswered) {
+  for (const char* model : {"teapot.yaml", "goblet.yaml", "torus.yaml"}) {
+    Plugin plugin;
+    ASSERT_EQ(plugin.set("geometry", kModels + model), HSP_OK);
+    ASSERT_EQ(plugin.activate(), HSP_OK);
+    uint32_t seed = 7;
+    const auto coordinate = [&] { return 0.12 * ((seed = seed * 1664525u + 1013904223u) / 2147483648.0 - 1); };
+    for (int i = 0; i < 20; ++i) {
+      const double p[3] = {coordinate(), coordinate(), coordinate()};
+      const hsp_contact jumped = plugin.step(p, 0, HSP_IN_JUMP);
+      EXPECT_EQ(jumped.flags & HSP_OUT_CONTACT, 0u) << model;
+      EXPECT_EQ(Eigen::Vector3d(jumped.force).norm(), 0) << model;
+      Plugin other;
+      ASSERT_EQ(other.set("geometry", kModels + model), HSP_OK);
+      ASSERT_EQ(other.activate(), HSP_OK);
+      const hsp_contact searched = plugin.at(p[0], p[1], p[2], 0, HSP_IN_JUMP), alone = other.at(p[0], p[1], p[2]);
+      EXPECT_NEAR(searched.depth_m, alone.depth_m, 1e-9) << model;
+    }
+  }
 }
 
 TEST(NurbsRigid, RefusesAMissingModelAndOutOfRangeValues) {
