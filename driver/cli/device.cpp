@@ -65,7 +65,9 @@ void printLimits(const scene::Limits& limits) {
               text(limits.slew, "N/s", "none").c_str(), text(limits.velocity, "m/s", "none").c_str(),
               text(limits.workspace, "m", "none").c_str());
   std::printf("  ramps      %g s in, %g s out\n  passivity  %s\n", limits.ramp_in, limits.ramp_out,
-              limits.passivity ? "guarded" : "not guarded");
+              !limits.passivity   ? "guarded unless tried on hardware"
+              : *limits.passivity ? "guarded"
+                                  : "not guarded");
 }
 
 void printCapabilities(uint32_t flags) {

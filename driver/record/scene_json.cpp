@@ -117,7 +117,7 @@ Json deviceJson(const scene::Device& device) {
                  {"workspace", real(limits.workspace)},
                  {"ramp_in", real(limits.ramp_in)},
                  {"ramp_out", real(limits.ramp_out)},
-                 {"passivity", limits.passivity},
+                 {"passivity", limits.passivity ? Json(*limits.passivity) : Json()},
                  {"torque_slew", real(limits.torque_slew)},
                  {"power", real(limits.power)},
                  {"impulse", real(limits.impulse)},
@@ -146,7 +146,8 @@ scene::Device toDevice(const Json& json) {
   device.limits.workspace = toReal(limits.at("workspace"));
   device.limits.ramp_in = toReal(limits.at("ramp_in"));
   device.limits.ramp_out = toReal(limits.at("ramp_out"));
-  device.limits.passivity = limits.at("passivity");
+  if (const Json& passivity = limits.at("passivity"); !passivity.is_null())
+    device.limits.passivity = passivity.get<bool>();
   device.limits.torque_slew = toReal(limits.at("torque_slew"));
   device.limits.power = toReal(limits.at("power"));
   device.limits.impulse = toReal(limits.at("impulse"));

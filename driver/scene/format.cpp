@@ -117,7 +117,8 @@ constexpr Key kLimitKeys[] = {
                              "Forces fade outside this radius about the device's origin; 0: no limit."),
     real<&Limits::ramp_in>("ramp_in", {0, 10, "s"}, "0.25", "From zero to full force at the start and after a fault."),
     real<&Limits::ramp_out>("ramp_out", {0, 0.02, "s"}, "0.02", "From full force to zero at a fault."),
-    boolean<&Limits::passivity>("passivity", "true", "Passivity observer and controller."),
+    boolean<&Limits::passivity>("passivity", nullptr,
+                                "Passivity observer and controller; left out: on for arms never tried on hardware."),
     object<&Limits::enable>("enable", kEnable, "A button of the device that lets forces through."),
     list<&Limits::motors>("motors", kMotor, {0, 16}, "Motors in the order of the joints, for a model of their heat."),
 };

@@ -38,7 +38,7 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
       return Error{"device '" + described.name + "': " + no};
     arm->admittance_.emplace(*described.admittance, *arm->device_);
   }
-  if (described.limits.passivity && (arm->info().capabilities & HDV_C_UNVERIFIED) != 0) {
+  if (described.limits.passivity.value_or((arm->info().capabilities & HDV_C_UNVERIFIED) != 0)) {
     const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
     arm->passivity_.emplace(mass * options.rate / 2, arm->info().damping);
   }

@@ -90,7 +90,7 @@ TEST_F(Load, ReadsTheDeviceFileAndItsHand) {
   EXPECT_EQ(arm.name, "arm");
   EXPECT_EQ(arm.mount.position.z(), 0.1);
   EXPECT_EQ(arm.limits.force, 3);
-  EXPECT_FALSE(arm.limits.passivity);
+  EXPECT_EQ(arm.limits.passivity, false);
   EXPECT_FALSE(arm.chosen_by_default);
   EXPECT_EQ(value(arm.parameters, "gain")->number, 2);
   EXPECT_EQ(value(arm.parameters, "port")->text, "/dev/nothing");
