@@ -1,4 +1,5 @@
-/// `hapticd check`: validates files and prints every problem, warns of what cannot be stable; also prints the JSON Schema of a format.
+/// `hapticd check`: validates files and prints every problem, warns of what cannot be stable; also prints the JSON
+/// Schema of a format.
 #include <memory>
 #include <vector>
 
@@ -24,7 +25,10 @@ int printSchema(const std::string& format) {
 /// What cannot be stable. Only simulated arms are opened: `check` touches no hardware; `run` warns of it as well.
 scene::Problems unstable(const scene::Scene& scene, const std::vector<double>& stiffness) {
   scene::Problems warnings;
-  for (const scene::Device& device : scene.devices) {
+  std::vector<scene::Device> devices = scene.devices;
+  if (const auto file = host::shippedFile(scene::kDefaultDevice); devices.empty() && file)  // as `run` will
+    if (auto loaded = scene::loadDevice(*file, catalog()); loaded.device) devices.push_back(*loaded.device);
+  for (const scene::Device& device : devices) {
     if (device.module != "simulated") continue;
     auto arm = host::DeviceInstance::create(device, nullptr);
     if (!arm || !(*arm)->open()) continue;

@@ -123,7 +123,7 @@ void explainFiles(const scene::Scene& scene) {
 int explain(const std::string& file) {
   auto scene = loadSceneOrReport(file);
   if (!scene) return kBadInput;
-  auto world = servo::World::build(*scene, {scene->servo.rate, 1, true}, logToTerminal);
+  auto world = servo::World::build(*scene, {.rate = scene->servo.rate, .measure = true}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   const std::vector<uint64_t> costs = measureSteps(**world, *scene);
   explainServo(*scene, **world);

@@ -95,14 +95,14 @@ View look(const status::Page& page) {
 }
 
 void sortModels(std::vector<ModelLine>& models, const std::string& by) {
-  std::stable_sort(models.begin(), models.end(), [&](const ModelLine& a, const ModelLine& b) {
+  std::sort(models.begin(), models.end(), [&](const ModelLine& a, const ModelLine& b) {
     if (by == "force") return a.now.force > b.now.force;
     if (by == "name") return a.name < b.name;
     if (by == "depth") {
       const auto depth = [](const ModelLine& m) { return m.traced ? m.now.depth : -HUGE_VAL; };
       return depth(a) > depth(b);
     }
-    return a.p99 > b.p99;
+    return a.p99 != b.p99 ? a.p99 > b.p99 : a.name < b.name;
   });
 }
 

@@ -109,7 +109,7 @@ int tuneScene(const Options& options) {
   if (!scene) return kBadInput;
   if (scene->models.empty())
     return fail(kBadInput, options.scene + ": the scene has no model, so there is nothing to tune");
-  auto world = servo::World::build(*scene, {scene->servo.rate, 1, false}, logToTerminal);
+  auto world = servo::World::build(*scene, {.rate = scene->servo.rate}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   const bool uses_velocity = (*world)->needsVelocity();
   world->reset();

@@ -35,7 +35,7 @@ double quantile(std::vector<double>& times, double share) {
 /// One pass over the motion; keeps the answers where asked for.
 Result<Cost> pass(const scene::Scene& scene, const Motion& motion, VelocityFrom from, std::vector<Answer>* answers,
                   const host::Services::Log& log) {
-  auto world = servo::World::build(scene, {1 / motion.period, 1, false}, log);
+  auto world = servo::World::build(scene, {.rate = 1 / motion.period}, log);
   if (!world) return Error{world.error()};
   std::optional<servo::VelocityEstimator> estimator;
   if ((*world)->needsVelocity() && from == VelocityFrom::kEstimator) {
