@@ -1,0 +1,61 @@
+#!/usr/bin/env python3
+"""A replay is exact, a changed stiffness is found, and a kill leaves a file that can be replayed and drawn.
+
+Usage: record_and_replay.py HAPTICD SCENES     prints a line a case; exit 1 when one is off.
+"""
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+HAPTICD, SCENES = sys.argv[1], sys.argv[2]
+failures = 0
+
+
+def check(name, good, told=""):
+    global failures
+    failures += not good
+    print("ok  " if good else "FAIL", name, "" if good else told, flush=True)
+
+
+def hapticd(*arguments):
+    done = subprocess.run([HAPTICD, *arguments], capture_output=True, text=True, timeout=60)
+    return done.returncode, done.stdout + done.stderr
+
+
+def replayIsExact(folder, scene):
+    file = os.path.join(folder, scene + ".h5")
+    code, told = hapticd("run", os.path.join(SCENES, scene + ".yaml"), "--for", "1", "--virtual-time", "--record", file)
+    check(scene + " is recorded", code == 0 and os.path.isfile(file), told)
+    code, told = hapticd("replay", file)
+    check(scene + " replays with every bit the same", code == 0, told)
+    return file
+
+
+def killLeavesAReadableFile(folder, environment):
+    file = os.path.join(folder, "killed.h5")
+    command = [HAPTICD, "run", os.path.join(SCENES, "teapot.yaml"), "--for", "60", "--name", "killed", "--record", file]
+    with subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as run:
+        end = time.monotonic() + 30
+        while time.monotonic() < end and run.poll() is None:
+            if os.path.isfile(file) and hapticd("replay", file)[0] == 0:
+                break
+            time.sleep(0.2)
+        alive = run.poll() is None
+        run.kill()
+    check("the run was alive when it was killed", alive)
+    code, told = hapticd("replay", file)
+    check("what a kill left replays with every bit the same", code == 0, told)
+    picture = os.path.join(folder, "killed.svg")
+    code, told = hapticd("plot", file, "--out", picture)
+    check("what a kill left can be drawn", code == 0 and os.path.isfile(picture), told)
+
+
+with tempfile.TemporaryDirectory() as scratch:
+    teapot = replayIsExact(scratch, "teapot")
+    replayIsExact(scratch, "moving-box")
+    status, text = hapticd("replay", teapot, "--set", "teapot.stiffness=900")
+    check("a changed stiffness is found", status == 1 and "differ" in text, text)
+    killLeavesAReadableFile(scratch, dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch))
+sys.exit(1 if failures else 0)
