@@ -145,6 +145,7 @@ std::string protocolText(const Protocol& p) {
   down again at {:g} m/s. It is lifted round the edges of the cube, and near edges and on the goblet's stem it pushes less: a point behind
   the surface that is nearer to another side would drag it there, as happened to an earlier operator of ours who cut the corner.
 - **Moving models** (test 2): cube, cylinder and goblet {}; the pendulum swings from 0.15 rad.
+- **Settled after first runs**, not before: the push, the speed of the touch and the spring; the table below shows what they change.
 )",
       p.window, p.stiffness, p.force, 100 * p.spread, p.spread_rate, p.most, 100 * p.tremor, p.tremor_rate,
       1e3 * p.visual_delay, p.touch_every, 1e3 * p.lift, p.touch_speed, kMotionOfSolids);
