@@ -38,13 +38,6 @@ scene::Problems unstable(const scene::Scene& scene, const std::vector<double>& s
   return warnings;
 }
 
-void printWarnings(const scene::Problems& warnings) {
-  for (scene::Problem warning : warnings) {
-    warning.what = "warning: " + warning.what;
-    std::printf("%s\n", warning.text().c_str());
-  }
-}
-
 int check(const Options& options) {
   if (!options.schema.empty()) return printSchema(options.schema);
   if (options.files.empty()) return fail(kBadInput, "no file given, expected `hapticd check FILE...`");
@@ -55,7 +48,7 @@ int check(const Options& options) {
     std::vector<double> stiffness;
     if (scene && !options.files_only) found = tryModels(*scene, &stiffness);
     printProblems(found, stdout);
-    if (scene && found.empty()) printWarnings(unstable(*scene, stiffness));
+    if (scene && found.empty()) printWarnings(unstable(*scene, stiffness), stdout);
     if (found.empty() && !options.quiet) std::printf("%s: ok\n", file.c_str());
     problems += found.size();
     bad_files += found.empty() ? 0 : 1;

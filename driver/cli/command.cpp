@@ -83,6 +83,11 @@ void printProblems(const scene::Problems& problems, std::FILE* out) {
   for (const scene::Problem& problem : problems) std::fprintf(out, "%s\n", problem.text().c_str());
 }
 
+void printWarnings(scene::Problems warnings, std::FILE* out) {
+  for (scene::Problem& warning : warnings) warning.what = "warning: " + warning.what;
+  printProblems(warnings, out);
+}
+
 std::optional<scene::Scene> loadSceneOrReport(const std::string& file, const std::string& device_file,
                                               bool default_device) {
   scene::Loaded loaded = scene::load(file, catalog(), {default_device, device_file});

@@ -36,6 +36,9 @@ host::Catalog& catalog();
 /// Every problem as file:line:column: key: what, expected what.
 void printProblems(const scene::Problems& problems, std::FILE* out);
 
+/// The same for what is only warned of.
+void printWarnings(scene::Problems warnings, std::FILE* out);
+
 /// Loads a scene, or prints every problem on standard error.
 /// @param device_file replaces the scene's devices; empty: as the scene says
 /// @param default_device take the simulated arm where the scene names none; without it, devices may be empty

@@ -14,6 +14,7 @@
 #include "record/picture.hpp"
 #include "record/report.hpp"
 #include "servo/runner.hpp"
+#include "tune/stability.hpp"
 #include "watch/quarantine.hpp"
 
 namespace hapticd::cli {
@@ -72,6 +73,18 @@ record::LimitReport limitsOf(const std::string& device, const servo::Limiter& li
   return report;
 }
 
+/// What the first arm, whose forces the black box keeps, was asked for over the last seconds against what it sustains.
+void warnOfHeat(const servo::Runner& runner, double rate) {
+  constexpr double kHeatSeconds = 5;  // less does not heat a winding
+  std::vector<double> forces;
+  for (const servo::BlackBoxRow& row : runner.telemetry().blackBox())
+    forces.push_back(std::hypot(row.force[0], row.force[1], row.force[2]));
+  if (runner.arms().empty() || static_cast<double>(forces.size()) < kHeatSeconds * rate) return;
+  const std::string text =
+      tune::overheating(runner.scene().devices[0].name, runner.arms()[0]->info().continuous_force, forces);
+  if (!text.empty()) std::fprintf(stderr, "warning: %s\n", text.c_str());
+}
+
 /// Writes what was asked for and prints the summary; the run's own exit code unless a file fails.
 int conclude(const Options& options, const servo::Runner& runner, const std::vector<std::string>& left_out) {
   std::vector<std::string> faults = runner.faults();
@@ -85,6 +98,7 @@ int conclude(const Options& options, const servo::Runner& runner, const std::vec
   for (size_t i = 0; i < runner.arms().size(); ++i)
     report.limits.push_back(limitsOf(runner.scene().devices[i].name, runner.arms()[i]->limiter()));
   std::fputs(record::summary(report).c_str(), stdout);
+  warnOfHeat(runner, report.rate_hz);
   if (const record::Recorder* recorder = runner.recorder())
     std::printf("  recorded  %s: %llu ticks, %llu rows lost\n", options.record.c_str(),
                 static_cast<unsigned long long>(recorder->rows(servo::kTicks)),
@@ -104,12 +118,23 @@ std::vector<std::string> leaveOutQuarantined(scene::Scene& scene, const std::fil
   for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir))
     std::erase_if(scene.models, [&](const scene::Model& model) {
       if (model.plugin != entry.plugin) return false;
-      messages.push_back("model " + model.name + ": plugin '" + entry.plugin + "' ended an earlier run by " +
-                         entry.reason + "; the model is left out; when the plugin is good again: hapticd plugin clear " +
-                         entry.plugin);
+      messages.push_back(
+          "model " + model.name + ": plugin '" + entry.plugin + "' ended an earlier run by " + entry.reason +
+          "; the model is left out; when the plugin is good again: hapticd plugin clear " + entry.plugin);
       return true;
     });
   return messages;
+}
+
+/// What cannot be stable on the arms that were opened, and what they cannot hold: said before any force.
+void warnOfSettings(servo::Runner& runner, double rate) {
+  scene::Scene scene = runner.scene();
+  scene.servo.rate = rate;
+  std::vector<double> stiffness;
+  for (const auto& shape : runner.world().shapes())
+    if (shape != nullptr) stiffness.push_back(shape->report().max_stiffness);
+  for (size_t i = 0; i < runner.arms().size(); ++i)
+    printWarnings(tune::unstableSettings(scene, scene.devices[i], runner.arms()[i]->info(), stiffness), stderr);
 }
 
 /// A fault is told once, when it latches.
@@ -146,6 +171,7 @@ int run(const Options& options) {
   if (!world) return fail(kBadInput, world.error());
   auto runner = servo::Runner::prepare(*scene, how, std::move(*world), logToTerminal);
   if (!runner) return fail(kFailed, runner.error());
+  warnOfSettings(**runner, how.rate);
   running = runner->get();
   os::onStopSignal(onStop);
   if (outside) outside->serve(**runner, options.device);

@@ -96,6 +96,9 @@ void addTrace(CLI::App& app, int& exit_code) {
   command->add_option("--models", options->models, "only these models, comma-separated");
   command->footer(
       "Status column: 0 good, 1 good but coarser than asked, -6 the surface or the sample was lost (no force).\n"
+      "Forces are those of the models as the hand would feel them without limits: limits belong to a device, and a "
+      "trace\n"
+      "has none.\n"
       "Foot columns are nan while nothing of the model is traced.\n\n"
       "Example:\n  hapticd trace config/scenes/teapot.yaml --probe stroke.csv --out feet.csv");
   command->callback([options, &exit_code] { exit_code = trace(*options); });

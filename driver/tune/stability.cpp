@@ -46,6 +46,18 @@ void judgeModel(const scene::Scene& scene, size_t index, const scene::Device& de
          " N, which a hand feels as buzz; nearest: " + text(roundedDown(kBuzz / info.resolution_m)) + " N/m");
 }
 
+/// Motors of an arm that is simulated do not burn.
+void judgeHeat(const scene::Device& device, const hdv_info& info, scene::Problems& problems) {
+  const double most = device.limits.force > 0 ? device.limits.force : info.max_force;
+  const bool guarded = !device.limits.motors.empty() || (info.capabilities & HDV_C_SIMULATED) != 0;
+  if (guarded || info.continuous_force <= 0 || most <= info.continuous_force) return;
+  scene::report(problems, device.place, "limits.force",
+                text(most) + " N, and " + device.name + " sustains " + text(info.continuous_force) +
+                    " N: nothing spares its motors when it is held longer; expected limits.motors (a model of their "
+                    "heat); nearest: " +
+                    text(info.continuous_force) + " N");
+}
+
 }  // namespace
 
 scene::Problems unstableSettings(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
@@ -61,12 +73,24 @@ scene::Problems unstableSettings(const scene::Scene& scene, const scene::Device&
     scene::report(problems, file, 0, 0, "servo.budget_us",
                   text(scene.servo.budget_us) + " us is longer than the period of " + text(period * 1e6) +
                       " us, so every tick may be late; nearest: " + text(0.8 * period * 1e6) + " us");
+  judgeHeat(device, info, problems);
   constexpr double kSlack = 1.001;
   if (info.rate_hz > 0 && scene.servo.rate > kSlack * info.rate_hz && (info.capabilities & HDV_C_SIMULATED) == 0)
     scene::report(problems, file, 0, 0, "servo.rate",
                   text(scene.servo.rate) + " Hz is faster than the samples of " + device.name + " (" +
                       text(info.rate_hz) + " Hz): ticks between see no news; nearest: " + text(info.rate_hz) + " Hz");
   return problems;
+}
+
+std::string overheating(const std::string& device, double sustained, const std::vector<double>& forces) {
+  if (sustained <= 0 || forces.empty()) return "";
+  double heat = 0;
+  for (const double force : forces) heat += force * force;
+  const double effective = std::sqrt(heat / static_cast<double>(forces.size()));
+  if (effective <= sustained) return "";
+  return device + " gave " + text(effective) + " N (root of the mean square) over the end of the run and sustains " +
+         text(sustained) + " N: a real one grows hot; a softer model or limits.force: " + text(sustained) +
+         " keeps within that";
 }
 
 }  // namespace hapticd::tune

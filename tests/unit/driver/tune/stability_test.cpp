@@ -71,5 +71,24 @@ TEST(UnstableSettings, SayThatABudgetIsBeyondThePeriodAndARateBeyondTheDevice) {
   EXPECT_NE(text.find("servo.rate"), std::string::npos) << text;
 }
 
+TEST(UnstableSettings, SayThatNothingSparesTheMotorsOfAnArmThatIsHeld) {
+  Case held;
+  held.info.max_force = 8.5;
+  held.info.continuous_force = 1.4;
+  EXPECT_NE(held.told(100).find("sustains 1.4 N"), std::string::npos) << held.told(100);
+  Case limited = held, modelled = held, simulated = held;
+  limited.device.limits.force = 1.4;
+  modelled.device.limits.motors.resize(3);
+  simulated.info.capabilities = HDV_C_SIMULATED;
+  for (const Case* quiet : {&limited, &modelled, &simulated}) EXPECT_EQ(quiet->told(100), "");
+}
+
+TEST(Overheating, IsToldOfTheRootOfTheMeanSquareBeyondWhatIsSustained) {
+  const std::vector<double> pulses = {0, 4, 0, 0};  // heats as 2 N do
+  EXPECT_NE(overheating("arm", 1.4, pulses).find("2 N"), std::string::npos);
+  EXPECT_EQ(overheating("arm", 2.1, pulses), "");
+  EXPECT_EQ(overheating("arm", 0, pulses), "");  // unknown
+}
+
 }  // namespace
 }  // namespace hapticd::tune
