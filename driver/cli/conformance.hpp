@@ -14,7 +14,11 @@ struct ConformanceTest {
   std::string (*run)(const Recipe& recipe, uint64_t seed);
 };
 
-/// In the order in which they run.
+std::vector<ConformanceTest> lifeTests();    ///< descriptors, parameters, creation and activation
+std::vector<ConformanceTest> stepTests();    ///< what every step owes: time, memory, finite and continuous answers
+std::vector<ConformanceTest> memoryTests();  ///< what an instance remembers, and what it must not
+
+/// All of them, in the order in which they run.
 const std::vector<ConformanceTest>& conformanceTests();
 
 /// Random parameters, probes, jumps, resets and bad samples from one seed. "": nothing was wrong.
