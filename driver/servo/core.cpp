@@ -178,6 +178,30 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
     outputs_[i] = hsp_contact{};
   }
   hsp_pose pose = model.pose;
+  callShape(model, index, dt, pose);
+  const Trouble trouble = judge(model, index, dt, pose);
+  const double gain_before = model.guard.gain();
+  const double gain = model.guard.gain(trouble == Trouble::kNone && model.enabled, dt);
+  const double fade = gain_before > 0 ? gain / gain_before : 0;
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    if (trouble == Trouble::kNone) {
+      takeContact(model, index, i, gain);
+    } else {
+      fadeContact(index, i, fade);
+    }
+    Contact& contact = contacts_[size_t{index} * probe_count_ + i];
+    if (!probes[i].valid) {
+      contact = Contact{};
+      continue;
+    }
+    forces_[i] += ConstMap(contact.world.force);
+    torques_[i] += ConstMap(contact.world.torque);
+    bookContact(model, contact, i);
+  }
+}
+
+/// Runs the plugin over inputs_ and outputs_, with the time it takes where that is measured.
+void Core::callShape(ModelState& model, uint32_t index, double dt, hsp_pose& pose) noexcept HSP_RT {
   hsp_step step{};
   step.struct_size = sizeof step;
   step.count = probe_count_;
@@ -196,12 +220,14 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   stepping_.store(static_cast<int32_t>(index), std::memory_order_relaxed);
   model.status = model.guard.quarantined() ? HSP_E_STATE : model.shape->step(step);
   stepping_.store(-1, std::memory_order_relaxed);
-  if (settings_.measure) {
-    model.step_ns = monotonicNow() - before;
-    // a spent budget stays at 1: the next shape may still answer, but must be quick
-    if (budget_left_ns_ > 0) budget_left_ns_ = budget_left_ns_ > model.step_ns ? budget_left_ns_ - model.step_ns : 1;
-  }
+  if (!settings_.measure) return;
+  model.step_ns = monotonicNow() - before;
+  // a spent budget stays at 1: the next shape may still answer, but must be quick
+  if (budget_left_ns_ > 0) budget_left_ns_ = budget_left_ns_ > model.step_ns ? budget_left_ns_ - model.step_ns : 1;
+}
 
+/// Whether the answers may be felt; a model that moves itself goes to its new pose.
+Trouble Core::judge(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT {
   bool answers_finite = true;
   for (const hsp_contact& out : outputs_) answers_finite &= finite(out);
   const bool moves_itself = (model.shape->report().flags & HSP_R_MOVES) != 0;
@@ -210,31 +236,19 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   Trouble trouble = model.guard.judge(model.status, answers_finite);
   if (trouble == Trouble::kNone) trouble = holdToClaims(model, index);
   if (trouble == Trouble::kBadStatus && model.failed_status == HSP_OK) model.failed_status = model.status;
-  const double gain_before = model.guard.gain();
-  const double gain = model.guard.gain(trouble == Trouble::kNone && model.enabled, dt);
   if (trouble == Trouble::kLost) {
     model.shape->reset();
     wants_search_ = true;
   }
-  for (uint32_t i = 0; i < probe_count_; ++i) {
-    if (trouble == Trouble::kNone) {
-      takeContact(model, index, i, gain);
-    } else {  // fade out along the last good force
-      Contact& last = contacts_[size_t{index} * probe_count_ + i];
-      last.traced = false;
-      const double fade = gain_before > 0 ? gain / gain_before : 0;
-      Map(last.world.force) *= fade;
-      Map(last.world.torque) *= fade;
-    }
-    Contact& contact = contacts_[size_t{index} * probe_count_ + i];
-    if (!probes[i].valid) {
-      contact = Contact{};
-      continue;
-    }
-    forces_[i] += ConstMap(contact.world.force);
-    torques_[i] += ConstMap(contact.world.torque);
-    bookContact(model, contact, i);
-  }
+  return trouble;
+}
+
+/// The last good force, a part of it: what a model in trouble is still felt by.
+void Core::fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP_RT {
+  Contact& last = contacts_[size_t{index} * probe_count_ + probe];
+  last.traced = false;
+  Map(last.world.force) *= part;
+  Map(last.world.torque) *= part;
 }
 
 /// What a healthy answer may still break: the time it was given, and the stiffness that was claimed for it.

@@ -114,6 +114,9 @@ class Core {
   void findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT;
   void stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
   void fillProbe(const ModelState& model, const Probe& probe, uint32_t index, double t) noexcept HSP_RT;
+  void callShape(ModelState& model, uint32_t index, double dt, hsp_pose& pose) noexcept HSP_RT;
+  Trouble judge(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT;
+  void fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP_RT;
   Trouble holdToClaims(ModelState& model, uint32_t index) noexcept HSP_RT;
   bool takePose(ModelState& model, const hsp_pose& pose) noexcept HSP_RT;
   void bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT;
