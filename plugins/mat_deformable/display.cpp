@@ -6,38 +6,42 @@ namespace {
 constexpr int kAttempts = 100;  ///< a set is written in microseconds, 60 times a second
 }
 
-void Displaced::publish(const medial::Deformation& body) noexcept HSP_RT {
+void Displaced::publish(const medial::Nodes& body) noexcept HSP_RT {
   const uint32_t version = version_.load(std::memory_order_relaxed);
   version_.store(version + 1, std::memory_order_relaxed);
   std::atomic_thread_fence(std::memory_order_release);
-  for (std::size_t i = 0; i < body.controlPoints(); ++i)
+  for (std::size_t i = 0; i < body.count(); ++i)
     for (std::size_t k = 0; k < 4; ++k)
       values_[4 * i + k].store(static_cast<float>(body.displacement(i)[static_cast<Eigen::Index>(k)]),
                                std::memory_order_relaxed);
+  values_.back().store(static_cast<float>(body.bulge()), std::memory_order_relaxed);
   version_.store(version + 2, std::memory_order_release);
 }
 
-void Displaced::read(medial::Displacements& out) const {
+float Displaced::read(medial::Displacements& out) const {
   out.resize(values_.size() / 4);
+  float bulge = 0;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     const uint32_t before = version_.load(std::memory_order_acquire);
     for (std::size_t i = 0; i < out.size(); ++i)
       for (std::size_t k = 0; k < 4; ++k)
         out[i][static_cast<Eigen::Index>(k)] = values_[4 * i + k].load(std::memory_order_relaxed);
+    bulge = values_.back().load(std::memory_order_relaxed);
     std::atomic_thread_fence(std::memory_order_acquire);
-    if (before % 2 == 0 && version_.load(std::memory_order_relaxed) == before) return;
+    if (before % 2 == 0 && version_.load(std::memory_order_relaxed) == before) break;
   }
+  return bulge;
 }
 
-void Display::show(const medial::Skeleton& skeleton, const Displaced& displaced, double chord_error, hsp_mesh& out) {
+void Display::show(const SoftBody& body, const Displaced& displaced, double chord_error, hsp_mesh& out) {
   if (!contour_ || chord_error != chord_error_) {
-    contour_ = std::make_unique<medial::Contour>(skeleton, chord_error);
+    contour_ = body.contour(chord_error);
     chord_error_ = chord_error;
   }
-  displaced.read(moved_);
+  const float bulge = displaced.read(moved_);
   xyz_.resize(3 * contour_->vertexCount());
   contour_->write([this](std::size_t i) -> const Eigen::Vector4f& { return moved_[i]; }, xyz_.data(),
-                  contour_->vertexCount());
+                  contour_->vertexCount(), bulge);
   normals_ = contour_->normalsOf(xyz_);
   out.vertex_count = static_cast<uint32_t>(contour_->vertexCount());
   out.triangle_count = static_cast<uint32_t>(contour_->indices().size() / 3);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string_view>
+#include <utility>
 
 #include "medial_file.hpp"
 
@@ -13,12 +14,10 @@ namespace {
 using Eigen::Vector3d;
 using medial::SkeletonFoot;
 
-constexpr double kNewPlace = 0.25;     ///< a probe that moved by this share of a cell is looked for all over the body
-constexpr double kWithinReach = 0.02;  ///< [m] farther bodies wait for the search of the simulation side
-constexpr double kOtherFoot = 0.02;    ///< difference of parameters from which an offered foot is another one
 constexpr double kShowPeriod = 1.0 / 60;  ///< [s] between two sets of displacements for drawing
 constexpr double kFinestMesh = 1e-6;      ///< [m] finer meshes are for files, not for drawing
 constexpr double kGapFactor = 1.5;        ///< so many ticks without a step: the body was left alone meanwhile
+constexpr double kHullError = 0.005;      ///< of the greatest radius: chord error of the contour whose volume is kept
 
 }  // namespace
 
@@ -30,14 +29,15 @@ medial::BodyOptions MatDeformable::bodyOptions() const {
   options.damping_scale = damping_scale_;
   options.deformation.split = split_;
   options.deformation.influence = {static_cast<int>(influence_[0]), static_cast<int>(influence_[1])};
+  options.deformation.rings = rings_;
   options.deformation.dynamics = dynamics_ == 1;
   return options;
 }
 
 void MatDeformable::activate(const hsp_activation& activation, hsp_report& report) {
-  const medial::BodyData data = readMedialFile(geometry_);
+  MedialFile file = readMedialFile(geometry_, {stiffness_, damping_, mass_});
   try {
-    body_ = std::make_unique<medial::Body>(data, bodyOptions());
+    body_ = file.grid ? makeSoftBody(*file.grid, bodyOptions()) : makeSoftBody(*file.mesh, bodyOptions());
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(geometry_ + ": medial: " + e.what());
   }
@@ -48,46 +48,45 @@ void MatDeformable::activate(const hsp_activation& activation, hsp_report& repor
   last_time_ns_ = 0;
   stored_ = since_shown_ = 0;
   shown_at_rest_ = true;
-  displaced_ = std::make_unique<Displaced>(body_->deformation().controlPoints());
+  displaced_ = std::make_unique<Displaced>(body_->nodes().count());
   display_ = Display{};
   contour_.reset();
   if (display_tolerance_ > 0) {
-    contour_ = std::make_unique<medial::Contour>(body_->skeleton(), std::max(display_tolerance_, kFinestMesh));
+    contour_ = body_->contour(std::max(display_tolerance_, kFinestMesh));
     report.viz_vertices = static_cast<uint32_t>(contour_->vertexCount());
   }
-  const auto positive = [](double x) { return x > 0; };
-  const bool swings = dynamics_ == 1 && std::any_of(data.mass.begin(), data.mass.end(), positive);
-  const bool damps = std::any_of(data.damping.begin(), data.damping.end(), positive);
-  if (swings || damps || viscosity_ > 0) report.flags |= HSP_R_VELOCITY;
+  volume_keeper_.reset();
+  hull_.reset();
+  std::size_t volume_bytes = 0;
+  if (volume_ == 1) {
+    hull_ = body_->contour(std::max(kHullError * body_->greatestRadius(), kFinestMesh));
+    volume_keeper_.emplace(*hull_, body_->greatestRadius());
+    volume_bytes = hull_->bytes() + volume_keeper_->bytes();
+  }
+  const std::vector<unsigned char> loaded = std::exchange(loaded_, {});
+  if (!loaded.empty() && !restoreState(loaded, body_->nodes()))
+    throw std::invalid_argument(geometry_ + ": the state that was loaded is of another body");
+  if (file.swings || file.damps || viscosity_ > 0) report.flags |= HSP_R_VELOCITY;
   report.max_stiffness = body_->greatestStiffness();
-  report.size_m = body_->skeleton().bounds().diagonal().norm();
-  report.locked_bytes = body_->bytes() + displaced_->bytes() + probes * sizeof(Track) + sizeof *this;
+  report.size_m = body_->bounds().diagonal().norm();
+  report.locked_bytes = body_->bytes() + displaced_->bytes() + volume_bytes + probes * sizeof(Track) + sizeof *this;
   describe();
 }
 
 /// What a person should know of a body before they touch it.
 void MatDeformable::describe() const {
   if (host() == nullptr || host()->log == nullptr) return;
-  const medial::MonotonicityReport check = body_->checkMonotonicity();
-  char text[512];
-  if (check.holds()) {
-    std::snprintf(text, sizeof text,
-                  "%zu control points, asleep until touched; shear springs: force grows with every depth (least slope "
-                  "%.0f %% of the normal spring's)",
-                  body_->deformation().controlPoints(), 100 * check.slope);
-  } else {
-    std::snprintf(text, sizeof text,
-                  "%s: near u = %.3g, v = %.3g the shear springs may pull inward: rest length over least length is "
-                  "%.3g, expected below %.3g; use a smaller shear_offset, or 0",
-                  geometry_.c_str(), check.u, check.v, check.ratio, check.limit);
-  }
-  host()->log(host(), check.holds() ? HSP_LOG_INFO : HSP_LOG_WARNING, text);
+  const Description description = body_->describe(geometry_);
+  host()->log(host(), description.warning ? HSP_LOG_WARNING : HSP_LOG_INFO, description.text.c_str());
 }
 
 void MatDeformable::deactivate() {
+  if (body_) kept_ = stateOf(body_->nodes());
   tracks_.clear();
   display_ = Display{};
   contour_.reset();
+  volume_keeper_.reset();
+  hull_.reset();
   displaced_.reset();
   body_.reset();
 }
@@ -96,9 +95,11 @@ void MatDeformable::reset() noexcept HSP_RT {
   for (Track& track : tracks_) {
     track.known = track.offered = false;
     track.side = 0;
+    track.pushed.setZero();
     track.friction.reset();
   }
-  body_->deformation().reset();
+  body_->nodes().reset();
+  if (volume_keeper_) volume_keeper_->reset();
   stored_ = 0;
   shown_at_rest_ = false;
 }
@@ -114,7 +115,7 @@ double MatDeformable::elapsed(const hsp_step& step) noexcept HSP_RT {
 }
 
 hsp_status MatDeformable::step(const hsp_step& step) noexcept HSP_RT {
-  body_->deformation().advance(elapsed(step));
+  body_->nodes().advance(elapsed(step));
   presses_.clear();
   stored_ = 0;
   hsp_status worst = HSP_OK;
@@ -123,17 +124,18 @@ hsp_status MatDeformable::step(const hsp_step& step) noexcept HSP_RT {
                                     *HSP_AT(hsp_contact, step.out, step.out_stride, i));
     if (status < 0 || (status > 0 && worst == HSP_OK)) worst = worst < 0 ? worst : status;
   }
-  body_->deformation().press(presses_);
+  body_->yield(presses_);
+  if (volume_keeper_) volume_keeper_->step(body_->nodes());
   show(step);
   return worst;
 }
 
 /// Leaves displacements for drawing 60 times a second while the body moves, and once when it has come to rest.
 void MatDeformable::show(const hsp_step& step) noexcept HSP_RT {
-  const medial::Deformation& moved = body_->deformation();
+  const medial::Nodes& moved = body_->nodes();
   if (contour_ && step.viz_xyz != nullptr)
     contour_->write([&moved](std::size_t i) -> Eigen::Vector4f { return moved.displacement(i).cast<float>(); },
-                    step.viz_xyz, step.viz_capacity);
+                    step.viz_xyz, step.viz_capacity, static_cast<float>(moved.bulge()));
   since_shown_ += step.dt_s;
   const bool at_rest = moved.awake() == 0;
   if (since_shown_ < kShowPeriod || (at_rest && shown_at_rest_)) return;
@@ -145,62 +147,27 @@ void MatDeformable::show(const hsp_step& step) noexcept HSP_RT {
 hsp_status MatDeformable::mesh(double chord_error, hsp_mesh& out) {
   if (!body_) return HSP_E_STATE;
   if (!(chord_error > 0)) return HSP_E_ARG;
-  display_.show(body_->skeleton(), *displaced_, std::max(chord_error, kFinestMesh), out);
+  display_.show(*body_, *displaced_, std::max(chord_error, kFinestMesh), out);
   return HSP_OK;
 }
 
-medial::NewtonOptions MatDeformable::newtonOptions(const hsp_step& step) const noexcept HSP_RT {
-  medial::NewtonOptions options;
-  options.envelope = envelope_ == 0 ? medial::Envelope::kExact : medial::Envelope::kFoot;
-  options.tolerance = step.tolerance_m > 0 ? step.tolerance_m : tolerance_;
-  if (step.max_iterations > 0)
-    options.max_evaluations = static_cast<int>(std::min<uint32_t>(step.max_iterations, options.max_evaluations));
+FindOptions MatDeformable::searchOptions() const noexcept {
+  FindOptions options;
+  options.newton.envelope = envelope_ == 0 ? medial::Envelope::kExact : medial::Envelope::kFoot;
+  options.newton.tolerance = tolerance_;
+  options.binary = search_ == 1;
+  options.halvings = depth_;
+  options.crease = crease_;
   return options;
 }
 
-/// Follows the foot; looks all over the body where following may have lost it.
-void MatDeformable::find(const Vector3d& p, uint32_t flags, const medial::NewtonOptions& options,
-                         Track& track) noexcept HSP_RT {
-  const medial::Skeleton& skeleton = body_->skeleton();
-  if (search_ == 1) {
-    track.foot = skeleton.bisect(p, options.envelope, depth_);
-  } else {
-    const bool jumped = (flags & HSP_IN_JUMP) != 0;
-    if (!track.known && track.offered && !jumped) {  // the search that started it has looked all over the body
-      track.foot.u = track.offered_u;
-      track.foot.v = track.offered_v;
-      track.known = true;
-      track.last = p;
-    }
-    const bool far = (p - track.last).squaredNorm() > std::pow(kNewPlace * skeleton.spacing(), 2);
-    const bool lost = !track.known || far || jumped;
-    const bool matters = skeleton.leastDistance(p) < kWithinReach;
-    if (!lost || !matters) track.foot = skeleton.nearest(p, track.foot.u, track.foot.v, options);
-    if (matters && (lost || !track.foot.converged)) {
-      track.foot = skeleton.search(p, options);
-    } else if (track.offered &&
-               std::fabs(track.offered_u - track.foot.u) + std::fabs(track.offered_v - track.foot.v) > kOtherFoot) {
-      const SkeletonFoot other = skeleton.nearest(p, track.offered_u, track.offered_v, options);
-      if (other.depth > track.foot.depth) track.foot = other;
-    }
-  }
-  track.offered = false;
-  track.known = true;
-  track.last = p;
-}
-
-MatDeformable::Felt MatDeformable::felt(Track& track) noexcept HSP_RT {
-  const SkeletonFoot& foot = track.foot;
-  const double cosine = foot.normal.dot(foot.across);
-  const int side = cosine < 0 ? -1 : 1;
-  if (!(foot.depth > 0)) {
-    track.side = 0;
-  } else if (track.side == 0 || foot.rim || foot.across.isZero(0)) {
-    track.side = side;  // round the rim it is free to go
-  } else if (side != track.side) {
-    return {foot.normal - 2 * cosine * foot.across, 2 * foot.radius - foot.depth};
-  }
-  return {foot.normal, foot.depth};
+FindOptions MatDeformable::findOptions(const hsp_step& step) const noexcept HSP_RT {
+  FindOptions options = searchOptions();
+  if (step.tolerance_m > 0) options.newton.tolerance = step.tolerance_m;
+  if (step.max_iterations > 0)
+    options.newton.max_evaluations =
+        static_cast<int>(std::min<uint32_t>(step.max_iterations, options.newton.max_evaluations));
+  return options;
 }
 
 hsp_status MatDeformable::touch(const hsp_probe& probe, const hsp_step& step, uint32_t index,
@@ -213,19 +180,27 @@ hsp_status MatDeformable::touch(const hsp_probe& probe, const hsp_step& step, ui
   }
   const Vector3d p(probe.position);
   if (!p.allFinite()) return HSP_E_NUMERIC;
-  if ((probe.flags & HSP_IN_JUMP) != 0) track.side = 0;
-  find(p, probe.flags, newtonOptions(step), track);
+  if ((probe.flags & HSP_IN_JUMP) != 0) {
+    track.side = 0;
+    track.pushed.setZero();
+  }
+  body_->find(p, probe.flags, findOptions(step), track);
+  const Vector3d moved = track.known ? Vector3d(p - track.last) : Vector3d(Vector3d::Zero());
+  track.offered = false;
+  track.known = true;
+  track.last = p;
   const SkeletonFoot& foot = track.foot;
   Eigen::Map<Vector3d>(contact.point) = foot.center + foot.radius * foot.normal;
   Eigen::Map<Vector3d>(contact.normal) = foot.normal;
   contact.depth_m = foot.depth;
+  contact.feature = foot.element;
   contact.param[0] = foot.u;
   contact.param[1] = foot.v;
   contact.residual_m = foot.residual;
   contact.iterations = static_cast<uint32_t>(foot.evaluations);
   contact.flags = HSP_OUT_TRACED;
   if (foot.rim) contact.flags |= HSP_OUT_EDGE;
-  const Felt surface = felt(track);
+  const Felt surface = body_->felt(p, moved, track);
   if (surface.depth > 0) {
     contact.flags |= HSP_OUT_CONTACT;
     push(probe, surface, track, contact);
@@ -238,7 +213,7 @@ hsp_status MatDeformable::touch(const hsp_probe& probe, const hsp_step& step, ui
 void MatDeformable::push(const hsp_probe& probe, const Felt& felt, Track& track, hsp_contact& contact) noexcept HSP_RT {
   const Vector3d p(probe.position), velocity(probe.velocity);
   const double closing = -velocity.dot(felt.normal);
-  const medial::BodyForce answer = body_->press(p, track.foot, felt.normal, felt.depth, closing);
+  const medial::BodyForce answer = body_->press(p, track.foot, felt, closing);
   const contact::FrictionLaw law{std::max(friction_static_, friction_dynamic_), friction_dynamic_, answer.stiffness,
                                  viscosity_};
   const Vector3d surface = p + felt.depth * felt.normal;
@@ -246,15 +221,16 @@ void MatDeformable::push(const hsp_probe& probe, const Felt& felt, Track& track,
   Eigen::Map<Vector3d>(contact.force) = answer.force + rub;
   contact.stiffness = answer.stiffness;
   stored_ += answer.energy + track.friction.energy(law);
-  presses_.push_back({track.foot.u, track.foot.v, felt.normal, felt.depth, closing});  // reserved: one a probe
+  presses_.push_back(  // reserved: one a probe
+      {track.foot.u, track.foot.v, felt.normal, felt.depth, closing, track.foot.element});
 }
 
 int64_t MatDeformable::nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const {
   const Vector3d p(p_model);
-  if (!p.allFinite() || body_->skeleton().leastDistance(p) > radius) return 0;
-  medial::NewtonOptions options;
-  options.envelope = envelope_ == 0 ? medial::Envelope::kExact : medial::Envelope::kFoot;
-  const SkeletonFoot foot = body_->skeleton().search(p, options);
+  if (!p.allFinite() || body_->bounds().exteriorDistance(p) > radius) return 0;
+  FindOptions options = searchOptions();
+  options.newton.tolerance = medial::NewtonOptions{}.tolerance;
+  const SkeletonFoot foot = body_->search(p, options);
   const double distance = std::max(0.0, -foot.depth);
   if (distance > radius) return 0;
   if (cap > 0) out[0] = {0, 0, {foot.u, foot.v}, distance};
@@ -266,14 +242,29 @@ hsp_status MatDeformable::start(const hsp_near& near) noexcept HSP_RT {
   Track& track = tracks_[near.probe];
   if (!track.active) track.known = false;
   track.active = track.offered = true;
-  track.offered_u = near.param[0];
-  track.offered_v = near.param[1];
+  track.offer = near;
   return HSP_OK;
 }
 
 hsp_status MatDeformable::stop(uint32_t probe) noexcept HSP_RT {
   if (probe >= tracks_.size()) return HSP_E_ARG;
   tracks_[probe] = Track{};
+  return HSP_OK;
+}
+
+int64_t MatDeformable::save(void* buffer, uint64_t capacity) const {
+  const std::vector<unsigned char> state = body_ ? stateOf(body_->nodes()) : kept_;
+  if (buffer != nullptr && state.size() <= capacity)
+    std::copy(state.begin(), state.end(), static_cast<unsigned char*>(buffer));
+  return static_cast<int64_t>(state.size());
+}
+
+/// What the bytes say is looked at when the body that they are of is known.
+hsp_status MatDeformable::load(const void* buffer, uint64_t length) {
+  if (body_) return HSP_E_STATE;
+  const auto* bytes = static_cast<const unsigned char*>(buffer);
+  if (!isState({bytes, static_cast<std::size_t>(length)})) return HSP_E_ARG;
+  loaded_.assign(bytes, bytes + length);
   return HSP_OK;
 }
 
@@ -299,8 +290,8 @@ const void* MatDeformable::extension(const char* name) {
                            [](hsp_shape* shape, double min[3], double max[3]) -> hsp_status {
                              const auto& body = reinterpret_cast<MatDeformable*>(shape)->body_;
                              if (!body) return HSP_E_STATE;
-                             Eigen::Map<Vector3d>(min, 3) = body->skeleton().bounds().min();
-                             Eigen::Map<Vector3d>(max, 3) = body->skeleton().bounds().max();
+                             Eigen::Map<Vector3d>(min, 3) = body->bounds().min();
+                             Eigen::Map<Vector3d>(max, 3) = body->bounds().max();
                              return HSP_OK;
                            }};
     return &geometry_extension_;
@@ -308,9 +299,19 @@ const void* MatDeformable::extension(const char* name) {
   if (wanted == HSP_EXT_ENERGY) {
     energy_extension_ = {sizeof(hsp_ext_energy), 0, [](hsp_shape* shape) HSP_RT -> double {
                            const MatDeformable& body = *reinterpret_cast<MatDeformable*>(shape);
-                           return body.stored_ + body.body_->deformation().energy();
+                           return body.stored_ + body.body_->nodes().energy();
                          }};
     return &energy_extension_;
+  }
+  if (wanted == HSP_EXT_STATE) {
+    state_extension_ = {sizeof(hsp_ext_state), 0,
+                        [](hsp_shape* shape, void* buffer, uint64_t capacity) -> int64_t {
+                          return reinterpret_cast<MatDeformable*>(shape)->save(buffer, capacity);
+                        },
+                        [](hsp_shape* shape, const void* buffer, uint64_t length) -> hsp_status {
+                          return reinterpret_cast<MatDeformable*>(shape)->load(buffer, length);
+                        }};
+    return &state_extension_;
   }
   return nullptr;
 }

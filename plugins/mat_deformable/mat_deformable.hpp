@@ -1,14 +1,16 @@
-/// A soft body from its medial axis: a grid of skeleton points with radii and material (Corso et al. 2002).
+/// A soft body from its medial axis: a grid of skeleton points (Corso et al. 2002) or a medial mesh of cones and slabs.
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "display.hpp"
 #include "hapticd/shape.hpp"
-#include "kernels/contact/friction.hpp"
-#include "kernels/medial/body.hpp"
+#include "kernels/medial/volume.hpp"
+#include "soft_body.hpp"
+#include "state.hpp"
 
 namespace hapticd {
 
@@ -24,8 +26,8 @@ class MatDeformable final : public Shape {
     using T = MatDeformable;
     using F = Fields<T>;
     return std::array{
-        F::path("geometry", &T::geometry_, "model file (format hapticd-model/1) with medial, YAML or JSON",
-                HSP_P_REQUIRED),
+        F::path("geometry", &T::geometry_,
+                "model file (format hapticd-model/1) with medial, YAML or JSON; or a medial mesh, .ma", HSP_P_REQUIRED),
         F::choice("search", &T::search_, kSearchNames, 0,
                   "newton: safeguarded Newton from the last foot; binary: nested halving, the paper's way",
                   HSP_P_ACCURACY),
@@ -52,6 +54,19 @@ class MatDeformable final : public Shape {
                 "mu_s: force along the surface over normal force that a stuck probe must overcome"),
         F::real("friction_dynamic", &T::friction_dynamic_, "", 0, 10, 0, "mu_d: of a sliding probe"),
         F::real("viscosity", &T::viscosity_, "N s/m", 0, 100, 0, "drag along the surface in contact"),
+        F::choice("volume", &T::volume_, kSwitchNames, 0,
+                  "on: what a press pushes in comes out all round, so that the volume stays", HSP_P_ACCURACY),
+        F::real("stiffness", &T::stiffness_, "N/m", 0, 1e6, 300, "of a medial mesh whose file has none (.ma)"),
+        F::real("damping", &T::damping_, "N s/m", 0, 1e6, 0.5, "likewise"),
+        F::real("mass", &T::mass_, "kg", 0, 1e6, 0.01, "of a vertex, likewise"),
+        F::integer("rings", &T::rings_, "", 0, 8, 2,
+                   "of a medial mesh: rings of neighbours that a contact moves with the cone or slab it is on",
+                   HSP_P_ACCURACY),
+        F::real(
+            "crease", &T::crease_, "m", 0, 1, 1e-3,
+            "of a medial mesh: width over which the force turns from one part to another in the crotch of a branch; "
+            "0: at once",
+            HSP_P_LIVE),
         F::real("display_tolerance", &T::display_tolerance_, "m", 0, 1e-2, 0,
                 "chord error of the vertices that a step writes for drawing; 0: none, drawing asks for its own",
                 HSP_P_ACCURACY)};
@@ -69,34 +84,19 @@ class MatDeformable final : public Shape {
   static constexpr const char* kEvaluationNames[] = {"fast", "small"};
   static constexpr const char* kSwitchNames[] = {"off", "on"};
 
-  /// One probe on the body.
-  struct Track {
-    medial::SkeletonFoot foot;
-    Eigen::Vector3d last{0, 0, 0};  ///< where the probe was
-    double offered_u = 0, offered_v = 0;
-    bool active = false, known = false, offered = false;
-    int side = 0;  ///< of the skeleton on which it entered; 0: it has not
-    contact::Friction friction;
-  };
-  /// The surface as the probe feels it: where it was pushed through the skeleton, still that of the side it came from.
-  struct Felt {
-    Eigen::Vector3d normal{0, 0, 1};
-    double depth = 0;
-  };
-
   medial::BodyOptions bodyOptions() const;
   void describe() const;
   double elapsed(const hsp_step& step) noexcept HSP_RT;
-  medial::NewtonOptions newtonOptions(const hsp_step& step) const noexcept HSP_RT;
+  FindOptions findOptions(const hsp_step& step) const noexcept HSP_RT;
+  FindOptions searchOptions() const noexcept;
   hsp_status touch(const hsp_probe& probe, const hsp_step& step, uint32_t index, hsp_contact& contact) noexcept HSP_RT;
-  void find(const Eigen::Vector3d& p, uint32_t flags, const medial::NewtonOptions& options,
-            Track& track) noexcept HSP_RT;
-  static Felt felt(Track& track) noexcept HSP_RT;
   void push(const hsp_probe& probe, const Felt& felt, Track& track, hsp_contact& contact) noexcept HSP_RT;
 
   int64_t nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const;
   hsp_status start(const hsp_near& near) noexcept HSP_RT;
   hsp_status stop(uint32_t probe) noexcept HSP_RT;
+  int64_t save(void* buffer, uint64_t capacity) const;
+  hsp_status load(const void* buffer, uint64_t length);
   void show(const hsp_step& step) noexcept HSP_RT;
   hsp_status mesh(double chord_error, hsp_mesh& out);
 
@@ -104,13 +104,18 @@ class MatDeformable final : public Shape {
   int search_ = 0, depth_ = 10, envelope_ = 0, degree_ = 3, evaluation_ = 0, dynamics_ = 1;
   double tolerance_ = 1e-8, split_ = 0.5, shear_offset_ = 0.05, damping_scale_ = 5e-3;
   double friction_static_ = 0, friction_dynamic_ = 0, viscosity_ = 0, display_tolerance_ = 0;
+  double stiffness_ = 300, damping_ = 0.5, mass_ = 0.01, crease_ = 1e-3;
+  int volume_ = 0, rings_ = 2;
   std::vector<double> influence_{4, 4};
 
-  std::unique_ptr<medial::Body> body_;
+  std::unique_ptr<SoftBody> body_;
   std::vector<Track> tracks_;           ///< one a probe
   std::vector<medial::Press> presses_;  ///< of this step, reserved for all probes
   std::unique_ptr<Displaced> displaced_;
-  std::unique_ptr<medial::Contour> contour_;  ///< written by the step, if display_tolerance asks for it
+  std::unique_ptr<medial::MovingMesh> contour_;  ///< written by the step, if display_tolerance asks for it
+  std::unique_ptr<medial::MovingMesh> hull_;     ///< whose volume is kept, if that was asked for
+  std::optional<medial::VolumeKeeper> volume_keeper_;
+  std::vector<unsigned char> kept_, loaded_;  ///< states: of the last deactivation; for the next activation
   Display display_;
   double since_shown_ = 0;  ///< [s]
   bool shown_at_rest_ = true;
@@ -119,6 +124,7 @@ class MatDeformable final : public Shape {
   hsp_ext_surfaces surfaces_extension_{};
   hsp_ext_geometry geometry_extension_{};
   hsp_ext_energy energy_extension_{};
+  hsp_ext_state state_extension_{};
 };
 
 }  // namespace hapticd

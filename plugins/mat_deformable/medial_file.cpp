@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "ma_file.hpp"
 #include "traced_shape/document.hpp"
 #include "traced_shape/model_file.hpp"
 
@@ -27,31 +28,102 @@ class Reader {
  public:
   explicit Reader(Problems& problems) : problems_(problems) {}
 
-  medial::BodyData read(const Json& root) {
-    medial::BodyData data;
-    if (!root.is_object()) {
-      problems_.add({}, "expected a mapping with format and medial");
-      return data;
-    }
+  void read(const Json& root, MedialFile& file) {
+    if (!root.is_object()) return problems_.add({}, "expected a mapping with format and medial");
     checkKeys(root, {}, {"format", "name", "credit", "surfaces", "edges", "medial"});
     if (const auto format = root.find("format"); format == root.end() || *format != "hapticd-model/1")
       problems_.add({PathStep{"format", 0}}, "expected hapticd-model/1");
     const Path at = below(Path{}, "medial");
     const auto medial = root.find("medial");
-    if (medial == root.end() || !medial->is_object()) {
-      problems_.add(at, "expected a mapping with points, radius and stiffness");
-      return data;
+    if (medial == root.end() || !medial->is_object())
+      return problems_.add(at, "expected a mapping with points, radius and stiffness, or vertices and stiffness");
+    if (medial->contains("vertices")) {
+      readMesh(*medial, at, file.mesh.emplace());
+    } else {
+      readGrid(*medial, at, file.grid.emplace());
     }
-    checkKeys(*medial, at, {"points", "radius", "stiffness", "damping", "mass"});
-    if (!readPoints(*medial, below(at, "points"), data.grid)) return data;
-    data.grid.radius = grid(*medial, at, "radius", data.grid, true);
-    data.stiffness = grid(*medial, at, "stiffness", data.grid, true);
-    data.damping = grid(*medial, at, "damping", data.grid, false);
-    data.mass = grid(*medial, at, "mass", data.grid, false);
-    return data;
   }
 
  private:
+  void readGrid(const Json& medial, const Path& at, medial::BodyData& data) {
+    checkKeys(medial, at, {"points", "radius", "stiffness", "damping", "mass"});
+    if (!readPoints(medial, below(at, "points"), data.grid)) return;
+    data.grid.radius = grid(medial, at, "radius", data.grid, true);
+    data.stiffness = grid(medial, at, "stiffness", data.grid, true);
+    data.damping = grid(medial, at, "damping", data.grid, false);
+    data.mass = grid(medial, at, "mass", data.grid, false);
+  }
+
+  void readMesh(const Json& medial, const Path& at, medial::MeshBodyData& data) {
+    checkKeys(medial, at, {"vertices", "edges", "triangles", "stiffness", "damping", "mass"});
+    const Json& vertices = medial["vertices"];
+    const Path place = below(at, "vertices");
+    if (!vertices.is_array() || vertices.empty() || vertices.size() > kMostPoints)
+      return problems_.add(place, "expected [x, y, z, radius] in m, one a vertex");
+    for (std::size_t i = 0; i < vertices.size() && !problems_.full(); ++i) {
+      if (!vertices[i].is_array() || vertices[i].size() != 4) {
+        problems_.add(below(place, i), "expected [x, y, z, radius] in m");
+        continue;
+      }
+      medial::Sphere sphere;
+      for (std::size_t k = 0; k < 3; ++k)
+        sphere.center[static_cast<Eigen::Index>(k)] = finite(vertices[i][k], below(below(place, i), k));
+      sphere.radius = value(vertices[i][3], below(below(place, i), 3));
+      data.mesh.vertices.push_back(sphere);
+    }
+    readCorners(medial, below(at, "edges"), "edges", vertices.size(), data.mesh.edges);
+    readCorners(medial, below(at, "triangles"), "triangles", vertices.size(), data.mesh.triangles);
+    data.stiffness = list(medial, at, "stiffness", vertices.size(), true);
+    data.damping = list(medial, at, "damping", vertices.size(), false);
+    data.mass = list(medial, at, "mass", vertices.size(), false);
+  }
+
+  template <std::size_t kCount>
+  void readCorners(const Json& medial, const Path& at, const char* key, std::size_t vertices,
+                   std::vector<std::array<int, kCount>>& out) {
+    const auto rows = medial.find(key);
+    if (rows == medial.end() || rows->is_null()) return;
+    const std::string expected =
+        "expected " + std::to_string(kCount) + " different vertices from 0 to " + std::to_string(vertices - 1);
+    if (!rows->is_array()) return problems_.add(at, "expected a list; " + expected);
+    for (std::size_t i = 0; i < rows->size() && !problems_.full(); ++i) {
+      const Json& row = (*rows)[i];
+      std::array<int, kCount> corners{};
+      bool good = row.is_array() && row.size() == kCount;
+      for (std::size_t k = 0; good && k < kCount; ++k) {
+        const double corner = row[k].is_number() ? row[k].get<double>() : -1;
+        good = corner >= 0 && corner < static_cast<double>(vertices) && corner == std::floor(corner);
+        if (good) corners[k] = static_cast<int>(corner);
+        for (std::size_t before = 0; good && before < k; ++before) good = corners[before] != corners[k];
+      }
+      if (!good) problems_.add(below(at, i), expected);
+      out.push_back(corners);
+    }
+  }
+
+  std::vector<double> list(const Json& medial, const Path& parent, const char* key, std::size_t total, bool required) {
+    const Path at = below(parent, key);
+    const auto json = medial.find(key);
+    if (json == medial.end() || json->is_null()) {
+      if (required) problems_.add(at, "missing, expected a number, or one for each vertex");
+      return {};
+    }
+    if (json->is_number()) return {value(*json, at)};
+    std::vector<double> all;
+    if (!json->is_array() || json->size() != total) {
+      problems_.add(at, "expected a number, or " + std::to_string(total) + " of them, one a vertex");
+      return all;
+    }
+    for (std::size_t i = 0; i < total && !problems_.full(); ++i) all.push_back(value((*json)[i], below(at, i)));
+    return all;
+  }
+
+  double finite(const Json& json, const Path& at) {
+    const double number = json.is_number() ? json.get<double>() : NAN;
+    if (!std::isfinite(number)) problems_.add(at, "expected a finite number");
+    return number;
+  }
+
   bool readPoints(const Json& medial, const Path& at, medial::SkeletonGrid& grid) {
     const auto rows = medial.find("points");
     const bool good = rows != medial.end() && rows->is_array() && !rows->empty() && (*rows)[0].is_array() &&
@@ -75,11 +147,8 @@ class Reader {
       problems_.add(at, "expected [x, y, z] in m");
       return p;
     }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double value = json[axis].is_number() ? json[axis].get<double>() : NAN;
-      if (!std::isfinite(value)) problems_.add(below(at, axis), "expected a finite number");
-      p[static_cast<Eigen::Index>(axis)] = value;
-    }
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      p[static_cast<Eigen::Index>(axis)] = finite(json[axis], below(at, axis));
     return p;
   }
 
@@ -133,13 +202,23 @@ class Reader {
 
 }  // namespace
 
-medial::BodyData readMedialFile(const std::string& path) {
+MedialFile readMedialFile(const std::string& path, const Material& material) {
   const std::string text = readModelText(path);
-  const Json root = parseDocument(text, path);
-  Problems problems(path, text);
-  medial::BodyData data = Reader(problems).read(root);
-  problems.throwIfAny();
-  return data;
+  MedialFile file;
+  if (path.ends_with(".ma")) {
+    file.mesh = medial::MeshBodyData{parseMa(text, path), {material.stiffness}, {material.damping}, {material.mass}};
+  } else {
+    const Json root = parseDocument(text, path);
+    Problems problems(path, text);
+    Reader(problems).read(root, file);
+    problems.throwIfAny();
+  }
+  const auto some = [](const std::vector<double>& values) {
+    return std::any_of(values.begin(), values.end(), [](double x) { return x > 0; });
+  };
+  file.swings = some(file.grid ? file.grid->mass : file.mesh->mass);
+  file.damps = some(file.grid ? file.grid->damping : file.mesh->damping);
+  return file;
 }
 
 }  // namespace hapticd

@@ -1,14 +1,29 @@
-/// Model files of soft bodies: the grid of a medial axis.
+/// Model files of soft bodies: the grid or the mesh of a medial axis.
 #pragma once
+#include <optional>
 #include <string>
 
-#include "kernels/medial/body.hpp"
+#include "kernels/medial/mesh_body.hpp"
 
 namespace hapticd {
 
-/// [main] Reads `medial` of a model file (format hapticd-model/1), YAML or JSON: points, radius and stiffness as grids
-/// of equal rows, damping and mass too where they are given. One number instead of a grid serves all points.
+/// What a file says of a body: a grid or a mesh.
+struct MedialFile {
+  std::optional<medial::BodyData> grid;
+  std::optional<medial::MeshBodyData> mesh;
+  bool swings = false, damps = false;  ///< some point has mass, some has damping
+};
+
+/// Material of all vertices where the file has none.
+struct Material {
+  double stiffness = 0, damping = 0, mass = 0;  ///< [N/m], [N s/m], [kg]
+};
+
+/// [main] Reads the body of a file: a medial mesh in the field's own format if its name ends in .ma (ma_file.hpp), else
+/// `medial` of a model file (format hapticd-model/1), YAML or JSON. That has either points, radius and stiffness as
+/// grids of equal rows, or vertices, edges and triangles; damping and mass too where they are given. One number serves
+/// all points.
 /// @throws ModelFileError with every problem found, a line each; whatever the bytes of the file.
-medial::BodyData readMedialFile(const std::string& path);
+MedialFile readMedialFile(const std::string& path, const Material& material);
 
 }  // namespace hapticd

@@ -42,6 +42,7 @@ Contour::Contour(const Skeleton& skeleton, double chord_error) : columns_(skelet
     buildSheet(skeleton, chord_error);
   }
   at_ = {};
+  lines_ = {};
 }
 
 /// Segments of one interval between points of the grid: its sagitta, sampled on both sides, falls with their square.
@@ -118,13 +119,16 @@ Contour::Place Contour::place(const Skeleton& skeleton, uint32_t i, uint32_t j) 
   return p;
 }
 
-uint32_t Contour::add(const Place& place, const Vector3d& normal) {
-  vertices_.push_back({place.line, place.center.cast<float>(), normal.cast<float>(), static_cast<float>(place.radius)});
-  return static_cast<uint32_t>(vertices_.size() - 1);
-}
-
-void Contour::triangle(uint32_t a, uint32_t b, uint32_t c) {
-  if (a != b && b != c && c != a) indices_.insert(indices_.end(), {a, b, c});
+uint32_t Contour::addAt(const Place& place, const Vector3d& normal) {
+  const Influence &a = lines_[0][place.line[0]], &b = lines_[1][place.line[1]];
+  std::array<Share, (kMaxSkeletonDegree + 1) * (kMaxSkeletonDegree + 1)> shares;
+  std::size_t count = 0;
+  for (int r = 0; r < a.count; ++r)
+    for (int c = 0; c < b.count; ++c)
+      shares[count++] = {
+          static_cast<uint32_t>((a.first + r) * columns_ + b.first + c),
+          static_cast<float>(a.basis[static_cast<std::size_t>(r)] * b.basis[static_cast<std::size_t>(c)])};
+  return add(place.center, normal, place.radius, {shares.data(), count});
 }
 
 /// Triangles between two rows of equal length; the outside is on the left going along `low` with `high` ahead.
@@ -143,7 +147,7 @@ void Contour::buildSheet(const Skeleton& skeleton, double chord_error) {
     for (uint32_t i = 0; i < rows; ++i) {
       for (uint32_t j = 0; j < columns; ++j) {
         const Place p = place(skeleton, i, j);
-        faces[face].push_back(add(p, side * std::sqrt(1 - p.slope.squaredNorm()) * p.across - p.slope));
+        faces[face].push_back(addAt(p, side * std::sqrt(1 - p.slope.squaredNorm()) * p.across - p.slope));
       }
     }
     const auto at = [&](uint32_t i, uint32_t j) { return faces[face][i * columns + j]; };
@@ -183,10 +187,10 @@ void Contour::closeRim(const Skeleton& skeleton, const std::array<std::vector<ui
   std::vector<std::vector<uint32_t>> arcs;  // one a place of the loop, several at a corner
   const auto addArc = [&](const Corner& at, const Place& p, const Vector3d& outward) {
     const std::size_t face = at.i * columns + at.j;
-    const Vector3d top = vertices_[faces[0][face]].normal.cast<double>();
-    const Vector3d bottom = vertices_[faces[1][face]].normal.cast<double>();
+    const Vector3d top = normal(faces[0][face]);
+    const Vector3d bottom = normal(faces[1][face]);
     std::vector<uint32_t> arc{faces[0][face]};
-    for (int k = 1; k < steps; ++k) arc.push_back(add(p, bend(top, outward, bottom, double(k) / steps)));
+    for (int k = 1; k < steps; ++k) arc.push_back(addAt(p, bend(top, outward, bottom, double(k) / steps)));
     arc.push_back(faces[1][face]);
     arcs.push_back(std::move(arc));
   };
@@ -214,14 +218,14 @@ void Contour::buildTube(const Skeleton& skeleton, double chord_error) {
   const auto addRing = [&](const Place& p, const Vector3d& axis, double lean) {  // lean: share of the normal along axis
     const Vector3d other = axis.cross(side);
     if (std::fabs(lean) == 1) {  // a pole
-      rings.emplace_back(static_cast<std::size_t>(around) + 1, add(p, lean * axis));
+      rings.emplace_back(static_cast<std::size_t>(around) + 1, addAt(p, lean * axis));
       return;
     }
     std::vector<uint32_t> ring;
     for (int k = 0; k < around; ++k) {
       const double angle = 2 * M_PI * k / around;
       ring.push_back(
-          add(p, std::sqrt(1 - lean * lean) * (std::cos(angle) * side + std::sin(angle) * other) + lean * axis));
+          addAt(p, std::sqrt(1 - lean * lean) * (std::cos(angle) * side + std::sin(angle) * other) + lean * axis));
     }
     ring.push_back(ring.front());
     rings.push_back(std::move(ring));
@@ -241,28 +245,6 @@ void Contour::buildTube(const Skeleton& skeleton, double chord_error) {
     for (int k = steps - 1; j + 1 == count && k >= 0; --k) addRing(p, axis, cap(1, k));
   }
   for (std::size_t k = 0; k + 1 < rings.size(); ++k) strip(rings[k], rings[k + 1]);
-}
-
-std::vector<float> Contour::atRest() const {
-  std::vector<float> xyz(3 * vertices_.size());
-  write([](std::size_t) { return Eigen::Vector4f::Zero(); }, xyz.data(), vertices_.size());
-  return xyz;
-}
-
-std::vector<float> Contour::normalsOf(const std::vector<float>& xyz) const {
-  std::vector<float> normals(xyz.size(), 0);
-  const auto at = [&xyz](uint32_t i) { return Eigen::Map<const Eigen::Vector3f>(xyz.data() + 3 * std::size_t{i}); };
-  for (std::size_t t = 0; t + 2 < indices_.size(); t += 3) {
-    const Eigen::Vector3f area = (at(indices_[t + 1]) - at(indices_[t])).cross(at(indices_[t + 2]) - at(indices_[t]));
-    for (std::size_t k = 0; k < 3; ++k)
-      Eigen::Map<Eigen::Vector3f>(normals.data() + 3 * std::size_t{indices_[t + k]}) += area;
-  }
-  for (std::size_t i = 0; i < vertices_.size(); ++i) {
-    Eigen::Map<Eigen::Vector3f> normal(normals.data() + 3 * i);
-    const float length = normal.norm();
-    normal = length > 0 ? Eigen::Vector3f(normal / length) : vertices_[i].normal;
-  }
-  return normals;
 }
 
 }  // namespace hapticd::medial

@@ -1,9 +1,6 @@
 #include "kernels/medial/deformation.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include "kernels/spline/basis.hpp"
 
@@ -11,51 +8,6 @@ namespace hapticd::medial {
 namespace {
 
 using Eigen::Vector4d;
-
-constexpr double kAsleep = 1e-7;         ///< [m] amplitude below which no one sees or feels a control point move
-constexpr double kLargest = 1.0;         ///< [m] amplitude from which settle times count
-constexpr double kLongestSettle = 3600;  ///< [s] an undamped body swings for ever: this is for ever
-constexpr int kSweeps = 8;               ///< over several contacts; each brings the next nearer to its probe
-constexpr int kMaxContacts = 16;
-/// The step of an undamped oscillator is a rotation: rounding may turn it into a growing spiral, by at most a few units
-/// in the last place a tick. So much is taken off.
-constexpr double kRoundingLoss = 4e-15;
-constexpr double kSameStep = 1e-9;  ///< relative difference of two dt for which one prepared step serves
-
-void requireMaterial(const Oscillator& o, std::size_t i) {
-  const auto bad = [](double x) { return !(x >= 0) || !std::isfinite(x); };
-  if (bad(o.mass) || bad(o.damping) || bad(o.stiffness))
-    throw std::invalid_argument("material of control point " + std::to_string(i) + ": mass " + std::to_string(o.mass) +
-                                ", damping " + std::to_string(o.damping) + ", stiffness " +
-                                std::to_string(o.stiffness) + ", expected finite numbers of at least 0");
-}
-
-/// A control point without mass creeps, one without mass and damping or without a spring returns at once.
-OscillatorStep stepOf(const Oscillator& o, double dt) noexcept {
-  if (!(o.stiffness > 0) || (!(o.mass > 0) && !(o.damping > 0))) return {0, 0, 0, 0};
-  if (!(o.mass > 0)) return {std::exp(-o.stiffness / o.damping * dt), 0, 0, 0};
-  OscillatorStep step = oscillatorStep(o, dt);
-  step.xx *= 1 - kRoundingLoss;
-  step.xv *= 1 - kRoundingLoss;
-  step.vx *= 1 - kRoundingLoss;
-  step.vv *= 1 - kRoundingLoss;
-  return step;
-}
-
-/// Time for the slowest part of a motion of kLargest to fall below kAsleep.
-double settleTimeOf(const Oscillator& o) noexcept {
-  if (!(o.stiffness > 0)) return 0;
-  const double half = 0.5 * o.damping, discriminant = half * half - o.mass * o.stiffness;
-  const double rate = !(o.mass > 0)       ? (o.damping > 0 ? o.stiffness / o.damping : HUGE_VAL)
-                      : discriminant <= 0 ? half / o.mass
-                                          : o.stiffness / (half + std::sqrt(discriminant));
-  const double time = std::log(kLargest / kAsleep) / rate;
-  return time < kLongestSettle ? time : kLongestSettle;
-}
-
-bool same(const Oscillator& a, const Oscillator& b) {
-  return a.mass == b.mass && a.damping == b.damping && a.stiffness == b.stiffness;
-}
 
 Influence whole(std::span<const double> basis, int span) noexcept {
   Influence all;
@@ -65,161 +17,62 @@ Influence whole(std::span<const double> basis, int span) noexcept {
   return all;
 }
 
+std::size_t total(const ControlGrid& grid) {
+  return static_cast<std::size_t>(grid.count[0]) * static_cast<std::size_t>(grid.count[1]);
+}
+
+/// The control points of an influence each way, with the products of their weights.
+template <class Weights>
+void list(const std::array<Influence, 2>& influence, int columns, Weights weights, auto& out) noexcept {
+  out.count = 0;
+  for (int i = 0; i < influence[0].count; ++i)
+    for (int j = 0; j < influence[1].count; ++j)
+      out.parts[out.count++] = {
+          static_cast<uint32_t>((influence[0].first + i) * columns + influence[1].first + j),
+          (influence[0].*weights)[static_cast<std::size_t>(i)] * (influence[1].*weights)[static_cast<std::size_t>(j)]};
+}
+
 }  // namespace
 
-Deformation::Deformation(const Skeleton& skeleton, std::vector<Oscillator> material, const DeformationOptions& options)
-    : skeleton_(&skeleton), options_(options) {
-  const ControlGrid& grid = skeleton.control();
-  const auto total = static_cast<std::size_t>(grid.count[0]) * static_cast<std::size_t>(grid.count[1]);
-  if (material.size() != 1 && material.size() != total)
-    throw std::invalid_argument("deformation: " + std::to_string(material.size()) + " materials, expected 1 or " +
-                                std::to_string(total));
-  nodes_.resize(total);
-  is_awake_.assign(total, 0);
-  awake_.reserve(total);
-  std::vector<uint16_t> which;
-  for (std::size_t i = 0; i < material.size(); ++i) {
-    requireMaterial(material[i], i);
-    auto known = std::find_if(materials_.begin(), materials_.end(),
-                              [&](const Material& m) { return same(m.oscillator, material[i]); });
-    if (known == materials_.end()) {
-      if (materials_.size() > UINT16_MAX) throw std::invalid_argument("deformation: more than 65536 materials");
-      Material added;
-      added.oscillator = material[i];
-      if (material[i].stiffness > 0) added.time_scale2 = material[i].mass / material[i].stiffness;
-      settle_ = std::max(settle_, settleTimeOf(material[i]));
-      known = materials_.insert(materials_.end(), added);
-    }
-    which.push_back(static_cast<uint16_t>(known - materials_.begin()));
-  }
-  materials_.shrink_to_fit();
-  if (materials_.size() > 1) which_ = std::move(which);
-}
-
-void Deformation::prepare(double dt) noexcept {
-  if (std::fabs(dt - prepared_dt_) <= kSameStep * dt) return;
-  prepared_dt_ = dt;
-  for (Material& material : materials_) material.step = stepOf(material.oscillator, dt);
-}
-
-void Deformation::advance(double dt) noexcept {
-  if (awake_.empty() || !options_.dynamics || !(dt > 0)) return;
-  if (dt >= settle_) return reset();
-  prepare(dt);
-  for (std::size_t k = 0; k < awake_.size();) {
-    const std::size_t i = awake_[k];
-    Node& node = nodes_[i];
-    const Material& material = materialOf(i);
-    const Vector4d moved = material.step.xx * node.x + material.step.xv * node.v;
-    node.v = material.step.vx * node.x + material.step.vv * node.v;
-    node.x = moved;
-    const double amplitude2 = node.x.squaredNorm() + material.time_scale2 * node.v.squaredNorm();
-    if (amplitude2 > kAsleep * kAsleep) {
-      ++k;
-      continue;
-    }
-    node = Node{};  // also what is not a number
-    is_awake_[i] = 0;
-    awake_[k] = awake_.back();
-    awake_.pop_back();
-  }
-}
-
-void Deformation::reset() noexcept {
-  for (const uint32_t i : awake_) {
-    nodes_[i] = Node{};
-    is_awake_[i] = 0;
-  }
-  awake_.clear();
-}
-
-void Deformation::wake(std::size_t node) noexcept {
-  if (is_awake_[node] != 0) return;
-  is_awake_[node] = 1;
-  awake_.push_back(static_cast<uint32_t>(node));  // reserved for all: never allocates
-}
+Deformation::Deformation(const Skeleton& skeleton, const std::vector<Oscillator>& material,
+                         const DeformationOptions& options)
+    : Nodes(total(skeleton.control()), material, options), skeleton_(&skeleton) {}
 
 Deformation::Reach Deformation::reachOf(double u, double v) const noexcept {
   const ControlGrid& grid = skeleton_->control();
   const std::array<double, 2> at{u, v};
-  Reach reach;
+  std::array<Influence, 2> moved, all;
   for (std::size_t a = 0; a < 2; ++a) {
     std::array<double, spline::kMaxDegree + 1> values{};
     const int span = spline::findSpan(grid.knots[a], grid.degree[a], at[a]);
     spline::basisFunctions(grid.knots[a], grid.degree[a], span, at[a], values);
     const std::span<const double> basis(values.data(), static_cast<std::size_t>(grid.degree[a]) + 1);
-    reach.moved[a] = influence(basis, span, options_.influence[a], Choice::kLargest);
-    reach.all[a] = whole(basis, span);
+    moved[a] = influence(basis, span, options().influence[a], Choice::kLargest);
+    all[a] = whole(basis, span);
   }
+  Reach reach;
+  list(moved, grid.count[1], &Influence::alpha, reach.moved);
+  list(all, grid.count[1], &Influence::basis, reach.all);
   return reach;
 }
 
-/// Calls `visit(node, weight)` for every control point of an influence.
-template <class Weights, class Visit>
-static void forEach(const std::array<Influence, 2>& influence, int columns, Weights weights, Visit visit) noexcept {
-  for (int i = 0; i < influence[0].count; ++i) {
-    for (int j = 0; j < influence[1].count; ++j) {
-      const auto node = static_cast<std::size_t>((influence[0].first + i) * columns + influence[1].first + j);
-      visit(node, (influence[0].*weights)[static_cast<std::size_t>(i)] *
-                      (influence[1].*weights)[static_cast<std::size_t>(j)]);
-    }
-  }
-}
-
-/// Pushes the contour in to the probe where it is outside it, and takes it along where it is slower.
-void Deformation::yield(const Press& contact, const Reach& reach) noexcept {
-  const int columns = skeleton_->control().count[1];
-  Vector4d inward;
-  inward << -contact.normal, -1;  // contour shift = inward . (skeleton, radius)
-  Vector4d share;
-  share << -options_.split * contact.normal, -(1 - options_.split);
-  Vector4d x = Vector4d::Zero(), v = Vector4d::Zero();
-  forEach(reach.all, columns, &Influence::basis, [&](std::size_t node, double weight) {
-    x += weight * nodes_[node].x;
-    v += weight * nodes_[node].v;
-  });
-  const double push = contact.depth - inward.dot(x);
-  if (!(push > -kAsleep)) return;  // the contour lags behind a probe that leaves
-  const double kick = options_.dynamics ? std::max(0.0, contact.speed - inward.dot(v)) : 0;
-  if (!(std::max(push, 0.0) + kick > 0) || !std::isfinite(push + kick)) return;
-  const Vector4d dx = std::max(push, 0.0) * share, dv = kick * share;
-  forEach(reach.moved, columns, &Influence::alpha, [&](std::size_t node, double weight) {
-    wake(node);
-    nodes_[node].x += weight * dx;
-    nodes_[node].v += weight * dv;
-  });
-}
-
 void Deformation::press(std::span<const Press> contacts) noexcept {
-  if (!options_.dynamics) reset();
+  if (!options().dynamics) clear();
   const std::size_t count = std::min(contacts.size(), static_cast<std::size_t>(kMaxContacts));
   std::array<Reach, kMaxContacts> reach;
   for (std::size_t i = 0; i < count; ++i) reach[i] = reachOf(contacts[i].u, contacts[i].v);
   const int sweeps = count > 1 ? kSweeps : 1;
   for (int sweep = 0; sweep < sweeps; ++sweep)
-    for (std::size_t i = 0; i < count; ++i) yield(contacts[i], reach[i]);
+    for (std::size_t i = 0; i < count; ++i)
+      yield({contacts[i].normal, contacts[i].depth, contacts[i].speed}, reach[i].all.span(), reach[i].moved.span());
 }
 
 Vector4d Deformation::at(double u, double v) const noexcept {
   Vector4d sum = Vector4d::Zero();
-  if (awake_.empty()) return sum;
-  forEach(reachOf(u, v).all, skeleton_->control().count[1], &Influence::basis,
-          [&](std::size_t node, double weight) { sum += weight * nodes_[node].x; });
+  if (awake() == 0) return sum;
+  const Reach reach = reachOf(u, v);
+  for (const NodeWeight& part : reach.all.span()) sum += part.weight * displacement(part.node);
   return sum;
-}
-
-double Deformation::energy() const noexcept {
-  double sum = 0;
-  for (const uint32_t i : awake_) {
-    const Oscillator& o = materialOf(i).oscillator;
-    sum += 0.5 * (o.stiffness * nodes_[i].x.squaredNorm() + o.mass * nodes_[i].v.squaredNorm());
-  }
-  return sum;
-}
-
-std::size_t Deformation::bytes() const noexcept {
-  return nodes_.capacity() * sizeof(Node) + materials_.capacity() * sizeof(Material) +
-         which_.capacity() * sizeof(uint16_t) + awake_.capacity() * sizeof(uint32_t) + is_awake_.capacity();
 }
 
 }  // namespace hapticd::medial

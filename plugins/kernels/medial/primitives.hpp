@@ -64,6 +64,8 @@ class Slab {
 
   /// [any] The foot of p.
   HullFoot foot(const Eigen::Vector3d& p) const noexcept;
+  /// [any] Unit normal of the triangle of centres; zero where it has no plane.
+  Eigen::Vector3d across() const noexcept { return plane_ ? normal_ : Eigen::Vector3d(Eigen::Vector3d::Zero()); }
 
  private:
   void measure(const std::array<Sphere, 3>& spheres);

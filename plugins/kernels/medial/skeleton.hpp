@@ -28,7 +28,8 @@ struct SkeletonFoot {
   Eigen::Vector3d across = Eigen::Vector3d::Zero();   ///< unit Su x Sv; zero where the skeleton has no plane
   double residual = 0;                                ///< [m] length of the Newton step that was left
   int evaluations = 0;
-  bool rim = false;  ///< on the boundary of the skeleton
+  uint32_t element = 0;  ///< of a medial mesh: the cone or slab that holds the foot
+  bool rim = false;      ///< on the boundary of the skeleton
   bool converged = false;
 };
 

@@ -106,7 +106,7 @@ double greatestJump(medial::Deformation& body) {
     const medial::Press slide{i / 20000.0, .37, Vector3d::UnitZ(), .01, 0};
     body.press({&slide, 1});
     now.clear();
-    for (std::size_t c = 0; c < body.controlPoints(); ++c) now.push_back(body.displacement(c));
+    for (std::size_t c = 0; c < body.count(); ++c) now.push_back(body.displacement(c));
     for (std::size_t c = 0; c < before.size(); ++c) jump = std::max(jump, (now[c] - before[c]).norm());
     std::swap(before, now);
   }

@@ -27,7 +27,7 @@ class File {
 std::string complaintOf(const std::string& text) {
   const File file(text);
   try {
-    readMedialFile(file.path());
+    readMedialFile(file.path(), {});
   } catch (const ModelFileError& e) {
     return e.what();
   }
@@ -40,7 +40,7 @@ constexpr const char* kPoints = "  points: [[[0, 0, 0], [0.1, 0, 0]], [[0, 0.1, 
 TEST(MedialFile, ReadsGridsAndSingleNumbers) {
   const File file(std::string(kHead) + kPoints +
                   "  radius: [[0.01, 0.02], [0.03, 0.04]]\n  stiffness: 200\n  mass: 0.1\n");
-  const medial::BodyData data = readMedialFile(file.path());
+  const medial::BodyData data = *readMedialFile(file.path(), {}).grid;
   EXPECT_EQ(data.grid.count, (std::array<int, 2>{2, 2}));
   EXPECT_EQ(data.grid.points[2], Eigen::Vector3d(0, .1, 0));
   EXPECT_EQ(data.grid.radius, (std::vector<double>{.01, .02, .03, .04}));
@@ -52,7 +52,7 @@ TEST(MedialFile, ReadsGridsAndSingleNumbers) {
 TEST(MedialFile, ReadsTheSameFromJson) {
   const File file(R"({"format": "hapticd-model/1", "medial": {"points": [[[0, 0, 0], [0.1, 0, 0]]],
                       "radius": [[0.01, 0.02]], "stiffness": [[1, 2]]}})");
-  EXPECT_EQ(readMedialFile(file.path()).grid.count, (std::array<int, 2>{1, 2}));
+  EXPECT_EQ(readMedialFile(file.path(), {}).grid->grid.count, (std::array<int, 2>{1, 2}));
 }
 
 TEST(MedialFile, SaysWhereAndWhatIsWrong) {

@@ -84,7 +84,7 @@ double greatestJump(const Skeleton& skeleton, std::array<int, 2> influence) {
     const Press slide = pressAt(i / 20000.0, .37, .01);
     body.press({&slide, 1});
     std::vector<Vector4d> now;
-    for (std::size_t c = 0; c < body.controlPoints(); ++c) now.push_back(body.displacement(c));
+    for (std::size_t c = 0; c < body.count(); ++c) now.push_back(body.displacement(c));
     for (std::size_t c = 0; c < before.size(); ++c) jump = std::max(jump, (now[c] - before[c]).norm());
     before = std::move(now);
   }
@@ -108,7 +108,7 @@ TEST(Deformation, NoInfluenceMovesAControlPointFarBeyondThePress) {
       const Press press = pressAt(u, .5, .01);
       body.press({&press, 1});
       EXPECT_NEAR(contourShift(body, u, .5), .01, 1e-15);
-      for (std::size_t c = 0; c < body.controlPoints(); ++c)
+      for (std::size_t c = 0; c < body.count(); ++c)
         EXPECT_LT(body.displacement(c).norm(), (p == 4 ? 1.8 : 3.5) * .01) << p << " " << u;
     }
   }

@@ -1,0 +1,204 @@
+#include "kernels/medial/mesh_body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+namespace hapticd::medial {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector4d;
+
+constexpr int kMostRings = 8;
+constexpr double kOwnShare = 0.5;  ///< of its weight that a vertex keeps when it is spread; the rest goes to neighbours
+constexpr double kOpposite = 4;    ///< normals farther apart than acos(1 / this - 1) count less and less
+
+/// One value for all stays one.
+std::vector<double> oneOrAll(const std::vector<double>& values, std::size_t vertices, const char* what) {
+  if (values.empty()) return {0};
+  if (values.size() != 1 && values.size() != vertices)
+    throw std::invalid_argument(std::string(what) + ": " + std::to_string(values.size()) + " values, expected " +
+                                std::to_string(vertices) + ", one a vertex");
+  for (const double value : values)
+    if (!(value >= 0) || !std::isfinite(value))
+      throw std::invalid_argument(std::string(what) + ": " + std::to_string(value) +
+                                  ", expected finite numbers of at least 0");
+  if (std::all_of(values.begin(), values.end(), [&](double x) { return x == values[0]; })) return {values[0]};
+  return values;
+}
+
+double pick(const std::vector<double>& values, std::size_t i) noexcept {
+  return values[values.size() == 1 ? 0 : i];
+}
+
+}  // namespace
+
+MeshDeformation::MeshDeformation(const MedialMesh& mesh, const std::vector<Oscillator>& material,
+                                 const DeformationOptions& options)
+    : Nodes(mesh.vertices().size(), material, options), mesh_(&mesh) {
+  join(mesh);
+  place_.assign(mesh.vertices().size(), UINT32_MAX);
+  reaches_.resize(kMaxContacts);
+}
+
+void MeshDeformation::join(const MedialMesh& mesh) {
+  std::set<std::array<uint32_t, 2>> pairs;
+  for (const MedialMesh::Element& element : mesh.elements())
+    for (const uint32_t a : element.vertex)
+      for (const uint32_t b : element.vertex)
+        if (a != b) pairs.insert({a, b});
+  first_.assign(mesh.vertices().size() + 1, 0);
+  for (const auto& [a, b] : pairs) {
+    ++first_[a + 1];
+    neighbour_.push_back(b);  // pairs come in the order of a
+  }
+  for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+}
+
+void MeshDeformation::add(Reach& reach, uint32_t node, double weight) noexcept {
+  if (place_[node] == UINT32_MAX) {
+    if (reach.moved_count == kMostMoved) return;
+    place_[node] = static_cast<uint32_t>(reach.moved_count);
+    reach.moved[reach.moved_count++] = {node, 0};
+  }
+  reach.moved[place_[node]].weight += weight;
+}
+
+/// Every vertex keeps a share of its weight and gives the rest to its neighbours in equal parts.
+void MeshDeformation::spread(Reach& reach) noexcept {
+  const std::size_t count = reach.moved_count;
+  std::array<double, kMostMoved> before;
+  for (std::size_t k = 0; k < count; ++k) before[k] = reach.moved[k].weight;
+  for (std::size_t k = 0; k < count; ++k) {
+    const uint32_t node = reach.moved[k].node, begin = first_[node], end = first_[node + 1];
+    if (begin == end) continue;
+    reach.moved[k].weight -= (1 - kOwnShare) * before[k];
+    const double each = (1 - kOwnShare) * before[k] / (end - begin);
+    for (uint32_t n = begin; n < end; ++n) add(reach, neighbour_[n], each);
+  }
+}
+
+void MeshDeformation::reach(const Press& contact, Reach& out) noexcept {
+  const MedialMesh::Element& element = mesh_->elements()[contact.element];
+  const std::array<double, 3> weights = mesh_->weights(contact.element, {contact.u, contact.v});
+  out.felt_count = element.count;
+  out.moved_count = 0;
+  for (std::size_t i = 0; i < element.count; ++i) {
+    out.felt[i] = {element.vertex[i], weights[i]};
+    if (weights[i] > 0) add(out, element.vertex[i], weights[i]);
+  }
+  for (int ring = std::min(options().rings, kMostRings); ring > 0; --ring) spread(out);
+  double sum = 0;
+  for (std::size_t i = 0; i < element.count; ++i)
+    if (place_[element.vertex[i]] != UINT32_MAX) sum += weights[i] * out.moved[place_[element.vertex[i]]].weight;
+  for (std::size_t k = 0; k < out.moved_count; ++k) {
+    place_[out.moved[k].node] = UINT32_MAX;
+    out.moved[k].weight = sum > 0 ? out.moved[k].weight / sum : 0;
+  }
+}
+
+void MeshDeformation::press(std::span<const Press> contacts) noexcept {
+  if (!options().dynamics) clear();
+  const std::size_t count = std::min(contacts.size(), static_cast<std::size_t>(kMaxContacts));
+  for (std::size_t i = 0; i < count; ++i) reach(contacts[i], reaches_[i]);
+  const int sweeps = count > 1 ? kSweeps : 1;
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (std::size_t i = 0; i < count; ++i)
+      yield({contacts[i].normal, contacts[i].depth, contacts[i].speed},
+            {reaches_[i].felt.data(), reaches_[i].felt_count}, {reaches_[i].moved.data(), reaches_[i].moved_count});
+}
+
+Vector4d MeshDeformation::at(uint32_t element, const Eigen::Array2d& parameter) const noexcept {
+  const std::array<double, 3> weights = mesh_->weights(element, parameter);
+  Vector4d sum = Vector4d::Zero();
+  for (std::size_t i = 0; i < mesh_->elements()[element].count; ++i)
+    sum += weights[i] * displacement(mesh_->elements()[element].vertex[i]);
+  return sum;
+}
+
+std::size_t MeshDeformation::bytes() const noexcept {
+  return Nodes::bytes() + (first_.capacity() + neighbour_.capacity() + place_.capacity()) * sizeof(uint32_t) +
+         reaches_.capacity() * sizeof(Reach);
+}
+
+MeshBody::MeshBody(const MeshBodyData& data, const BodyOptions& options) : options_(options), mesh_(data.mesh) {
+  const std::size_t count = mesh_.vertices().size();
+  stiffness_ = oneOrAll(data.stiffness, count, "stiffness");
+  damping_ = oneOrAll(data.damping, count, "damping");
+  const std::vector<double> mass = oneOrAll(data.mass, count, "mass");
+  std::vector<Oscillator> material;
+  const bool same = stiffness_.size() == 1 && damping_.size() == 1 && mass.size() == 1;
+  for (std::size_t i = 0; i < (same ? 1 : count); ++i)
+    material.push_back({pick(mass, i), pick(damping_, i), pick(stiffness_, i)});
+  deformation_.emplace(mesh_, material, options.deformation);
+}
+
+SkeletonFoot MeshBody::foot(const Vector3d& p, uint32_t start, double crease) const noexcept {
+  MeshFeet feet;
+  mesh_.nearest(p, start, 0, feet);
+  int evaluations = feet.evaluations;
+  const bool inside = feet.feet[0].distance < 0;
+  if (inside && crease > 0) {
+    mesh_.nearest(p, feet.feet[0].element, crease, feet);
+    evaluations += feet.evaluations;
+  }
+  const MeshFoot& best = feet.feet[0];
+  SkeletonFoot foot;
+  foot.element = best.element;
+  foot.u = best.parameter[0];
+  foot.v = best.parameter[1];
+  foot.center = best.center;
+  foot.radius = best.radius;
+  foot.depth = -best.distance;
+  foot.normal = best.normal;
+  foot.across = mesh_.across(best.element);
+  foot.evaluations = evaluations;
+  foot.converged = std::isfinite(best.distance);
+  if (feet.count < 2) return foot;
+  // The opposite side of a sheet or tube is as near as this one in its middle: that is no crease.
+  Vector3d sum = best.normal;
+  for (std::size_t i = 1; i < feet.count; ++i) {
+    const double cosine = feet.feet[i].normal.dot(best.normal);
+    const double opposite = std::min(1.0, kOpposite * (1 + cosine));
+    sum += opposite * (1 - (feet.feet[i].distance - best.distance) / crease) * feet.feet[i].normal;
+  }
+  foot.normal = sum.normalized();
+  return foot;
+}
+
+double MeshBody::material(const std::vector<double>& values, const SkeletonFoot& foot) const noexcept {
+  if (values.size() == 1) return values[0];
+  const std::array<double, 3> weights = mesh_.weights(foot.element, {foot.u, foot.v});
+  const MedialMesh::Element& element = mesh_.elements()[foot.element];
+  double sum = 0;
+  for (std::size_t i = 0; i < element.count; ++i) sum += weights[i] * values[element.vertex[i]];
+  return std::max(0.0, sum);
+}
+
+BodyForce MeshBody::press(const SkeletonFoot& foot, const Vector3d& normal, double depth,
+                          double closing_speed) const noexcept {
+  BodyForce result;
+  if (!(depth > 0)) return result;
+  result.stiffness = material(stiffness_, foot);
+  result.energy = 0.5 * result.stiffness * depth * depth;
+  const double drag = std::isfinite(closing_speed)
+                          ? material(damping_, foot) * std::min(1.0, depth / options_.damping_scale) * closing_speed
+                          : 0;
+  result.normal = std::max(0.0, result.stiffness * depth + drag);  // a surface does not pull
+  result.force = result.normal * normal;
+  return result;
+}
+
+double MeshBody::greatestStiffness() const noexcept {
+  return *std::max_element(stiffness_.begin(), stiffness_.end());
+}
+
+std::size_t MeshBody::bytes() const noexcept {
+  return sizeof *this - sizeof mesh_ + mesh_.bytes() + (stiffness_.capacity() + damping_.capacity()) * sizeof(double) +
+         deformation_->bytes();
+}
+
+}  // namespace hapticd::medial

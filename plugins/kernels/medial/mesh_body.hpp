@@ -1,0 +1,87 @@
+/// A soft body from a medial mesh: where its surface is, how hard it pushes back, how it gives way.
+#pragma once
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "kernels/medial/body.hpp"
+#include "kernels/medial/medial_mesh.hpp"
+#include "kernels/medial/nodes.hpp"
+
+namespace hapticd::medial {
+
+/// What a model file says of a body; material one a vertex, or one for all.
+struct MeshBodyData {
+  MeshData mesh;
+  std::vector<double> stiffness;  ///< [N/m]
+  std::vector<double> damping;    ///< [N s/m]; empty: none
+  std::vector<double> mass;       ///< [kg]; empty: none, so that vertices creep
+};
+
+/// How a medial mesh gives way: its nodes are the vertices. A contact moves the corners of the element that holds its
+/// foot and the rings of neighbours round them, with weights that have no jump while it slides from one element to the
+/// next: the corners' weights, spread evenly along the edges once a ring.
+class MeshDeformation : public Nodes {
+ public:
+  /// [main] @throws std::invalid_argument for a material that is no material.
+  MeshDeformation(const MedialMesh& mesh, const std::vector<Oscillator>& material, const DeformationOptions& options);
+
+  /// [rt] Moves vertices so that the contour is at no contact outside the probe; u, v are weights 1 and 2 of a slab,
+  /// u the place along a cone. Without dynamics the displacements are those of these contacts alone.
+  void press(std::span<const Press> contacts) noexcept;
+  /// [rt] Displacement of the skeleton (x, y, z) and change of the radius at a foot [m].
+  Eigen::Vector4d at(uint32_t element, const Eigen::Array2d& parameter) const noexcept;
+  std::size_t bytes() const noexcept;
+
+ private:
+  static constexpr std::size_t kMostMoved = 128;  ///< vertices that one contact moves
+
+  struct Reach {
+    std::array<NodeWeight, kMostMoved> moved;
+    std::array<NodeWeight, 3> felt;
+    std::size_t moved_count = 0, felt_count = 0;
+  };
+
+  void join(const MedialMesh& mesh);
+  void reach(const Press& contact, Reach& out) noexcept;
+  void spread(Reach& reach) noexcept;
+  void add(Reach& reach, uint32_t node, double weight) noexcept;
+
+  const MedialMesh* mesh_;
+  std::vector<uint32_t> first_, neighbour_;  ///< neighbours of vertex i: neighbour_[first_[i]] and on
+  std::vector<uint32_t> place_;              ///< of a vertex in the list that is being made
+  std::vector<Reach> reaches_;               ///< one a contact
+};
+
+class MeshBody {
+ public:
+  /// [main] @throws std::invalid_argument that says what is wrong with the data.
+  MeshBody(const MeshBodyData& data, const BodyOptions& options);
+  MeshBody(const MeshBody&) = delete;  // the deformation looks at the mesh beside it
+  MeshBody& operator=(const MeshBody&) = delete;
+
+  const MedialMesh& mesh() const noexcept { return mesh_; }
+  MeshDeformation& deformation() noexcept { return *deformation_; }
+  const MeshDeformation& deformation() const noexcept { return *deformation_; }
+
+  /// [any] The foot of p, searched from `start` (MedialMesh::kNoStart: from nowhere). Inside, where other parts of the
+  /// body are within `crease` [m] as near, the normal turns from one to the other over that width: at the crotch of
+  /// a branch the force has no jump.
+  SkeletonFoot foot(const Eigen::Vector3d& p, uint32_t start, double crease) const noexcept;
+  /// [rt] The force on a probe `depth` below the surface along `normal`: spring, and damping against `closing_speed`.
+  BodyForce press(const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
+                  double closing_speed) const noexcept;
+  double greatestStiffness() const noexcept;  ///< [any] [N/m]
+  std::size_t bytes() const noexcept;
+
+ private:
+  double material(const std::vector<double>& values, const SkeletonFoot& foot) const noexcept;
+
+  BodyOptions options_;
+  MedialMesh mesh_;
+  std::vector<double> stiffness_, damping_;  ///< one a vertex, or one for all
+  std::optional<MeshDeformation> deformation_;
+};
+
+}  // namespace hapticd::medial

@@ -1,0 +1,70 @@
+/// Closed triangles whose vertices move with the nodes of a soft body, for drawing and for its volume.
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hapticd::medial {
+
+/// Displacement of each node: skeleton (x, y, z) and radius [m].
+using Displacements = std::vector<Eigen::Vector4f>;
+
+class MovingMesh {
+ public:
+  std::size_t vertexCount() const noexcept { return vertices_.size(); }
+  /// Three vertices a triangle, counter-clockwise seen from outside.
+  const std::vector<uint32_t>& indices() const noexcept { return indices_; }
+
+  /// [any] Writes at most `capacity` vertices from `first` on, 3 floats each, of the body displaced as
+  /// `displacement(i)` says of node i (an Eigen vector of 4), all radii grown by `bulge` [m]. Allocates nothing.
+  template <class Displacement>
+  std::size_t write(const Displacement& displacement, float* xyz, std::size_t capacity, float bulge = 0,
+                    std::size_t first = 0) const noexcept {
+    const std::size_t left = vertices_.size() - (first < vertices_.size() ? first : vertices_.size());
+    const std::size_t count = capacity < left ? capacity : left;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vertex& vertex = vertices_[first + i];
+      Eigen::Vector4f moved = Eigen::Vector4f::Zero();
+      for (uint32_t k = vertex.first; k < vertex.first + vertex.count; ++k)
+        moved += shares_[k].weight * displacement(shares_[k].node);
+      const float radius = vertex.radius + moved[3] + bulge;
+      Eigen::Map<Eigen::Vector3f>(xyz + 3 * i) =
+          vertex.center + moved.head<3>() + (radius > 0 ? radius : 0) * vertex.normal;
+    }
+    return count;
+  }
+  /// [main] The body at rest.
+  std::vector<float> atRest() const;
+  /// [main] Unit normals of a displaced mesh: the mean of the triangles around each vertex.
+  std::vector<float> normalsOf(const std::vector<float>& xyz) const;
+  /// [any] Six times the volume [m^3] under triangles first to last: summed over all of them, it is that of the body.
+  double sixVolumes(const float* xyz, std::size_t first, std::size_t last) const noexcept;
+  double volume(const std::vector<float>& xyz) const noexcept;  ///< [any] [m^3]
+  double area(const std::vector<float>& xyz) const noexcept;    ///< [any] [m^2]
+  std::size_t bytes() const noexcept;
+
+ protected:
+  struct Share {
+    uint32_t node;
+    float weight;
+  };
+  /// A vertex stands on the sphere about `center`; shares of 0 are left out.
+  uint32_t add(const Eigen::Vector3d& center, const Eigen::Vector3d& normal, double radius,
+               std::span<const Share> shares);
+  void triangle(uint32_t a, uint32_t b, uint32_t c);
+  Eigen::Vector3d normal(uint32_t vertex) const { return vertices_[vertex].normal.cast<double>(); }
+
+ private:
+  struct Vertex {
+    Eigen::Vector3f center, normal;
+    float radius;
+    uint32_t first, count;  ///< of its shares
+  };
+
+  std::vector<Vertex> vertices_;
+  std::vector<Share> shares_;
+  std::vector<uint32_t> indices_;
+};
+
+}  // namespace hapticd::medial

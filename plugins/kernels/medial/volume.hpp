@@ -1,0 +1,72 @@
+/// Keeps the volume of a pressed body: what a contact pushes in comes out all round.
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "kernels/medial/moving_mesh.hpp"
+#include "kernels/medial/nodes.hpp"
+
+namespace hapticd::medial {
+
+/// Grows all radii by one length, the bulge, until the volume under the displaced contour is that of the body at rest.
+/// The volume is the exact integral over the triangles of a contour, summed a bounded part at a time; each whole sum is
+/// one Newton step of the bulge. The bulge is a function of the displacements alone and does no work on them: the
+/// energy of the nodes falls with it as it does without.
+class VolumeKeeper {
+ public:
+  /// [main] Memory is taken here.
+  VolumeKeeper(const MovingMesh& contour, double greatest_radius)
+      : contour_(&contour), xyz_(contour.atRest()), limit_(kMostBulge * greatest_radius) {
+    rest_ = contour.volume(xyz_);
+    area_ = contour.area(xyz_);
+  }
+
+  /// [rt] Goes on with the sum; sets the bulge of `nodes` when it is whole. Costs nothing while the body is at rest.
+  void step(Nodes& nodes) noexcept {
+    if (nodes.awake() == 0 && nodes.bulge() == 0 && next_vertex_ == 0) return;
+    for (std::size_t work = 0; work < kWork;) {
+      const std::size_t vertices = contour_->vertexCount(), triangles = contour_->indices().size() / 3;
+      if (next_vertex_ < vertices) {
+        const std::size_t part = std::min(kWork - work, vertices - next_vertex_);
+        contour_->write([&nodes](std::size_t i) -> Eigen::Vector4f { return nodes.displacement(i).cast<float>(); },
+                        xyz_.data() + 3 * next_vertex_, part, static_cast<float>(nodes.bulge()), next_vertex_);
+        next_vertex_ += part;
+        work += part;
+      } else if (next_triangle_ < triangles) {
+        const std::size_t part = std::min(kWork - work, triangles - next_triangle_);
+        sum_ += contour_->sixVolumes(xyz_.data(), next_triangle_, next_triangle_ + part);
+        next_triangle_ += part;
+        work += part;
+      } else {
+        return correct(nodes);
+      }
+    }
+  }
+  /// [rt] The body was put to rest.
+  void reset() noexcept {
+    next_vertex_ = next_triangle_ = 0;
+    sum_ = 0;
+  }
+  double restVolume() const noexcept { return rest_; }  ///< [m^3]
+  std::size_t bytes() const noexcept { return sizeof *this + xyz_.capacity() * sizeof(float); }
+
+ private:
+  static constexpr std::size_t kWork = 1024;  ///< vertices and triangles a tick
+  static constexpr double kMostBulge = 0.5;   ///< of the greatest radius
+  static constexpr double kStill = 1e-7;      ///< [m] a bulge that no one sees, once the body is at rest
+
+  void correct(Nodes& nodes) noexcept {
+    const double step = area_ > 0 ? (rest_ - sum_ / 6) / area_ : 0;
+    double bulge = std::clamp(nodes.bulge() + step, -limit_, limit_);
+    if (!(bulge == bulge) || (nodes.awake() == 0 && bulge < kStill && bulge > -kStill)) bulge = 0;
+    nodes.setBulge(bulge);
+    reset();
+  }
+
+  const MovingMesh* contour_;
+  std::vector<float> xyz_;
+  double rest_ = 0, area_ = 0, limit_ = 0, sum_ = 0;
+  std::size_t next_vertex_ = 0, next_triangle_ = 0;
+};
+
+}  // namespace hapticd::medial

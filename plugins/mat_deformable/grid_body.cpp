@@ -1,0 +1,110 @@
+/// Soft bodies from a grid of skeleton points.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "kernels/medial/contour.hpp"
+#include "push_through.hpp"
+#include "soft_body.hpp"
+
+namespace hapticd {
+namespace {
+
+using Eigen::Vector3d;
+using medial::SkeletonFoot;
+
+constexpr double kNewPlace = 0.25;     ///< a probe that moved by this share of a cell is looked for all over the body
+constexpr double kWithinReach = 0.02;  ///< [m] farther bodies wait for the search of the simulation side
+constexpr double kOtherFoot = 0.02;    ///< difference of parameters from which an offered foot is another one
+
+class GridBody final : public SoftBody {
+ public:
+  GridBody(const medial::BodyData& data, const medial::BodyOptions& options) : body_(data, options) {}
+
+  void find(const Vector3d& p, uint32_t flags, const FindOptions& options, Track& track) const noexcept override {
+    const medial::Skeleton& skeleton = body_.skeleton();
+    if (options.binary) {
+      track.foot = skeleton.bisect(p, options.newton.envelope, options.halvings);
+      return;
+    }
+    const double* offer = track.offer.param;
+    const bool jumped = (flags & HSP_IN_JUMP) != 0;
+    if (!track.known && track.offered && !jumped) {  // the search that started it has looked all over the body
+      track.foot.u = offer[0];
+      track.foot.v = offer[1];
+      track.known = true;
+      track.last = p;
+    }
+    const bool far = (p - track.last).squaredNorm() > std::pow(kNewPlace * skeleton.spacing(), 2);
+    const bool lost = !track.known || far || jumped;
+    const bool matters = skeleton.leastDistance(p) < kWithinReach;
+    if (!lost || !matters) track.foot = skeleton.nearest(p, track.foot.u, track.foot.v, options.newton);
+    if (matters && (lost || !track.foot.converged)) {
+      track.foot = skeleton.search(p, options.newton);
+    } else if (track.offered && std::fabs(offer[0] - track.foot.u) + std::fabs(offer[1] - track.foot.v) > kOtherFoot) {
+      const SkeletonFoot other = skeleton.nearest(p, offer[0], offer[1], options.newton);
+      if (other.depth > track.foot.depth) track.foot = other;
+    }
+  }
+
+  Felt felt(const Vector3d& p, const Vector3d& moved, Track& track) const noexcept override {
+    if (body_.skeleton().curve()) return feltTurning(p, moved, track);
+    const SkeletonFoot& foot = track.foot;
+    const double cosine = foot.normal.dot(foot.across);
+    const int side = cosine < 0 ? -1 : 1;
+    if (!(foot.depth > 0)) {
+      track.side = 0;
+    } else if (track.side == 0 || foot.rim || foot.across.isZero(0)) {
+      track.side = side;  // round the rim it is free to go
+    } else if (side != track.side) {
+      return {foot.normal - 2 * cosine * foot.across, 2 * foot.radius - foot.depth};
+    }
+    return {foot.normal, foot.depth};
+  }
+
+  medial::BodyForce press(const Vector3d& p, const SkeletonFoot& foot, const Felt& felt,
+                          double closing_speed) const noexcept override {
+    return body_.press(p, foot, felt.normal, felt.depth, closing_speed);
+  }
+  void yield(std::span<const medial::Press> contacts) noexcept override { body_.deformation().press(contacts); }
+  SkeletonFoot search(const Vector3d& p, const FindOptions& options) const noexcept override {
+    return body_.skeleton().search(p, options.newton);
+  }
+
+  medial::Nodes& nodes() noexcept override { return body_.deformation(); }
+  const Eigen::AlignedBox3d& bounds() const noexcept override { return body_.skeleton().bounds(); }
+  double greatestRadius() const noexcept override { return body_.skeleton().radius().greatest(); }
+  double greatestStiffness() const noexcept override { return body_.greatestStiffness(); }
+  std::unique_ptr<medial::MovingMesh> contour(double chord_error) const override {
+    return std::make_unique<medial::Contour>(body_.skeleton(), chord_error);
+  }
+  std::size_t bytes() const noexcept override { return sizeof *this - sizeof body_ + body_.bytes(); }
+
+  Description describe(const std::string& file) const override {
+    const medial::MonotonicityReport check = body_.checkMonotonicity();
+    char text[512];
+    if (check.holds()) {
+      std::snprintf(text, sizeof text,
+                    "%zu control points, asleep until touched; shear springs: force grows with every depth (least "
+                    "slope %.0f %% of the normal spring's)",
+                    body_.deformation().count(), 100 * check.slope);
+    } else {
+      std::snprintf(text, sizeof text,
+                    "%s: near u = %.3g, v = %.3g the shear springs may pull inward: rest length over least length is "
+                    "%.3g, expected below %.3g; use a smaller shear_offset, or 0",
+                    file.c_str(), check.u, check.v, check.ratio, check.limit);
+    }
+    return {text, !check.holds()};
+  }
+
+ private:
+  medial::Body body_;
+};
+
+}  // namespace
+
+std::unique_ptr<SoftBody> makeSoftBody(const medial::BodyData& data, const medial::BodyOptions& options) {
+  return std::make_unique<GridBody>(data, options);
+}
+
+}  // namespace hapticd

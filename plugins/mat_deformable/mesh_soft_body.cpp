@@ -1,0 +1,71 @@
+/// Soft bodies from a medial mesh: cones and slabs.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "kernels/medial/mesh_body.hpp"
+#include "kernels/medial/mesh_contour.hpp"
+#include "push_through.hpp"
+#include "soft_body.hpp"
+
+namespace hapticd {
+namespace {
+
+using Eigen::Vector3d;
+using medial::MedialMesh;
+using medial::SkeletonFoot;
+
+class MeshSoftBody final : public SoftBody {
+ public:
+  MeshSoftBody(const medial::MeshBodyData& data, const medial::BodyOptions& options) : body_(data, options) {
+    for (const medial::Sphere& sphere : body_.mesh().vertices())
+      greatest_radius_ = std::max(greatest_radius_, sphere.radius);
+  }
+
+  /// Every search is global: the tree makes it as fast as following, and nothing is ever lost.
+  void find(const Vector3d& p, uint32_t, const FindOptions& options, Track& track) const noexcept override {
+    track.foot = body_.foot(p, track.known ? track.foot.element : MedialMesh::kNoStart, options.crease);
+  }
+  Felt felt(const Vector3d& p, const Vector3d& moved, Track& track) const noexcept override {
+    return feltTurning(p, moved, track);
+  }
+  medial::BodyForce press(const Vector3d&, const SkeletonFoot& foot, const Felt& felt,
+                          double closing_speed) const noexcept override {
+    return body_.press(foot, felt.normal, felt.depth, closing_speed);
+  }
+  void yield(std::span<const medial::Press> contacts) noexcept override { body_.deformation().press(contacts); }
+  SkeletonFoot search(const Vector3d& p, const FindOptions& options) const noexcept override {
+    return body_.foot(p, MedialMesh::kNoStart, options.crease);
+  }
+
+  medial::Nodes& nodes() noexcept override { return body_.deformation(); }
+  const Eigen::AlignedBox3d& bounds() const noexcept override { return body_.mesh().bounds(); }
+  double greatestRadius() const noexcept override { return greatest_radius_; }
+  double greatestStiffness() const noexcept override { return body_.greatestStiffness(); }
+  std::unique_ptr<medial::MovingMesh> contour(double chord_error) const override {
+    return std::make_unique<medial::MeshContour>(body_.mesh(), chord_error);
+  }
+  std::size_t bytes() const noexcept override { return sizeof *this - sizeof body_ + body_.bytes(); }
+
+  Description describe(const std::string&) const override {
+    std::size_t cones = 0;
+    for (const MedialMesh::Element& element : body_.mesh().elements()) cones += element.count < 3 ? 1 : 0;
+    const std::size_t slabs = body_.mesh().elements().size() - cones;
+    char text[256];
+    std::snprintf(text, sizeof text, "%zu vertices, asleep until touched; a medial mesh of %zu cone%s and %zu slab%s",
+                  body_.mesh().vertices().size(), cones, cones == 1 ? "" : "s", slabs, slabs == 1 ? "" : "s");
+    return {text, false};
+  }
+
+ private:
+  medial::MeshBody body_;
+  double greatest_radius_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<SoftBody> makeSoftBody(const medial::MeshBodyData& data, const medial::BodyOptions& options) {
+  return std::make_unique<MeshSoftBody>(data, options);
+}
+
+}  // namespace hapticd

@@ -1,0 +1,13 @@
+/// What a probe feels that was pushed through the middle of a tube or a branching body.
+#pragma once
+#include "soft_body.hpp"
+
+namespace hapticd {
+
+/// [rt] The outward direction turns to that of the foot by a bounded angle for each metre that the probe moves aside,
+/// so that a probe that was pushed straight through the middle is still pushed back to where it came from. Depth beyond
+/// the middle is measured along that direction to the sphere of the foot. Across a sheet, the direction does not turn
+/// at all, but at its rim.
+Felt feltTurning(const Eigen::Vector3d& p, const Eigen::Vector3d& moved, Track& track) noexcept HSP_RT;
+
+}  // namespace hapticd

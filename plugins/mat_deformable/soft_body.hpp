@@ -1,0 +1,80 @@
+/// What the plugin needs of a soft body, whichever form its medial axis has: a grid of points or a mesh.
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+
+#include "hapticd/shape.h"
+#include "kernels/contact/friction.hpp"
+#include "kernels/medial/body.hpp"
+#include "kernels/medial/mesh_body.hpp"
+#include "kernels/medial/moving_mesh.hpp"
+#include "kernels/medial/nodes.hpp"
+
+namespace hapticd {
+
+/// How a foot is looked for.
+struct FindOptions {
+  medial::NewtonOptions newton;
+  bool binary = false;  ///< the paper's halving instead
+  int halvings = 10;
+  double crease = 0;  ///< [m] width over which the force turns from one part of a mesh to another
+};
+
+/// One probe on a body.
+struct Track {
+  medial::SkeletonFoot foot;
+  Eigen::Vector3d last{0, 0, 0};    ///< where the probe was
+  Eigen::Vector3d pushed{0, 0, 0};  ///< direction in which the surface pushed; zero: it did not
+  hsp_near offer{};                 ///< what the search of the simulation side found last
+  bool active = false, known = false, offered = false;
+  int side = 0;  ///< of a sheet on which it entered; 0: it has not
+  contact::Friction friction;
+};
+
+/// The surface as the probe feels it: where it was pushed through the skeleton, still that of the side it came from.
+struct Felt {
+  Eigen::Vector3d normal{0, 0, 1};
+  double depth = 0;
+};
+
+/// What a person should know of a body before they touch it.
+struct Description {
+  std::string text;
+  bool warning = false;
+};
+
+class SoftBody {
+ public:
+  SoftBody() = default;
+  SoftBody(const SoftBody&) = delete;
+  SoftBody& operator=(const SoftBody&) = delete;
+  virtual ~SoftBody() = default;
+
+  /// [rt] Follows the foot of a probe at p; looks all over the body where following may have lost it.
+  virtual void find(const Eigen::Vector3d& p, uint32_t flags, const FindOptions& options,
+                    Track& track) const noexcept = 0;
+  /// [rt] What the probe feels there; `moved` [m] since the last tick.
+  virtual Felt felt(const Eigen::Vector3d& p, const Eigen::Vector3d& moved, Track& track) const noexcept = 0;
+  /// [rt] The force on a probe so deep.
+  virtual medial::BodyForce press(const Eigen::Vector3d& p, const medial::SkeletonFoot& foot, const Felt& felt,
+                                  double closing_speed) const noexcept = 0;
+  /// [rt] Gives way to all contacts of a tick.
+  virtual void yield(std::span<const medial::Press> contacts) noexcept = 0;
+  /// [sim] The foot of p with no start known.
+  virtual medial::SkeletonFoot search(const Eigen::Vector3d& p, const FindOptions& options) const noexcept = 0;
+
+  virtual medial::Nodes& nodes() noexcept = 0;  ///< [rt]
+  virtual const Eigen::AlignedBox3d& bounds() const noexcept = 0;
+  virtual double greatestRadius() const noexcept = 0;                                 ///< [m]
+  virtual double greatestStiffness() const noexcept = 0;                              ///< [N/m]
+  virtual std::unique_ptr<medial::MovingMesh> contour(double chord_error) const = 0;  ///< [main]
+  virtual Description describe(const std::string& file) const = 0;                    ///< [main]
+  virtual std::size_t bytes() const noexcept = 0;
+};
+
+/// [main] @throws std::invalid_argument that says what is wrong with the data.
+std::unique_ptr<SoftBody> makeSoftBody(const medial::BodyData& data, const medial::BodyOptions& options);
+std::unique_ptr<SoftBody> makeSoftBody(const medial::MeshBodyData& data, const medial::BodyOptions& options);
+
+}  // namespace hapticd
