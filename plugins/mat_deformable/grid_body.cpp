@@ -15,6 +15,7 @@ using medial::SkeletonFoot;
 
 constexpr double kNewPlace = 0.25;     ///< a probe that moved by this share of a cell is looked for all over the body
 constexpr double kWithinReach = 0.02;  ///< [m] farther bodies wait for the search of the simulation side
+constexpr double kHullError = 0.005;   ///< of the greatest radius
 constexpr double kOtherFoot = 0.02;    ///< difference of parameters from which an offered foot is another one
 
 class GridBody final : public SoftBody {
@@ -78,6 +79,7 @@ class GridBody final : public SoftBody {
   std::unique_ptr<medial::MovingMesh> contour(double chord_error) const override {
     return std::make_unique<medial::Contour>(body_.skeleton(), chord_error);
   }
+  std::unique_ptr<medial::MovingMesh> hull() const override { return contour(kHullError * greatestRadius()); }
   std::size_t bytes() const noexcept override { return sizeof *this - sizeof body_ + body_.bytes(); }
 
   Description describe(const std::string& file) const override {

@@ -17,7 +17,6 @@ using medial::SkeletonFoot;
 constexpr double kShowPeriod = 1.0 / 60;  ///< [s] between two sets of displacements for drawing
 constexpr double kFinestMesh = 1e-6;      ///< [m] finer meshes are for files, not for drawing
 constexpr double kGapFactor = 1.5;        ///< so many ticks without a step: the body was left alone meanwhile
-constexpr double kHullError = 0.005;      ///< of the greatest radius: chord error of the contour whose volume is kept
 
 }  // namespace
 
@@ -59,7 +58,7 @@ void MatDeformable::activate(const hsp_activation& activation, hsp_report& repor
   hull_.reset();
   std::size_t volume_bytes = 0;
   if (volume_ == 1) {
-    hull_ = body_->contour(std::max(kHullError * body_->greatestRadius(), kFinestMesh));
+    hull_ = body_->hull();
     volume_keeper_.emplace(*hull_, body_->greatestRadius());
     volume_bytes = hull_->bytes() + volume_keeper_->bytes();
   }

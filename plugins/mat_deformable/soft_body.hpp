@@ -69,7 +69,9 @@ class SoftBody {
   virtual double greatestRadius() const noexcept = 0;                                 ///< [m]
   virtual double greatestStiffness() const noexcept = 0;                              ///< [N/m]
   virtual std::unique_ptr<medial::MovingMesh> contour(double chord_error) const = 0;  ///< [main]
-  virtual Description describe(const std::string& file) const = 0;                    ///< [main]
+  /// [main] Fine enough for the volume under it to be right to a thousandth.
+  virtual std::unique_ptr<medial::MovingMesh> hull() const = 0;
+  virtual Description describe(const std::string& file) const = 0;  ///< [main]
   virtual std::size_t bytes() const noexcept = 0;
 };
 
