@@ -91,6 +91,11 @@ void putBit(const Field& field, bool on, uint8_t* bytes) noexcept {
   putRaw(field, static_cast<double>(whole | uint64_t{1} << field.bit), bytes);
 }
 
+/// Yes or no, as a bit or as the field's value.
+void putFlag(const Field& field, bool on, uint8_t* bytes) noexcept {
+  return field.bit >= 0 ? putBit(field, on, bytes) : putRaw(field, on ? field.value : 0, bytes);
+}
+
 uint32_t checksumOf(const Field& field, const uint8_t* bytes) noexcept {
   uint32_t sum = field.method == Checksum::kCrc16 ? 0xffff : 0;
   for (size_t i = field.from; i < field.to; ++i) {
@@ -127,9 +132,16 @@ Verdict take(const Field& field, const uint8_t* bytes, State& state) noexcept {
     case Role::kButton:
       if (isSet(field, raw)) state.buttons |= 1u << field.index;
       break;
-    case Role::kSequence:
-      state.sequence = static_cast<uint32_t>(static_cast<int64_t>(raw));
+    case Role::kSequence: {
+      const auto sequence = static_cast<uint32_t>(static_cast<int64_t>(raw));
+      if (state.has_sequence && sequence != state.sequence) return Verdict::kTorn;
+      state.sequence = sequence;
       state.has_sequence = true;
+      break;
+    }
+    case Role::kStarts:
+      state.starts = static_cast<uint32_t>(static_cast<int64_t>(raw));
+      state.has_starts = true;
       break;
     case Role::kFault:
       state.fault = state.fault || isSet(field, raw);
@@ -145,6 +157,8 @@ Verdict take(const Field& field, const uint8_t* bytes, State& state) noexcept {
       return raw == static_cast<double>(checksumOf(field, bytes)) ? Verdict::kGood : Verdict::kCorrupt;
     case Role::kEnable:
     case Role::kCalibrate:
+    case Role::kReference:
+    case Role::kFollow:
       break;
   }
   return Verdict::kGood;
@@ -170,11 +184,14 @@ void put(const Field& field, const Order& order, uint8_t* bytes) noexcept {
     case Role::kConstant:
     case Role::kFirmware:
       return putRaw(field, field.value, bytes);
+    case Role::kReference:
+      return putRaw(field, clampRaw(field, order.position[field.index]), bytes);
+    case Role::kFollow:
+      return putFlag(field, order.enable && order.follow, bytes);
     case Role::kEnable:
-      return field.bit >= 0 ? putBit(field, order.enable, bytes) : putRaw(field, order.enable ? field.value : 0, bytes);
+      return putFlag(field, order.enable, bytes);
     case Role::kCalibrate:
-      return field.bit >= 0 ? putBit(field, order.calibrate, bytes)
-                            : putRaw(field, order.calibrate ? field.value : 0, bytes);
+      return putFlag(field, order.calibrate, bytes);
     default:
       return;
   }

@@ -31,7 +31,7 @@ enum class Role : uint8_t {
   kVelocity,    ///< in: rad/s or m/s
   kTorque,      ///< in: measured; out: wanted [N m or N]
   kButton,      ///< in: bit of button `index`
-  kSequence,    ///< in and out: counts reports
+  kSequence,    ///< in and out: counts reports; a second one, at the end, tells a half-written report
   kFault,       ///< in: bit, or any value but zero: the hardware reports a fault
   kCalibrated,  ///< in: positions are absolute
   kFirmware,    ///< in: must be `value`: the version that this description fits
@@ -39,6 +39,9 @@ enum class Role : uint8_t {
   kChecksum,    ///< over the bytes from `from` up to, but without, `to`
   kEnable,      ///< out: motors on
   kCalibrate,   ///< out: the arm shall find its zero
+  kReference,   ///< out: wanted position of joint `index` [rad or m]
+  kFollow,      ///< out: the joints shall go to their references
+  kStarts,      ///< in: counts how often the device started: another number means that it forgot everything
 };
 
 enum class Checksum : uint8_t { kSum8, kXor8, kCrc16 };
@@ -70,18 +73,19 @@ struct Report {
 /// What a report from the arm says.
 struct State {
   std::array<double, kMaxJoints> position{}, velocity{}, torque{};
-  uint32_t buttons = 0, sequence = 0;
-  bool has_sequence = false, fault = false, calibrated = false;
+  uint32_t buttons = 0, sequence = 0, starts = 0;
+  bool has_sequence = false, has_starts = false, fault = false, calibrated = false;
 };
 
 /// What a report to the arm says.
 struct Order {
-  std::array<double, kMaxJoints> torque{};  ///< [N m or N]; left out of the report while `enable` is false
-  bool enable = false, calibrate = false;
+  std::array<double, kMaxJoints> torque{};    ///< [N m or N]; left out of the report while `enable` is false
+  std::array<double, kMaxJoints> position{};  ///< [rad or m] references, obeyed while `follow` and `enable`
+  bool enable = false, calibrate = false, follow = false;
   uint32_t sequence = 0;
 };
 
-enum class Verdict : uint8_t { kGood, kWrongSize, kWrongId, kWrongFirmware, kCorrupt };
+enum class Verdict : uint8_t { kGood, kWrongSize, kWrongId, kWrongFirmware, kCorrupt, kTorn };
 
 /// Bytes that a number of this type takes.
 size_t sizeOf(Type type) noexcept;

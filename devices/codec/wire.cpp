@@ -1,5 +1,6 @@
 #include "codec/wire.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -24,7 +25,8 @@ constexpr Name<Role> kRoles[] = {
     {"position", Role::kPosition},     {"velocity", Role::kVelocity}, {"torque", Role::kTorque},
     {"button", Role::kButton},         {"sequence", Role::kSequence}, {"fault", Role::kFault},
     {"calibrated", Role::kCalibrated}, {"firmware", Role::kFirmware}, {"constant", Role::kConstant},
-    {"checksum", Role::kChecksum},     {"enable", Role::kEnable},     {"calibrate", Role::kCalibrate}};
+    {"checksum", Role::kChecksum},     {"enable", Role::kEnable},     {"calibrate", Role::kCalibrate},
+    {"reference", Role::kReference},   {"follow", Role::kFollow},     {"starts", Role::kStarts}};
 constexpr Name<Checksum> kMethods[] = {
     {"sum8", Checksum::kSum8}, {"xor8", Checksum::kXor8}, {"crc16", Checksum::kCrc16}};
 constexpr Name<bool> kOrders[] = {{"little", false}, {"big", true}};
@@ -42,7 +44,7 @@ T choiceOf(const Tree& tree, const Name<T> (&names)[N]) {
 }
 
 bool perJoint(Role role) {
-  return role == Role::kPosition || role == Role::kVelocity || role == Role::kTorque;
+  return role == Role::kPosition || role == Role::kVelocity || role == Role::kTorque || role == Role::kReference;
 }
 
 bool isInteger(Type type) {
@@ -53,8 +55,9 @@ void readTarget(const Tree& tree, size_t joints, bool input, Field& field) {
   const Tree is = tree.at("is");
   field.role = choiceOf(is, kRoles);
   const bool only_in = field.role == Role::kPosition || field.role == Role::kVelocity || field.role == Role::kButton ||
-                       field.role == Role::kFault || field.role == Role::kCalibrated;
-  const bool only_out = field.role == Role::kEnable || field.role == Role::kCalibrate;
+                       field.role == Role::kFault || field.role == Role::kCalibrated || field.role == Role::kStarts;
+  const bool only_out = field.role == Role::kEnable || field.role == Role::kCalibrate ||
+                        field.role == Role::kReference || field.role == Role::kFollow;
   if ((input && only_out) || (!input && only_in))
     is.fail("\"" + is.text() + "\" in an " + (input ? "input" : "output") + " report, expected it in the other one");
   if (perJoint(field.role))
@@ -108,7 +111,7 @@ Field readField(const Tree& tree, const Report& report, size_t joints, bool inpu
   if (perJoint(field.role)) readScale(tree, field);
   if (field.role == Role::kConstant || field.role == Role::kFirmware)
     field.value = tree.at("value").number(field.least, field.most);
-  if (field.role == Role::kEnable || field.role == Role::kCalibrate)
+  if (field.role == Role::kEnable || field.role == Role::kCalibrate || field.role == Role::kFollow)
     field.value = tree.has("value") ? tree.at("value").number(field.least, field.most) : 1;
   if (field.role == Role::kChecksum) {
     field.method = choiceOf(tree.at("method"), kMethods);
@@ -123,6 +126,20 @@ Field readField(const Tree& tree, const Report& report, size_t joints, bool inpu
   return field;
 }
 
+bool has(const Report& report, Role role) {
+  return std::any_of(report.fields.begin(), report.fields.end(), [&](const Field& f) { return f.role == role; });
+}
+
+/// One field of a role for each joint.
+void requireEach(const Tree& fields, const Report& report, size_t joints, Role role, const char* what) {
+  for (size_t joint = 0; joint < joints; ++joint) {
+    int found = 0;
+    for (const Field& field : report.fields) found += field.role == role && field.index == joint ? 1 : 0;
+    if (found != 1)
+      fields.fail(std::to_string(found) + what + " of joint " + std::to_string(joint + 1) + ", expected one");
+  }
+}
+
 Report readReport(const Tree& tree, size_t joints, bool input) {
   tree.only({"id", "size", "fields"});
   Report report;
@@ -130,14 +147,10 @@ Report readReport(const Tree& tree, size_t joints, bool input) {
   report.size = static_cast<size_t>(tree.at("size").whole(1, kMaxReportBytes - 1));
   const Tree fields = tree.at("fields");
   for (size_t i = 0; i < fields.count(); ++i) report.fields.push_back(readField(fields.item(i), report, joints, input));
-  for (size_t joint = 0; joint < joints; ++joint) {
-    int found = 0;
-    for (const Field& field : report.fields)
-      found += field.role == (input ? Role::kPosition : Role::kTorque) && field.index == joint ? 1 : 0;
-    if (found != 1)
-      fields.fail(std::to_string(found) + (input ? " positions" : " torques") + " of joint " +
-                  std::to_string(joint + 1) + ", expected one");
-  }
+  requireEach(fields, report, joints, input ? Role::kPosition : Role::kTorque, input ? " positions" : " torques");
+  if (has(report, Role::kReference)) requireEach(fields, report, joints, Role::kReference, " references");
+  if (has(report, Role::kReference) != has(report, Role::kFollow))
+    fields.fail("references and \"follow\" belong together, expected both or none");
   return report;
 }
 

@@ -1,4 +1,5 @@
-/// A device class for an arm on USB, whatever its transport: parameters, kinematics, samples, calibration.
+/// A device class for an arm behind a wire, whatever its transport (USB, VME): parameters, kinematics, samples,
+/// calibration.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -24,7 +25,7 @@ inline constexpr const char* kLoaders[] = {"none", "falcon"};
 
 /// What a device file may say.
 struct Parameters : MechanismParameters {
-  std::string id, serial, wire, instructions, firmware;
+  std::string id, serial, wire, instructions, firmware;  // id to interface, firmware and loader: USB alone
   int interface = -1, method = 0, loader = 0;
   std::vector<double> pose, max_torque;
   double max_force = 0, continuous_force = 0, max_stiffness = 0, mass = 0, damping = 0;
@@ -35,14 +36,17 @@ struct Parameters : MechanismParameters {
 template <class T>
 struct ParameterTable {
   using F = Fields<T>;
-  static constexpr auto device() {
+  static constexpr auto usb() {
     return std::array{
         F::text("usb.id", &T::id, "", "Vendor and product id, hexadecimal, \"1234:0006\".", HSP_P_REQUIRED),
         F::text("usb.serial", &T::serial, "", "Serial number; left out: the first such device that is free."),
         F::integer("usb.interface", &T::interface, "", -1, 255, -1, "USB interface; -1: any (HID), 0 (bulk)."),
-        F::data("wire", &T::wire, nullptr, "Reports, framing, start-up and timing: see devices.md.", HSP_P_REQUIRED),
         F::choice("loader", &T::loader, kLoaders, 0, "How firmware gets into the device; falcon: Novint's protocol."),
-        F::path("firmware", &T::firmware, "Firmware image for the loader; not shipped."),
+        F::path("firmware", &T::firmware, "Firmware image for the loader; not shipped.")};
+  }
+  static constexpr auto device() {
+    return std::array{
+        F::data("wire", &T::wire, nullptr, "Reports, framing, start-up and timing: see devices.md.", HSP_P_REQUIRED),
         F::choice("calibration.method", &T::method, kMethods, 0,
                   "none: absolute encoders; device: it finds its zero and says so; pose: held in a known pose."),
         F::array("calibration.pose", &T::pose, "rad", 1, 0, 16, -100, 100, "[]", "pose: joint positions there."),
@@ -69,6 +73,12 @@ struct ParameterTable {
         F::array("arm.angles", &T::angles, "rad", 1, 0, 3, -10, 10, "[]", "delta: where the three arms stand."),
         F::array("arm.dh", &T::dh, "m, rad, m, rad", 4, 0, 64, -10, 10, "[]",
                  "chain: a row a, alpha, d, theta a joint (standard Denavit-Hartenberg)."),
+        F::array("arm.centers", &T::centers, "m", 3, 0, 48, -10, 10, "[]",
+                 "chain: centre of mass of each link, in the frame after its joint."),
+        F::vector3("arm.tool_position", &T::tool_position, "m", -10, 10, "[0, 0, 0]",
+                   "chain: the tip in the frame of the last link."),
+        F::integer("arm.others", &T::others, "", 0, 8, 0,
+                   "chain: joints after those of arm.dh that do not carry the tip, such as a thumb's."),
         F::array("arm.limits", &T::limits, "rad", 2, 0, 32, -100, 100, "[]",
                  "A row least, greatest position a joint; left out: the mechanism's own."),
         F::array("arm.max_torque", &T::max_torque, "N m", 1, 1, 16, 0, 1000, "", "Largest torque of each joint.",
@@ -97,7 +107,7 @@ inline Address addressOf(const Parameters& p) {
   return address;
 }
 
-/// T adds kInfo, fields() and `std::unique_ptr<Transport> makeTransport() const`.
+/// T adds kInfo, fields() and `std::unique_ptr<Transport> makeTransport() const`, and may hide address().
 template <class T>
 class Arm : public Device, public Parameters {
  public:
@@ -109,7 +119,7 @@ class Arm : public Device, public Parameters {
     session.health.stale = stale, session.health.least_rate = least_rate, session.health.recovery = recovery;
     session.health.ramp = ramp, session.health.max_speed = max_speed;
     LinkSettings settings;
-    settings.address = addressOf(*this);
+    settings.address = static_cast<const T*>(this)->address();
     settings.session = session;
     settings.log = [this](int level, const std::string& text) {
       if (host() != nullptr && host()->log != nullptr) host()->log(host(), level, text.c_str());
@@ -140,7 +150,7 @@ class Arm : public Device, public Parameters {
                (torque_ ? uint32_t{HDV_S_TORQUE} : 0u);
     // Silence is judged by the host, which sees no new sequence number; the motors are off by then, and come back in a
     // ramp if it was short.
-    if (sample_.trouble == Trouble::kUnplugged)
+    if (sample_.trouble == Trouble::kUnplugged || sample_.trouble == Trouble::kAbsent)
       to.flags |= HDV_S_LOST;
     else if (sample_.trouble != Trouble::kNone && sample_.trouble != Trouble::kStale)
       to.flags |= HDV_S_FAULT;
@@ -156,12 +166,16 @@ class Arm : public Device, public Parameters {
   hsp_status write(uint64_t now_ns, const hdv_command& command) noexcept HSP_RT {
     wish_.time = now_ns;
     ++wish_.sequence;
-    wish_.on = command.mode == HDV_TORQUE;
+    wish_.follow = command.mode == HDV_POSITION && follows_;
+    wish_.on = command.mode == HDV_TORQUE || wish_.follow;
     const size_t count = joints_;
     for (size_t i = 0; i < count; ++i) {
       const double most = limit_[i], asked = command.torque[i];
       if (!std::isfinite(asked)) wish_.on = false;
       wish_.torque[i] = std::clamp(std::isfinite(asked) ? asked : 0.0, -most, most);
+      if (!wish_.follow) continue;
+      if (!std::isfinite(command.position[i])) wish_.on = false;
+      wish_.position[i] = wish_.on ? std::clamp(command.position[i], least_[i], most_[i]) : 0.0;
     }
     link_->write(wish_);
     return HSP_OK;
@@ -171,6 +185,9 @@ class Arm : public Device, public Parameters {
     if (link_) link_->stop();
   }
   void close() { link_.reset(); }
+
+  /// Of a device on USB; a class of another bus hides it.
+  Address address() const { return addressOf(*this); }
 
   const kinematics::Arm& kinematics() const { return *arm_; }
   const void* extension(const char* name) {
@@ -191,6 +208,9 @@ class Arm : public Device, public Parameters {
     return nullptr;
   }
 
+ protected:
+  const codec::Wire& format() const { return wire_; }  ///< once the parameters were read
+
  private:
   size_t joints() const { return static_cast<size_t>(arm_->jointCount()); }
 
@@ -199,7 +219,7 @@ class Arm : public Device, public Parameters {
     arm_ = makeMechanism(*this);
     joints_ = joints();
     wire_ = codec::readWire(wire, joints_);
-    (void)addressOf(*this);
+    (void)static_cast<const T*>(this)->address();
     if (max_torque.size() != joints_ && max_torque.size() != 1)
       throw std::invalid_argument("arm.max_torque: " + std::to_string(max_torque.size()) + " numbers, expected 1 or " +
                                   std::to_string(joints_) + ", one a joint");
@@ -207,7 +227,9 @@ class Arm : public Device, public Parameters {
     if (method == static_cast<int>(Calibration::kPose) && pose.size() != joints_)
       throw std::invalid_argument("calibration.pose: " + std::to_string(pose.size()) + " numbers, expected " +
                                   std::to_string(joints_) + ", one a joint");
-    velocity_ = torque_ = false;
+    velocity_ = torque_ = follows_ = false;
+    for (const codec::Field& field : wire_.output.fields) follows_ = follows_ || field.role == codec::Role::kFollow;
+    takeLimits();
     bool says_calibrated = false;
     for (const codec::Field& field : wire_.input.fields) {
       velocity_ = velocity_ || field.role == codec::Role::kVelocity;
@@ -223,10 +245,20 @@ class Arm : public Device, public Parameters {
     }
   }
 
+  void takeLimits() {
+    for (size_t i = 0; i < joints_; ++i) {
+      const auto joint = static_cast<Eigen::Index>(i);
+      const bool given = limits.size() == 2 * joints_;
+      least_[i] = given ? limits[2 * i] : arm_->limits().min[joint];
+      most_[i] = given ? limits[2 * i + 1] : arm_->limits().max[joint];
+    }
+  }
+
   void describe(hdv_info& info, const Identity& identity) const {
     info.joint_count = static_cast<uint32_t>(joints_);
     info.capabilities = HDV_C_PACING | (velocity_ ? uint32_t{HDV_C_VELOCITY} : 0u) |
-                        (torque_ ? uint32_t{HDV_C_TORQUE} : 0u) | (wire_.watchdog > 0 ? uint32_t{HDV_C_WATCHDOG} : 0u) |
+                        (torque_ ? uint32_t{HDV_C_TORQUE} : 0u) | (follows_ ? uint32_t{HDV_C_POSITION} : 0u) |
+                        (wire_.watchdog > 0 ? uint32_t{HDV_C_WATCHDOG} : 0u) |
                         (method != 0 ? uint32_t{HDV_C_CALIBRATION} : 0u) | (verified ? 0u : uint32_t{HDV_C_UNVERIFIED});
     info.rate_hz = wire_.rate;
     info.max_force = max_force, info.continuous_force = continuous_force, info.max_stiffness = max_stiffness;
@@ -236,8 +268,8 @@ class Arm : public Device, public Parameters {
     for (size_t i = 0; i < joints_; ++i) {
       const auto joint = static_cast<Eigen::Index>(i);
       info.max_torque[i] = limit_[i];
-      info.position_min[i] = limits.size() == 2 * joints_ ? limits[2 * i] : arm_->limits().min[joint];
-      info.position_max[i] = limits.size() == 2 * joints_ ? limits[2 * i + 1] : arm_->limits().max[joint];
+      info.position_min[i] = least_[i];
+      info.position_max[i] = most_[i];
       for (const codec::Field& field : wire_.input.fields)
         if (has_jacobian && field.role == codec::Role::kPosition && field.index == i)
           info.resolution_m = std::max(info.resolution_m, std::abs(field.scale) * J.col(joint).head<3>().norm());
@@ -264,7 +296,7 @@ class Arm : public Device, public Parameters {
     std::copy(pose.begin(), pose.end(), at.begin());
     auto offset = link_->calibrateAt(at);
     if (!offset) return detail::logError(host(), offset.error()), HSP_E_IO;
-    auto stored = storeZero(stateFolder(), addressOf(*this), link_->identity(), *offset, joints_);
+    auto stored = storeZero(stateFolder(), static_cast<const T*>(this)->address(), link_->identity(), *offset, joints_);
     if (!stored) detail::logError(host(), stored.error());
     return stored ? HSP_OK : HSP_E_IO;
   }
@@ -293,9 +325,9 @@ class Arm : public Device, public Parameters {
   hdv_ext_calibration calibration_{};
   Sample sample_;
   Wish wish_;
-  JointArray limit_{};
+  JointArray limit_{}, least_{}, most_{};
   size_t joints_ = 0;
-  bool velocity_ = false, torque_ = false;
+  bool velocity_ = false, torque_ = false, follows_ = false;
 };
 
 }  // namespace hapticd::usb

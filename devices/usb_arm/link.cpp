@@ -23,6 +23,7 @@ Nanoseconds nanoseconds(double seconds) {
 
 Trouble troubleOf(Status status) {
   if (status == Status::kStalled) return Trouble::kStalled;
+  if (status == Status::kAbsent) return Trouble::kAbsent;
   return status == Status::kGone ? Trouble::kUnplugged : Trouble::kBusError;
 }
 
@@ -94,7 +95,7 @@ Result<void> Link::perform(const codec::StartStep& step) {
 Result<void> Link::start() {
   if (!open_) return Error{"is not open"};
   stop_ = false;
-  if (const auto code = thread_.start("hapticd-usb", [this] { run(); }))
+  if (const auto code = thread_.start("hapticd-io", [this] { run(); }))
     return Error{"cannot start its I/O thread: " + code.message()};
   const Nanoseconds until = monotonicNow() + kFirstReport;
   while (monotonicNow() < until) {

@@ -5,6 +5,7 @@
 
 #include "kinematics/chain.hpp"
 #include "kinematics/delta.hpp"
+#include "kinematics/passengers.hpp"
 #include "kinematics/phantom.hpp"
 
 namespace hapticd::usb {
@@ -53,22 +54,38 @@ std::unique_ptr<kinematics::Arm> delta(const MechanismParameters& p) {
   return std::make_unique<kinematics::Delta>(g);
 }
 
+void needRows(const std::vector<double>& list, size_t columns, size_t rows, const char* id, const char* why) {
+  if (list.empty() || list.size() == columns * rows) return;
+  throw std::invalid_argument(std::string(id) + ": " + std::to_string(list.size() / columns) + " rows, expected " +
+                              std::to_string(rows) + ", " + why);
+}
+
 std::unique_ptr<kinematics::Arm> chain(const MechanismParameters& p) {
   kinematics::ChainGeometry g;
   g.base = baseOf(p);
-  const size_t count = p.dh.size() / 4;
+  g.tool.position = Vector3d(p.tool_position[0], p.tool_position[1], p.tool_position[2]);
+  const size_t count = p.dh.size() / 4, all = count + static_cast<size_t>(p.others);
   if (count == 0) throw std::invalid_argument("arm.dh is empty, expected a row a, alpha, d, theta a joint");
-  if (!p.limits.empty() && p.limits.size() != 2 * count)
-    throw std::invalid_argument("arm.limits: " + std::to_string(p.limits.size() / 2) + " rows, expected " +
-                                std::to_string(count) + ", one a row of arm.dh");
+  needRows(p.limits, 2, all, "arm.limits", "one a row of arm.dh and one each of arm.others");
+  needRows(p.masses, 1, count, "arm.masses", "one a row of arm.dh");
+  needRows(p.centers, 3, count, "arm.centers", "one a row of arm.dh");
   for (size_t i = 0; i < count; ++i) {
     kinematics::ChainLink link;
     link.a = p.dh[4 * i], link.alpha = p.dh[4 * i + 1], link.d = p.dh[4 * i + 2], link.theta = p.dh[4 * i + 3];
     if (!p.limits.empty()) link.min = p.limits[2 * i], link.max = p.limits[2 * i + 1];
-    if (p.masses.size() == count) link.mass = p.masses[i];
+    if (!p.masses.empty()) link.mass = p.masses[i];
+    if (!p.centers.empty()) link.center = Vector3d(p.centers[3 * i], p.centers[3 * i + 1], p.centers[3 * i + 2]);
     g.links.push_back(link);
   }
-  return std::make_unique<kinematics::Chain>(g);
+  auto arm = std::make_unique<kinematics::Chain>(g);
+  if (p.others == 0) return arm;
+  kinematics::JointLimits others{kinematics::JointVector::Constant(p.others, -M_PI),
+                                 kinematics::JointVector::Constant(p.others, M_PI)};
+  for (size_t i = count; i < all && !p.limits.empty(); ++i) {
+    others.min[static_cast<int>(i - count)] = p.limits[2 * i];
+    others.max[static_cast<int>(i - count)] = p.limits[2 * i + 1];
+  }
+  return std::make_unique<kinematics::Passengers>(std::move(arm), others);
 }
 
 }  // namespace

@@ -12,8 +12,9 @@ enum class Kind { kPhantom, kDelta, kChain };
 
 struct MechanismParameters {
   int kind = 0;
-  std::array<double, 3> origin{};
-  std::vector<double> base_orientation, lengths, masses, angles, dh, limits;
+  int others = 0;
+  std::array<double, 3> origin{}, tool_position{};
+  std::vector<double> base_orientation, lengths, masses, centers, angles, dh, limits;
 };
 
 /// [main] Throws std::invalid_argument with a message for the user.

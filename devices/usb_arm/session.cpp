@@ -21,7 +21,7 @@ const char* describe(Trouble trouble) {
     case Trouble::kStalled:
       return "stalled endpoint; the device is reopened, unplug it if this stays";
     case Trouble::kBusError:
-      return "failing transfers; look at cable and hub";
+      return "failing transfers; look at cable, hub or rack";
     case Trouble::kFirmware:
       return "wrong firmware; the device file describes another version";
     case Trouble::kShort:
@@ -36,6 +36,12 @@ const char* describe(Trouble trouble) {
       return "an encoder jumped; calibrate again";
     case Trouble::kHardware:
       return "a fault reported by the hardware; switch it off and on";
+    case Trouble::kAbsent:
+      return "nobody answers on the bus; switch the rack on, or correct the address in the device file";
+    case Trouble::kTorn:
+      return "reports that are never whole; the board stopped while it wrote one: reset it";
+    case Trouble::kReset:
+      return "the board started anew; see why, and let it find its zero";
   }
   return "unknown trouble";
 }
@@ -95,6 +101,7 @@ bool Session::take(Nanoseconds now, std::span<const uint8_t> bytes) noexcept {
   }
   if (verdict == codec::Verdict::kWrongId) return false;  // another report of the same device
   if (verdict != codec::Verdict::kGood) return reject(verdict), false;
+  if (startedAnew(now)) have_raw_ = false;
   if (state_.has_sequence && have_raw_ && state_.sequence == last_sequence_) return false;  // the same one again
   last_sequence_ = state_.sequence;
   if (!follow(now, state_)) return true;
@@ -113,6 +120,17 @@ bool Session::take(Nanoseconds now, std::span<const uint8_t> bytes) noexcept {
 void Session::recover(Nanoseconds now) noexcept {
   if (sample_.trouble == Trouble::kJump) return;
   if (sample_.sequence == 0 || seconds(trouble_at_, now) >= settings_.health.recovery) sample_.trouble = Trouble::kNone;
+}
+
+/// A board that starts anew counts from elsewhere: what was known of its joints is void.
+bool Session::startedAnew(Nanoseconds now) noexcept {
+  const bool anew = state_.has_starts && have_raw_ && state_.starts != last_starts_;
+  last_starts_ = state_.starts;
+  if (!anew) return false;
+  turns_ = {};
+  calibrated_ = false;
+  raise(now, Trouble::kReset);
+  return true;
 }
 
 /// Unwraps positions. False: one of them jumped.
@@ -172,6 +190,7 @@ bool Session::watch(Nanoseconds now) noexcept {
     Trouble found = Trouble::kStale;
     if (last_bad_ == codec::Verdict::kWrongSize) found = Trouble::kShort;
     if (last_bad_ == codec::Verdict::kCorrupt) found = Trouble::kCorrupt;
+    if (last_bad_ == codec::Verdict::kTorn) found = Trouble::kTorn;
     const bool named = before == Trouble::kHardware || before == Trouble::kJump;
     raise(now, named ? before : found);
   } else if (tooSlow(now) && (before == Trouble::kNone || before == Trouble::kSlow)) {
@@ -196,7 +215,12 @@ size_t Session::command(Nanoseconds now, const Wish& wish, std::span<uint8_t> by
   const double part = gain(now, healthy && fresh);
   codec::Order order;
   order.enable = healthy && fresh && wish.on;
-  for (size_t i = 0; i < settings_.joints; ++i) order.torque[i] = part * wish.torque[i];
+  order.follow = wish.follow;
+  for (size_t i = 0; i < settings_.joints; ++i) {
+    order.torque[i] = part * wish.torque[i];
+    // From where the joint is: the arm's own loop comes in as softly as a torque does.
+    order.position[i] = raw_[i] + part * (wish.position[i] - zero_[i] - raw_[i]);
+  }
   order.calibrate = calibrate_;
   order.sequence = ++sent_;
   return codec::encode(wire_.output, order, bytes);

@@ -52,9 +52,9 @@ struct Sample {
 /// What the servo writes.
 struct Wish {
   Nanoseconds time = 0;
-  uint64_t sequence = 0;  ///< grows with every write
-  bool on = false;
-  JointArray torque{};
+  uint64_t sequence = 0;            ///< grows with every write
+  bool on = false, follow = false;  ///< follow: positions are references, beside the torques
+  JointArray torque{}, position{};
 };
 
 class Session {
@@ -93,6 +93,7 @@ class Session {
   bool tooSlow(Nanoseconds now) noexcept;
   void raise(Nanoseconds now, Trouble trouble) noexcept;
   void publish(Nanoseconds now, const codec::State& state) noexcept;
+  bool startedAnew(Nanoseconds now) noexcept;
 
   codec::Wire wire_;
   SessionSettings settings_;
@@ -103,7 +104,7 @@ class Session {
   std::array<Nanoseconds, kRateWindow> arrivals_{};
   uint64_t reports_ = 0, bad_reports_ = 0;
   Nanoseconds good_at_ = 0, trouble_at_ = 0, healthy_at_ = 0;
-  uint32_t last_sequence_ = 0, sent_ = 0;
+  uint32_t last_sequence_ = 0, last_starts_ = 0, sent_ = 0;
   bool attached_ = false, have_raw_ = false, calibrated_ = false, calibrate_ = false;
   codec::Verdict last_bad_ = codec::Verdict::kGood;
 };

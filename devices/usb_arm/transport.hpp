@@ -15,6 +15,7 @@ enum class Status : uint8_t {
   kNothing,  ///< nothing came within the time given
   kGone,     ///< unplugged
   kStalled,  ///< the endpoint refuses
+  kAbsent,   ///< a bus without plugs: nobody answers at the address
   kFailed,   ///< another error of the bus: unplugging often begins with some
 };
 

@@ -16,6 +16,9 @@ enum class Trouble : uint8_t {
   kSlow,       ///< fewer reports than the device file says
   kJump,       ///< a joint moved further than any hand moves it
   kHardware,   ///< the device reports a fault
+  kAbsent,     ///< nobody answers on the bus
+  kTorn,       ///< reports that are never whole
+  kReset,      ///< the device started anew and forgot where it was
 };
 
 /// Words for a trouble: what failed and what cures it.

@@ -9,7 +9,9 @@ class HidArm final : public Arm<HidArm> {
  public:
   static constexpr DeviceInfo kInfo = {"org.hapticd.device.usb_hid", "usb_hid", "0.1.0", "MIT",
                                        "An arm on USB that speaks HID reports; its device file says which."};
-  static constexpr auto fields() { return join(ParameterTable<HidArm>::device(), ParameterTable<HidArm>::arm()); }
+  static constexpr auto fields() {
+    return join(ParameterTable<HidArm>::usb(), ParameterTable<HidArm>::device(), ParameterTable<HidArm>::arm());
+  }
   std::unique_ptr<Transport> makeTransport() const { return makeHidTransport(); }
 };
 

@@ -26,4 +26,10 @@ inline std::string wireOf(const std::string& file) {
   return toJson(YAML::LoadFile(file)["parameters"]["wire"]).dump();
 }
 
+/// Joints of the arm of a device file that has a wire format: of its chain, or three.
+inline size_t jointsOf(const std::string& file) {
+  const YAML::Node arm = YAML::LoadFile(file)["parameters"]["arm"];
+  return arm["dh"] ? arm["dh"].size() + arm["others"].as<size_t>(0) : 3;
+}
+
 }  // namespace hapticd::emulator

@@ -37,8 +37,11 @@ std::vector<uint8_t> mutated(hapticd::codec::Report report, uint32_t sequence, s
 
 /// @return 0 if all went well
 int run(const std::filesystem::path& file, long reports) {
-  const auto wire = hapticd::codec::readWire(hapticd::emulator::wireOf(file), 3);
-  hapticd::usb::Session session(wire, {});
+  const size_t joints = hapticd::emulator::jointsOf(file);
+  const auto wire = hapticd::codec::readWire(hapticd::emulator::wireOf(file), joints);
+  hapticd::usb::SessionSettings settings;
+  settings.joints = joints;
+  hapticd::usb::Session session(wire, settings);
   std::mt19937_64 random(1);
   Nanoseconds now = 1;
   session.attach(now, {}, true);
@@ -52,6 +55,8 @@ int run(const std::filesystem::path& file, long reports) {
     hapticd::usb::Wish wish;
     wish.time = now, wish.sequence = 1, wish.on = true;
     wish.torque.fill(random() % 16 == 0 ? std::nan("") : 1.0);
+    wish.follow = random() % 2 == 0;
+    wish.position.fill(random() % 16 == 0 ? std::nan("") : 1.0);
     std::array<uint8_t, hapticd::codec::kMaxReportBytes + 1> out;
     if (session.command(now, wish, out) != wire.output.bytes()) return std::printf("%s: no command\n", file.c_str());
     for (const double position : session.sample().position)

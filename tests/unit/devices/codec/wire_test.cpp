@@ -67,7 +67,7 @@ TEST(Wire, EveryShippedDescriptionIsRight) {
     const YAML::Node file = YAML::LoadFile(entry.path());
     if (!file["parameters"]["wire"]) continue;
     ++found;
-    EXPECT_NO_THROW(readWire(emulator::wireOf(entry.path()), 3)) << entry.path();
+    EXPECT_NO_THROW(readWire(emulator::wireOf(entry.path()), emulator::jointsOf(entry.path()))) << entry.path();
   }
   EXPECT_GE(found, 5);
 }

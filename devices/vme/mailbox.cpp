@@ -1,0 +1,126 @@
+#include "vme/mailbox.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace hapticd::vme {
+namespace {
+
+using usb::Status;
+constexpr int kTries = 3;  ///< to read a block while the board writes it
+
+/// What a bus answers where nobody does: all lines stay high, and vme_user reports no error.
+bool nobody(std::span<const uint8_t> bytes) noexcept {
+  return std::all_of(bytes.begin(), bytes.end(), [](uint8_t byte) { return byte == 0xff; });
+}
+
+}  // namespace
+
+Result<void> check(const MailboxPlace& place, const codec::Wire& wire) {
+  if (auto fits = check(place.window); !fits) return fits;
+  const uint64_t in = wire.input.size, out = wire.output.size, width = place.window.width;
+  const auto outside = [&](uint64_t at, uint64_t bytes) {
+    return at > place.window.size || bytes > place.window.size - at;
+  };
+  if (outside(place.state, in) || outside(place.command, out))
+    return Error{"vme.state, vme.command: the blocks end beyond the window's " + std::to_string(place.window.size) +
+                 " bytes, expected them inside"};
+  if (place.state < place.command + out && place.command < place.state + in)
+    return Error{"vme.command: the block of " + std::to_string(out) + " bytes lies in the state block of " +
+                 std::to_string(in) + ", expected them apart"};
+  if (place.state % width != 0 || place.command % width != 0 || in % width != 0 || out % width != 0)
+    return Error{"vme.state, vme.command: an offset or size is no multiple of " + std::to_string(width) +
+                 " bytes, expected whole words of vme.width"};
+  if (wire.framing.used || wire.input.id >= 0 || wire.output.id >= 0 || !wire.startup.empty())
+    return Error{"wire: framing, startup or a report id, expected none of them on a bus"};
+  return {};
+}
+
+void Mailbox::findNumbers(const codec::Report& report) {
+  first_ = last_ = {};
+  for (const codec::Field& field : report.fields) {
+    if (field.role != codec::Role::kSequence) continue;
+    const Number number{field.at, codec::sizeOf(field.type)};
+    if (first_.bytes == 0 || number.at < first_.at) first_ = number;
+    if (last_.bytes == 0 || number.at > last_.at) last_ = number;
+  }
+  if (first_.bytes != last_.bytes) first_ = last_;  // the codec compares them then
+  block_bytes_ = report.size;
+}
+
+Result<usb::Identity> Mailbox::open(const usb::Address&, const codec::Wire& wire) {
+  if (auto opened = window_.open(place_.window); !opened) return Error{opened.error()};
+  findNumbers(wire.input);
+  std::array<uint8_t, codec::kMaxReportBytes> block{};
+  const long got = window_.read(place_.state, {block.data(), block_bytes_});
+  const std::string where = describe(place_.window);
+  std::string wrong;
+  if (got < 0) wrong = "cannot be read: " + std::string(std::strerror(errno));
+  if (got == 0) wrong = "is not there: its window reads nothing";
+  if (got > 0 && got < static_cast<long>(block_bytes_)) wrong = "ends after " + std::to_string(got) + " bytes";
+  if (got == static_cast<long>(block_bytes_) && nobody({block.data(), block_bytes_}))
+    wrong = "reads ff everywhere: nobody answers on the bus";
+  if (!wrong.empty()) {
+    window_.close();
+    return Error{
+        "the mailbox at " + where + " " + wrong +
+        "\n  the arm stays off\n  fix: switch the rack and its controller board on, or correct the vme keys of "
+        "the device file"};
+  }
+  // What stands there now may be what a board left behind when it died: only a newer block counts.
+  std::memcpy(seen_.data(), block.data() + last_.at, last_.bytes);
+  have_seen_ = last_.bytes > 0;
+  usb::Identity identity;
+  identity.product =
+      window_.isFile() ? "controller board, in a plain file instead of a bus" : "controller board, " + where;
+  identity.serial =
+      place_.window.node.substr(place_.window.node.find_last_of('/') + 1) + "-" + where.substr(0, where.find(" ("));
+  std::replace(identity.serial.begin(), identity.serial.end(), ' ', '-');
+  identity.epoch = "since the boot";
+  return identity;
+}
+
+Status Mailbox::receive(std::span<uint8_t> to, size_t& size, Nanoseconds wait) noexcept {
+  size = 0;
+  if (to.size() < block_bytes_) return Status::kFailed;
+  if (wait > 0) {
+    RealClock clock(0);
+    const Nanoseconds now = clock.now();
+    clock.waitUntil(std::min(now + wait, std::max(now, looked_at_ + place_.poll)));
+  }
+  looked_at_ = monotonicNow();
+  const Status status = look(to.first(block_bytes_));
+  if (status == Status::kOk) size = block_bytes_;
+  return status;
+}
+
+Status Mailbox::look(std::span<uint8_t> block) noexcept {
+  if (last_.bytes == 0) return take(block);
+  std::array<uint8_t, 8> number{};
+  const std::span<uint8_t> last(number.data(), last_.bytes);
+  for (int attempt = 0; attempt < kTries; ++attempt) {
+    if (window_.read(place_.state + last_.at, last) != static_cast<long>(last.size())) return Status::kFailed;
+    if (have_seen_ && !nobody(last) && std::memcmp(last.data(), seen_.data(), last.size()) == 0)
+      return Status::kNothing;
+    if (const Status status = take(block); status != Status::kOk) return status;
+    const bool whole = std::memcmp(block.data() + first_.at, last.data(), last.size()) == 0 &&
+                       std::memcmp(block.data() + last_.at, last.data(), last.size()) == 0;
+    if (!whole) continue;
+    const bool old = have_seen_ && std::memcmp(last.data(), seen_.data(), last.size()) == 0;
+    seen_ = number;
+    have_seen_ = true;
+    return old ? Status::kNothing : Status::kOk;
+  }
+  return Status::kOk;  // half a block: the codec sees that its numbers differ, and the session gives it a name
+}
+
+Status Mailbox::take(std::span<uint8_t> block) noexcept {
+  if (window_.read(place_.state, block) != static_cast<long>(block.size())) return Status::kFailed;
+  return nobody(block) ? Status::kAbsent : Status::kOk;
+}
+
+Status Mailbox::send(std::span<const uint8_t> bytes) noexcept {
+  return window_.write(place_.command, bytes) == static_cast<long>(bytes.size()) ? Status::kOk : Status::kFailed;
+}
+
+}  // namespace hapticd::vme

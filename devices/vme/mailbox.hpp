@@ -1,0 +1,50 @@
+/// The mailbox that the host and an arm controller board share: two blocks in a window of the bus. Nothing locks it.
+/// Who writes a block writes its last sequence number last; who reads takes the last number first, then the block, and
+/// the block is whole if its first number is the same.
+#pragma once
+#include <array>
+
+#include "usb_arm/transport.hpp"
+#include "vme/window.hpp"
+
+namespace hapticd::vme {
+
+struct MailboxPlace {
+  Place window;
+  uint64_t state = 0, command = 0x100;  ///< offsets of the blocks: board to host, host to board
+  Nanoseconds poll = 100'000;           ///< between two looks at the state block
+};
+
+/// Looks for new blocks by polling: no interrupt of the bus reaches a program through vme_user.
+class Mailbox final : public usb::Transport {
+ public:
+  explicit Mailbox(const MailboxPlace& place) : place_(place) {}
+
+  Result<usb::Identity> open(const usb::Address& address, const codec::Wire& wire) override;
+  void close() noexcept override { window_.close(); }
+  /// Waits for the next look at most, so that a command never waits for a state.
+  usb::Status receive(std::span<uint8_t> to, size_t& size, Nanoseconds wait) noexcept override;
+  usb::Status send(std::span<const uint8_t> bytes) noexcept override;
+  usb::Status control(const codec::StartStep&) noexcept override { return usb::Status::kFailed; }
+
+ private:
+  struct Number {
+    size_t at = 0, bytes = 0;  ///< of a sequence number inside the state block; no bytes: there is none
+  };
+  void findNumbers(const codec::Report& report);
+  usb::Status look(std::span<uint8_t> block) noexcept;
+  usb::Status take(std::span<uint8_t> block) noexcept;
+
+  MailboxPlace place_;
+  Window window_;
+  Number first_, last_;
+  size_t block_bytes_ = 0;
+  std::array<uint8_t, 8> seen_{};  ///< the last number of the newest whole block
+  bool have_seen_ = false;
+  Nanoseconds looked_at_ = 0;
+};
+
+/// [main] Nothing, or why the blocks cannot be in the window.
+Result<void> check(const MailboxPlace& place, const codec::Wire& wire);
+
+}  // namespace hapticd::vme

@@ -1,0 +1,120 @@
+/// Runs an arm controller board on a slave window of a VME bus, or on a plain file that stands in for it.
+///
+///   vme_board WINDOW --arm FILE [--plugin-path DIR] [--rate HZ] [--for S] [--fault NAME --at S --lasts S]
+///
+/// WINDOW: /dev/bus/vme/s0, or a file, which is made. FILE: a simulated arm of eight joints with its hand, such as
+/// config/devices/simulated-sarcos.yaml. NAME: silent, torn, corrupt, protocol, hydraulics, jump, half-rate, absent,
+/// restart. Says "ready" once its first state block is written, and at the end how many commands came.
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+#include <map>
+
+#include "base/clock.hpp"
+#include "base/os.hpp"
+#include "emulators/vme/vme_board.hpp"
+#include "vme/vme_user.hpp"
+
+namespace hapticd::emulator {
+namespace {
+
+constexpr off_t kState = 0, kCommand = 0x100;
+constexpr uint64_t kBase = 0x100000, kSize = 0x10000;  // as config/devices/sarcos.yaml has them
+volatile std::sig_atomic_t g_stop = 0;
+
+struct Options {
+  std::string window, arm, fault;
+  std::vector<std::string> modules;
+  double rate = 1500, duration = 1e9, at = 1, lasts = 0.5;
+};
+
+const std::map<std::string, VmeFault> kFaults = {{"silent", VmeFault::kSilent},   {"torn", VmeFault::kTorn},
+                                                 {"corrupt", VmeFault::kCorrupt}, {"protocol", VmeFault::kProtocol},
+                                                 {"jump", VmeFault::kJump},       {"half-rate", VmeFault::kHalfRate},
+                                                 {"absent", VmeFault::kAbsent},   {"hydraulics", VmeFault::kHydraulics},
+                                                 {"restart", VmeFault::kNone}};
+
+int openWindow(const std::string& path) {
+  const int fd = open(path.c_str(), O_RDWR | O_CLOEXEC | (path.rfind("/dev/", 0) == 0 ? 0 : O_CREAT), 0600);
+  struct stat about {};
+  if (fd < 0 || fstat(fd, &about) != 0) return -1;
+  if (S_ISREG(about.st_mode)) return ftruncate(fd, kSize) == 0 ? fd : -1;
+  vme::PackedSlave slave{1, kBase, kSize, vme::kA24, vme::kSingle | vme::kUser | vme::kData};
+  return ioctl(fd, vme::kSetSlave, &slave) == 0 ? fd : -1;
+}
+
+bool writeState(int fd, const VmeBlock& state) {
+  // The last number is the word that says that the rest is whole.
+  constexpr size_t kBody = kVmeBlock - 2;
+  return pwrite(fd, state.data(), kBody, kState) == static_cast<ssize_t>(kBody) &&
+         pwrite(fd, state.data() + kBody, 2, kState + static_cast<off_t>(kBody)) == 2;
+}
+
+int serve(int fd, VmeBoard& board, const Options& options) {
+  RealClock clock(0);
+  const Nanoseconds start = clock.now(), period = static_cast<Nanoseconds>(1e9 / options.rate);
+  const auto at = [&](double s) { return start + static_cast<Nanoseconds>(s * 1e9); };
+  VmeBlock command{}, state{};
+  (void)!pwrite(fd, command.data(), command.size(), kCommand);
+  uint64_t pushed = 0, cycles = 0, longest = 0;
+  bool restarted = false;
+  Nanoseconds before = start;
+  for (Nanoseconds due = start + period; g_stop == 0 && due < at(options.duration); due += period) {
+    const Nanoseconds now = clock.waitUntil(due);
+    const bool wrong = !options.fault.empty() && now >= at(options.at) && now < at(options.at + options.lasts);
+    if (wrong && options.fault == "restart" && !restarted) board.restart(), restarted = true;
+    board.spoil(wrong ? kFaults.at(options.fault) : VmeFault::kNone);
+    if (pread(fd, command.data(), command.size(), kCommand) != static_cast<ssize_t>(command.size())) return 1;
+    longest = std::max(longest, now - before);
+    if (board.cycle(command, state, static_cast<double>(now - before) * 1e-9) && !writeState(fd, state)) return 1;
+    before = now;
+    pushed += board.pushed() ? 1 : 0;
+    if (++cycles == 1) std::printf("ready\n"), std::fflush(stdout);
+    if (now > due + 50 * period) due = now;  // the machine held it up: no burst
+  }
+  std::printf("%llu cycles, %llu commands, valves open in %llu, longest cycle %.1f ms\n",
+              static_cast<unsigned long long>(cycles), static_cast<unsigned long long>(board.commands()),
+              static_cast<unsigned long long>(pushed), static_cast<double>(longest) * 1e-6);
+  return 0;
+}
+
+int run(const Options& options) {
+  host::SearchPath path = host::SearchPath::standard();
+  path.prepend({options.modules.begin(), options.modules.end()});
+  host::Catalog catalog(path);
+  VmeBoard board(options.arm, catalog);
+  const int fd = openWindow(options.window);
+  if (fd < 0) return std::perror(options.window.c_str()), 1;
+  (void)os::setFifo(os::kServoPriority + 10);  // hardware waits for no program
+  const int result = serve(fd, board, options);
+  close(fd);
+  return result;
+}
+
+}  // namespace
+}  // namespace hapticd::emulator
+
+int main(int argc, char** argv) {
+  using namespace hapticd::emulator;
+  Options options;
+  CLI::App app("An arm controller board on a VME bus");
+  app.add_option("window", options.window)->required();
+  app.add_option("--arm", options.arm)->required();
+  app.add_option("--plugin-path", options.modules);
+  app.add_option("--rate", options.rate);
+  app.add_option("--for", options.duration);
+  app.add_option("--fault", options.fault)->check(CLI::IsMember(kFaults));
+  app.add_option("--at", options.at);
+  app.add_option("--lasts", options.lasts);
+  CLI11_PARSE(app, argc, argv);
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { g_stop = 1; });
+  try {
+    return run(options);
+  } catch (const std::exception& e) {
+    return std::fprintf(stderr, "vme_board: %s\n", e.what()), 1;
+  }
+}
