@@ -18,9 +18,12 @@ Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOption
   if (!(bounds_.min().cwiseAbs().maxCoeff() <= kFarthest && bounds_.max().cwiseAbs().maxCoeff() <= kFarthest))
     throw std::invalid_argument("model: a coordinate beyond 1e60 m, expected smaller ones");
   Sewing(*this, options).run();
-  part_ = groupShells(*this);
+  bool complete = true;
+  part_ = groupShells(*this, complete);
+  if (!complete)
+    warnings_.push_back(
+        "model: too many shells that run into each other; some are felt where they are buried in others");
   part_count_ = 1 + *std::max_element(part_.begin(), part_.end());
-  has_gaps_ = findGaps(*this);
 }
 
 void Model::split(const std::vector<spline::SurfaceData>& surfaces) {

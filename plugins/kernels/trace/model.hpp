@@ -51,9 +51,10 @@ class Model {
   /// @throws std::invalid_argument that names the surface and says what was expected.
   explicit Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOptions& options = {});
 
-  /// [sim] Global search: every surface within `radius` [m] of `p` (model frame), nearest first. The nearest, and those
-  /// at most kSoon farther, come with their global foot; the others with a lower bound of the distance and a parameter
-  /// to start from. Rivals are feet in other valleys of the same surfaces, at most kSoon farther than the nearest.
+  /// [sim] Global search: every surface within `radius` [m] of `p` (model frame), nearest first. The nearest of each
+  /// part, and those at most kSoon farther, come with their global foot; the others with a lower bound of the distance
+  /// and a parameter to start from. Rivals are feet in other valleys of the same surfaces, at most kSoon farther than
+  /// the part's nearest.
   void search(const Eigen::Vector3d& p, double radius, Found& found) const;
   /// [sim] The same without rivals. Writes at most `cap` records and returns how many surfaces there are, even beyond.
   std::int64_t nearby(const Eigen::Vector3d& p, double radius, Near* out, std::size_t cap) const;
@@ -79,8 +80,6 @@ class Model {
   /// together.
   int part(int shell) const noexcept { return part_[static_cast<std::size_t>(shell)]; }
   int partCount() const noexcept { return part_count_; }
-  /// [any] True if the part is not closed, but its openings are small against its area, as around the lid of a pot.
-  bool hasGaps(int part) const noexcept { return has_gaps_[static_cast<std::size_t>(part)] != 0; }
   const PoleFan& pole(int index) const noexcept { return poles_[static_cast<std::size_t>(index)]; }
 
   const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }
@@ -99,7 +98,6 @@ class Model {
   std::vector<char> shell_closed_;
   std::vector<int> part_;  ///< by shell
   int part_count_ = 1;
-  std::vector<char> has_gaps_;  ///< by part
   std::vector<std::string> warnings_;
   std::vector<std::string> names_;
   BoxTree tree_;

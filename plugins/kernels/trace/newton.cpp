@@ -334,31 +334,34 @@ void newtonFoot(const Patch& patch, const Vector3d& p, Iterate& at, double toler
   descend(patch, p, at, tolerance, max_evaluations, foot);
 }
 
-LocalFoot directFoot(const Patch& patch, const Vector3d& p, Iterate& at, int steps) noexcept {
-  LocalFoot foot;
+void directFoot(const Patch& patch, const Vector3d& p, Iterate& at, int steps, int max_evaluations,
+                LocalFoot& foot) noexcept {
+  foot.evaluations = 0;
+  foot.regular = false;
   if (!at.valid) {
     evaluate(patch, at.uv, at);
     ++foot.evaluations;
   }
   Vector2d d{0, 0};
-  for (int i = 0; i < steps; ++i) {
+  foot.residual = (at.E.S - p).norm();  // without a step nothing is known
+  for (int i = 0; i < steps && foot.evaluations < max_evaluations; ++i) {
     const Vector3d psi = p - at.E.S;
     const Matrix2d G = damped(at.E);
     const double det = G(0, 0) * G(1, 1) - G(0, 1) * G(0, 1);
     const double a = psi.dot(at.E.Su), b = psi.dot(at.E.Sv);
     d = {(a * G(1, 1) - b * G(0, 1)) / det, (b * G(0, 0) - a * G(0, 1)) / det};
+    const Vector3d before = at.E.S;
     evaluate(patch, at.uv + d.array(), at);
     ++foot.evaluations;
+    foot.residual = (at.E.S - before).norm();
   }
   foot.uv = at.uv;
   foot.S = at.E.S;
   foot.Su = at.E.Su;
   foot.Sv = at.E.Sv;
   foot.distance = (foot.S - p).norm();
-  foot.residual = std::abs(d[0]) * foot.Su.norm() + std::abs(d[1]) * foot.Sv.norm();
   foot.sides = sidesAt(patch, at.uv);
   foot.converged = true;
-  return foot;
 }
 
 }  // namespace hapticd::trace

@@ -43,7 +43,9 @@ inline LocalFoot newtonFoot(const Patch& patch, const Eigen::Vector3d& p, Iterat
 }
 
 /// [rt] Direct parametric tracing (Thompson et al. 1999, Eq. 1-3, with the exact rational derivative instead of the
-/// refined polygon's): `steps` first-order steps (tangent-plane projection), each clamped to the rectangle.
-LocalFoot directFoot(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, int steps) noexcept;
+/// refined polygon's): `steps` first-order steps (tangent-plane projection), each clamped to the rectangle; fewer if
+/// `max_evaluations` do not suffice. The residual is the length of the last step.
+void directFoot(const Patch& patch, const Eigen::Vector3d& p, Iterate& at, int steps, int max_evaluations,
+                LocalFoot& foot) noexcept;
 
 }  // namespace hapticd::trace

@@ -15,6 +15,7 @@ constexpr int kFine = 8, kCoarse = 4;  // cells a side of the grid that stands f
 constexpr double kInside = 0.75;       // winding numbers: a probe on a surface sees 0.5
 constexpr double kOutside = 0.25;
 constexpr std::size_t kMostWork = 20'000'000;  // solid angles: about a second
+constexpr std::size_t kFinePatches = 64;       // more of them are sketched coarsely
 
 struct Triangle {
   Vector3d a, b, c;
@@ -25,7 +26,9 @@ struct Sketch {
   std::vector<Triangle> triangles;
   std::vector<Vector3d> points;
   Eigen::AlignedBox3d box;
+  Vector3d turned{0, 0, 0};  ///< sum of the outward normals, weighted by area
   double area = 0;
+  bool closed = false;
 
   void add(const Patch& patch, int cells) {
     std::array<Vector3d, (kFine + 1) * (kFine + 1)> grid;
@@ -47,15 +50,13 @@ struct Sketch {
   }
 
   void addTriangle(const Vector3d& a, const Vector3d& b, const Vector3d& c, double sign) {
-    area += 0.5 * (b - a).cross(c - a).norm();
+    const Vector3d normal = (sign > 0 ? 0.5 : -0.5) * (b - a).cross(c - a);
+    area += normal.norm();
+    turned += normal;
     triangles.push_back(sign > 0 ? Triangle{a, b, c} : Triangle{a, c, b});
   }
 
-  void add(const Sketch& other) {
-    triangles.insert(triangles.end(), other.triangles.begin(), other.triangles.end());
-    points.insert(points.end(), other.points.begin(), other.points.end());
-    box.extend(other.box);
-  }
+  Vector3d middle() const { return box.center(); }
 };
 
 /// Solid angle of a triangle over 4 pi, positive if its outward side is away from p (Van Oosterom & Strackee 1983).
@@ -66,74 +67,96 @@ double winding(const Triangle& t, const Vector3d& p) {
   return up == 0 ? 0 : std::atan2(up, down) / (2 * std::numbers::pi);
 }
 
-/// Whether a point of `other` is well inside `solid` while another is well outside.
-bool runsInto(const Sketch& other, const Sketch& solid) {
-  bool in = false, out = false;
-  for (std::size_t i = 0; i < other.points.size() && !(in && out); ++i) {
-    const Vector3d& p = other.points[i];
-    double number = 0;
-    if (solid.box.contains(p))
-      for (const Triangle& triangle : solid.triangles) number += winding(triangle, p);
-    in = in || number > kInside;
-    out = out || number < kOutside;
+/// The parts found so far, and what may still be spent on finding out.
+class Grouping {
+ public:
+  Grouping(const std::vector<Sketch>& shells) : shells_(shells) {}
+
+  /// The part that a shell belongs to: the first that it does not run into.
+  int place(std::size_t shell) {
+    std::size_t to = 0;
+    while (to < parts_.size() && runInto(shell, parts_[to])) ++to;
+    if (to >= Model::kMaxParts) {
+      complete_ = false;
+      to = 0;
+    }
+    if (to == parts_.size()) parts_.emplace_back();
+    parts_[to].push_back(shell);
+    return static_cast<int>(to);
   }
-  return in && out;
-}
+
+  bool complete() const { return complete_; }
+
+ private:
+  using Part = std::vector<std::size_t>;  ///< shells
+
+  bool runInto(std::size_t shell, const Part& part) {
+    if (intoOne(shell, part)) return true;
+    for (std::size_t other : part)
+      if (shells_[other].box.intersects(shells_[shell].box) && intoOne(other, {shell})) return true;
+    return false;
+  }
+
+  /// Whether a point of a shell is well inside a part while another is well outside.
+  bool intoOne(std::size_t shell, const Part& part) {
+    bool in = false, out = false;
+    for (std::size_t i = 0; i < shells_[shell].points.size() && !(in && out); ++i) {
+      const double number = windingOf(part, shells_[shell].points[i]);
+      in = in || number > kInside;
+      out = out || number < kOutside;
+    }
+    return in && out;
+  }
+
+  double windingOf(const Part& part, const Vector3d& p) {
+    double number = 0;
+    for (std::size_t other : part) {
+      const Sketch& solid = shells_[other];
+      if (solid.closed && !solid.box.contains(p)) continue;
+      const Vector3d r = solid.middle() - p;
+      const double far = r.norm();
+      if (far > kFar * solid.box.diagonal().norm()) {
+        number += r.dot(solid.turned) / (4 * std::numbers::pi * far * far * far);  // a dipole (Barill et al. 2018)
+        continue;
+      }
+      work_ += solid.triangles.size();
+      if (work_ > kMostWork) {
+        complete_ = false;
+        return 0;
+      }
+      for (const Triangle& triangle : solid.triangles) number += winding(triangle, p);
+    }
+    work_ += part.size() / kDipoles;
+    return number;
+  }
+
+  static constexpr double kFar = 2;            // diagonals
+  static constexpr std::size_t kDipoles = 16;  // or boxes looked at, in the time of a solid angle
+  const std::vector<Sketch>& shells_;
+  std::vector<Part> parts_;
+  std::size_t work_ = 0;
+  bool complete_ = true;
+};
 
 }  // namespace
 
-std::vector<int> groupShells(const Model& model) {
+std::vector<int> groupShells(const Model& model, bool& complete) {
   std::vector<int> part(static_cast<std::size_t>(model.shellCount()), 0);
-  const auto patches = static_cast<std::size_t>(model.patchCount());
-  const auto work = [patches](int cells) {  // all points against all triangles
-    const auto n = static_cast<std::size_t>(cells);
-    return patches * patches * 2 * n * n * (n / 2 + 1) * (n / 2 + 1);
-  };
-  if (part.size() < 2 || work(kCoarse) > kMostWork) return part;
-  const int cells = work(kFine) > kMostWork ? kCoarse : kFine;
+  complete = true;
+  if (part.size() < 2) return part;
+  const int cells = static_cast<std::size_t>(model.patchCount()) > kFinePatches ? kCoarse : kFine;
   std::vector<Sketch> shells(part.size());
   for (int i = 0; i < model.patchCount(); ++i)
     shells[static_cast<std::size_t>(model.patch(i).shell)].add(model.patch(i), cells);
+  for (int i = 0; i < model.shellCount(); ++i) shells[static_cast<std::size_t>(i)].closed = model.closed(i);
   std::vector<std::size_t> order(part.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&shells](std::size_t a, std::size_t b) { return shells[a].area > shells[b].area; });
-  std::vector<Sketch> parts;
-  for (std::size_t shell : order) {
-    std::size_t to = 0;
-    while (to < parts.size() && (runsInto(shells[shell], parts[to]) || runsInto(parts[to], shells[shell]))) ++to;
-    if (to >= Model::kMaxParts) to = 0;
-    if (to == parts.size()) parts.emplace_back();
-    parts[to].add(shells[shell]);
-    part[shell] = static_cast<int>(to);
-  }
+  Grouping grouping(shells);
+  for (std::size_t shell : order) part[shell] = grouping.place(shell);
+  complete = grouping.complete();
   return part;
-}
-
-std::vector<char> findGaps(const Model& model) {
-  constexpr int kSamples = 8;
-  constexpr double kSmall = 0.1;  // of the area
-  std::vector<Vector3d> sum(static_cast<std::size_t>(model.partCount()), Vector3d::Zero());
-  std::vector<double> area(sum.size(), 0);
-  std::vector<char> gaps(sum.size(), 0);
-  spline::SurfacePoint E;
-  for (int i = 0; i < model.patchCount(); ++i) {
-    const Patch& patch = model.patch(i);
-    const auto part = static_cast<std::size_t>(model.part(patch.shell));
-    if (!model.closed(patch.shell)) gaps[part] = 1;
-    const double share = (patch.hi - patch.lo).prod() / (kSamples * kSamples);
-    for (int k = 0; k < kSamples * kSamples; ++k) {
-      const Array2d middle(k / kSamples + 0.5, k % kSamples + 0.5);
-      const Array2d uv = patch.lo + (patch.hi - patch.lo) * middle / kSamples;
-      patch.surface.evaluate1(uv[0], uv[1], E);
-      const Vector3d piece = share * patch.sign * E.Su.cross(E.Sv);
-      sum[part] += piece;
-      area[part] += piece.norm();
-    }
-  }
-  for (std::size_t part = 0; part < sum.size(); ++part)
-    if (!(sum[part].norm() < kSmall * area[part])) gaps[part] = 0;
-  return gaps;
 }
 
 }  // namespace hapticd::trace

@@ -7,11 +7,8 @@
 namespace hapticd::trace {
 
 /// [main] The part of each shell, see Model::part(). By generalized winding numbers (Jacobson et al. 2013), which tell
-/// inside from outside for shells with openings too. Models of very many shells make one part.
-std::vector<int> groupShells(const Model& model);
-
-/// [main] Model::hasGaps() of each part. The normals of a closed surface, weighted by area, sum up to nothing; what
-/// they sum up to is the area of the openings.
-std::vector<char> findGaps(const Model& model);
+/// inside from outside for shells with openings too. Not `complete`: there are so many shells that some were put into
+/// the first part unseen.
+std::vector<int> groupShells(const Model& model, bool& complete);
 
 }  // namespace hapticd::trace

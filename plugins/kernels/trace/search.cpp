@@ -22,7 +22,8 @@ class Search {
         p_(p),
         found_(found),
         slot_(static_cast<std::size_t>(model.surfaceCount()), -1),
-        same_(1e-5 * model.bounds().diagonal().norm()) {}
+        same_(1e-5 * model.bounds().diagonal().norm()),
+        nearest_(static_cast<std::size_t>(model.partCount()), kInfinity) {}
 
   void run(double radius) {
     std::vector<LeafHit> hits;
@@ -37,6 +38,7 @@ class Search {
   struct Valley {
     Near near;
     Vector3d point;
+    int patch;
   };
 
   static bool before(const Near& a, const Near& b) {
@@ -46,10 +48,11 @@ class Search {
   /// Looks at a leaf that is `bound` or more away: for the nearest foot of its surface, or else for another valley.
   void look(const Leaf& leaf, double bound) {
     const int source = model_.patch(leaf.patch).source;
+    double& nearest = nearestOf(leaf.patch);
     int& at = slot_[static_cast<std::size_t>(source)];
     const bool known = at >= 0;
     if (known && bound >= found_.nearest[static_cast<std::size_t>(at)].distance) {
-      if (bound <= nearest_ + Model::kSoon) lookForValley(leaf);
+      if (bound <= nearest + Model::kSoon) lookForValley(leaf);
       return;
     }
     if (!known) {
@@ -57,7 +60,7 @@ class Search {
       found_.nearest.push_back({source, leaf.middle[0], leaf.middle[1], kInfinity});
     }
     Near& near = found_.nearest[static_cast<std::size_t>(at)];
-    if (bound > nearest_ + Model::kSoon) {  // cannot become the nearest soon: a bound will do, and most work falls away
+    if (bound > nearest + Model::kSoon) {  // cannot become the nearest soon: a bound will do, and most work falls away
       near.distance = bound;
       return;
     }
@@ -65,8 +68,11 @@ class Search {
     const LocalFoot foot = footFrom(leaf, kEvaluations);
     keepValley(leaf.patch, foot);
     if (foot.distance < near.distance) near = {source, foot.uv[0], foot.uv[1], foot.distance};
-    nearest_ = std::min(nearest_, near.distance);
+    nearest = std::min(nearest, near.distance);
   }
+
+  /// Distance of what was found of a patch's part: a tracer has to tell of each part whether the probe is inside.
+  double& nearestOf(int patch) { return nearest_[static_cast<std::size_t>(model_.part(model_.patch(patch).shell))]; }
 
   LocalFoot footFrom(const Leaf& leaf, int evaluations) const {
     constexpr double kTolerance = 1e-12;  // [m]
@@ -106,14 +112,14 @@ class Search {
     if (!foot.converged || piece.goesOn(foot.sides)) return;  // beyond a common side it goes on down
     for (const Valley& valley : valleys_)
       if (valley.near.surface == piece.source && (valley.point - foot.S).norm() < same_) return;
-    valleys_.push_back({{piece.source, foot.uv[0], foot.uv[1], foot.distance}, foot.S});
+    valleys_.push_back({{piece.source, foot.uv[0], foot.uv[1], foot.distance}, foot.S, patch});
   }
 
   void keepRivals() {
     constexpr std::size_t kMostRivals = 16;
     for (const Valley& valley : valleys_) {
       const int at = slot_[static_cast<std::size_t>(valley.near.surface)];
-      if (at < 0 || valley.near.distance > nearest_ + Model::kSoon) continue;
+      if (at < 0 || valley.near.distance > nearestOf(valley.patch) + Model::kSoon) continue;
       const auto first = std::find_if(found_.nearest.begin(), found_.nearest.end(),
                                       [&](const Near& near) { return near.surface == valley.near.surface; });
       if (first != found_.nearest.end() && (first->u != valley.near.u || first->v != valley.near.v))
@@ -129,8 +135,8 @@ class Search {
   Found& found_;
   std::vector<int> slot_;  ///< by surface: index in found_.nearest before it is sorted
   std::vector<Valley> valleys_;
-  double same_;  ///< [m] feet closer than this are one
-  double nearest_ = kInfinity;
+  double same_;                  ///< [m] feet closer than this are one
+  std::vector<double> nearest_;  ///< [m] by part
 };
 
 }  // namespace

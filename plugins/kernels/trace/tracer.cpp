@@ -21,9 +21,10 @@ Tracer::Tracer(const Model& model) : model_(model), tracks_(model) {}
 
 void Tracer::activate(int surface, double u, double v, double distance) noexcept {
   if (surface < 0 || surface >= model_.surfaceCount() || !std::isfinite(u) || !std::isfinite(v)) return;
-  const double best = nearest_ >= 0 ? tracks_[nearest_].foot.distance : kInfinity;
-  for (int i = model_.firstPatch(surface); i < model_.lastPatch(surface); ++i)
-    tracks_.offer(i, {u, v}, distance, best, true);
+  for (int i = model_.firstPatch(surface); i < model_.lastPatch(surface); ++i) {
+    const int nearest = parts_[static_cast<std::size_t>(tracks_[i].part)].nearest;
+    tracks_.offer(i, {u, v}, distance, nearest >= 0 ? tracks_[nearest].foot.distance : kInfinity, true);
+  }
 }
 
 void Tracer::deactivate(int surface) noexcept {
@@ -80,12 +81,9 @@ Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
   tracks_.nextTick();
   const int budget = std::max(options.max_evaluations, 1);
   budget_ = budget;
-  if (options.method == Method::kDirect) {
-    stepDirect(p, options);
-  } else {
-    stepNewton(p, options);
-  }
+  nearest_ = nearestOf(-1, nearest_, p, options);
   if (nearest_ < 0) return none;
+  parts_[static_cast<std::size_t>(tracks_[nearest_].part)].nearest = nearest_;
   return answer(p, options, budget);
 }
 
@@ -95,35 +93,6 @@ Foot Tracer::answer(const Vector3d& p, const TraceOptions& options, int budget) 
   if (options.unite && model_.partCount() > 1) uniteParts(p, options, foot);
   foot.evaluations = budget - budget_;
   return foot;
-}
-
-void Tracer::stepDirect(const Vector3d& p, const TraceOptions& options) noexcept {
-  const int last = nearest_;
-  double best = kInfinity;
-  nearest_ = -1;
-  for (int index : tracks_.active()) {
-    Track& t = tracks_[index];
-    t.foot = directFoot(model_.patch(t.patch), p, t.at, options.iterations);
-    budget_ -= t.foot.evaluations;
-    tracks_.refined(index);
-    if (!(t.foot.distance < best)) continue;
-    best = t.foot.distance;
-    nearest_ = index;
-  }
-  if (options.hold > 0 && last >= 0 && best >= tracks_[last].foot.distance - options.hold &&
-      describe(last, p).depth > 0)
-    nearest_ = last;
-  for (Part& part : parts_) part.nearest = -1;
-  for (int index : tracks_.active()) {
-    int& nearest = parts_[static_cast<std::size_t>(tracks_[index].part)].nearest;
-    if (nearest < 0 || tracks_[index].foot.distance < tracks_[nearest].foot.distance) nearest = index;
-  }
-  if (nearest_ >= 0) parts_[static_cast<std::size_t>(tracks_[nearest_].part)].nearest = nearest_;
-}
-
-void Tracer::stepNewton(const Vector3d& p, const TraceOptions& options) noexcept {
-  nearest_ = nearestOf(-1, nearest_, p, options);
-  if (nearest_ >= 0) parts_[static_cast<std::size_t>(tracks_[nearest_].part)].nearest = nearest_;
 }
 
 /// Nearest foot of a part (-1: of all), refined in this tick, looking at track `start` (-1: none) first.
@@ -137,31 +106,20 @@ int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions
       best = t.foot.distance;
       nearest = index;
     }
-  bool touching = false;  // track `start` holds a contact
-  int crossed = -1;       // where it has gone on to
+  int crossed = -1;  // where track `start` has gone on to
   for (int index = start >= 0 ? start : tracks_.mostPromising(best, part); index >= 0 && budget_ > 0;
        index = tracks_.mostPromising(best, part)) {
     const bool last = index == start;
-    index = refine(index, p, options.tolerance);
-    if (last)
-      index = crossed = cross(index, p, options.tolerance);  // first things first: there may be no budget left for it
-    if (touching && isGap(index, crossed, p)) continue;
+    index = refine(index, p, options);
+    if (last) index = crossed = cross(index, p, options);  // first things first: there may be no budget left for it
     if (nearest < 0 || tracks_[nearest].slot < 0 || tracks_[index].foot.distance < best) nearest = index;
     best = std::min(best, tracks_[index].foot.distance);
     if (index != nearest && tracks_.isRival(index) && isHopeless(tracks_[index], best)) tracks_.drop(index);
-    if (!last || !(options.hold > 0 || model_.hasGaps(tracks_[index].part))) continue;
-    touching = describe(index, p).depth > 0;
-    if (touching) best -= options.hold;  // it is left only for what is nearer by so much
+    // A contact that is held is left only for what is nearer by so much.
+    if (last && options.hold > 0 && describe(index, p).depth > 0) best -= options.hold;
   }
   if (nearest < 0) return start;
-  return nearest == crossed ? nearest : cross(nearest, p, options.tolerance);
-}
-
-/// Whether a foot is the rim of a gap in the part that `touching` lies on: a contact is not lost through gaps.
-bool Tracer::isGap(int track, int touching, const Vector3d& p) const noexcept {
-  const Track& t = tracks_[track];
-  if (t.foot.sides == 0 || t.part != tracks_[touching].part || !model_.hasGaps(t.part)) return false;
-  return describe(track, p).aside > 0 && !(describe(track, p).depth > 0);
+  return nearest == crossed ? nearest : cross(nearest, p, options);
 }
 
 /// Whether a rival cannot become the nearest before the next search, or left for another patch, which follows it.
@@ -170,10 +128,15 @@ bool Tracer::isHopeless(const Track& rival, double best) const noexcept {
 }
 
 /// Brings a foot up to date. Returns the track that holds it then: a rival may join the patch's first foot.
-int Tracer::refine(int track, const Vector3d& p, double tolerance) noexcept {
+int Tracer::refine(int track, const Vector3d& p, const TraceOptions& options) noexcept {
   Track& t = tracks_[track];
   if (t.tick == tracks_.tick()) return track;
-  newtonFoot(model_.patch(t.patch), p, t.at, std::max(tolerance, 0.0), budget_, t.foot);
+  if (options.method == Method::kDirect) {
+    const int steps = track == nearest_ ? options.iterations : 1;  // the others only have to show how near they are
+    directFoot(model_.patch(t.patch), p, t.at, steps, budget_, t.foot);
+  } else {
+    newtonFoot(model_.patch(t.patch), p, t.at, std::max(options.tolerance, 0.0), budget_, t.foot);
+  }
   budget_ -= t.foot.evaluations;
   tracks_.refined(track);
   return tracks_[t.patch].rival >= 0 ? tracks_.merge(track) : track;
@@ -194,12 +157,14 @@ bool Tracer::tryFrom(int track, const Array2d& uv, const Vector3d& p, double tol
 }
 
 /// Follows a foot across the sides that it meets, while that brings it nearer. Returns the track that it ends on.
-int Tracer::cross(int track, const Vector3d& p, double tolerance) noexcept {
+/// The paper's method clamps a foot to its patch: the next patch holds one of its own, if a search has found it.
+int Tracer::cross(int track, const Vector3d& p, const TraceOptions& options) noexcept {
+  if (options.method == Method::kDirect) return track;
   for (int i = 0; i < kMaxCrossings && budget_ > 0; ++i) {
     const SideMask sides = tracks_[track].foot.sides;
     int next = -1;
     for (int side = 0; side < kSides && next < 0; ++side)
-      if (sides & bit(side)) next = crossSide(track, side, p, tolerance);
+      if (sides & bit(side)) next = crossSide(track, side, p, options);
     if (next < 0) return track;
     track = next;
   }
@@ -207,7 +172,8 @@ int Tracer::cross(int track, const Vector3d& p, double tolerance) noexcept {
 }
 
 /// The track on which the foot goes on nearer to the probe beyond a side, -1: none.
-int Tracer::crossSide(int track, int side, const Vector3d& p, double tolerance) noexcept {
+int Tracer::crossSide(int track, int side, const Vector3d& p, const TraceOptions& options) noexcept {
+  const double tolerance = options.tolerance;
   const int patch = tracks_[track].patch;
   const Patch& piece = model_.patch(patch);
   const Side& edge = piece.sides[static_cast<std::size_t>(side)];
@@ -219,7 +185,7 @@ int Tracer::crossSide(int track, int side, const Vector3d& p, double tolerance) 
   if (edge.patch == patch) return tryFrom(track, there, p, tolerance) ? track : -1;
   const int next = edge.patch;
   tracks_.follow(next, there);
-  if (budget_ > 0) refine(next, p, tolerance);
+  if (budget_ > 0) refine(next, p, options);
   if (tracks_[next].tick != tracks_.tick()) return -1;
   // The common side belongs to the neighbour too: if its foot is farther away, it sits in another valley.
   if (tracks_[next].foot.distance > best + tolerance) {

@@ -15,7 +15,7 @@ enum class Method : std::uint8_t {
 
 struct TraceOptions {
   Method method = Method::kNewton;
-  int iterations = 1;        ///< steps a tick of kDirect, 1..4
+  int iterations = 1;        ///< steps a tick of kDirect on a surface, 1..4
   double tolerance = 1e-9;   ///< [m] error of the foot at which kNewton stops
   int max_evaluations = 12;  ///< bound of the work of one tick, over all surfaces
   /// [m] A foot that holds a contact is left only for one nearer by more than this, however near others come; it still
@@ -76,21 +76,18 @@ class Tracer {
   /// What is known of a part of the model.
   struct Part {
     int nearest = -1;  ///< track
-    double depth = 0;  ///< [m] > 0 inside, when it was last looked at
+    double depth = 0;  ///< [m] > 0 inside, when its nearest foot was last certain
     double way = 0;    ///< [m] gone until then
     bool known = false;
   };
 
-  void stepDirect(const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
-  void stepNewton(const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   int nearestOf(int part, int start, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
-  int refine(int track, const Eigen::Vector3d& p, double tolerance) noexcept;
+  int refine(int track, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   bool tryFrom(int track, const Eigen::Array2d& uv, const Eigen::Vector3d& p, double tolerance) noexcept;
-  int cross(int track, const Eigen::Vector3d& p, double tolerance) noexcept;
-  int crossSide(int track, int side, const Eigen::Vector3d& p, double tolerance) noexcept;
+  int cross(int track, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
+  int crossSide(int track, int side, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   bool leavePole(int track, int side, const Eigen::Vector3d& p, double tolerance) noexcept;
   void drop(int track) noexcept;
-  bool isGap(int track, int touching, const Eigen::Vector3d& p) const noexcept;
   bool isHopeless(const Track& rival, double best) const noexcept;
 
   Foot answer(const Eigen::Vector3d& p, const TraceOptions& options, int budget) noexcept;

@@ -58,11 +58,11 @@ class Tracks {
       countAnew();
   }
   double way() const noexcept { return way_; }  ///< [rt] [m] gone since the last clear(), or so
-  /// [rt] Notes the distance of a foot that was refined in this tick.
+  /// [rt] Notes the distance of a foot that was refined in this tick; it may yet come nearer by what it is wrong.
   void refined(int index) noexcept {
     Track& t = (*this)[index];
     t.tick = t.touched = tick_;
-    key_[static_cast<std::size_t>(t.slot)] = t.foot.distance + way_;
+    key_[static_cast<std::size_t>(t.slot)] = t.foot.distance - (t.foot.residual > 0 ? t.foot.residual : 0) + way_;
   }
   /// [rt] The foot not refined in this tick that could be nearer than `best` and has the smallest bound; -1: none.
   /// @param part only feet of this part; -1: all.

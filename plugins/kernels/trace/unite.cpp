@@ -18,9 +18,12 @@ struct Wall {
 
 /// Shortest way out of all walls at once: the projection onto the intersection of their half-spaces (Zilles & Salisbury
 /// 1995), by Hildreth's method. A fixed number of sweeps of continuous functions is continuous in the walls, so the
-/// force is continuous wherever the feet are. `pushes`: what each wall contributes.
-Vector3d wayOut(const Wall* walls, int count, double* pushes) noexcept {
-  constexpr int kSweeps = 32;  // 10 % of the depth is left between walls that meet at 20 degrees
+/// force is continuous wherever the feet are. Walls that face each other lead nowhere, or to where their planes no
+/// longer stand for the surfaces: the way is no longer than kFarthest times the deepest. `pushes`: what each wall
+/// contributes.
+Vector3d wayOut(const Wall* walls, int count, double deepest, double* pushes) noexcept {
+  constexpr double kFarthest = 2;  // reached where walls meet at 60 degrees
+  constexpr int kSweeps = 32;      // 10 % of the depth is left between walls that meet at 20 degrees
   Vector3d way = Vector3d::Zero();
   std::fill_n(pushes, count, 0.0);
   for (int sweep = 0; sweep < kSweeps; ++sweep)
@@ -29,6 +32,8 @@ Vector3d wayOut(const Wall* walls, int count, double* pushes) noexcept {
       way += (push - pushes[i]) * walls[i].normal;
       pushes[i] = push;
     }
+  const double length = way.norm();
+  if (length > kFarthest * deepest) way *= kFarthest * deepest / length;
   return way;
 }
 
@@ -40,19 +45,29 @@ double behindPlane(const Foot& foot) noexcept {
 
 /// Brings what is known of a part up to date if its plane could be less than `reach` [m] from the probe by now.
 bool Tracer::refreshPart(int part, const Vector3d& p, const TraceOptions& options, double reach, Foot& foot) noexcept {
-  constexpr double kSteepest = 3;  // the depth behind a bevelled edge changes faster than the probe goes
+  constexpr double kSteepest = 1.5;  // the depth behind a bevelled edge changes by up to sqrt 2 of the probe's way
   Part& known = parts_[static_cast<std::size_t>(part)];
-  if (known.known && known.depth + kSteepest * std::abs(tracks_.way() - known.way) < -reach) return false;
+  const double most = known.depth + kSteepest * (tracks_.way() - known.way);
+  if (known.known && most < -reach) return false;
   if (known.nearest >= 0 && (tracks_[known.nearest].slot < 0 || tracks_[known.nearest].part != part))
     known.nearest = -1;
-  if (options.method == Method::kNewton && (known.nearest < 0 || known.nearest != nearest_))
-    known.nearest = nearestOf(part, known.nearest, p, options);
-  known.known = known.nearest >= 0 && tracks_[known.nearest].tick > 0;
-  if (!known.known) return false;
+  if (known.nearest < 0 || known.nearest != nearest_) known.nearest = nearestOf(part, known.nearest, p, options);
+  if (known.nearest < 0 || tracks_[known.nearest].tick != tracks_.tick()) return false;
   foot = describe(known.nearest, p);
-  if (tracks_[known.nearest].tick != tracks_.tick()) foot.status = TraceStatus::kDegraded;  // its last plane serves on
-  known.depth = behindPlane(foot);
-  known.way = tracks_.way();
+  if (known.nearest == nearest_ || tracks_.mostPromising(foot.distance, part) < 0) {
+    known.known = true;
+    known.depth = behindPlane(foot);
+    known.way = tracks_.way();
+    return true;
+  }
+  // The evaluations ran out, and another foot may be nearer: seen from this one the probe may seem far inside.
+  foot.status = TraceStatus::kDegraded;
+  const double too_deep = behindPlane(foot) - most;
+  if (!known.known) return false;
+  if (too_deep > 0) {
+    foot.behind -= too_deep;
+    foot.depth = std::min(foot.depth, most);
+  }
   return true;
 }
 
@@ -76,7 +91,7 @@ void Tracer::uniteParts(const Vector3d& p, const TraceOptions& options, Foot& fo
     }
     if (!(deepest > 0)) return;
   }
-  const Vector3d way = wayOut(walls.data(), count, pushes.data());
+  const Vector3d way = wayOut(walls.data(), count, deepest, pushes.data());
   const auto pushing = std::count_if(pushes.begin(), pushes.begin() + count, [](double push) { return push > 0; });
   const auto most = static_cast<std::size_t>(std::max_element(pushes.begin(), pushes.begin() + count) - pushes.begin());
   foot = feet[most];

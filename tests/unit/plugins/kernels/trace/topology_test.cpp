@@ -131,6 +131,23 @@ TEST(Topology, ShellsThatRunIntoEachOtherArePartsAndOthersAreNot) {
   EXPECT_EQ(Model(hollow).partCount(), 1);
 }
 
+TEST(Topology, PartsAreFoundAmongManyShells) {
+  const spline::SurfaceData sphere = twoSpheres(0).front();
+  std::vector<spline::SurfaceData> many;
+  for (int i = 0; i < 400; ++i) {
+    many.push_back(sphere);
+    for (auto& point : many.back().points) point += 0.12 * Vector3d(i % 20, i / 20, 0);
+  }
+  const Model apart(many);
+  EXPECT_EQ(apart.partCount(), 1);
+  EXPECT_TRUE(apart.warnings().empty());
+  many.push_back(many[217]);
+  for (auto& point : many.back().points) point.z() += 0.06;
+  const Model model(many);
+  EXPECT_EQ(model.partCount(), 2);
+  EXPECT_NE(model.part(model.patch(model.firstPatch(217)).shell), model.part(model.patch(model.firstPatch(400)).shell));
+}
+
 /// Two spheres that overlap: within the lens the probe must be led out of both, and no force kicks where they cross.
 TEST(Topology, TheForceOfOverlappingSolidsIsContinuousAndLeadsOutOfBoth) {
   const Model model(twoSpheres(0.06));  // they meet in a circle of radius 0.04 about the origin
