@@ -40,6 +40,11 @@ void Model::split(const std::vector<spline::SurfaceData>& surfaces) {
         patch.lo[axis] = part.domain(axis)[0];
         patch.hi[axis] = part.domain(axis)[1];
       }
+      patch.low = patch.high = part.points.front();
+      for (const Eigen::Vector3d& point : part.points) {
+        patch.low = patch.low.min(point.array());
+        patch.high = patch.high.max(point.array());
+      }
       patch.sign = surfaces[source].reversed ? -1 : 1;
       patch.source = static_cast<int>(source);
       tree_.add(part, patchCount());

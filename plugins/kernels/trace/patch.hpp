@@ -42,10 +42,11 @@ struct Side {
 
 struct Patch {
   spline::Surface surface;
-  Eigen::Array2d lo, hi;  ///< parameter rectangle, in the parameters of the model file
-  double sign = 1;        ///< outward normal = sign * Su x Sv
-  int source = 0;         ///< index of the surface in the model file
-  int shell = 0;          ///< patches joined directly or through others share a shell
+  Eigen::Array2d lo, hi;     ///< parameter rectangle, in the parameters of the model file
+  Eigen::Array3d low, high;  ///< [m] corners of a box around the patch
+  double sign = 1;           ///< outward normal = sign * Su x Sv
+  int source = 0;            ///< index of the surface in the model file
+  int shell = 0;             ///< patches joined directly or through others share a shell
   std::array<Side, kSides> sides;
   std::array<int, kCorners> corners{};  ///< vertices of the model
 
@@ -81,6 +82,10 @@ struct Patch {
     for (int side = 0; side < kSides; ++side)
       if (uv[axisOf(side)] == (side % 2 == 0 ? lo : hi)[axisOf(side)]) mask |= bit(side);
     return mask;
+  }
+  /// [any] No point of the patch is nearer to `p` than this [m].
+  double atLeast(const Eigen::Vector3d& p) const noexcept {
+    return (low - p.array()).max(p.array() - high).max(0).matrix().norm();
   }
   /// [any] Outward unit normal. Where the tangents vanish (a pole), the normal a little further inside.
   Eigen::Vector3d normalAt(const Eigen::Array2d& uv) const noexcept;

@@ -15,6 +15,13 @@ constexpr double kFarthest = 1e150;       ///< [m] squares of coordinates beyond
 constexpr double kNeighbourReach = 0.15;  ///< [m] a neighbour nobody asked for is dropped beyond
 constexpr int kMaxCrossings = 4;          ///< of sides in one tick
 
+/// Away from the common tick.
+[[gnu::cold, gnu::noinline]] Foot nothing(TraceStatus status) noexcept {
+  Foot foot;
+  foot.status = status;
+  return foot;
+}
+
 }  // namespace
 
 Tracer::Tracer(const Model& model) : model_(model), tracks_(model) {}
@@ -69,20 +76,16 @@ bool Tracer::active(int surface) const noexcept {
 }
 
 Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
-  Foot none;
-  if (!(p.array().abs() <= kFarthest).all()) {  // also false for not-a-number
-    none.status = TraceStatus::kInvalid;
-    return none;
-  }
+  if (!(p.array().abs() <= kFarthest).all()) return nothing(TraceStatus::kInvalid);  // also true for not-a-number
   if (has_last_) tracks_.gone((p - last_p_).norm());
   last_p_ = p;
   has_last_ = true;
-  if (tracks_.active().empty()) return none;
+  if (tracks_.active().empty()) return nothing(TraceStatus::kIdle);
   tracks_.nextTick();
   const int budget = std::max(options.max_evaluations, 1);
   budget_ = budget;
   nearest_ = nearestOf(-1, nearest_, p, options);
-  if (nearest_ < 0) return none;
+  if (nearest_ < 0) return nothing(TraceStatus::kIdle);
   parts_[static_cast<std::size_t>(tracks_[nearest_].part)].nearest = nearest_;
   return answer(p, options, budget);
 }
@@ -110,8 +113,15 @@ int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions
   for (int index = start >= 0 ? start : tracks_.mostPromising(best, part); index >= 0 && budget_ > 0;
        index = tracks_.mostPromising(best, part)) {
     const bool last = index == start;
+    if (const double bound = last ? 0 : model_.patch(tracks_[index].patch).atLeast(p); bound >= best) {
+      tracks_.farther(index, bound);  // much cheaper than to refine it
+      continue;
+    }
     index = refine(index, p, options);
-    if (last) index = crossed = cross(index, p, options);  // first things first: there may be no budget left for it
+    if (last)
+      index = crossed = tracks_[index].foot.sides == 0
+                            ? index
+                            : cross(index, p, options);  // first things first: there may be no budget left for it
     if (nearest < 0 || tracks_[nearest].slot < 0 || tracks_[index].foot.distance < best) nearest = index;
     best = std::min(best, tracks_[index].foot.distance);
     if (index != nearest && tracks_.isRival(index) && isHopeless(tracks_[index], best)) tracks_.drop(index);

@@ -64,6 +64,10 @@ class Tracks {
     t.tick = t.touched = tick_;
     key_[static_cast<std::size_t>(t.slot)] = t.foot.distance - (t.foot.residual > 0 ? t.foot.residual : 0) + way_;
   }
+  /// [rt] Notes that a foot cannot be nearer than `distance` [m].
+  void farther(int index, double distance) noexcept {
+    key_[static_cast<std::size_t>((*this)[index].slot)] = distance + way_;
+  }
   /// [rt] The foot not refined in this tick that could be nearer than `best` and has the smallest bound; -1: none.
   /// @param part only feet of this part; -1: all.
   int mostPromising(double best, int part) const noexcept {
