@@ -28,7 +28,7 @@ class GridBody final : public SoftBody {
       track.foot = skeleton.bisect(p, options.newton.envelope, options.halvings);
       return;
     }
-    const double* offer = track.offer.param;
+    const std::array<double, 2>& offer = track.offer;
     const bool jumped = (flags & HSP_IN_JUMP) != 0;
     if (!track.known && track.offered && !jumped) {  // the search that started it has looked all over the body
       track.foot.u = offer[0];

@@ -48,21 +48,21 @@ void MatDeformable::activate(const hsp_activation& activation, hsp_report& repor
   stored_ = since_shown_ = 0;
   shown_at_rest_ = true;
   displaced_ = std::make_unique<Displaced>(body_->nodes().count());
-  display_ = Display{};
+  display_.reset();
   contour_.reset();
   if (display_tolerance_ > 0) {
     contour_ = body_->contour(std::max(display_tolerance_, kFinestMesh));
     report.viz_vertices = static_cast<uint32_t>(contour_->vertexCount());
   }
-  volume_keeper_.reset();
-  hull_.reset();
+  keeper_.reset();
   std::size_t volume_bytes = 0;
   if (volume_ == 1) {
-    hull_ = body_->hull();
-    volume_keeper_.emplace(*hull_, body_->greatestRadius());
-    volume_bytes = hull_->bytes() + volume_keeper_->bytes();
+    auto hull = body_->hull();
+    const medial::VolumeKeeper volume(*hull, body_->greatestRadius());
+    volume_bytes = hull->bytes() + volume.bytes();
+    keeper_.reset(new Keeper{std::move(hull), volume});
   }
-  const std::vector<unsigned char> loaded = std::exchange(loaded_, {});
+  const std::vector<unsigned char> loaded = std::exchange(states_->loaded, {});
   if (!loaded.empty() && !restoreState(loaded, body_->nodes()))
     throw std::invalid_argument(geometry_ + ": the state that was loaded is of another body");
   if (file.swings || file.damps || viscosity_ > 0) report.flags |= HSP_R_VELOCITY;
@@ -80,12 +80,11 @@ void MatDeformable::describe() const {
 }
 
 void MatDeformable::deactivate() {
-  if (body_) kept_ = stateOf(body_->nodes());
+  if (body_) states_->kept = stateOf(body_->nodes());
   tracks_.clear();
-  display_ = Display{};
+  display_.reset();
   contour_.reset();
-  volume_keeper_.reset();
-  hull_.reset();
+  keeper_.reset();
   displaced_.reset();
   body_.reset();
 }
@@ -98,7 +97,7 @@ void MatDeformable::reset() noexcept HSP_RT {
     track.friction.reset();
   }
   body_->nodes().reset();
-  if (volume_keeper_) volume_keeper_->reset();
+  if (keeper_) keeper_->volume.reset();
   stored_ = 0;
   shown_at_rest_ = false;
 }
@@ -124,7 +123,7 @@ hsp_status MatDeformable::step(const hsp_step& step) noexcept HSP_RT {
     if (status < 0 || (status > 0 && worst == HSP_OK)) worst = worst < 0 ? worst : status;
   }
   body_->yield(presses_);
-  if (volume_keeper_) volume_keeper_->step(body_->nodes());
+  if (keeper_) keeper_->volume.step(body_->nodes());
   show(step);
   return worst;
 }
@@ -146,7 +145,8 @@ void MatDeformable::show(const hsp_step& step) noexcept HSP_RT {
 hsp_status MatDeformable::mesh(double chord_error, hsp_mesh& out) {
   if (!body_) return HSP_E_STATE;
   if (!(chord_error > 0)) return HSP_E_ARG;
-  display_.show(*body_, *displaced_, std::max(chord_error, kFinestMesh), out);
+  if (!display_) display_ = std::make_unique<Display>();
+  display_->show(*body_, *displaced_, std::max(chord_error, kFinestMesh), out);
   return HSP_OK;
 }
 
@@ -241,7 +241,7 @@ hsp_status MatDeformable::start(const hsp_near& near) noexcept HSP_RT {
   Track& track = tracks_[near.probe];
   if (!track.active) track.known = false;
   track.active = track.offered = true;
-  track.offer = near;
+  track.offer = {near.param[0], near.param[1]};
   return HSP_OK;
 }
 
@@ -252,7 +252,7 @@ hsp_status MatDeformable::stop(uint32_t probe) noexcept HSP_RT {
 }
 
 int64_t MatDeformable::save(void* buffer, uint64_t capacity) const {
-  const std::vector<unsigned char> state = body_ ? stateOf(body_->nodes()) : kept_;
+  const std::vector<unsigned char> state = body_ ? stateOf(body_->nodes()) : states_->kept;
   if (buffer != nullptr && state.size() <= capacity)
     std::copy(state.begin(), state.end(), static_cast<unsigned char*>(buffer));
   return static_cast<int64_t>(state.size());
@@ -263,14 +263,14 @@ hsp_status MatDeformable::load(const void* buffer, uint64_t length) {
   if (body_) return HSP_E_STATE;
   const auto* bytes = static_cast<const unsigned char*>(buffer);
   if (!isState({bytes, static_cast<std::size_t>(length)})) return HSP_E_ARG;
-  loaded_.assign(bytes, bytes + length);
+  states_->loaded.assign(bytes, bytes + length);
   return HSP_OK;
 }
 
 const void* MatDeformable::extension(const char* name) {
   const std::string_view wanted = name;
   if (wanted == HSP_EXT_SURFACES && body_) {
-    surfaces_extension_ = {
+    static constexpr hsp_ext_surfaces kExtension = {
         sizeof(hsp_ext_surfaces), 1,
         [](const hsp_shape* shape, const double p_model[3], double radius, hsp_near* out, uint64_t cap) -> int64_t {
           return reinterpret_cast<const MatDeformable*>(shape)->nearby(p_model, radius, out, cap);
@@ -279,38 +279,41 @@ const void* MatDeformable::extension(const char* name) {
             HSP_RT -> hsp_status { return reinterpret_cast<MatDeformable*>(shape)->start(*near); },
         [](hsp_shape* shape, uint32_t probe, uint32_t)
             HSP_RT -> hsp_status { return reinterpret_cast<MatDeformable*>(shape)->stop(probe); }};
-    return &surfaces_extension_;
+    return &kExtension;
   }
   if (wanted == HSP_EXT_GEOMETRY && body_) {
-    geometry_extension_ = {sizeof(hsp_ext_geometry), 0,
-                           [](hsp_shape* shape, double chord_error, hsp_mesh* out) -> hsp_status {
-                             return reinterpret_cast<MatDeformable*>(shape)->mesh(chord_error, *out);
-                           },
-                           [](hsp_shape* shape, double min[3], double max[3]) -> hsp_status {
-                             const auto& body = reinterpret_cast<MatDeformable*>(shape)->body_;
-                             if (!body) return HSP_E_STATE;
-                             Eigen::Map<Vector3d>(min, 3) = body->bounds().min();
-                             Eigen::Map<Vector3d>(max, 3) = body->bounds().max();
-                             return HSP_OK;
-                           }};
-    return &geometry_extension_;
+    static constexpr hsp_ext_geometry kExtension = {
+        sizeof(hsp_ext_geometry), 0,
+        [](hsp_shape* shape, double chord_error, hsp_mesh* out) -> hsp_status {
+          return reinterpret_cast<MatDeformable*>(shape)->mesh(chord_error, *out);
+        },
+        [](hsp_shape* shape, double min[3], double max[3]) -> hsp_status {
+          const auto& body = reinterpret_cast<MatDeformable*>(shape)->body_;
+          if (!body) return HSP_E_STATE;
+          Eigen::Map<Vector3d>(min, 3) = body->bounds().min();
+          Eigen::Map<Vector3d>(max, 3) = body->bounds().max();
+          return HSP_OK;
+        }};
+    return &kExtension;
   }
   if (wanted == HSP_EXT_ENERGY) {
-    energy_extension_ = {sizeof(hsp_ext_energy), 0, [](hsp_shape* shape) HSP_RT -> double {
-                           const MatDeformable& body = *reinterpret_cast<MatDeformable*>(shape);
-                           return body.stored_ + body.body_->nodes().energy();
-                         }};
-    return &energy_extension_;
+    static constexpr hsp_ext_energy kExtension = {sizeof(hsp_ext_energy), 0, [](hsp_shape* shape) HSP_RT -> double {
+                                                    const MatDeformable& body =
+                                                        *reinterpret_cast<MatDeformable*>(shape);
+                                                    return body.stored_ + body.body_->nodes().energy();
+                                                  }};
+    return &kExtension;
   }
   if (wanted == HSP_EXT_STATE) {
-    state_extension_ = {sizeof(hsp_ext_state), 0,
-                        [](hsp_shape* shape, void* buffer, uint64_t capacity) -> int64_t {
-                          return reinterpret_cast<MatDeformable*>(shape)->save(buffer, capacity);
-                        },
-                        [](hsp_shape* shape, const void* buffer, uint64_t length) -> hsp_status {
-                          return reinterpret_cast<MatDeformable*>(shape)->load(buffer, length);
-                        }};
-    return &state_extension_;
+    static constexpr hsp_ext_state kExtension = {
+        sizeof(hsp_ext_state), 0,
+        [](hsp_shape* shape, void* buffer, uint64_t capacity) -> int64_t {
+          return reinterpret_cast<MatDeformable*>(shape)->save(buffer, capacity);
+        },
+        [](hsp_shape* shape, const void* buffer, uint64_t length) -> hsp_status {
+          return reinterpret_cast<MatDeformable*>(shape)->load(buffer, length);
+        }};
+    return &kExtension;
   }
   return nullptr;
 }

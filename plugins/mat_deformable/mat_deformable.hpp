@@ -2,7 +2,6 @@
 #pragma once
 #include <array>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -84,6 +83,15 @@ class MatDeformable final : public Shape {
   static constexpr const char* kEvaluationNames[] = {"fast", "small"};
   static constexpr const char* kSwitchNames[] = {"off", "on"};
 
+  /// Bytes that describe a body: of the last deactivation; for the next activation.
+  struct States {
+    std::vector<unsigned char> kept, loaded;
+  };
+  struct Keeper {
+    std::unique_ptr<medial::MovingMesh> hull;
+    medial::VolumeKeeper volume;
+  };
+
   medial::BodyOptions bodyOptions() const;
   void describe() const;
   double elapsed(const hsp_step& step) noexcept HSP_RT;
@@ -113,18 +121,13 @@ class MatDeformable final : public Shape {
   std::vector<medial::Press> presses_;  ///< of this step, reserved for all probes
   std::unique_ptr<Displaced> displaced_;
   std::unique_ptr<medial::MovingMesh> contour_;  ///< written by the step, if display_tolerance asks for it
-  std::unique_ptr<medial::MovingMesh> hull_;     ///< whose volume is kept, if that was asked for
-  std::optional<medial::VolumeKeeper> volume_keeper_;
-  std::vector<unsigned char> kept_, loaded_;  ///< states: of the last deactivation; for the next activation
-  Display display_;
+  std::unique_ptr<Keeper> keeper_;               ///< of the volume, if that was asked for
+  std::unique_ptr<States> states_ = std::make_unique<States>();
+  std::unique_ptr<Display> display_;
   double since_shown_ = 0;  ///< [s]
   bool shown_at_rest_ = true;
   uint64_t last_time_ns_ = 0;
   double stored_ = 0;  ///< [J] in the springs of the contacts
-  hsp_ext_surfaces surfaces_extension_{};
-  hsp_ext_geometry geometry_extension_{};
-  hsp_ext_energy energy_extension_{};
-  hsp_ext_state state_extension_{};
 };
 
 }  // namespace hapticd

@@ -1,5 +1,6 @@
 /// What the plugin needs of a soft body, whichever form its medial axis has: a grid of points or a mesh.
 #pragma once
+#include <array>
 #include <memory>
 #include <span>
 #include <string>
@@ -26,7 +27,7 @@ struct Track {
   medial::SkeletonFoot foot;
   Eigen::Vector3d last{0, 0, 0};    ///< where the probe was
   Eigen::Vector3d pushed{0, 0, 0};  ///< direction in which the surface pushed; zero: it did not
-  hsp_near offer{};                 ///< what the search of the simulation side found last
+  std::array<double, 2> offer{};    ///< parameters of what the search of the simulation side found last
   bool active = false, known = false, offered = false;
   int side = 0;  ///< of a sheet on which it entered; 0: it has not
   contact::Friction friction;

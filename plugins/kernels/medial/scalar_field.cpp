@@ -42,9 +42,9 @@ ScalarField::ScalarField(const std::array<std::vector<double>, 2>& parameters, c
   if (samples.empty()) return;
   const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
   range_ = {*low, *high};
-  constant_.f = samples.front();
   if (*low == *high) return;
   parameters_ = parameters;
+  nodes_.reserve(samples.size());
   for (const double f : samples) nodes_.push_back({f, 0, 0});
   limitSlopes();
 }
@@ -65,7 +65,7 @@ void ScalarField::limitSlopes() {
       // Half of what keeps a curve's Bernstein coefficients positive, so that both directions together keep a patch's.
       const double width = std::max(i > 0 ? t[i] - t[i - 1] : 0, i < last ? t[i + 1] - t[i] : 0);
       const double most = 1.5 * nodes_[n].f / width;
-      (axis == 0 ? nodes_[n].fu : nodes_[n].fv) = std::clamp(d, -most, most);
+      (axis == 0 ? nodes_[n].fu : nodes_[n].fv) = static_cast<float>(std::clamp(d, -most, most));
     }
   }
 }

@@ -19,9 +19,9 @@ class ScalarField {
     double f = 0, fu = 0, fv = 0, fuu = 0, fuv = 0, fvv = 0;
   };
   /// [any] Value and first derivatives; the second ones stay 0.
-  Value evaluate(double u, double v) const noexcept { return nodes_.empty() ? constant_ : blend<1>(u, v); }
+  Value evaluate(double u, double v) const noexcept { return nodes_.empty() ? flat() : blend<1>(u, v); }
   /// [any]
-  Value evaluate2(double u, double v) const noexcept { return nodes_.empty() ? constant_ : blend<2>(u, v); }
+  Value evaluate2(double u, double v) const noexcept { return nodes_.empty() ? flat() : blend<2>(u, v); }
 
   bool constant() const noexcept { return nodes_.empty(); }  ///< [any]
   double least() const noexcept { return range_[0]; }        ///< [any] of the samples
@@ -30,13 +30,14 @@ class ScalarField {
 
  private:
   struct Node {
-    double f, fu, fv;
+    double f;
+    float fu, fv;  ///< a slope wrong by its rounding moves the field by 1e-8 of the change between two samples
   };
+  Value flat() const noexcept { return {range_[0], 0, 0, 0, 0, 0}; }
   void limitSlopes();
   template <int kOrder>
   Value blend(double u, double v) const noexcept;
 
-  Value constant_;
   std::array<double, 2> range_{0, 0};
   std::array<std::vector<double>, 2> parameters_;
   std::vector<Node> nodes_;  ///< empty: the same everywhere

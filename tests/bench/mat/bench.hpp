@@ -13,6 +13,10 @@ std::string gardenTable();
 std::string skeletonTable();
 /// Accuracy against speed, a table a knob. Markdown.
 std::string knobTables();
+/// Medial meshes: a cone, a slab, bodies of up to 10,000 slabs. Markdown.
+std::string meshTables();
+/// Volume with and without keeping it. Markdown.
+std::string volumeTable();
 
 /// Median time [s] of `batches` batches of calls `work(i)`, per call.
 template <class Work>
@@ -26,6 +30,14 @@ double medianTime(int batches, int calls, Work&& work) {
   }
   std::nth_element(times.begin(), times.begin() + batches / 2, times.end());
   return times[static_cast<std::size_t>(batches / 2)];
+}
+
+/// Least time [s] of `batches` batches of calls `work(i)`, per call: for work so short that any disturbance shows.
+template <class Work>
+double leastTime(int batches, int calls, Work&& work) {
+  double least = 1e300;
+  for (int b = 0; b < batches; ++b) least = std::min(least, medianTime(1, calls, work));
+  return least;
 }
 
 }  // namespace hapticd::bench_mat

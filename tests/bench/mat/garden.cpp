@@ -5,13 +5,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 
 #include "bench.hpp"
 #include "kernels/medial/body.hpp"
-#include "scene/load.hpp"
-#include "servo/lockstep.hpp"
-#include "servo/world.hpp"
+#include "scene_world.hpp"
 
 namespace hapticd::bench_mat {
 namespace {
@@ -71,9 +68,15 @@ void writeModel(const medial::BodyData& data, const fs::path& file) {
       points, radius, data.stiffness[0], data.damping[0], data.mass[0]);
 }
 
-Vector3d placeOf(int body) {
-  const int side = body < 49 ? 7 : 32;
+/// On a square of `side` bodies a row: body 0 is in its corner, with as many neighbours in every scene.
+Vector3d placeOf(int body, int side) {
   return {.07 * (body % side - side / 2), .07 * (body / side - side / 2), 0};
+}
+
+int sideOf(const Row& row) {
+  int bodies = 0;
+  for (const Kind& kind : row.kinds) bodies += kind.count;
+  return bodies < 49 ? 7 : 32;
 }
 
 struct Setting {
@@ -84,76 +87,38 @@ struct Setting {
 std::unique_ptr<servo::World> build(const Row& row, const Setting& setting, const fs::path& folder, double& seconds) {
   std::string models;
   int body = 0;
+  const int side = sideOf(row);
   for (std::size_t k = 0; k < row.kinds.size(); ++k) {
     writeModel(bodyOf(row.kinds[k]), folder / fmt::format("kind{}.yaml", k));
     for (int i = 0; i < row.kinds[k].count; ++i, ++body) {
-      const Vector3d at = placeOf(body);
+      const Vector3d at = placeOf(body, side);
       models += fmt::format(
           "  - name: body{}\n    plugin: mat_deformable\n    pose: {{position: [{}, {}, {}]}}\n"
           "    parameters: {{geometry: kind{}.yaml, dynamics: {}}}\n",
           body, at.x(), at.y(), at.z(), k, setting.dynamics);
     }
   }
-  std::ofstream(folder / "scene.yaml") << fmt::format(
-      "hapticd: 1\nservo: {{rate: 1000, activation_radius: {}, hysteresis: 0.05}}\nmodels:\n{}", setting.radius,
-      models);
-  host::Catalog catalog;
-  scene::Loaded loaded = scene::load(folder / "scene.yaml", catalog, {.default_device = false, .device_file = {}});
-  std::string problems;
-  for (const scene::Problem& problem : loaded.problems) problems += problem.text() + "\n";
-  if (!loaded.scene) throw std::runtime_error(problems);
-  const auto begun = std::chrono::steady_clock::now();
-  auto world = servo::World::build(*loaded.scene, {1000, 1, false}, [](int, const auto&, const auto&) {});
-  seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  if (!world) throw std::runtime_error(world.error());
-  return std::move(*world);
+  return buildWorld(
+      fmt::format("hapticd: 1\nservo: {{rate: 1000, activation_radius: {}, hysteresis: 0.05}}\nmodels:\n{}",
+                  setting.radius, models),
+      folder, seconds);
 }
 
-/// Ticks a world by a probe that is put anywhere.
-class Hand {
- public:
-  explicit Hand(servo::World& world) : world_(world), lockstep_(world) { probe_.valid = true; }
-
-  void tick(const Vector3d& at) {
-    prepare(at);
-    run();
-  }
-  /// Median time of a tick alone [us], while the probe strokes body 0, 3 mm deep, at 0.1 m/s.
-  double stroke(int ticks) {
-    std::vector<double> times;
-    for (int i = 0; i < ticks; ++i) {
-      prepare(placeOf(0) + Vector3d(.008 * std::sin(.0125 * i), .008 * std::cos(.0125 * i), .008));
-      const auto begun = std::chrono::steady_clock::now();
-      run();
-      times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count());
-    }
-    std::nth_element(times.begin(), times.begin() + ticks / 2, times.end());
-    return 1e6 * times[static_cast<std::size_t>(ticks / 2)];
-  }
-
- private:
-  void prepare(const Vector3d& at) {
-    probe_.velocity = count_ == 0 ? Vector3d(Vector3d::Zero()) : Vector3d((at - probe_.position) * 1e3);
-    probe_.position = at;
-    world_.core().publish(1e-3 * count_, {&probe_, 1});
-    lockstep_.before(1e-3 * count_);
-  }
-  void run() {
-    world_.core().tick(1e-3 * count_, count_ == 0 ? 0 : 1e-3, {&probe_, 1});
-    ++count_;
-  }
-
-  servo::World& world_;
-  servo::Lockstep lockstep_;
-  servo::Probe probe_;
-  int count_ = 0;
-};
+/// Median time of a tick alone [us], while the probe strokes body 0, 3 mm deep, at 0.1 m/s.
+double stroke(Hand& hand, int side, int ticks) {
+  return hand
+      .ticks(ticks,
+             [side](int i) -> Vector3d {
+               return placeOf(0, side) + Vector3d(.008 * std::sin(.0125 * i), .008 * std::cos(.0125 * i), .008);
+             })
+      .at(.5);
+}
 
 /// Pokes every body deeply, at all parts of it.
-void wakeAll(Hand& hand, int bodies) {
+void wakeAll(Hand& hand, int side, int bodies) {
   for (int body = 0; body < bodies; ++body)
     for (int i = 0; i < 81; ++i)
-      hand.tick(placeOf(body) + Vector3d(.015 * (i % 9 - 4) / 4, .015 * (i / 9 - 4) / 4, .004));
+      hand.tick(placeOf(body, side) + Vector3d(.015 * (i % 9 - 4) / 4, .015 * (i / 9 - 4) / 4, .004));
 }
 
 std::string line(const Row& row, const fs::path& folder) {
@@ -166,23 +131,24 @@ std::string line(const Row& row, const fs::path& folder) {
     fit += kind.count * medianTime(5, 3, [&](int) { medial::Body body(data, {}); });
   }
   double load = 0, unused = 0;
+  const int side = sideOf(row);
   const auto world = build(row, {"0.10", "on"}, folder, load);
   const double memory = static_cast<double>(world->lockedBytes()) / 1024;
   Hand hand(*world);
-  hand.stroke(500);
-  const double one = hand.stroke(2000);
+  stroke(hand, side, 500);
+  const double one = stroke(hand, side, 2000);
   const auto still = build(row, {"0.10", "off"}, folder, unused);
   Hand still_hand(*still);
-  still_hand.stroke(500);
-  const double without = still_hand.stroke(2000);
+  stroke(still_hand, side, 500);
+  const double without = stroke(still_hand, side, 2000);
   std::string followed = "", awake = "";
   if (bodies <= 100) {  // all of them followed, however far
     const auto wide = build(row, {"2", "on"}, folder, unused);
     Hand wide_hand(*wide);
-    wide_hand.stroke(500);
-    followed = fmt::format("{:.1f}", wide_hand.stroke(2000));
-    wakeAll(wide_hand, bodies);
-    awake = fmt::format("{:.1f}", wide_hand.stroke(400));
+    stroke(wide_hand, side, 500);
+    followed = fmt::format("{:.1f}", stroke(wide_hand, side, 2000));
+    wakeAll(wide_hand, side, bodies);
+    awake = fmt::format("{:.1f}", stroke(wide_hand, side, 400));
   }
   return fmt::format("| {} | {} | {} | {:.1f} ms | {:.0f} ms | {} | {:.0f} kB | {} | {:.1f} | {:.1f} | {} | {} |\n",
                      bodies, points, row.paper_preprocessing, 1e3 * fit, 1e3 * load, row.paper_memory, memory,

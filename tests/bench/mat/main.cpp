@@ -1,10 +1,12 @@
-/// bench_mat: what soft bodies cost and how exact they are. Prints the tables; with --write, writes
-/// driver/docs/bench_mat.md.
+/// bench_mat: what soft bodies cost and how exact they are. Prints the tables, or those that are named (knobs, scenes,
+/// meshes, volume, searches); with --write, writes driver/docs/bench_mat.md.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <exception>
 #include <fstream>
+#include <utility>
 
 #include "bench.hpp"
 
@@ -12,23 +14,29 @@ namespace {
 
 constexpr const char* kHead =
     "# What soft bodies cost\n\nMade by `bench_mat --write` (configure with -DHAPTICD_BENCH=ON). One core of a shared "
-    "virtual "
-    "machine.\n\n";
+    "virtual machine.\n\n";
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  using Part = std::pair<const char*, std::string (*)()>;
+  constexpr Part kParts[] = {{"knobs", hapticd::bench_mat::knobTables},
+                             {"scenes", hapticd::bench_mat::gardenTable},
+                             {"meshes", hapticd::bench_mat::meshTables},
+                             {"volume", hapticd::bench_mat::volumeTable},
+                             {"searches", hapticd::bench_mat::skeletonTable}};
+  const bool write = argc == 2 && std::strcmp(argv[1], "--write") == 0;
   try {
     std::string text = kHead;
-    for (const auto part :
-         {hapticd::bench_mat::knobTables, hapticd::bench_mat::gardenTable, hapticd::bench_mat::skeletonTable}) {
-      const std::string made = part();
+    for (const auto& [name, make] : kParts) {
+      const bool wanted = argc < 2 || write || std::find(argv + 1, argv + argc, std::string(name)) != argv + argc;
+      if (!wanted) continue;
+      const std::string made = make();
       fmt::print("{}", made);
       std::fflush(stdout);
       text += made;
     }
-    if (argc > 1 && std::strcmp(argv[1], "--write") == 0)
-      std::ofstream(HAPTICD_SOURCE_DIR "/driver/docs/bench_mat.md") << text;
+    if (write) std::ofstream(HAPTICD_SOURCE_DIR "/driver/docs/bench_mat.md") << text;
     return 0;
   } catch (const std::exception& e) {
     fmt::print(stderr, "error: {}\n", e.what());
