@@ -9,8 +9,9 @@ namespace {
 constexpr Nanoseconds kMillisecond = 1'000'000;
 constexpr Nanoseconds kSearchPause = 100 * kMillisecond;
 constexpr Nanoseconds kFirstReport = 1000 * kMillisecond;
-constexpr int kMostReportsAtOnce = 64;  ///< what the kernel holds of a hidraw device
-constexpr int kAbove = 1;               ///< over the servo's priority: a sample is worth nothing when it comes late
+constexpr Nanoseconds kOld = 5 * kMillisecond;  ///< what waited for a reader comes within this time
+constexpr int kMostReportsAtOnce = 64;          ///< what the kernel holds of a hidraw device
+constexpr int kAbove = 1;  ///< over the servo's priority: a sample is worth nothing when it comes late
 
 void pause(Nanoseconds time) noexcept {
   RealClock clock(0);
@@ -131,6 +132,7 @@ void Link::write(const Wish& wish) noexcept HSP_RT {
 
 void Link::run() noexcept {
   if (os::setFifo(os::kServoPriority + kAbove)) (void)os::setFifo(os::kServoPriority);
+  if (open_) forgetOld();
   due_ = monotonicNow();
   while (!stop_.load(std::memory_order_relaxed)) {
     if (open_)
@@ -142,6 +144,15 @@ void Link::run() noexcept {
   if (!open_) return;
   const size_t size = session_.command(monotonicNow(), Wish{}, out_);  // motors off
   (void)transport_->send({out_.data(), size});
+}
+
+/// Reports from before this thread began: the arm has moved since, and the next report would look like a jump.
+void Link::forgetOld() noexcept {
+  size_t size = 0;
+  for (const Nanoseconds until = monotonicNow() + kOld; monotonicNow() < until;)
+    if (const Status status = transport_->receive(in_, size, kMillisecond);
+        status != Status::kOk && status != Status::kNothing)
+      return;
 }
 
 void Link::serve(Nanoseconds now) noexcept {

@@ -59,6 +59,7 @@ class Link {
 
  private:
   void run() noexcept;
+  void forgetOld() noexcept;
   void serve(Nanoseconds now) noexcept;
   void receive(Nanoseconds wait) noexcept;
   void send(Nanoseconds now) noexcept;

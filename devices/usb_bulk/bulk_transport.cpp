@@ -15,6 +15,7 @@ constexpr size_t kReads = 4;                     ///< transfers that always wait
 constexpr size_t kBuffer = 512;                  ///< bytes of each: a high-speed packet
 constexpr Nanoseconds kWriteHangs = 15'000'000;  ///< a command that nobody takes: as good as a stall
 constexpr unsigned kControlTimeout = 1000;       ///< [ms]
+constexpr Nanoseconds kCancelled = 500'000'000;  ///< the kernel gives back a cancelled transfer long before
 
 std::string idText(const Address& address) {
   char text[16];
@@ -75,14 +76,20 @@ class BulkTransport final : public Transport {
 
   void close() noexcept override {
     if (handle_ == nullptr) return;
+    closing_ = true;  // what completes from now on is not submitted again
+    waiting_ = false;
     for (libusb_transfer* read : reads_) (void)libusb_cancel_transfer(read);
     if (writing_) (void)libusb_cancel_transfer(write_);
-    for (int i = 0; i < 100 && (in_flight_ > 0 || writing_); ++i) handleEvents(1'000'000);
+    const Nanoseconds until = monotonicNow() + kCancelled;
+    while ((in_flight_ > 0 || writing_) && monotonicNow() < until) handleEvents(1'000'000);
     (void)libusb_release_interface(handle_, interface_);
-    libusb_close(handle_);
+    if (in_flight_ == 0 && !writing_)
+      libusb_close(handle_);
+    else
+      orphan();
     handle_ = nullptr;
     in_flight_ = 0;
-    writing_ = waiting_ = false;
+    writing_ = closing_ = false;
     first_ = filled_ = 0;
     broken_ = Status::kOk;
   }
@@ -221,10 +228,21 @@ class BulkTransport final : public Transport {
     (void)libusb_handle_events_timeout_completed(context_, &time, nullptr);
   }
 
+  /// Transfers that the kernel keeps belong to it: neither they nor their handle are used or freed again.
+  void orphan() noexcept {
+    for (libusb_transfer*& read : reads_) {
+      read->user_data = nullptr;
+      read = libusb_alloc_transfer(0);
+    }
+    write_->user_data = nullptr;
+    write_ = libusb_alloc_transfer(0);
+  }
+
   static void LIBUSB_CALL onRead(libusb_transfer* transfer) {
+    if (transfer->user_data == nullptr) return;
     auto& self = *static_cast<BulkTransport*>(transfer->user_data);
     --self.in_flight_;
-    if (transfer->status == LIBUSB_TRANSFER_CANCELLED) return;
+    if (self.closing_ || transfer->status == LIBUSB_TRANSFER_CANCELLED) return;
     if (transfer->status != LIBUSB_TRANSFER_COMPLETED) {
       self.broken_ = statusOf(transfer->status);
       return;
@@ -237,9 +255,10 @@ class BulkTransport final : public Transport {
   }
 
   static void LIBUSB_CALL onWrite(libusb_transfer* transfer) {
+    if (transfer->user_data == nullptr) return;
     auto& self = *static_cast<BulkTransport*>(transfer->user_data);
     self.writing_ = false;
-    if (transfer->status == LIBUSB_TRANSFER_CANCELLED) return;
+    if (self.closing_ || transfer->status == LIBUSB_TRANSFER_CANCELLED) return;
     if (transfer->status != LIBUSB_TRANSFER_COMPLETED)
       self.broken_ = statusOf(transfer->status);
     else if (self.waiting_)
@@ -266,7 +285,7 @@ class BulkTransport final : public Transport {
   Nanoseconds written_at_ = 0;
   int interface_ = 0;
   uint8_t endpoint_out_ = 0;
-  bool writing_ = false, waiting_ = false, out_interrupt_ = false;
+  bool writing_ = false, waiting_ = false, closing_ = false, out_interrupt_ = false;
   Status broken_ = Status::kOk;
 };
 
