@@ -1,4 +1,5 @@
-/// The device side of the interface board's reports, written down a second time by hand: driver/docs/usb_interface_board.md.
+/// The device side of the interface board's reports, written down a second time by hand:
+/// driver/docs/usb_interface_board.md.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "emulators/board.hpp"
+#include "emulators/delta_mechanism.hpp"
 #include "mechanisms.hpp"
 
 namespace hapticd::emulator {
@@ -20,23 +20,31 @@ using simulated::PlantOf;
 using simulated::Pull;
 
 constexpr double kWatchdog = 0.02;  ///< [s] without a command: motors off
-constexpr double kStep = 2e-4;      ///< [s] of the integration
+constexpr double kStep = 5e-4;      ///< [s] of the integration
 
-/// Counts and milliamperes against radians and newton metres, as the two makers wire it.
+/// Counts and milliamperes against radians and newton metres, as the makers wire it.
 struct Drives {
-  Vector3d counts;  ///< a radian
-  Vector3d torque;  ///< N m a milliampere
-  double most;      ///< mA
+  Vector3d counts;   ///< a radian
+  Vector3d torque;   ///< N m a milliampere
+  double most;       ///< mA
+  double offset;     ///< [rad] where an absolute encoder counts 0
+  bool incremental;  ///< counts begin where it was switched on
 };
 
 Drives boardDrives() {
   const Vector3d gear(13.3, 11.2, 11.2);
-  return {4096 * gear / (2 * M_PI), 0.0234e-3 * gear, 5500};
+  return {4096 * gear / (2 * M_PI), 0.0234e-3 * gear, 5500, 0, false};
 }
 
 Drives woodenDrives() {  // joints 1 and 3 turn against their motors
   const Vector3d ratio(-16, 12, -12);
-  return {2000 * ratio / (2 * M_PI), 0.0259e-3 * ratio, 2000};
+  return {2000 * ratio / (2 * M_PI), 0.0259e-3 * ratio, 2000, 0, true};
+}
+
+/// libnifalcon: 320 lines of four edges a motor turn, capstan of 14.25 mm diameter on a wheel of 110 mm diameter.
+Drives falconDrives() {
+  const double counts_per_degree = 4 * 320 * (0.110 * M_PI / 360) / (0.01425 * M_PI);
+  return {Vector3d::Constant(counts_per_degree * 180 / M_PI), Vector3d::Constant(-1e-4), 4096, 35 * M_PI / 180, false};
 }
 
 kinematics::PhantomGeometry woodenGeometry() {
@@ -45,62 +53,97 @@ kinematics::PhantomGeometry woodenGeometry() {
   return g;
 }
 
+enum class Body { kPremium, kWooden, kDelta };
+
+struct Kind {
+  const char* name;
+  About about;
+  Body body;
+};
+
+const Kind kKinds[] = {
+    {"premium15", {0x1209, 0x0005, "hapticd interface board", 32, 16, true, Bus::kHid}, Body::kPremium},
+    {"premium15-bulk", {0x1209, 0x0006, "hapticd interface board", 32, 16, true, Bus::kBulk}, Body::kPremium},
+    {"woodenhaptics", {0x1234, 0x0006, "WoodenHaptics", 14, 14, false, Bus::kHid}, Body::kWooden},
+    {"polhem", {0x16c0, 0x0486, "Polhem", 64, 64, false, Bus::kHid}, Body::kWooden},
+    {"falcon", {0x0403, 0xcb48, "FALCON HAPTIC", 16, 16, false, Bus::kFtdi}, Body::kDelta},
+};
+
+const Kind& kindOf(const std::string& name) {
+  for (const Kind& kind : kKinds)
+    if (name == kind.name) return kind;
+  std::string all;
+  for (const Kind& kind : kKinds) all += std::string(" ") + kind.name;
+  throw std::invalid_argument("no emulated arm \"" + name + "\", expected one of" + all);
+}
+
 }  // namespace
 
 struct EmulatedArm::Inside {
-  bool board = true;
   About about;
   Drives drives;
   simulated::Parameters parameters;
-  std::unique_ptr<kinematics::Phantom> arm;
+  std::unique_ptr<Firmware> firmware;
   std::unique_ptr<Plant> plant;
   std::unique_ptr<Hand> hand;
   Drive drive;
-  BoardState state;
   Vector3d zero = Vector3d::Zero();  ///< rad where the counters stood at power-on
   Fault fault = Fault::kNone;
-  double time = 0, heard = -1;
+  double time = 0, hand_time = 0, heard = -1;
+  bool still = false;
   uint64_t commands = 0, reports = 0;
 
-  void build() {
-    JointSettings joints = simulated::jointsOf(parameters, 3);
+  void buildPhantom(const kinematics::PhantomGeometry& geometry) {
+    const kinematics::Phantom arm(geometry);
+    const JointSettings joints = simulated::jointsOf(parameters, 3);
     kinematics::PhantomInertia inertia;
     inertia.rotor = joints.rotor;
-    const Vector3d gravity(0, -9.81, 0);
     plant = std::make_unique<PlantOf<simulated::PhantomMechanism>>(
-        joints, simulated::PhantomMechanism(*arm, inertia, parameters.mass, gravity));
+        joints, simulated::PhantomMechanism(arm, inertia, parameters.mass, {0, -9.81, 0}));
+    begin(arm);
+  }
+
+  void buildDelta() {
+    const kinematics::DeltaGeometry geometry;
+    const kinematics::Delta arm(geometry);
+    plant = std::make_unique<PlantOf<DeltaMechanism>>(simulated::jointsOf(parameters, 3),
+                                                      DeltaMechanism(arm, geometry, parameters.mass));
+    begin(arm);
+  }
+
+  void begin(const kinematics::Arm& arm) {
     hand = std::make_unique<Hand>(simulated::handOf(parameters), simulated::HandPath());
-    kinematics::JointVector q = arm->neutral();
-    if (!arm->inverse(hand->at(0).position, q))
+    kinematics::JointVector q = arm.neutral();
+    if (!arm.inverse(hand->at(0).position, q))
       throw std::invalid_argument("the emulated hand starts out of the arm's reach");
     plant->reset(q);
     drive.torque = drive.reference = drive.reference_rate = kinematics::JointVector::Zero(3);
-    if (!board) zero = q;  // incremental encoders
+    zero = drives.incremental ? Vector3d(q) : Vector3d::Constant(drives.offset);
   }
 
-  std::array<int32_t, 3> counts() const {
-    std::array<int32_t, 3> out{};
+  Counts counts() const {
+    Counts out{};
     const kinematics::JointVector q = plant->position();
     for (int i = 0; i < 3; ++i)
       out[static_cast<size_t>(i)] = static_cast<int32_t>(std::lround((q[i] - zero[i]) * drives.counts[i]));
     return out;
   }
 
-  void setCurrents(const std::array<int16_t, 3>& current) {
+  void setCurrents(const Currents& current) {
     for (int i = 0; i < 3; ++i)
       drive.torque[i] =
           drives.torque[i] * std::clamp<double>(current[static_cast<size_t>(i)], -drives.most, drives.most);
   }
-
-  std::vector<uint8_t> wooden(const std::array<int32_t, 3>& c) const {
-    std::vector<uint8_t> out(14, 0);
-    for (size_t i = 0; i < 3; ++i) {
-      out[2 * i] = static_cast<uint8_t>(c[i]);
-      out[2 * i + 1] = static_cast<uint8_t>(static_cast<uint32_t>(c[i]) >> 8);
-    }
-    return out;
-  }
 };
+
+const std::vector<std::string>& emulatedKinds() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const Kind& kind : kKinds) all.emplace_back(kind.name);
+    return all;
+  }();
+  return names;
+}
 
 simulated::Parameters defaultHand(const std::string& kind) {
   simulated::Parameters p;
@@ -109,30 +152,42 @@ simulated::Parameters defaultHand(const std::string& kind) {
   p.mass = 0.2, p.hand_stiffness = 500, p.hand_damping = 5;
   p.radius = 0, p.rise = 0.03, p.hand_rate = 1, p.approach = 0, p.lead_in = 0.001;
   p.normal = {0, 0, 1}, p.axis = {0, 1, 0};
-  if (kind != "woodenhaptics") return p;
-  kinematics::JointVector q(3);
-  q << 0, 1.4, 1.5;
-  const Eigen::Vector3d tip = kinematics::Phantom(woodenGeometry()).position(q);
+  Eigen::Vector3d tip = Eigen::Vector3d::Zero();
+  const Body body = kindOf(kind).body;
+  if (body == Body::kWooden) {  // upper body upright, forearm level: where it is calibrated
+    tip = kinematics::Phantom(woodenGeometry()).position({0, M_PI / 2, M_PI / 2});
+  } else if (body == Body::kDelta) {
+    const kinematics::Delta arm;
+    kinematics::Pose pose;
+    if (arm.forward(arm.neutral(), pose)) tip = pose.position + Eigen::Vector3d(0, 0, 0.015);
+    p.gear = {1}, p.max_torque = {0.41}, p.rotor = {2e-5}, p.damping = {5e-4}, p.friction = {2e-3}, p.counts = {0};
+  }
   p.center = {tip.x(), tip.y(), tip.z()};
   return p;
 }
 
-EmulatedArm::EmulatedArm(const std::string& kind, const simulated::Parameters& hand) : inside_(new Inside) {
+EmulatedArm::EmulatedArm(const std::string& name, const simulated::Parameters& hand) : inside_(new Inside) {
   Inside& in = *inside_;
+  const Kind& kind = kindOf(name);
   in.parameters = hand;
-  if (kind == "premium15") {
-    in.about = {0x1209, 0x0005, "hapticd interface board", 32, 16, true};
-    in.drives = boardDrives();
-    in.arm = std::make_unique<kinematics::Phantom>();
-  } else if (kind == "woodenhaptics") {
-    in.board = false;
-    in.about = {0x1234, 0x0006, "WoodenHaptics", 14, 14, false};
-    in.drives = woodenDrives();
-    in.arm = std::make_unique<kinematics::Phantom>(woodenGeometry());
-  } else {
-    throw std::invalid_argument("no emulated arm \"" + kind + "\", expected premium15 or woodenhaptics");
+  in.about = kind.about;
+  switch (kind.body) {
+    case Body::kPremium:
+      in.drives = boardDrives();
+      in.firmware = boardFirmware();
+      in.buildPhantom({});
+      break;
+    case Body::kWooden:
+      in.drives = woodenDrives();
+      in.firmware = woodenFirmware(in.about.input_bytes);
+      in.buildPhantom(woodenGeometry());
+      break;
+    case Body::kDelta:
+      in.drives = falconDrives();
+      in.firmware = falconFirmware();
+      in.buildDelta();
+      break;
   }
-  in.build();
 }
 
 EmulatedArm::~EmulatedArm() = default;
@@ -144,14 +199,17 @@ const About& EmulatedArm::about() const {
 void EmulatedArm::advance(double seconds) {
   Inside& in = *inside_;
   const int steps = std::max(1, static_cast<int>(std::ceil(seconds / kStep)));
+  const double h = seconds / steps;
   for (int i = 0; i < steps; ++i) {
-    in.time += seconds / steps;
+    in.time += h;
+    if (!in.still) in.hand_time += h;
     if (silence() > kWatchdog) in.drive.torque.setZero();
-    const HandTarget target = in.hand->at(in.time);
+    const HandTarget target = in.hand->at(in.hand_time);
     Pull pull;
-    pull.target = target.position, pull.velocity = target.velocity, pull.force = target.force;
+    pull.target = target.position, pull.velocity = in.still ? Vector3d(0, 0, 0) : target.velocity;
+    pull.force = target.force;
     pull.stiffness = in.parameters.hand_stiffness, pull.damping = in.parameters.hand_damping;
-    in.plant->step(seconds / steps, in.drive, pull);
+    in.plant->step(h, in.drive, pull);
   }
 }
 
@@ -159,13 +217,9 @@ std::vector<uint8_t> EmulatedArm::report() {
   Inside& in = *inside_;
   ++in.reports;
   if (in.fault == Fault::kSilent || (in.fault == Fault::kHalfRate && in.reports % 2 == 0)) return {};
-  std::array<int32_t, 3> counts = in.counts();
+  Counts counts = in.counts();
   if (in.fault == Fault::kJump) counts[1] += 20000;
-  in.state.counts = counts;
-  ++in.state.sequence;
-  in.state.version = in.fault == Fault::kFirmware ? 2 : 1;
-  in.state.state = in.fault == Fault::kHardware ? 1 | 4 : 1;
-  std::vector<uint8_t> bytes = in.board ? in.state.bytes() : in.wooden(counts);
+  std::vector<uint8_t> bytes = in.firmware->report(counts, in.fault);
   if (in.fault == Fault::kShort) bytes.resize(bytes.size() / 2);
   if (in.fault == Fault::kCorrupt) bytes[8] ^= 0x10;
   return bytes;
@@ -173,16 +227,9 @@ std::vector<uint8_t> EmulatedArm::report() {
 
 void EmulatedArm::command(std::span<const uint8_t> bytes) {
   Inside& in = *inside_;
-  std::array<int16_t, 3> current{};
-  if (in.board) {
-    const BoardCommand command(bytes);
-    if (!command.valid) return;
-    if (command.enabled) current = command.current;
-  } else {
-    if (bytes.size() != 14) return;
-    for (size_t i = 0; i < 3; ++i) current[i] = static_cast<int16_t>(bytes[2 * i] | bytes[2 * i + 1] << 8);
-  }
-  in.setCurrents(current);
+  const std::optional<Currents> current = in.firmware->command(bytes);
+  if (!current) return;
+  in.setCurrents(*current);
   in.heard = in.time;
   ++in.commands;
 }
@@ -190,8 +237,14 @@ void EmulatedArm::command(std::span<const uint8_t> bytes) {
 void EmulatedArm::spoil(Fault fault) {
   inside_->fault = fault;
 }
+void EmulatedArm::holdStill(bool still) {
+  inside_->still = still;
+}
 Eigen::Vector3d EmulatedArm::tip() const {
   return inside_->plant->tip();
+}
+Eigen::Vector3d EmulatedArm::start() const {
+  return inside_->hand->at(0).position;
 }
 bool EmulatedArm::pushed() const {
   return inside_->drive.torque.norm() > 0;

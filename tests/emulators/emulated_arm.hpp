@@ -7,9 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "emulators/firmware.hpp"
 #include "parameters.hpp"
 
 namespace hapticd::emulator {
+
+/// How an arm sits on USB.
+enum class Bus { kHid, kBulk, kFtdi };
 
 /// Product, ids and whether the arm sends by itself or answers each command.
 struct About {
@@ -17,17 +21,18 @@ struct About {
   const char* name = "";
   size_t input_bytes = 0, output_bytes = 0;
   bool streams = false;
+  Bus bus = Bus::kHid;
 };
 
-/// What an emulator can be told to do wrong.
-enum class Fault { kNone, kSilent, kShort, kCorrupt, kFirmware, kHardware, kJump, kHalfRate };
+/// Every arm that can be emulated, named as its device file.
+const std::vector<std::string>& emulatedKinds();
 
-/// A hand that presses from in front of the arm's neutral pose towards its base and out again.
+/// A hand that presses from in front of the arm's calibration pose towards its base and out again.
 simulated::Parameters defaultHand(const std::string& kind);
 
 class EmulatedArm {
  public:
-  /// @param kind "premium15" (interface board) or "woodenhaptics". Throws std::invalid_argument.
+  /// @param kind one of emulatedKinds(). Throws std::invalid_argument.
   EmulatedArm(const std::string& kind, const simulated::Parameters& hand);
   ~EmulatedArm();
   EmulatedArm(const EmulatedArm&) = delete;
@@ -41,12 +46,15 @@ class EmulatedArm {
   /// Bytes of a command; wrong ones are ignored, as a firmware does.
   void command(std::span<const uint8_t> bytes);
   void spoil(Fault fault);
+  /// While still, the hand stays where its script begins.
+  void holdStill(bool still);
 
   /// What the last milliseconds of the truth are.
   Eigen::Vector3d tip() const;
-  bool pushed() const;        ///< a motor has current
-  double silence() const;     ///< [s] since the last good command
-  uint64_t commands() const;  ///< good ones so far
+  Eigen::Vector3d start() const;  ///< where the hand's script begins
+  bool pushed() const;            ///< a motor has current
+  double silence() const;         ///< [s] since the last good command
+  uint64_t commands() const;      ///< good ones so far
 
  private:
   struct Inside;

@@ -104,9 +104,10 @@ TEST_P(ClosedLoop, WithoutAWallTheHandGoesWhereItWants) {
 
 INSTANTIATE_TEST_SUITE_P(Shipped, ClosedLoop,
                          ::testing::Values(Device{"premium15.yaml", "premium15"},
-                                           Device{"premium15-bulk.yaml", "premium15"},
-                                           Device{"woodenhaptics.yaml", "woodenhaptics"}),
-                         [](const auto& param) { return std::string(param.param.kind) + std::to_string(param.index); });
+                                           Device{"premium15-bulk.yaml", "premium15-bulk"},
+                                           Device{"woodenhaptics.yaml", "woodenhaptics"},
+                                           Device{"polhem.yaml", "polhem"}),
+                         [](const auto& param) { return "Device" + std::to_string(param.index); });
 
 }  // namespace
 }  // namespace hapticd::usb

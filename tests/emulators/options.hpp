@@ -1,0 +1,60 @@
+/// What every program that plugs in an emulated arm understands, and the signals that lead it:
+/// SIGUSR1 unplugs the arm (and plugs it in again after --replug-after), SIGUSR2 lets the hand begin.
+#pragma once
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "emulators/emulated_arm.hpp"
+
+namespace hapticd::emulator {
+
+struct Options {
+  std::string kind, serial = "0001";
+  double replug_after = -1;  ///< [s]; < 0: it stays away
+  bool hold = false;         ///< the hand waits for SIGUSR2
+  simulated::Parameters hand;
+};
+
+inline volatile std::sig_atomic_t g_unplug = 0, g_begin = 0;
+
+/// Exits with a usage text when the arguments are wrong.
+inline Options readOptions(int argc, char** argv) {
+  Options o;
+  const auto usage = [&] {
+    std::fprintf(stderr,
+                 "usage: %s KIND [--serial S] [--replug-after S] [--hand-stiffness N/m] [--hold 1]\n  kinds:", argv[0]);
+    for (const std::string& kind : emulatedKinds()) std::fprintf(stderr, " %s", kind.c_str());
+    std::fprintf(stderr, "\n");
+    std::exit(2);
+  };
+  if (argc < 2 || argc % 2 != 0) usage();
+  o.kind = argv[1];
+  o.hand = defaultHand(o.kind);
+  for (int i = 2; i + 1 < argc; i += 2) {
+    const std::string name = argv[i];
+    if (name == "--serial")
+      o.serial = argv[i + 1];
+    else if (name == "--replug-after")
+      o.replug_after = std::atof(argv[i + 1]);
+    else if (name == "--hand-stiffness")
+      o.hand.hand_stiffness = std::atof(argv[i + 1]);
+    else if (name == "--hold")
+      o.hold = std::atoi(argv[i + 1]) != 0;
+    else
+      usage();
+  }
+  std::signal(SIGUSR1, [](int) { g_unplug = 1; });
+  std::signal(SIGUSR2, [](int) { g_begin = 1; });
+  return o;
+}
+
+/// Where the hand begins, for whoever puts a scene before it.
+inline void tellTip(const EmulatedArm& arm) {
+  const Eigen::Vector3d tip = arm.start();
+  std::printf("tip %.6f %.6f %.6f\n", tip.x(), tip.y(), tip.z());
+  std::fflush(stdout);
+}
+
+}  // namespace hapticd::emulator
