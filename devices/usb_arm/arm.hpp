@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "hapticd/device.hpp"
+#include "hapticd/device_trouble.h"
 #include "kinematics/extension.hpp"
 #include "usb_arm/calibration.hpp"
 #include "usb_arm/falcon_loader.hpp"
@@ -143,6 +145,7 @@ class Arm : public Device, public Parameters {
   hsp_status read(uint64_t now_ns, hdv_sample& to) noexcept HSP_RT {
     constexpr uint64_t kHung = 20'000'000;  // the I/O thread itself hangs in the kernel
     link_->read(sample_);
+    trouble_.store(sample_.trouble, std::memory_order_relaxed);
     to.time_ns = sample_.time;
     to.sequence = sample_.sequence;
     to.buttons = sample_.buttons;
@@ -200,6 +203,10 @@ class Arm : public Device, public Parameters {
       }
       kinematics_ = kinematics::Extension<T>::of(*arm_);
       return &kinematics_;
+    }
+    if (std::string_view(name) == HDV_EXT_TROUBLE) {
+      static constexpr hdv_ext_trouble kTrouble{sizeof(hdv_ext_trouble), 0, &why};
+      return &kTrouble;
     }
     if (std::string_view(name) == HDV_EXT_CALIBRATION && method != 0) {
       calibration_ = {sizeof calibration_, 0, instructions.c_str(), &calibrate};
@@ -281,6 +288,11 @@ class Arm : public Device, public Parameters {
     std::snprintf(info.firmware, sizeof info.firmware, "%s", identity.firmware.c_str());
   }
 
+  static const char* why(const hdv_device* device) noexcept HSP_RT {
+    const Trouble trouble = reinterpret_cast<const T*>(device)->trouble_.load(std::memory_order_relaxed);
+    return trouble == Trouble::kNone ? nullptr : usb::describe(trouble);
+  }
+
   static hsp_status calibrate(hdv_device* device) {
     T& self = *reinterpret_cast<T*>(device);
     try {
@@ -323,6 +335,7 @@ class Arm : public Device, public Parameters {
   std::vector<uint8_t> image_;
   hdv_ext_kinematics kinematics_{};
   hdv_ext_calibration calibration_{};
+  std::atomic<Trouble> trouble_{Trouble::kNone};
   Sample sample_;
   Wish wish_;
   JointArray limit_{}, least_{}, most_{};

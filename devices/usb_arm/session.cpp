@@ -12,7 +12,7 @@ double seconds(Nanoseconds from, Nanoseconds to) noexcept {
 
 }  // namespace
 
-const char* describe(Trouble trouble) {
+const char* describe(Trouble trouble) noexcept {
   switch (trouble) {
     case Trouble::kNone:
       return "healthy";

@@ -22,6 +22,6 @@ enum class Trouble : uint8_t {
 };
 
 /// Words for a trouble: what failed and what cures it.
-const char* describe(Trouble trouble);
+const char* describe(Trouble trouble) noexcept;
 
 }  // namespace hapticd::usb

@@ -89,7 +89,9 @@ void warnOfHeat(const servo::Runner& runner, double rate) {
 int conclude(const Options& options, const servo::Runner& runner, const std::vector<std::string>& left_out) {
   std::vector<std::string> faults = runner.faults();
   faults.insert(faults.end(), left_out.begin(), left_out.end());
-  record::RunReport report = runner.telemetry().report(faults);
+  std::vector<std::string> told = faults;
+  for (std::string& text : runner.recovered()) told.push_back(std::move(text));
+  record::RunReport report = runner.telemetry().report(told);
   report.scene = options.scene;
   report.virtual_time = options.virtual_time;
   report.wall_seconds = static_cast<double>(runner.wallTime()) * kSecondsPerNanosecond;

@@ -6,6 +6,7 @@
 
 #include "base/result.hpp"
 #include "hapticd/device.h"
+#include "hapticd/device_trouble.h"
 #include "host/library.hpp"
 #include "host/services.hpp"
 #include "scene/scene.hpp"
@@ -50,6 +51,11 @@ class DeviceInstance {
     return true;
   }
 
+  /// [any] Why the arm is not well as of the last read, in words of static storage: "cause; cure". nullptr: unknown.
+  const char* trouble() const noexcept HSP_RT {
+    return trouble_ != nullptr && playback_ == nullptr ? trouble_->why(device_) : nullptr;
+  }
+
   const std::string& name() const { return name_; }
   const hdv_class& description() const { return *class_; }
   const hdv_info& info() const { return info_; }                         ///< valid once open
@@ -68,6 +74,7 @@ class DeviceInstance {
   const hdv_ext_kinematics* kinematics_ = nullptr;
   const hdv_ext_calibration* calibration_ = nullptr;
   const hdv_ext_cut* cut_ = nullptr;
+  const hdv_ext_trouble* trouble_ = nullptr;
   const Playback* playback_ = nullptr;
   bool open_ = false, started_ = false;
 };

@@ -8,6 +8,8 @@ namespace hapticd::servo {
 
 namespace {
 
+constexpr double kCalmFor = 0.5;      ///< [s] that a device must be well before its force comes back by itself
+constexpr double kCalmTravel = 0.02;  ///< [m] and its tip may move meanwhile, while something pushes on it
 constexpr double kStaleAfter = 0.05;  ///< [s] without a new sample: no force on yesterday's position
 
 /// As the kinematics extension writes it.
@@ -87,17 +89,20 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
 
 bool Arm::judge(hsp_status status, Nanoseconds now) noexcept HSP_RT {
   if (status < 0 || (sample_.flags & HDV_S_LOST) != 0) {
-    limiter_.trip(Fault::kDeviceLost);
+    trip(Fault::kDeviceLost);
     return false;
   }
-  if ((sample_.flags & HDV_S_FAULT) != 0) limiter_.trip(Fault::kDeviceFault);
-  if ((device_->info().capabilities & HDV_C_CALIBRATION) != 0 && (sample_.flags & HDV_S_CALIBRATED) == 0)
-    limiter_.trip(Fault::kNotCalibrated);
+  const bool at_fault = (sample_.flags & HDV_S_FAULT) != 0;
+  if (at_fault) trip(Fault::kDeviceFault);
+  const bool lacks_zero =
+      (device_->info().capabilities & HDV_C_CALIBRATION) != 0 && (sample_.flags & HDV_S_CALIBRATED) == 0;
+  if (lacks_zero) limiter_.trip(Fault::kNotCalibrated);
   if (sample_.sequence != last_sequence_) {
     last_sequence_ = sample_.sequence;
     fresh_at_ = now;
+  well_ = false;
   } else if (static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond > kStaleAfter) {
-    limiter_.trip(Fault::kStale, static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond);
+    trip(Fault::kStale, static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond);
     return false;
   }
   for (uint32_t i = 0; i < device_->info().joint_count; ++i) {
@@ -115,9 +120,28 @@ bool Arm::locate() noexcept HSP_RT {
   if (kinematics.forward(device_->handle(), sample_.position, p_device.data(), q.data()) < 0 || !p_device.allFinite()) {
     limiter_.trip(Fault::kNotFinite);
     return false;
+  well_ = !at_fault && !lacks_zero;
   }
   probe_.position = R_world_device_ * p_device + origin_world_;
   probe_.orientation = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+void Arm::trip(Fault fault, double measured) noexcept HSP_RT {
+  if (limiter_.fault() == Fault::kNone) trouble_.store(device_->trouble(), std::memory_order_release);
+  limiter_.trip(fault, measured);
+}
+
+/// A device that was unplugged, silent or at fault gets its force back once it has been well for a while and nobody is
+/// surprised by it: its tip rests, or nothing would push on it now.
+void Arm::recover(double dt, bool pushes) noexcept HSP_RT {
+  const bool moved = pushes && !((probe_.position - calm_at_).norm() <= kCalmTravel);
+  if (!well_ || !probe_.valid || moved || !limiter_.silent()) {
+    calm_ = 0;
+    calm_at_ = probe_.position;
+    return;
+  }
+  calm_ += dt;
+  if (calm_ >= kCalmFor) limiter_.recover();
+}
+
   return true;
 }
 
@@ -178,6 +202,7 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
   command.struct_size = sizeof command;
   command.mode = HDV_OFF;
   const bool located = std::isfinite(sample_.position[0]) &&
+  if (endsByItself(limiter_.fault())) recover(dt, !force.isZero(0) || !torque.isZero(0));
                        kinematics.jacobian(device_->handle(), sample_.position, J.data()) == HSP_OK && J.allFinite();
   if (located && !limiter_.silent() && !comply(dt, force)) {
     command.mode = HDV_TORQUE;
@@ -192,7 +217,7 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
   }
   if (!heat_.empty()) heatMotors(dt);
   send(now);
-  if (write_status_ < 0) limiter_.trip(Fault::kDeviceLost);
+  if (write_status_ < 0) trip(Fault::kDeviceLost);
 }
 
 void Arm::send(Nanoseconds now) noexcept HSP_RT {

@@ -4,6 +4,11 @@
 
 namespace hapticd::servo {
 
+bool endsByItself(Fault fault) noexcept {
+  return fault == Fault::kDeviceLost || fault == Fault::kDeviceFault || fault == Fault::kStale ||
+         fault == Fault::kNotCalibrated;
+}
+
 const char* describe(Fault fault) {
   switch (fault) {
     case Fault::kNone:
@@ -32,8 +37,8 @@ const char* describe(Fault fault) {
   return "unknown fault";
 }
 
-std::string faultMessage(const std::string& device, Fault fault, double measured) {
-  const std::string words = describe(fault);
+std::string faultMessage(const std::string& device, Fault fault, double measured, const char* why) {
+  const std::string words = why != nullptr ? why : describe(fault);
   const size_t cure = words.find("; ");
   const char* unit = fault == Fault::kTooFast                                                    ? "m/s"
                      : fault == Fault::kOverheated                                               ? "degC"
@@ -45,7 +50,8 @@ std::string faultMessage(const std::string& device, Fault fault, double measured
     std::snprintf(state, sizeof state, " (measured: %.3g %s)", measured, unit);
     text += state;
   }
-  text += "; its forces ended and stay off until the fault is cleared";
+  text += endsByItself(fault) ? "; its forces ended and come back in a ramp once it is well"
+                              : "; its forces ended and stay off until the fault is cleared";
   if (cure != std::string::npos) text += words.substr(cure);
   return text;
 }

@@ -22,12 +22,17 @@ enum class Fault : uint8_t {
 };
 constexpr int kFaultCount = 11;
 
+/// True if the fault ends by itself once the device is well: unplugged, silent, at fault, not calibrated. What the daemon
+/// or the user did wrong stays until the user clears it.
+bool endsByItself(Fault fault) noexcept;
+
 /// Words for a fault: what failed, and the command or act that cures it.
 const char* describe(Fault fault);
 
 /// [main] One message of four parts: what failed, the measured state, the consequence, what cures it.
 /// @param measured in the unit that the enumerator names
-std::string faultMessage(const std::string& device, Fault fault, double measured);
+/// @param why the device's own words, "cause; cure"; nullptr: it has none
+std::string faultMessage(const std::string& device, Fault fault, double measured, const char* why = nullptr);
 
 /// A fault that one thread latches and others read.
 class LatchedFault {

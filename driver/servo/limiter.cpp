@@ -144,7 +144,8 @@ void Limiter::watchButtons(uint32_t buttons) noexcept HSP_RT {
 }
 
 void Limiter::trip(Fault fault, double measured) noexcept HSP_RT {
-  if (fault_.get() != Fault::kNone || fault == Fault::kNone) return;
+  const Fault before = fault_.get();
+  if (fault == Fault::kNone || (before != Fault::kNone && (endsByItself(fault) || !endsByItself(before)))) return;
   measured_ = measured;
   fade_ = 1;
   fault_force_ = last_force_;
@@ -159,9 +160,16 @@ void Limiter::cut(Fault fault, double measured) noexcept HSP_RT {
   last_torque_.setZero();
 }
 
+  if (before != Fault::kNone) return fault_.set(fault);  // the force is on its way down already
 void Limiter::clear() noexcept HSP_RT {
   fault_.set(Fault::kNone);
   ramp_ = 0;
 }
 
 }  // namespace hapticd::servo
+void Limiter::recover() noexcept HSP_RT {
+  if (!endsByItself(fault())) return;
+  recovered_.set(fault());
+  clear();
+}
+

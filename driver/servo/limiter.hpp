@@ -45,8 +45,8 @@ class Limiter {
   /// [rt] The motors' own limit made the force of this tick smaller.
   void clippedByMotors() noexcept HSP_RT { count(Limit::kMotors); }
 
-  /// [rt] Latches a fault: the force ramps to zero from what it is now. The first one is kept. @param measured for the
-  /// message, in the unit of the fault
+  /// [rt] Latches a fault: the force ramps to zero from what it is now. The first one is kept, but for one that ends by
+  /// itself: a graver one takes its place. @param measured for the message, in the unit of the fault
   void trip(Fault fault, double measured = 0) noexcept HSP_RT;
 
   /// [rt] The motors were cut already: the fault latches and no force is left to ramp.
@@ -55,12 +55,16 @@ class Limiter {
   /// [rt] Clears a latched fault by the user's order: the force ramps in again.
   void clear() noexcept HSP_RT;
 
-  Fault fault() const noexcept { return fault_.get(); }         ///< [any]
-  double measured() const noexcept { return measured_; }        ///< [main] at the fault
-  bool enabled() const noexcept { return enabled_; }            ///< by the enable switch, if there is one
-  double rampOut() const noexcept { return limits_.ramp_out; }  ///< [s] from full force to none
-  const Clips& clips() const noexcept { return clips_; }        ///< [main] after the run
-  double maxForce() const noexcept { return max_force_; }       ///< [N] 0: none
+  /// [rt] A fault that ends by itself is over: the force ramps in again. Others stay.
+  void recover() noexcept HSP_RT;
+
+  Fault fault() const noexcept { return fault_.get(); }          ///< [any]
+  Fault recovered() const noexcept { return recovered_.get(); }  ///< [any] the last one that ended by itself
+  double measured() const noexcept { return measured_; }         ///< [main] at the fault
+  bool enabled() const noexcept { return enabled_; }             ///< by the enable switch, if there is one
+  double rampOut() const noexcept { return limits_.ramp_out; }   ///< [s] from full force to none
+  const Clips& clips() const noexcept { return clips_; }         ///< [main] after the run
+  double maxForce() const noexcept { return max_force_; }        ///< [N] 0: none
   bool silent() const noexcept { return fault() != Fault::kNone && fade_ == 0; }  ///< ramped all the way down
 
  private:
@@ -76,7 +80,7 @@ class Limiter {
   double max_force_;
   double ramp_ = 0;  // from the start, and after a fault was cleared, to full force
   double fade_ = 0;  // from the force at a fault to none
-  LatchedFault fault_;
+  LatchedFault fault_, recovered_;
   double measured_ = 0;
   bool enabled_ = true, button_was_down_ = true;  // a toggle must be pressed, not be found pressed
   bool clipped_ = false;                          // in this tick

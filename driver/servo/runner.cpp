@@ -255,7 +255,20 @@ std::string Runner::faultOf(size_t arm) const {
   const Limiter& limiter = arms_[arm]->limiter();
   const Fault fault = limiter.fault();
   if (fault == Fault::kNone || fault == Fault::kStopped) return "";
-  return faultMessage(scene_.devices[arm].name, fault, limiter.measured());
+  const bool own_words = fault == Fault::kDeviceLost || fault == Fault::kDeviceFault || fault == Fault::kStale;
+  return faultMessage(scene_.devices[arm].name, fault, limiter.measured(), own_words ? arms_[arm]->trouble() : nullptr);
+}
+
+std::vector<std::string> Runner::recovered() const {
+  std::vector<std::string> texts;
+  for (size_t i = 0; i < arms_.size(); ++i) {
+    const Fault fault = arms_[i]->limiter().recovered();
+    if (fault == Fault::kNone) continue;
+    const std::string words = arms_[i]->trouble() != nullptr ? arms_[i]->trouble() : describe(fault);
+    texts.push_back("device " + scene_.devices[i].name + ": " + words.substr(0, words.find("; ")) +
+                    "; its forces ended and came back once it was well");
+  }
+  return texts;
 }
 
 std::vector<std::string> Runner::faults() const {

@@ -67,6 +67,9 @@ class Runner {
   /// [main] What took the force of an arm away, in words; "": nothing.
   std::string faultOf(size_t arm) const;
 
+  /// [main] After the run: what took a force away for a while, in words.
+  std::vector<std::string> recovered() const;
+
   /// [main] After the run: what ended it early or took the force away, in words.
   std::vector<std::string> faults() const;
 

@@ -17,7 +17,7 @@ struct Log {
 };
 
 struct Gantry : hapticd::Device {
-  double depth, fail_at;
+  double depth, fail_at, well_at;
   int failure;
   Log log{};
   static constexpr const char* kFailures[] = {"none", "lost", "not_finite", "stale", "fault", "uncalibrated", "random"};
@@ -26,7 +26,8 @@ struct Gantry : hapticd::Device {
     using F = Fields<Gantry>;
     return std::array{F::real("depth", &Gantry::depth, "m", -1, 1, 0.002, "Depth below y = 0."),
                       F::real("fail_at", &Gantry::fail_at, "s", 0, 1e9, 0.05, "When it fails."),
-                      F::choice("failure", &Gantry::failure, kFailures, 0, "How it fails.")};
+                      F::choice("failure", &Gantry::failure, kFailures, 0, "How it fails."),
+                      F::real("well_at", &Gantry::well_at, "s", 0, 1e9, 1e9, "When it is well again.")};
   }
 
   void open(hdv_info& info) {
@@ -37,10 +38,11 @@ struct Gantry : hapticd::Device {
   }
   void start(const hdv_start& how) { start_ns_ = how.time_ns; }
   hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
-    const bool failed = static_cast<double>(now_ns - start_ns_) * 1e-9 >= fail_at;
+    const double t = static_cast<double>(now_ns - start_ns_) * 1e-9;
+    const bool failed = t >= fail_at && t < well_at;
     sample.position[0] = 0;
     sample.position[1] = -depth;
-    sample.flags = failure == 5 ? 0u : static_cast<uint32_t>(HDV_S_CALIBRATED);
+    sample.flags = failure == 5 && t < well_at ? 0u : static_cast<uint32_t>(HDV_S_CALIBRATED);
     if (failed && failure == 1) return HSP_E_IO;
     if (failed && failure == 2) sample.position[0] = std::numeric_limits<double>::quiet_NaN();
     if (failed && failure == 4) sample.flags |= HDV_S_FAULT;

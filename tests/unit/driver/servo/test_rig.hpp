@@ -40,7 +40,7 @@ class LateClock final : public Clock {
 struct Rig {
   explicit Rig(int failure, std::function<Nanoseconds(Nanoseconds)> lateness = [](Nanoseconds) { return 0; },
                uint64_t ticks = 300, const char* shape = "wall", std::vector<scene::Value> values = {},
-               const std::vector<scene::Model>& more = {})
+               const std::vector<scene::Model>& more = {}, const std::vector<scene::Value>& device = {})
       : clock(std::move(lateness)) {
     scene.models.push_back(testModel(shape, std::move(values)));
     scene.models.insert(scene.models.end(), more.begin(), more.end());
@@ -50,6 +50,7 @@ struct Rig {
     scene.devices[0].limits.ramp_in = 0.01;
     scene.devices[0].limits.slew = 0;
     scene.devices[0].parameters = {number(2, HSP_ENUM, failure)};
+    scene.devices[0].parameters.insert(scene.devices[0].parameters.end(), device.begin(), device.end());
     world = testWorld(scene);
     auto arm = Arm::open(scene.devices[0], scene.servo, {1000, false}, [](int, const std::string&, const std::string&) {});
     EXPECT_TRUE(arm) << (arm ? "" : arm.error());
