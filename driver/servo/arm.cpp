@@ -88,6 +88,7 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
 }
 
 bool Arm::judge(hsp_status status, Nanoseconds now) noexcept HSP_RT {
+  well_ = false;
   if (status < 0 || (sample_.flags & HDV_S_LOST) != 0) {
     trip(Fault::kDeviceLost);
     return false;
@@ -100,7 +101,6 @@ bool Arm::judge(hsp_status status, Nanoseconds now) noexcept HSP_RT {
   if (sample_.sequence != last_sequence_) {
     last_sequence_ = sample_.sequence;
     fresh_at_ = now;
-  well_ = false;
   } else if (static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond > kStaleAfter) {
     trip(Fault::kStale, static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond);
     return false;
@@ -110,20 +110,10 @@ bool Arm::judge(hsp_status status, Nanoseconds now) noexcept HSP_RT {
     limiter_.trip(Fault::kNotFinite);
     return false;
   }
+  well_ = !at_fault && !lacks_zero;
   return true;
 }
 
-bool Arm::locate() noexcept HSP_RT {
-  Eigen::Vector3d p_device;
-  std::array<double, 4> q{1, 0, 0, 0};
-  const hdv_ext_kinematics& kinematics = device_->kinematics();
-  if (kinematics.forward(device_->handle(), sample_.position, p_device.data(), q.data()) < 0 || !p_device.allFinite()) {
-    limiter_.trip(Fault::kNotFinite);
-    return false;
-  well_ = !at_fault && !lacks_zero;
-  }
-  probe_.position = R_world_device_ * p_device + origin_world_;
-  probe_.orientation = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
 void Arm::trip(Fault fault, double measured) noexcept HSP_RT {
   if (limiter_.fault() == Fault::kNone) trouble_.store(device_->trouble(), std::memory_order_release);
   limiter_.trip(fault, measured);
@@ -142,6 +132,16 @@ void Arm::recover(double dt, bool pushes) noexcept HSP_RT {
   if (calm_ >= kCalmFor) limiter_.recover();
 }
 
+bool Arm::locate() noexcept HSP_RT {
+  Eigen::Vector3d p_device;
+  std::array<double, 4> q{1, 0, 0, 0};
+  const hdv_ext_kinematics& kinematics = device_->kinematics();
+  if (kinematics.forward(device_->handle(), sample_.position, p_device.data(), q.data()) < 0 || !p_device.allFinite()) {
+    limiter_.trip(Fault::kNotFinite);
+    return false;
+  }
+  probe_.position = R_world_device_ * p_device + origin_world_;
+  probe_.orientation = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
   return true;
 }
 
@@ -190,6 +190,7 @@ bool Arm::comply(double dt, const Eigen::Vector3d& force) noexcept HSP_RT {
 
 void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque,
                 const passivity::Exchange& exchange) noexcept HSP_RT {
+  if (endsByItself(limiter_.fault())) recover(dt, !force.isZero(0) || !torque.isZero(0));
   if (passivity_ && probe_.valid) force = passivity_->update(probe_.position, force, dt, exchange);
   limiter_.apply(force, torque, probe_.position - origin_world_, dt);
   if (passivity_) passivity_->applied(force);
@@ -202,7 +203,6 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
   command.struct_size = sizeof command;
   command.mode = HDV_OFF;
   const bool located = std::isfinite(sample_.position[0]) &&
-  if (endsByItself(limiter_.fault())) recover(dt, !force.isZero(0) || !torque.isZero(0));
                        kinematics.jacobian(device_->handle(), sample_.position, J.data()) == HSP_OK && J.allFinite();
   if (located && !limiter_.silent() && !comply(dt, force)) {
     command.mode = HDV_TORQUE;

@@ -53,11 +53,11 @@ class Arm {
   const hdv_info& info() const { return device_->info(); }
   host::DeviceInstance& device() { return *device_; }
   Limiter& limiter() noexcept { return limiter_; }
+  /// [any] What the device said of its last fault, "cause; cure"; nullptr: nothing.
+  const char* trouble() const noexcept { return trouble_.load(std::memory_order_acquire); }
   const Limiter& limiter() const noexcept { return limiter_; }
   const Eigen::Vector3d& force() const noexcept { return force_; }  ///< [N] world, as sent
   const Probe& probe() const noexcept { return probe_; }
-  /// [any] What the device said of its last fault, "cause; cure"; nullptr: nothing.
-  const char* trouble() const noexcept { return trouble_.load(std::memory_order_acquire); }
   const hdv_sample& sample() const noexcept { return sample_; }      ///< as read() got it
   const hdv_command& command() const noexcept { return command_; }   ///< as write() gave it
   hsp_status readStatus() const noexcept { return read_status_; }    ///< of the last read
@@ -77,13 +77,13 @@ class Arm {
  private:
   Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter);
   bool judge(hsp_status status, Nanoseconds now) noexcept HSP_RT;
+  void trip(Fault fault, double measured = 0) noexcept HSP_RT;
+  void recover(double dt, bool pushes) noexcept HSP_RT;
   bool locate() noexcept HSP_RT;
   bool comply(double dt, const Eigen::Vector3d& force) noexcept HSP_RT;
   void takeVirtualProbe() noexcept HSP_RT;
   void scaleToMotors(const std::array<double, HDV_MAX_JOINTS>& gravity, hdv_command& command) noexcept HSP_RT;
   void heatMotors(double dt) noexcept HSP_RT;
-  void trip(Fault fault, double measured = 0) noexcept HSP_RT;
-  void recover(double dt, bool pushes) noexcept HSP_RT;
   void send(Nanoseconds now) noexcept HSP_RT;
 
   std::unique_ptr<host::DeviceInstance> device_;
@@ -101,14 +101,14 @@ class Arm {
   hdv_sample sample_{};
   hdv_command command_{};
   hsp_status read_status_ = HSP_OK, write_status_ = HSP_OK;
+  std::atomic<const char*> trouble_{nullptr};
+  bool well_ = false;  // nothing was wrong with the device in this tick
+  double calm_ = 0;    // [s] that it has been well, and still or free
+  Eigen::Vector3d calm_at_ = Eigen::Vector3d::Zero();
   uint64_t last_sequence_ = 0;
   Nanoseconds fresh_at_ = 0;
   Probe probe_;
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
 };
-  std::atomic<const char*> trouble_{nullptr};
-  bool well_ = false;  // nothing was wrong with the device in this tick
-  double calm_ = 0;    // [s] that it has been well, and still or free
-  Eigen::Vector3d calm_at_ = Eigen::Vector3d::Zero();
 
 }  // namespace hapticd::servo

@@ -147,6 +147,7 @@ void Limiter::trip(Fault fault, double measured) noexcept HSP_RT {
   const Fault before = fault_.get();
   if (fault == Fault::kNone || (before != Fault::kNone && (endsByItself(fault) || !endsByItself(before)))) return;
   measured_ = measured;
+  if (before != Fault::kNone) return fault_.set(fault);  // the force is on its way down already
   fade_ = 1;
   fault_force_ = last_force_;
   fault_torque_ = last_torque_;
@@ -160,16 +161,15 @@ void Limiter::cut(Fault fault, double measured) noexcept HSP_RT {
   last_torque_.setZero();
 }
 
-  if (before != Fault::kNone) return fault_.set(fault);  // the force is on its way down already
-void Limiter::clear() noexcept HSP_RT {
-  fault_.set(Fault::kNone);
-  ramp_ = 0;
-}
-
-}  // namespace hapticd::servo
 void Limiter::recover() noexcept HSP_RT {
   if (!endsByItself(fault())) return;
   recovered_.set(fault());
   clear();
 }
 
+void Limiter::clear() noexcept HSP_RT {
+  fault_.set(Fault::kNone);
+  ramp_ = 0;
+}
+
+}  // namespace hapticd::servo

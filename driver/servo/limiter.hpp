@@ -52,11 +52,11 @@ class Limiter {
   /// [rt] The motors were cut already: the fault latches and no force is left to ramp.
   void cut(Fault fault, double measured) noexcept HSP_RT;
 
-  /// [rt] Clears a latched fault by the user's order: the force ramps in again.
-  void clear() noexcept HSP_RT;
-
   /// [rt] A fault that ends by itself is over: the force ramps in again. Others stay.
   void recover() noexcept HSP_RT;
+
+  /// [rt] Clears a latched fault by the user's order: the force ramps in again.
+  void clear() noexcept HSP_RT;
 
   Fault fault() const noexcept { return fault_.get(); }          ///< [any]
   Fault recovered() const noexcept { return recovered_.get(); }  ///< [any] the last one that ended by itself
