@@ -11,6 +11,7 @@
 #include "base/os.hpp"
 #include "cli/command.hpp"
 #include "cli/probe_path.hpp"
+#include "record/recording.hpp"
 #include "servo/world.hpp"
 #include "tune/page.hpp"
 #include "tune/write_scene.hpp"
@@ -19,7 +20,7 @@ namespace hapticd::cli {
 namespace {
 
 struct Options {
-  std::string scene, probe, page, picture, json;
+  std::string scene, probe, motion, page, picture, json;
   std::optional<double> budget_us;
   double tolerance_um = 1, force_tolerance = 0.1, motion_seconds = 5, limit_seconds = 50;
   bool write = false;
@@ -45,6 +46,47 @@ Result<tune::Motion> motionOfFile(const std::string& file, double rate) {
   return tune::resampled(tune::motionThrough(std::move(position), period), rate);
 }
 
+/// The motion of the first arm in a recording or a black box.
+Result<tune::Motion> motionOfRecording(const std::string& file, double rate) {
+  auto recording = record::Recording::open(file);
+  if (!recording) return Error{recording.error()};
+  const record::RecordedStream* ticks = (*recording)->stream("ticks");
+  const record::Column* columns[] = {nullptr, nullptr, nullptr, nullptr};
+  const char* names[] = {"t", "arm0_x", "arm0_y", "arm0_z"};
+  for (size_t i = 0; i < 4; ++i)
+    if (ticks == nullptr || (columns[i] = ticks->find(names[i])) == nullptr)
+      return Error{file + ": has no column " + names[i] + " in ticks, expected a recording of `hapticd run --record`"};
+  if (ticks->rows() < 100) return Error{file + ": " + std::to_string(ticks->rows()) + " ticks, expected at least 100"};
+  std::vector<Eigen::Vector3d> position;
+  for (uint64_t i = 0; i < ticks->rows(); ++i) {
+    Eigen::Vector3d p;
+    for (int axis = 0; axis < 3; ++axis) p[axis] = ticks->number(i, *columns[1 + axis]);
+    if (!p.allFinite() && position.empty()) return Error{file + ": its first tick has no position"};
+    position.push_back(p.allFinite() ? p : position.back());
+  }
+  const double seconds = ticks->number(ticks->rows() - 1, *columns[0]) - ticks->number(0, *columns[0]);
+  const double period = seconds / static_cast<double>(ticks->rows() - 1);
+  if (!(period > 0)) return Error{file + ": its times do not grow"};
+  return tune::resampled(tune::motionThrough(std::move(position), period), rate);
+}
+
+/// Messages of plugins were seen at the first set-up; here the same models are set up hundreds of times.
+void quiet(int level, const std::string& who, const std::string& text) {
+  if (level >= HSP_LOG_ERROR) logToTerminal(level, who, text);
+}
+
+/// What the user gave: a path file, a recording, or nothing.
+Result<tune::Motion> motionFor(const Options& options, const scene::Scene& scene) {
+  if (!options.probe.empty()) return motionOfFile(options.probe, scene.servo.rate);
+  if (!options.motion.empty()) return motionOfRecording(options.motion, scene.servo.rate);
+  return tune::motionOfHand(scene, options.motion_seconds, quiet);
+}
+
+std::string nameOfMotion(const Options& options) {
+  const std::string file = options.probe + options.motion;
+  return file.empty() ? "the motion of the scene's hand" : file;
+}
+
 bool showProgress(const tune::Progress& progress) {
   if (isatty(STDERR_FILENO) != 0) {
     constexpr int kWidth = 30;
@@ -67,11 +109,6 @@ bool save(const std::string& file, const std::string& text) {
 std::string tunedName(const std::string& scene) {
   std::filesystem::path path(scene);
   return (path.parent_path() / (path.stem().string() + ".tuned.yaml")).string();
-}
-
-/// Messages of plugins were seen at the first set-up; here the same models are set up hundreds of times.
-void quiet(int level, const std::string& who, const std::string& text) {
-  if (level >= HSP_LOG_ERROR) logToTerminal(level, who, text);
 }
 
 int report(const Options& options, const tune::Findings& findings) {
@@ -114,16 +151,14 @@ int tuneScene(const Options& options) {
   const bool uses_velocity = (*world)->needsVelocity();
   world->reset();
 
-  auto motion = options.probe.empty() ? tune::motionOfHand(*scene, options.motion_seconds, quiet)
-                                      : motionOfFile(options.probe, scene->servo.rate);
+  auto motion = motionFor(options, *scene);
   if (!motion)
-    return fail(
-        kBadInput,
-        motion.error() + (options.probe.empty() ? "; --probe FILE.csv gives a motion where no hand is simulated" : ""));
+    return fail(kBadInput, motion.error() + ((options.probe + options.motion).empty()
+                                                 ? "; --probe or --motion gives a motion where no hand is simulated"
+                                                 : ""));
   tune::Findings findings;
   findings.scene = options.scene;
-  findings.motion = (options.probe.empty() ? "the motion of the scene's hand, " : options.probe + ", ") +
-                    std::to_string(motion->position.size()) + " ticks";
+  findings.motion = nameOfMotion(options) + ", " + std::to_string(motion->position.size()) + " ticks";
   findings.knobs = tune::findKnobs(*scene, catalog());
   if (options.budget_us) findings.goal.budget_ns = *options.budget_us * 1e3;
   findings.goal.tolerance_m = options.tolerance_um * 1e-6;
@@ -160,8 +195,12 @@ void addTune(CLI::App& app, int& exit_code) {
   command->add_option("--force-tolerance-n", options->force_tolerance, "and whose forces are this exact [N]")
       ->check(CLI::Range(1e-9, 1e3))
       ->capture_default_str();
-  command->add_option("--probe", options->probe,
-                      "measure over this path (CSV, as for trace) instead of the scene's hand");
+  auto* probe = command->add_option("--probe", options->probe,
+                                    "measure over this path (CSV, as for trace) instead of the scene's hand");
+  command
+      ->add_option("--motion", options->motion,
+                   "measure over the motion in this recording (of run --record, or a black box)")
+      ->excludes(probe);
   command->add_option("--motion-seconds", options->motion_seconds, "length of the hand's motion [s]")
       ->check(CLI::Range(0.2, 10.0))
       ->capture_default_str();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <set>
 
 #include "hapticd/abi.h"
@@ -34,6 +35,14 @@ std::vector<double> ladderOfInteger(const host::ParamInfo& param, double present
   return {values.begin(), values.end()};
 }
 
+/// A list of counts, all alike: one to the default, which is "[4, 4]".
+std::vector<double> ladderOfList(const host::ParamInfo& param, double present) {
+  std::set<double> values{present};
+  const double most = param.def_text ? std::strtod(param.def_text->c_str() + 1, nullptr) : present;
+  for (double value = std::max(1.0, param.min); value <= most; ++value) values.insert(value);
+  return {values.begin(), values.end()};
+}
+
 size_t indexOf(const std::vector<double>& numbers, double value) {
   const auto it = std::find(numbers.begin(), numbers.end(), value);
   return it == numbers.end() ? 0 : static_cast<size_t>(it - numbers.begin());
@@ -45,18 +54,23 @@ Knob knobOf(const host::ClassInfo& info, uint32_t index, double present) {
   if (param.kind == HSP_REAL) {
     knob.numbers = ladderOfReal(param, present);
     knob.finest = 0;
+  } else if (param.kind == HSP_ARRAY) {
+    knob.numbers = ladderOfList(param, present);
+    knob.finest = knob.numbers.size() - 1;
   } else if (param.kind == HSP_INT) {
     knob.numbers = ladderOfInteger(param, present);
     knob.finest = knob.numbers.size() - 1;
   } else {
     const size_t count = param.kind == HSP_BOOL ? 2 : param.choices.size();
     for (size_t i = 0; i < count; ++i) knob.numbers.push_back(static_cast<double>(i));
-    knob.finest = indexOf(knob.numbers, param.def);
+    const bool added = param.kind == HSP_ENUM && param.choices == std::vector<std::string>{"off", "on"};
+    knob.finest = indexOf(knob.numbers, added ? present : param.def);
   }
   for (const double number : knob.numbers)
-    knob.values.push_back(param.kind == HSP_ENUM   ? param.choices[static_cast<size_t>(number)]
-                          : param.kind == HSP_BOOL ? (number != 0 ? "true" : "false")
-                                                   : fmt::format("{:g}", number));
+    knob.values.push_back(param.kind == HSP_ENUM    ? param.choices[static_cast<size_t>(number)]
+                          : param.kind == HSP_ARRAY ? fmt::format("[{0:g}, {0:g}]", number)
+                          : param.kind == HSP_BOOL  ? (number != 0 ? "true" : "false")
+                                                    : fmt::format("{:g}", number));
   knob.current = indexOf(knob.numbers, present);
   return knob;
 }
@@ -64,14 +78,15 @@ Knob knobOf(const host::ClassInfo& info, uint32_t index, double present) {
 void addPluginKnobs(const scene::Scene& scene, const host::ClassInfo& info, std::vector<Knob>& knobs) {
   for (uint32_t i = 0; i < info.params.size(); ++i) {
     const host::ParamInfo& param = info.params[i];
+    const bool list = param.kind == HSP_ARRAY && param.min_count == 2 && param.max_count == 2;
     const bool tunable =
-        param.kind == HSP_REAL || param.kind == HSP_INT || param.kind == HSP_BOOL || param.kind == HSP_ENUM;
+        list || param.kind == HSP_REAL || param.kind == HSP_INT || param.kind == HSP_BOOL || param.kind == HSP_ENUM;
     if ((param.flags & HSP_P_ACCURACY) == 0 || !tunable) continue;
-    double present = param.def;
+    double present = list && param.def_text ? std::strtod(param.def_text->c_str() + 1, nullptr) : param.def;
     for (const scene::Model& model : scene.models) {
       if (model.plugin != info.name) continue;
       for (const scene::Value& value : model.parameters)
-        if (value.index == i) present = value.number;
+        if (value.index == i) present = value.numbers.empty() ? value.number : value.numbers.front();
       break;  // the first model speaks for all
     }
     Knob knob = knobOf(info, i, present);
@@ -89,6 +104,7 @@ void applyPlugin(scene::Scene& scene, const Knob& knob, size_t value) {
     target.index = knob.index;
     target.kind = knob.kind;
     target.number = knob.numbers[value];
+    if (knob.kind == HSP_ARRAY) target.numbers.assign(2, knob.numbers[value]);
   }
 }
 

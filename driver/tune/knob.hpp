@@ -15,7 +15,7 @@ struct Knob {
   std::string key;     ///< "tolerance"
   std::string unit;
   uint32_t index = 0, kind = 0;     ///< of the parameter in the plugin's table
-  std::vector<double> numbers;      ///< what set() takes, a value each
+  std::vector<double> numbers;      ///< what set() takes, a value each; of a list, all of its members
   std::vector<std::string> values;  ///< the same for people and files: "1e-09", "newton"
   size_t current = 0;               ///< the value that the scene has
   size_t finest = 0;                ///< the value of the converged reference
@@ -27,7 +27,8 @@ struct Knob {
 using Choice = std::vector<size_t>;
 
 /// [main] The knobs of a scene. The reference takes the smallest of a real parameter (a tolerance), the largest of a
-/// whole one (a count), and the default of an enumeration, which plugins choose to be exact.
+/// whole one (a count) or of a list of them, and the default of an enumeration, which plugins choose to be exact. A
+/// switch (off, on) adds something to the model: there the reference is what the scene asks for.
 std::vector<Knob> findKnobs(const scene::Scene& scene, host::Catalog& catalog);
 
 /// [main] The scene with other settings.

@@ -28,13 +28,16 @@ struct Run {
   Cost cost;
 };
 
-/// Largest difference from the reference, over every tick and model.
+/// Largest difference from the reference, over every tick and model. Where a probe is as near to one place of a model
+/// as to another, such as between the faces of a leaf, either foot is right: there depths and sizes of forces are
+/// compared.
 struct Difference {
-  double foot_m = 0;  ///< where the nearest foot is one point: two feet at the same distance are both right
+  double foot_m = 0;  ///< where the nearest foot is one point
   double depth_m = 0;
-  double normal_deg = 0;  ///< as foot_m
-  double force_n = 0;     ///< of one model
-  uint64_t untraced = 0;  ///< answers that one of the two has and the other has not
+  double normal_deg = 0;   ///< as foot_m
+  double force_n = 0;      ///< of one model
+  uint64_t ambiguous = 0;  ///< answers at another foot that is as near
+  uint64_t untraced = 0;   ///< answers that one of the two has and the other has not
 
   double geometry() const { return untraced > 0 ? 1 : std::max(foot_m, depth_m); }  ///< [m] 1 m: nothing was traced
 };

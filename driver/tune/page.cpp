@@ -92,6 +92,9 @@ std::string table(const Findings& findings) {
     text += rowText(findings, *c, c == &chosenOf(findings) ? '>' : c == &findings.tuning.candidates[0] ? '*' : ' ');
   const Candidate& current = findings.tuning.candidates[0];
   if (!current.on_front) text += "\nthe scene as it is, which is beaten:\n" + rowText(findings, current, '*');
+  const auto& tried = findings.tuning.candidates;
+  if (std::any_of(tried.begin(), tried.end(), [](const Candidate& c) { return c.error.ambiguous > 0; }))
+    text += "\nin some ticks the probe was as near to one place as to another; there depth and size of force count\n";
   text += "\nchosen: " + nameOf(findings, chosenOf(findings)) + "\n  " + reason(findings) + "\n";
   text += "\n   rate Hz      load    hold N   (load: share of a processor; hold: force missed between ticks, p99)\n";
   for (const RateRow& row : findings.rates)
@@ -209,6 +212,7 @@ std::string json(const Findings& findings) {
                    {"normal_deg", c.error.normal_deg},
                    {"force_n", c.error.force_n},
                    {"untraced", c.error.untraced},
+                   {"ambiguous", c.error.ambiguous},
                    {"on_front", c.on_front}});
   }
   Json rates = Json::array();

@@ -16,6 +16,8 @@ void writeModels(YAML::Node models, const Knob& knob, size_t value) {
       // Real numbers in full, so that what was measured is what is run.
       if (knob.kind == HSP_REAL)
         model["parameters"][knob.key] = knob.numbers[value];
+      else if (knob.kind == HSP_ARRAY)
+        model["parameters"][knob.key] = YAML::Load(knob.values[value]);
       else
         model["parameters"][knob.key] = knob.values[value];
     }

@@ -88,6 +88,7 @@ TEST(Comparison, CountsAFootThatIsFartherAndNotOneThatIsEquallyNear) {
   reference.answers = {answerAt(-0.1, 0.001), answerAt(0.200002, 0.001)};
   const Difference difference = compare(run, reference);
   EXPECT_NEAR(difference.foot_m, 2e-6, 1e-12);
+  EXPECT_EQ(difference.ambiguous, 1u);
   reference.answers[0].depth = 0.002;  // now the first foot is a millimetre off, and another point
   EXPECT_NEAR(compare(run, reference).foot_m, 0.2, 1e-12);
 }
