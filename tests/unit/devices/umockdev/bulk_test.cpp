@@ -1,0 +1,146 @@
+/// The bulk transport and its I/O thread with the real libusb: open by serial number, push, stall, lose, find again.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "emulators/wire_file.hpp"
+#include "played_usb.hpp"
+#include "usb_arm/falcon_loader.hpp"
+#include "usb_arm/link.hpp"
+#include "usb_bulk/bulk_transport.hpp"
+
+namespace hapticd::usb {
+namespace {
+
+using emulator::Fault;
+using emulator::PlayedUsb;
+using emulator::UsbArm;
+
+constexpr const char* kFile = HAPTICD_SOURCE_DIR "/config/devices/premium15-bulk.yaml";
+
+class BulkTest : public ::testing::Test {
+ protected:
+  BulkTest() : testbed(umockdev_testbed_new()) {}
+  ~BulkTest() override { g_object_unref(testbed); }
+  void SetUp() override {
+    if (umockdev_in_mock_environment() == FALSE) GTEST_SKIP() << "umockdev's preload library is not in this process";
+  }
+
+  std::unique_ptr<Link> make(const std::string& serial = "") {
+    LinkSettings s;
+    s.address.vendor = 0x1209, s.address.product = 0x0006, s.address.serial = serial;
+    s.session.calibration = Calibration::kDevice;
+    s.session.health.least_rate = 0;  // a busy machine may well be slow
+    s.log = [](int, const std::string&) {};
+    return std::make_unique<Link>(makeBulkTransport(), wire, std::move(s));
+  }
+
+  /// Pushes at 1 kHz until `done`, or five seconds.
+  static bool pushUntil(Link& link, const std::function<bool(const Sample&)>& done) {
+    RealClock clock(0);
+    Sample sample;
+    Wish wish;
+    for (int i = 0; i < 5000; ++i) {
+      link.read(sample);
+      wish.time = clock.now(), ++wish.sequence, wish.on = true, wish.torque = {0.1, 0, 0};
+      link.write(wish);
+      if (done(sample)) return true;
+      clock.waitUntil(clock.now() + 1'000'000);
+    }
+    return false;
+  }
+
+  /// The motors go off, the trouble has this name, and once `mend` was called the arm pushes again.
+  void expectTroubleAndRecovery(const std::function<void(PlayedUsb&)>& spoil, Trouble trouble,
+                                const std::function<void(PlayedUsb&)>& mend) {
+    PlayedUsb device(testbed, 0, left);
+    device.plug();
+    auto link = make();
+    const auto opened = link->open();
+    ASSERT_TRUE(opened) << opened.error();
+    ASSERT_TRUE(link->start());
+    ASSERT_TRUE(pushUntil(*link, [&](const Sample&) { return device.pushed(); }));
+    spoil(device);
+    EXPECT_TRUE(pushUntil(*link, [&](const Sample& s) { return s.trouble == trouble; })) << describe(trouble);
+    EXPECT_TRUE(pushUntil(*link, [&](const Sample&) { return !device.pushed(); })) << "motors stay on";
+    mend(device);
+    EXPECT_TRUE(pushUntil(*link, [&](const Sample& s) { return s.trouble == Trouble::kNone && device.pushed(); }));
+    link->close();
+    EXPECT_FALSE(device.pushed()) << "motors are off at the end";
+  }
+
+  UMockdevTestbed* testbed;
+  codec::Wire wire = codec::readWire(emulator::wireOf(kFile), 3);
+  UsbArm left{"premium15-bulk", emulator::defaultHand("premium15-bulk"), "A1"};
+  UsbArm right{"premium15-bulk", emulator::defaultHand("premium15-bulk"), "B2"};
+};
+
+TEST_F(BulkTest, FindsTheArmByItsSerialNumberAmongTwo) {
+  PlayedUsb a(testbed, 0, left), b(testbed, 1, right);
+  a.plug();
+  b.plug();
+  auto link = make("B2");
+  const auto opened = link->open();
+  ASSERT_TRUE(opened) << opened.error();
+  EXPECT_EQ(opened->serial, "B2");
+  ASSERT_TRUE(link->start());
+  ASSERT_TRUE(pushUntil(*link, [&](const Sample&) { return b.pushed(); }));
+  EXPECT_EQ(a.commands(), 0u);
+  const auto missing = make("C3")->open();
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().find("serial C3"), std::string::npos) << missing.error();
+}
+
+TEST_F(BulkTest, UnpluggedIsNamedAndTheArmFoundAgain) {
+  expectTroubleAndRecovery([](PlayedUsb& d) { d.unplug(); }, Trouble::kUnplugged, [](PlayedUsb& d) { d.plug(); });
+}
+
+TEST_F(BulkTest, AStalledEndpointIsReopenedWhileReportsComeIn) {
+  expectTroubleAndRecovery([](PlayedUsb& d) { d.fail(UsbArm::kOut, -EPIPE); }, Trouble::kStalled,
+                           [](PlayedUsb& d) { d.fail(0, 0); });
+}
+
+TEST_F(BulkTest, AStalledEndpointOfReportsIsReopened) {
+  expectTroubleAndRecovery([](PlayedUsb& d) { d.fail(UsbArm::kIn, -EPIPE); }, Trouble::kStalled,
+                           [](PlayedUsb& d) { d.fail(0, 0); });
+}
+
+TEST_F(BulkTest, FailingTransfersAreABusError) {
+  expectTroubleAndRecovery([](PlayedUsb& d) { d.fail(UsbArm::kIn, -EPROTO); }, Trouble::kBusError,
+                           [](PlayedUsb& d) { d.fail(0, 0); });
+}
+
+TEST_F(BulkTest, ShortCorruptAndMissingReportsAreNamed) {
+  const std::pair<Fault, Trouble> cases[] = {{Fault::kShort, Trouble::kShort},
+                                             {Fault::kCorrupt, Trouble::kCorrupt},
+                                             {Fault::kSilent, Trouble::kStale},
+                                             {Fault::kFirmware, Trouble::kFirmware},
+                                             {Fault::kHardware, Trouble::kHardware}};
+  for (const auto& [fault, trouble] : cases)
+    expectTroubleAndRecovery([&](PlayedUsb& d) { d.spoil(fault); }, trouble,
+                             [](PlayedUsb& d) { d.spoil(Fault::kNone); });
+}
+
+TEST_F(BulkTest, TheFalconTakesItsFirmwareThroughTheRealLibusb) {
+  UsbArm falcon("falcon", emulator::defaultHand("falcon"), "F1");
+  falcon.chip().beDifficult(3, 1);
+  PlayedUsb device(testbed, 0, falcon);
+  device.plug();
+  const codec::Wire falcon_wire =
+      codec::readWire(emulator::wireOf(HAPTICD_SOURCE_DIR "/config/devices/falcon.yaml"), 3);
+  LinkSettings s;
+  s.address.vendor = 0x0403, s.address.product = 0xcb48;
+  s.session.calibration = Calibration::kDevice;
+  s.session.health.least_rate = 0;
+  s.log = [](int, const std::string&) {};
+  s.prepare = [&](Transport& to) { return loadFalcon(to, falcon_wire, emulator::falconImage()); };
+  Link link(makeBulkTransport(), falcon_wire, std::move(s));
+  const auto opened = link.open();
+  ASSERT_TRUE(opened) << opened.error();
+  EXPECT_EQ(falcon.chip().uploads(), 2) << "the first was spoilt on purpose";
+  ASSERT_TRUE(link.start());
+  EXPECT_TRUE(pushUntil(link, [&](const Sample& sample) { return sample.calibrated && device.pushed(); }));
+}
+
+}  // namespace
+}  // namespace hapticd::usb
