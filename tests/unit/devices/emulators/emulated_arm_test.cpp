@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "emulators/wire_file.hpp"
 #include "usb_arm/mechanism.hpp"
 #include "usb_arm/session.hpp"
@@ -108,6 +110,27 @@ INSTANTIATE_TEST_SUITE_P(Shipped, ClosedLoop,
                                            Device{"woodenhaptics.yaml", "woodenhaptics"},
                                            Device{"polhem.yaml", "polhem"}),
                          [](const auto& param) { return "Device" + std::to_string(param.index); });
+
+/// A device file that ships without something that speaks its wire format is a guess that nobody tried.
+TEST(DeviceFiles, EachHasAnEmulatorThatAnswersToItsId) {
+  size_t on_usb = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(HAPTICD_SOURCE_DIR "/config/devices")) {
+    const YAML::Node file = YAML::LoadFile(entry.path().string());
+    const std::string module = file["module"].as<std::string>(), name = entry.path().stem().string();
+    if (module == "simulated") continue;
+    if (module == "vme") {  // tests/emulators/vme plays the board of this one
+      EXPECT_EQ(name, "sarcos");
+      continue;
+    }
+    ++on_usb;
+    ASSERT_NO_THROW(emulator::EmulatedArm(name, emulator::defaultHand(name))) << "no emulator for " << entry.path();
+    const emulator::EmulatedArm arm(name, emulator::defaultHand(name));
+    char id[16];
+    std::snprintf(id, sizeof id, "%04x:%04x", arm.about().vendor, arm.about().product);
+    EXPECT_EQ(file["parameters"]["usb"]["id"].as<std::string>(), id) << entry.path();
+  }
+  EXPECT_EQ(on_usb, emulator::emulatedKinds().size());
+}
 
 }  // namespace
 }  // namespace hapticd::usb
