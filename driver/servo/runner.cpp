@@ -186,8 +186,7 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every) {
 
 Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every) {
   sim::ProximityThread proximity(world_->proximity(), [this] { return loop_->wantsSearch(); });
-  if (world_->proximity().modelCount() > 0)
-    if (const auto code = proximity.start()) return Error{"cannot start the proximity thread: " + code.message()};
+  if (const auto code = proximity.start()) return Error{"cannot start the proximity thread: " + code.message()};
   lockMemory();
   const os::DmaLatencyHold awake;
   std::atomic<bool> ready{false};
@@ -207,12 +206,15 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   RealClock clock(0);
   watch::Feeder feeder;
   bool told = false;
-  while (!loop_->finished()) {
-    if (!told && loop_->ticks() > kDryTicks) told = watch::notify("READY=1\nSTATUS=the servo ticks") || true;
-    feeder.feed(clock.now(), loop_->ticks());
-    if (ready && !warnings_.empty() && !onlySimulated() && !options_.allow_non_rt) break;
-    every(*this);
-    clock.waitUntil(clock.now() + kStatusPeriod);
+  for (Nanoseconds status_due = 0; !loop_->finished();) {
+    if (clock.now() >= status_due) {
+      status_due = clock.now() + kStatusPeriod;
+      if (!told && loop_->ticks() > kDryTicks) told = watch::notify("READY=1\nSTATUS=the servo ticks") || true;
+      feeder.feed(clock.now(), loop_->ticks());
+      if (ready && !warnings_.empty() && !onlySimulated() && !options_.allow_non_rt) break;
+      every(*this);
+    }
+    clock.waitUntil(clock.now() + proximity.turn(kStatusPeriod));
   }
   watch::notify("STOPPING=1");
   servo.join();

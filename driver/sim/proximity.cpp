@@ -17,7 +17,7 @@ Proximity::Proximity(const std::vector<host::ShapeInstance*>& models, const std:
 void Proximity::addModel(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count) {
   const hsp_ext_surfaces* surfaces = shape.surfaces();
   if (surfaces == nullptr) return;
-  Model model{place, shape.handle(), surfaces, {}, {}, false, {}, {}, {}, 0};
+  Model model{place, shape.handle(), surfaces, shape.report().locked_bytes, {}, {}, false, {}, {}, {}, 0};
   if (const hsp_ext_geometry* geometry = shape.geometry())
     model.has_box = geometry->bounds(shape.handle(), model.box_min.data(), model.box_max.data()) == HSP_OK;
   model.position = Eigen::Vector3d(pose.position);
@@ -46,6 +46,26 @@ void Proximity::remove(uint32_t place) {
   if (place >= of_scene_.size() || of_scene_[place] == UINT32_MAX) return;
   models_[of_scene_[place]].index = UINT32_MAX;
   of_scene_[place] = UINT32_MAX;
+}
+
+size_t Proximity::modelCount() const {
+  const std::lock_guard lock(mutex_);
+  return static_cast<size_t>(
+      std::count_if(models_.begin(), models_.end(), [](const Model& m) { return m.index != UINT32_MAX; }));
+}
+
+Searching Proximity::amount() const {
+  constexpr uint64_t kSmallBytes = 512 * 1024;  // a torus has half of that, and is searched in under 20 us
+  const std::lock_guard lock(mutex_);
+  uint32_t surfaces = 0;
+  uint64_t bytes = 0;
+  for (const Model& model : models_) {
+    if (model.index == UINT32_MAX) continue;
+    surfaces += model.surfaces->surface_count;
+    bytes += model.bytes;
+  }
+  if (surfaces == 0) return Searching::kNone;
+  return surfaces == 1 && bytes <= kSmallBytes ? Searching::kSmall : Searching::kLarge;
 }
 
 void Proximity::search() {

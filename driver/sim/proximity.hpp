@@ -2,8 +2,8 @@
 /// the models' transforms. (Thompson et al. 1999, section 4.2: 10 cm on, 5 cm of hysteresis, bounding boxes first.)
 #pragma once
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <atomic>
+#include <cstdint>
 #include <mutex>
 #include <vector>
 
@@ -18,6 +18,13 @@ constexpr Nanoseconds kSearchPeriod = 5'000'000;
 struct ProximitySettings {
   double activation_radius = 0.10;  ///< [m]
   double hysteresis = 0.05;         ///< [m]
+};
+
+/// How much searching there is to do.
+enum class Searching {
+  kNone,   ///< no model has surfaces
+  kSmall,  ///< one small surface: microseconds a search, so that no thread is needed for it
+  kLarge
 };
 
 class Proximity {
@@ -35,8 +42,10 @@ class Proximity {
   /// [sim] One search with the newest state of the arm: starts, offers and stops tracing.
   void search();
 
-  /// Models that have surfaces to search; 0: nothing to do here at all.
-  size_t modelCount() const { return models_.size(); }
+  /// [any] Models that have surfaces to search.
+  size_t modelCount() const;
+  /// [any] What they amount to; changes as models come and leave.
+  Searching amount() const;
 
   /// [any] The model of the scene that is being searched; -1: none. For naming a plugin that crashes.
   int searching() const noexcept { return searching_.load(std::memory_order_relaxed); }
@@ -44,11 +53,12 @@ class Proximity {
   int thread() const noexcept { return thread_.load(std::memory_order_relaxed); }
 
  private:
-  std::mutex mutex_;  ///< models come and leave between two searches
+  mutable std::mutex mutex_;  ///< models come and leave between two searches
   struct Model {
     uint32_t index;  ///< in the scene; UINT32_MAX: it has left
     const hsp_shape* shape;
     const hsp_ext_surfaces* surfaces;
+    uint64_t bytes;                    ///< of the shape
     Eigen::Vector3d box_min, box_max;  ///< model frame; empty when unknown: always searched
     bool has_box;
     Eigen::Vector3d position;

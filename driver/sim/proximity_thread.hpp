@@ -1,5 +1,7 @@
-/// The proximity search on a thread of its own, for runs on a real clock.
+/// Who searches in runs on a real clock: nobody where no model has surfaces; the main thread, which waits anyway, where
+/// one small surface is all; otherwise a thread of its own.
 #pragma once
+#include <algorithm>
 #include <atomic>
 #include <functional>
 
@@ -16,10 +18,23 @@ class ProximityThread {
       : proximity_(proximity), wants_search_(std::move(wants_search)) {}
   ~ProximityThread() { stop(); }
 
-  /// [main] Searches once, so that tracing starts with the first tick, then goes on in the thread.
+  /// [main] Searches once, so that tracing starts with the first tick.
   std::error_code start() {
+    const Searching amount = proximity_.amount();
+    if (amount == Searching::kNone) return {};
     proximity_.search();
-    return thread_.start("hapticd-sim", [this] { loop(); });
+    return amount == Searching::kLarge ? startThread() : std::error_code();
+  }
+
+  /// [main] Does what there is to do now: a small search, or starting the thread when models have come that need it.
+  /// Where no thread can be had, this one searches on. @return how long to rest until the next turn [ns]: at most
+  /// `rest`
+  Nanoseconds turn(Nanoseconds rest) {
+    if (thread_.running()) return rest;
+    const Searching amount = proximity_.amount();
+    if (amount == Searching::kNone || (amount == Searching::kLarge && !startThread())) return rest;
+    proximity_.search();
+    return std::min(rest, kSearchPeriod);
   }
 
   void stop() {  ///< [main]
@@ -28,6 +43,10 @@ class ProximityThread {
   }
 
  private:
+  std::error_code startThread() {
+    return thread_.start("hapticd-sim", [this] { loop(); });
+  }
+
   void loop() {
     constexpr Nanoseconds kPoll = 1'000'000;  // an urgent search waits no longer than this
     RealClock clock(0);
