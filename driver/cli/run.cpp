@@ -86,7 +86,7 @@ void warnOfHeat(const servo::Runner& runner, double rate) {
 }
 
 /// Writes what was asked for and prints the summary; the run's own exit code unless a file fails.
-int conclude(const Options& options, const servo::Runner& runner, const std::vector<std::string>& left_out) {
+int conclude(const Options& options, servo::Runner& runner, const std::vector<std::string>& left_out) {
   std::vector<std::string> faults = runner.faults();
   faults.insert(faults.end(), left_out.begin(), left_out.end());
   std::vector<std::string> told = faults;
@@ -96,6 +96,13 @@ int conclude(const Options& options, const servo::Runner& runner, const std::vec
   report.virtual_time = options.virtual_time;
   report.wall_seconds = static_cast<double>(runner.wallTime()) * kSecondsPerNanosecond;
   report.start_ms = static_cast<double>(runner.loop().firstTick() - program_start) * 1e-6;
+  for (record::ModelReport& model : report.models)
+    for (const servo::ModelState& state : runner.world().core().models())
+      if (state.shape != nullptr && state.shape->name() == model.name) {
+        model.degraded_ticks = state.degraded_ticks;
+        model.coarsest = state.coarsest;
+        model.residual_m = state.degraded_residual;
+      }
   report.resident_bytes = runner.residentBytes();
   for (size_t i = 0; i < runner.arms().size(); ++i)
     report.limits.push_back(limitsOf(runner.scene().devices[i].name, runner.arms()[i]->limiter()));

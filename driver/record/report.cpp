@@ -23,6 +23,7 @@ Json modelJson(const ModelReport& model) {
   const Histogram& step = c.stepUs();
   return {
       {"plugin", model.plugin},
+      {"degraded", {{"ticks", model.degraded_ticks}, {"level", model.coarsest}, {"residual_um", model.residual_m * 1e6}}},
       {"contact_ticks", c.contactTicks()},
       {"penetration_mm", {{"mean", c.meanDepth() * kMm}, {"std", c.stdDepth() * kMm}, {"max", c.maxDepth() * kMm}}},
       {"force_n", {{"mean", c.meanForce()}, {"max", c.maxForce()}}},
@@ -45,6 +46,9 @@ std::string modelText(const ModelReport& model, const RunReport& report) {
                         c.meanDepth() * 1e3, c.stdDepth() * 1e3, c.maxDepth() * 1e3, c.buzz() * 1e3);
     text += fmt::format("  force     mean {:.2f} N   max {:.2f} N\n", c.meanForce(), c.maxForce());
   }
+  if (model.degraded_ticks > 0)
+    text += fmt::format("  degraded  {} ticks, to level {} of 3, so that the tick's budget holds; residual up to {:.3g} um\n",
+                        model.degraded_ticks, model.coarsest, model.residual_m * 1e6);
   const Histogram& step = c.stepUs();
   if (step.total() > 0)
     text += fmt::format("  step      p50 {:.0f} ns   p99 {:.0f} ns   max {:.0f} ns\n", step.quantile(0.5) * 1e3,

@@ -14,6 +14,9 @@ namespace hapticd::record {
 struct ModelReport {
   std::string name, plugin;
   ContactStatistics contact;
+  uint64_t degraded_ticks = 0;  ///< in which it answered coarser than asked, for a tick's budget
+  uint32_t coarsest = 0;        ///< level of accuracy, 0: as asked
+  double residual_m = 0;        ///< largest error that a coarser answer told
 };
 
 /// In how many ticks limits made the force of one device smaller than the scene asked for.

@@ -209,7 +209,7 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
     Eigen::Map<Eigen::VectorXd> tau(command.torque, joints);
     const Eigen::Vector3d force_device = R_world_device_.transpose() * force;
     tau.noalias() = J.topRows<3>().transpose() * force_device;  // Thompson et al. 1999, Eq. 9
-    if (joints > 3) tau.noalias() += J.bottomRows<3>().transpose() * (R_world_device_.transpose() * torque);
+    if (turns()) tau.noalias() += J.bottomRows<3>().transpose() * (R_world_device_.transpose() * torque);
     std::array<double, HDV_MAX_JOINTS> gravity{};
     if (kinematics.gravity(device_->handle(), sample_.position, gravity_device_.data(), gravity.data()) != HSP_OK)
       gravity.fill(0);

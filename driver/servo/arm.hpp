@@ -70,6 +70,8 @@ class Arm {
   const Admittance* admittance() const noexcept { return admittance_ ? &*admittance_ : nullptr; }
   /// The passivity controller; nullptr: this arm needs none.
   const passivity::PassivityController* passivity() const noexcept { return passivity_ ? &*passivity_ : nullptr; }
+  /// It can turn the hand; an arm of three joints only pushes.
+  bool turns() const { return device_->info().joint_count > 3; }
   bool estimatesVelocity() const { return velocity_.has_value(); }
   bool simulated() const noexcept { return (device_->info().capabilities & HDV_C_SIMULATED) != 0; }
   double rampOut() const noexcept { return limiter_.rampOut(); }  ///< [s]

@@ -1,5 +1,6 @@
 #include "servo/core.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/clock.hpp"
@@ -42,6 +43,7 @@ Core::Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& 
       exchanges_(probe_count) {
   for (size_t i = 0; i < models.size(); ++i) models_[i] = stateOf(*models[i], scene.models[i]);
   live_.reserve(models_.size());
+  loads_.reserve(models_.size());
   listLive();
 }
 
@@ -75,6 +77,7 @@ void Core::publish(double t, std::span<const Probe> probes) noexcept HSP_RT {
 void Core::tick(double t, double dt, std::span<const Probe> probes) noexcept HSP_RT {
   receiveRecords();
   wants_search_ = false;
+  preempted_ = false;
   transforms_ = 0;
   budget_left_ns_ = settings_.budget_ns;
   findJumps(dt, probes);
@@ -93,10 +96,17 @@ void Core::tick(double t, double dt, std::span<const Probe> probes) noexcept HSP
         model.path.at(t, model.pose);
       model.frame = Frame::of(model.pose);
     }
+    if (model.level == Accuracy::kCoarsest && mayRest(model, i, dt)) {
+      model.rested += dt;
+      model.step_ns = 0;
+      ++model.degraded_ticks;
+      continue;
+    }
     if (model.always || model.active_surfaces > 0) stepModel(i, t, dt, probes);
     if (model.moves) sendTransform(model, i);
   }
   releaseLeaving();
+  ++tick_;
 }
 
 void Core::listLive() noexcept HSP_RT {
@@ -155,7 +165,7 @@ void Core::fillProbe(const ModelState& model, const Probe& probe, uint32_t index
   if (!probe.valid) in.flags |= HSP_IN_INVALID;
   const Vector3d& p_world = last_position_[index];  // the last good one
   Map(in.position) = model.frame.pointToModel(p_world);
-  ++transforms_;
+  if (!model.frame.identity) ++transforms_;
   const uint32_t needs = model.shape->report().flags;
   if ((needs & HSP_R_VELOCITY) != 0 && probe.valid) {
     const Vector3d arm = p_world - ConstMap(model.pose.position);
@@ -195,8 +205,8 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
       continue;
     }
     forces_[i] += ConstMap(contact.world.force);
-    torques_[i] += ConstMap(contact.world.torque);
-    bookContact(model, contact, i);
+    if (uses_.torque) torques_[i] += ConstMap(contact.world.torque);
+    if (uses_.exchange) bookContact(model, contact, i);
   }
 }
 
@@ -209,8 +219,12 @@ void Core::callShape(ModelState& model, uint32_t index, double dt, hsp_pose& pos
   step.in_stride = sizeof(hsp_probe);
   step.out = outputs_.data();
   step.out_stride = sizeof(hsp_contact);
-  step.dt_s = dt;
+  step.dt_s = dt + model.rested;
+  model.rested = 0;
   step.budget_ns = budget_left_ns_;
+  const Accuracy accuracy = Accuracy::of(model.level);
+  step.max_iterations = accuracy.max_iterations;
+  step.order = accuracy.order;
   step.pose = &pose;
   step.changes = model.changes.data();
   step.change_count = model.change_count;
@@ -220,10 +234,62 @@ void Core::callShape(ModelState& model, uint32_t index, double dt, hsp_pose& pos
   stepping_.store(static_cast<int32_t>(index), std::memory_order_relaxed);
   model.status = model.guard.quarantined() ? HSP_E_STATE : model.shape->step(step);
   stepping_.store(-1, std::memory_order_relaxed);
-  if (!settings_.measure) return;
-  model.step_ns = monotonicNow() - before;
+  if (model.level > 0) {
+    ++model.degraded_ticks;
+    if (model.status == HSP_OK) model.status = HSP_DEGRADED;
+  }
+  if (settings_.measure) takeCost(model, before);
+}
+
+/// A coarsest shape that no probe can reach before its turn comes again answers in every fourth tick alone: it stands
+/// still, and its foot and distance are those of a moment ago. Turns are spread over the ticks.
+bool Core::mayRest(const ModelState& model, uint32_t index, double dt) const noexcept HSP_RT {
+  if (model.always || model.moves || model.change_count > 0) return false;
+  if ((tick_ + index) % Accuracy::kTurns == 0) return false;
+  const double reach = settings_.max_probe_speed * dt * Accuracy::kTurns;
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    const Contact& last = contact(index, i);
+    if (jumped_[i] != 0 || !last.traced || last.world.depth_m > -reach) return false;
+  }
+  return true;
+}
+
+void Core::takeCost(ModelState& model, Nanoseconds begun) noexcept HSP_RT {
+  model.step_ns = monotonicNow() - begun;
+  if (settings_.evaluation_ns > 0) {
+    uint64_t evaluations = 0;
+    for (const hsp_contact& out : outputs_) evaluations += out.iterations;
+    model.step_ns = static_cast<uint64_t>(settings_.evaluation_ns * static_cast<double>(evaluations));
+  }
   // a spent budget stays at 1: the next shape may still answer, but must be quick
   if (budget_left_ns_ > 0) budget_left_ns_ = budget_left_ns_ > model.step_ns ? budget_left_ns_ - model.step_ns : 1;
+}
+
+std::span<const Balance::Change> Core::balance() noexcept HSP_RT {
+  if (settings_.budget_ns == 0 || !settings_.measure) return {};
+  loads_.clear();
+  uint64_t spent = 0;
+  for (const uint32_t index : live_) {
+    const ModelState& model = models_[index];
+    double importance = -HUGE_VAL;
+    for (uint32_t i = 0; i < probe_count_; ++i)
+      if (contact(index, i).traced) importance = std::max(importance, contact(index, i).world.depth_m);
+    loads_.push_back({index, model.level, model.step_ns, model.finer_ns, importance});  // reserved: never allocates
+    spent += model.step_ns;
+  }
+  // A tick that the kernel interrupted took long for no fault of a shape.
+  if (spent > settings_.budget_ns && settings_.evaluation_ns == 0 && (os::wasPreempted() || preempted_)) return {};
+  const auto changes = balance_.judge(loads_, settings_.budget_ns);
+  for (const Balance::Change& change : changes) setLevel(models_[change.model], change.level);
+  return changes;
+}
+
+bool Core::setLevel(ModelState& model, uint32_t level) noexcept HSP_RT {
+  if (level > Accuracy::kCoarsest) return false;
+  if (level > model.level) model.finer_ns = model.step_ns;
+  model.level = level;
+  model.coarsest = std::max(model.coarsest, level);
+  return true;
 }
 
 /// Whether the answers may be felt; a model that moves itself goes to its new pose.
@@ -232,7 +298,7 @@ Trouble Core::judge(ModelState& model, uint32_t index, double dt, const hsp_pose
   for (const hsp_contact& out : outputs_) answers_finite &= finite(out);
   const bool moves_itself = (model.shape->report().flags & HSP_R_MOVES) != 0;
   if (moves_itself && answers_finite) answers_finite = takePose(model, pose);
-  if (model.moves && dt > 0) bookMotion(model, index);
+  if (uses_.exchange && model.moves && dt > 0) bookMotion(model, index);
   Trouble trouble = model.guard.judge(model.status, answers_finite);
   if (trouble == Trouble::kNone) trouble = holdToClaims(model, index);
   if (trouble == Trouble::kBadStatus && model.failed_status == HSP_OK) model.failed_status = model.status;
@@ -259,16 +325,18 @@ Trouble Core::holdToClaims(ModelState& model, uint32_t index) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     const Vector3d p_model =
         moves_itself ? model.frame.pointToModel(last_position_[i]) : Vector3d(ConstMap(inputs_[i].position));
-    const double part = claims_[size_t{index} * probe_count_ + i].judge(model.shape->report(), inputs_[i], outputs_[i],
-                                                                        p_model);
+    const double part =
+        claims_[size_t{index} * probe_count_ + i].judge(model.shape->report(), inputs_[i], outputs_[i], p_model);
     if (part >= 1) continue;
     Map(outputs_[i].force) *= part;
     Map(outputs_[i].torque) *= part;
     trouble = model.guard.strike(Trouble::kJump, kJumps);
   }
   const bool overran = settings_.budget_ns > 0 && settings_.measure && model.step_ns > settings_.budget_ns;
-  if (overran && !os::wasPreempted() && trouble == Trouble::kNone)
-    trouble = model.guard.strike(Trouble::kOverrun, kOverruns);
+  const bool may_hasten = settings_.evaluation_ns > 0 || model.level < Accuracy::kCoarsest;
+  if (!overran || may_hasten || trouble != Trouble::kNone) return trouble;
+  preempted_ |= os::wasPreempted();
+  if (!preempted_) trouble = model.guard.strike(Trouble::kOverrun, kOverruns);
   return trouble;
 }
 
@@ -309,13 +377,16 @@ void Core::takeContact(ModelState& model, uint32_t index, uint32_t probe, double
   Contact& contact = contacts_[size_t{index} * probe_count_ + probe];
   contact.world = out;
   contact.traced = (out.flags & HSP_OUT_TRACED) != 0;
+  if (model.level > 0 && std::isfinite(out.residual_m))
+    model.degraded_residual = std::max(model.degraded_residual, out.residual_m);
   const Frame& frame = model.frame;
   Map(contact.world.force) = gain * frame.vectorToWorld(ConstMap(out.force));
-  Map(contact.world.torque) = gain * frame.vectorToWorld(ConstMap(out.torque));
+  Map(contact.world.torque).setZero();
+  if (uses_.torque) Map(contact.world.torque) = gain * frame.vectorToWorld(ConstMap(out.torque));
   if (!contact.traced) return;
   Map(contact.world.point) = frame.pointToWorld(ConstMap(out.point));
   Map(contact.world.normal) = frame.vectorToWorld(ConstMap(out.normal));
-  transforms_ += 2;
+  if (!frame.identity) transforms_ += 2;
 }
 
 void Core::clearContacts(uint32_t index) noexcept HSP_RT {

@@ -11,6 +11,7 @@
 #include "host/shape_instance.hpp"
 #include "link/link.hpp"
 #include "scene/scene.hpp"
+#include "servo/balance.hpp"
 #include "servo/claim.hpp"
 #include "servo/frame.hpp"
 #include "servo/glide.hpp"
@@ -40,12 +41,12 @@ struct ModelState {
   host::ShapeInstance* shape = nullptr;
   hsp_pose pose{};
   Frame frame;
-  Frame before;                  ///< a tick ago; kept where the model moves
-  Path path;                     ///< kinematic models
-  Glide glide;                   ///< where a person moved a kinematic model; goes before its path
+  Frame before;  ///< a tick ago; kept where the model moves
+  Path path;     ///< kinematic models
+  Glide glide;   ///< where a person moved a kinematic model; goes before its path
   bool kinematic = false;
-  bool enabled = true;           ///< felt; otherwise faded out and only traced
-  bool leaving = false;          ///< fades out and then leaves its place
+  bool enabled = true;                  ///< felt; otherwise faded out and only traced
+  bool leaving = false;                 ///< fades out and then leaves its place
   std::array<hsp_change, 8> changes{};  ///< live parameters for the next step
   uint32_t change_count = 0;
   uint32_t active_surfaces = 0;  ///< over all probes
@@ -55,6 +56,12 @@ struct ModelState {
   hsp_status failed_status = HSP_OK;  ///< the first that was no status of a step
   Guard guard;
   uint64_t step_ns = 0;  ///< CPU time of the last step; 0 when not measured
+  // How exactly it answers: lowered while a tick takes too long, see balance.hpp.
+  uint32_t level = 0, coarsest = 0;  ///< now, and at most so far
+  uint64_t finer_ns = 0;             ///< what a step took before the level was lowered
+  double rested = 0;                 ///< [s] since its last step
+  uint64_t degraded_ticks = 0;
+  double degraded_residual = 0;  ///< [m] largest error that a degraded answer told
 };
 
 struct CoreSettings {
@@ -62,6 +69,13 @@ struct CoreSettings {
   double max_probe_speed = 20;  ///< [m/s] faster between two samples is a jump, not a motion
   uint32_t spare_models = 0;    ///< empty places for models that come while it runs
   bool measure = false;         ///< take the CPU time of each step
+  double evaluation_ns = 0;     ///< > 0: a step costs so much for each evaluation, instead of what it takes
+};
+
+/// What the arms make of a tick's answers; settled before the first. What nobody uses is not computed.
+struct Uses {
+  bool torque = true;    ///< an arm can turn the hand, or somebody writes torques down
+  bool exchange = true;  ///< an arm has a passivity controller
 };
 
 class Core {
@@ -70,11 +84,17 @@ class Core {
   Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& scene, uint32_t probe_count,
        const CoreSettings& settings, link::Link& link);
 
+  /// [main] Before the first tick; without it everything is computed.
+  void serve(const Uses& uses) { uses_ = uses; }
+
   /// [rt] One tick at time t [s], dt [s] after the last (0: the first). Fills contacts() and force().
   void tick(double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
 
   /// [main] What the servo must know of an active shape before its first tick.
   static ModelState stateOf(host::ShapeInstance& shape, const scene::Model& described);
+
+  /// [rt] Before tick(): settles how exactly each model answers, from what the last tick took. What was changed.
+  std::span<const Balance::Change> balance() noexcept HSP_RT;
 
   /// [rt] Obeys an order to a model, before tick(). False: it cannot be.
   bool obey(const Order& order, double t) noexcept HSP_RT;
@@ -96,7 +116,8 @@ class Core {
   }
   /// A jump or a lost track in the last tick: the simulation side should search at once.
   bool wantsSearch() const noexcept { return wants_search_; }
-  /// Transforms done in the last tick: n inverse ones of probes, m points and m normals.
+  /// Transforms done in the last tick: n inverse ones of probes, m points and m normals; none of models that stand at
+  /// the world's origin.
   uint32_t transforms() const noexcept { return transforms_; }
   /// Models that have something to do in this tick, in scene order.
   std::span<const uint32_t> live() const noexcept { return live_; }
@@ -113,6 +134,9 @@ class Core {
   void receiveRecords() noexcept HSP_RT;
   void findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT;
   void stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
+  bool mayRest(const ModelState& model, uint32_t index, double dt) const noexcept HSP_RT;
+  void takeCost(ModelState& model, Nanoseconds begun) noexcept HSP_RT;
+  bool setLevel(ModelState& model, uint32_t level) noexcept HSP_RT;
   void fillProbe(const ModelState& model, const Probe& probe, uint32_t index, double t) noexcept HSP_RT;
   void callShape(ModelState& model, uint32_t index, double dt, hsp_pose& pose) noexcept HSP_RT;
   Trouble judge(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT;
@@ -127,11 +151,14 @@ class Core {
   void sendTransform(ModelState& model, uint32_t index) noexcept HSP_RT;
 
   CoreSettings settings_;
+  Uses uses_;
   link::Link& link_;
   uint32_t probe_count_;
   std::vector<ModelState> models_;
-  std::vector<uint32_t> live_;     // models with something to do, in scene order: the sum is always the same
-  std::vector<Claim> claims_;      // [model * probe_count + probe]
+  std::vector<uint32_t> live_;  // models with something to do, in scene order: the sum is always the same
+  std::vector<Load> loads_;     // of the models that were stepped
+  Balance balance_;
+  std::vector<Claim> claims_;  // [model * probe_count + probe]
   std::atomic<int32_t> stepping_{-1};
   std::vector<Contact> contacts_;  // [model * probe_count + probe]
   std::vector<hsp_probe> inputs_;  // of the model being stepped
@@ -147,7 +174,9 @@ class Core {
   uint32_t leaving_ = 0;
   bool wants_search_ = true;
   uint32_t transforms_ = 0;
+  uint64_t tick_ = 0;
   uint64_t budget_left_ns_ = 0;
+  bool preempted_ = false;  // in this tick, as far as anybody asked
 };
 
 }  // namespace hapticd::servo

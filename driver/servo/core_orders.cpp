@@ -23,6 +23,8 @@ bool Core::obey(const Order& order, double t) noexcept HSP_RT {
       return true;
     case Order::Kind::kSet:
       return change(model, order);
+    case Order::Kind::kAccuracy:
+      return order.value >= 0 && setLevel(model, static_cast<uint32_t>(order.value));
     case Order::Kind::kRelease:
       model.enabled = false;
       if (!model.leaving) ++leaving_;

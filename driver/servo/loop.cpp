@@ -16,6 +16,15 @@ constexpr double kLateFault = 0.1;      ///< [s] without a tick: a hand must not
 
 }  // namespace
 
+Uses usesOf(const std::vector<std::unique_ptr<Arm>>& arms) {
+  Uses uses{false, false};
+  for (const auto& arm : arms) {
+    uses.torque |= arm->turns();
+    uses.exchange |= arm->passivity() != nullptr;
+  }
+  return uses;
+}
+
 Loop::Loop(World& world, std::vector<std::unique_ptr<Arm>>& arms, Clock& clock, const LoopSettings& settings,
            Telemetry& telemetry)
     : world_(world),
@@ -25,6 +34,7 @@ Loop::Loop(World& world, std::vector<std::unique_ptr<Arm>>& arms, Clock& clock, 
       telemetry_(telemetry),
       lockstep_(world),
       probes_(arms.size()) {
+  world_.core().serve(usesOf(arms_));
   double ramp = 0;
   for (const auto& arm : arms_) ramp = std::max(ramp, arm->rampOut());
   ramp_ticks_ = static_cast<uint64_t>(std::ceil(ramp * 1e9 / static_cast<double>(settings_.period_ns))) + 1;
@@ -96,6 +106,17 @@ void Loop::obey(double t) noexcept HSP_RT {
   }
 }
 
+/// What the servo does by itself to keep its deadline changes forces, so it is written down as an order is.
+void Loop::balance() noexcept HSP_RT {
+  for (const Balance::Change& change : world_.core().balance()) {
+    Order order;
+    order.kind = Order::Kind::kAccuracy;
+    order.target = change.model;
+    order.value = change.level;
+    telemetry_.order(order);
+  }
+}
+
 void Loop::search(double t) noexcept {
   const Nanoseconds begun = monotonicNow();
   const uint64_t allocations = allocationsOfThread();
@@ -115,6 +136,7 @@ Nanoseconds Loop::skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HS
 
 void Loop::tick(Nanoseconds now, double t, double dt) noexcept HSP_RT {
   obey(t);
+  balance();
   for (size_t i = 0; i < arms_.size(); ++i) probes_[i] = arms_[i]->read(now, dt);
   world_.core().publish(t, probes_);
   if (settings_.lockstep) search(t);

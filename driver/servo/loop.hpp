@@ -20,6 +20,9 @@ struct LoopSettings {
   bool lockstep = false;  ///< search in step with the ticks (virtual time) instead of from a thread of its own
 };
 
+/// [main] What these arms make of a tick's answers.
+Uses usesOf(const std::vector<std::unique_ptr<Arm>>& arms);
+
 class Loop {
  public:
   Loop(World& world, std::vector<std::unique_ptr<Arm>>& arms, Clock& clock, const LoopSettings& settings,
@@ -51,6 +54,7 @@ class Loop {
  private:
   void tick(Nanoseconds now, double t, double dt) noexcept HSP_RT;
   void obey(double t) noexcept HSP_RT;
+  void balance() noexcept HSP_RT;
   void search(double t) noexcept;
   void trip(Fault fault, double measured = 0) noexcept HSP_RT;
   bool allSilent() const noexcept HSP_RT;

@@ -19,13 +19,14 @@ struct Order {
     kClear,    ///< the arm's latched fault is forgiven; the force ramps in
     kHold,     ///< the arm's force ramps out until it is cleared
     kAdopt,    ///< a prepared model takes an empty place
-    kRelease   ///< the model fades out and leaves its place
+    kRelease,  ///< the model fades out and leaves its place
+    kAccuracy  ///< how exactly a model answers; given by the servo itself, and kept because it changes forces
   };
   Kind kind = Kind::kNone;
   uint32_t target = 0;                                     ///< model or arm
   uint32_t param = 0;                                      ///< kSet
   uint32_t ticket = 0;                                     ///< of the request, for the answer
-  double value = 0;                                        ///< kSet
+  double value = 0;                                        ///< kSet; kAccuracy: the level
   double seconds = 0;                                      ///< kMove: how long it takes
   double position[3] = {}, orientation[4] = {1, 0, 0, 0};  ///< kMove: world frame
   ModelState* model = nullptr;                             ///< kAdopt: swapped with the empty place

@@ -170,7 +170,9 @@ class Replay::Player final : public Clock {
     const RecordedStream& stream = *recorded_[kOrders];
     for (uint64_t i = 0; i < stream.rows(); ++i) {
       const auto row = at<OrderRow>(stream.row(i), 0);
-      if (row.kind >= static_cast<uint32_t>(Order::Kind::kAdopt)) return row.tick;
+      if (row.kind == static_cast<uint32_t>(Order::Kind::kAdopt) ||
+          row.kind == static_cast<uint32_t>(Order::Kind::kRelease))
+        return row.tick;
     }
     return UINT64_MAX;
   }

@@ -19,6 +19,7 @@ struct WorldOptions {
   uint32_t spare_models = 0;  ///< places for models that come while it runs
   bool measure = false;       ///< take the CPU time of every step
   bool budgets = false;       ///< tell every step how much CPU time is left of the tick
+  double evaluation_ns = 0;   ///< > 0: costs are counted, so much an evaluation, instead of measured
 };
 
 class World {

@@ -33,10 +33,26 @@ TEST(Core, SumsTheForcesOfAllModels) {
 
 TEST(Core, CountsOneTransformAModelAndTwoAFoot) {
   scene::Scene scene;
-  for (int i = 0; i < 5; ++i) scene.models.push_back(testModel("wall"));
+  for (int i = 0; i < 5; ++i) {
+    scene.models.push_back(testModel("wall"));
+    scene.models.back().pose.position.x() = 0.01 * i;
+  }
   auto world = testWorld(scene);
   tickOnce(*world, 0, probeAt({0, -0.001, 0}));
-  EXPECT_EQ(world->core().transforms(), 5u + 2u * 5u);
+  EXPECT_EQ(world->core().transforms(), 4u + 2u * 4u);  // the first stands at the world's origin
+}
+
+TEST(Core, ServesNoTorqueToArmsThatOnlyPush) {
+  scene::Scene scene;
+  scene.models.push_back(testModel("turning"));
+  auto world = testWorld(scene);
+  EXPECT_DOUBLE_EQ(tickOnce(*world, 0, probeAt({0, 0, 0})).y(), 1.0);
+  EXPECT_DOUBLE_EQ(world->core().torque(0).x(), 0.25);
+  world->core().serve({.torque = false, .exchange = false});
+  EXPECT_DOUBLE_EQ(tickOnce(*world, 1, probeAt({0, 0, 0})).y(), 1.0);
+  EXPECT_TRUE(world->core().torque(0).isZero(0));
+  EXPECT_DOUBLE_EQ(world->core().contact(0, 0).world.torque[0], 0.0);
+  EXPECT_DOUBLE_EQ(world->core().exchange(0).recoverable, 0.0);
 }
 
 TEST(Core, GivesShapesTheVelocityRelativeToTheModel) {

@@ -57,6 +57,21 @@ struct Misbehaving : hapticd::Shape {
   }
 };
 
+/// Pushes and turns the hand.
+struct Turning : hapticd::Shape {
+  int unused;
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.turning", "turning", "1.0.0", "MIT", "Turns."};
+  static constexpr auto fields() {
+    return std::array{Fields<Turning>::integer("unused", &Turning::unused, "", 0, 1, 0, "Nothing.")};
+  }
+  void activate(const hsp_activation&, hsp_report&) {}
+  hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
+    out.force[1] = 1;
+    out.torque[0] = 0.25;
+    return HSP_OK;
+  }
+};
+
 /// A wall that falls along -x at 1 m/s, for poses and relative velocity.
 struct Sliding : hapticd::Shape {
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.sliding", "sliding", "1.0.0", "MIT", "Moves.", HSP_C_MOVES};
@@ -129,4 +144,4 @@ struct Throwing : hapticd::Shape {
 
 }  // namespace
 
-HAPTICD_SHAPES(Wall, Misbehaving, Sliding, Allocating, Throwing, Deadly)
+HAPTICD_SHAPES(Wall, Misbehaving, Sliding, Allocating, Throwing, Deadly, Turning)

@@ -1,0 +1,62 @@
+#include "servo/balance.hpp"
+
+#include <algorithm>
+
+namespace hapticd::servo {
+
+std::span<const Balance::Change> Balance::judge(std::span<const Load> loads, uint64_t budget_ns) noexcept HSP_RT {
+  count_ = 0;
+  uint64_t spent = 0;
+  for (const Load& load : loads) spent += load.step_ns;
+  if (since_raise_ < kLongest) ++since_raise_;
+  if (spent > budget_ns) {
+    // What was given back did not fit: the next attempt waits longer, so that accuracy does not flap.
+    patience_ = since_raise_ < patience_ ? std::min(2 * patience_, kLongest) : patience_;
+    calm_ = 0;
+    lower(loads, spent, budget_ns);
+  } else if (static_cast<double>(spent) > kComfort * static_cast<double>(budget_ns)) {
+    calm_ = 0;
+  } else if (++calm_ >= kPatience) {
+    raise(loads, spent, budget_ns);
+  }
+  return {changes_.data(), count_};
+}
+
+bool Balance::changed(uint32_t model) const noexcept HSP_RT {
+  return std::any_of(changes_.begin(), changes_.begin() + static_cast<long>(count_),
+                     [&](const Change& c) { return c.model == model; });
+}
+
+/// The least important first; a shape that takes more than all may together goes down at once, wherever it is.
+void Balance::lower(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT {
+  for (const Load& load : loads)
+    if (load.step_ns > budget_ns && load.level < Accuracy::kCoarsest && count_ < kMostChanges)
+      changes_[count_++] = {load.model, Accuracy::kCoarsest};
+  while (count_ < kMostChanges && spent > budget_ns) {
+    const Load* least = nullptr;
+    for (const Load& load : loads)
+      if (load.step_ns > 0 && load.level < Accuracy::kCoarsest && !changed(load.model) &&
+          (least == nullptr || load.importance < least->importance))
+        least = &load;
+    if (least == nullptr) return;  // all are at their coarsest: ticks will be late, and are counted
+    changes_[count_++] = {least->model, least->level + 1};
+    spent -= std::min(spent, least->step_ns / 2);  // what a level may save
+  }
+}
+
+/// The most important first, if what it took before still fits; after long patience even so, for it may be cheaper now.
+void Balance::raise(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT {
+  const Load* best = nullptr;
+  for (const Load& load : loads)
+    if (load.level > 0 && (best == nullptr || load.importance > best->importance)) best = &load;
+  if (best == nullptr) return;
+  const uint64_t with = spent - best->step_ns + std::max(best->finer_ns, best->step_ns);
+  const bool fits = static_cast<double>(with) <= kComfort * static_cast<double>(budget_ns);
+  if (calm_ < (fits ? patience_ : kLongest)) return;
+  if (since_raise_ >= 2 * patience_) patience_ = kPatience;  // the last one held
+  changes_[count_++] = {best->model, best->level - 1};
+  calm_ = 0;
+  since_raise_ = 0;
+}
+
+}  // namespace hapticd::servo
