@@ -42,24 +42,6 @@ void Surface::rescale(int order, SurfacePoint& out) const noexcept {
   for (Eigen::Vector3d* d : {&out.Suu, &out.Suv, &out.Svv}) *d *= scale_;
 }
 
-void Surface::prefetch(const SurfacePoint& point) const noexcept {
-  constexpr std::ptrdiff_t kQuadsALine = 2;
-  for (std::size_t a = 0; a < 2; ++a) {
-    if (static_cast<std::size_t>(static_cast<std::uint32_t>(point.span[a])) >= axes_[a].cells().size()) return;
-    __builtin_prefetch(&axes_[a].cells()[static_cast<std::size_t>(point.span[a])]);
-  }
-  if (form() == Form::kTable) {
-    const Quad* first = tableCell(point);
-    for (std::ptrdiff_t i = 0; i < table_.stride; i += kQuadsALine) __builtin_prefetch(first + i);
-    return;
-  }
-  const NetWindow net = netWindow(axes_[0].cells()[static_cast<std::size_t>(point.span[0])],
-                                  axes_[1].cells()[static_cast<std::size_t>(point.span[1])]);
-  for (std::ptrdiff_t i = 0; i <= net.u.degree; ++i) {
-    for (std::ptrdiff_t j = 0; j <= net.v.degree; j += kQuadsALine) __builtin_prefetch(net.points + i * net.stride + j);
-  }
-}
-
 std::size_t Surface::bytes() const noexcept {
   return (net_.capacity() + table_.cells.capacity()) * sizeof(Quad) + axes_[0].bytes() + axes_[1].bytes();
 }

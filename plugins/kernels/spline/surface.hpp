@@ -51,8 +51,6 @@ class Surface {
   /// [any] S and all first and second derivatives at (u, v). At a knot: those of the span to its right.
   /// Source: Piegl & Tiller, The NURBS Book, A2.3 and A4.4 (with the mixed derivative), about a local origin.
   void evaluate2(double u, double v, SurfacePoint& out) const noexcept { evaluate<2>(u, v, out); }
-  /// [any] Brings to the cache what the next evaluation near `point` reads.
-  void prefetch(const SurfacePoint& point) const noexcept;
 
   /// [any] Parameter range [lo, hi] along axis 0 (u) or 1 (v).
   std::array<double, 2> domain(int axis) const noexcept { return {breaks(axis).front(), breaks(axis).back()}; }

@@ -11,7 +11,7 @@ namespace hapticd::trace {
 
 Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOptions& options) {
   if (surfaces.empty()) throw std::invalid_argument("model: no surfaces, expected at least one");
-  split(surfaces);
+  split(surfaces, options.form);
   tree_.build();
   bounds_ = tree_.bounds();
   constexpr double kFarthest = 1e60;  // [m] beyond it, products of four lengths overflow
@@ -26,7 +26,7 @@ Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOption
   part_count_ = 1 + *std::max_element(part_.begin(), part_.end());
 }
 
-void Model::split(const std::vector<spline::SurfaceData>& surfaces) {
+void Model::split(const std::vector<spline::SurfaceData>& surfaces, spline::Form form) {
   first_patch_.reserve(surfaces.size() + 1);
   patches_.reserve(surfaces.size());
   for (std::size_t source = 0; source < surfaces.size(); ++source) {
@@ -35,7 +35,7 @@ void Model::split(const std::vector<spline::SurfaceData>& surfaces) {
     names_.push_back(name.empty() ? "surface " + std::to_string(source) : "surface '" + name + "'");
     for (const spline::SurfaceData& part : spline::splitAtCreases(surfaces[source])) {
       Patch patch;
-      patch.surface = spline::Surface(part);
+      patch.surface = spline::Surface(part, form);
       for (int axis = 0; axis < 2; ++axis) {
         patch.lo[axis] = part.domain(axis)[0];
         patch.hi[axis] = part.domain(axis)[1];

@@ -23,7 +23,8 @@ struct EdgeLink {
 struct ModelOptions {
   /// [m] Sides closer than this are one edge. 0: 1e-5 of the model's diagonal, the usual tolerance of CAD files.
   double sew_tolerance = 0;
-  std::vector<EdgeLink> edges;  ///< known adjacency; the rest is found by geometry
+  std::vector<EdgeLink> edges;               ///< known adjacency; the rest is found by geometry
+  spline::Form form = spline::Form::kTable;  ///< how the patches are stored
 };
 
 /// A surface near a probe, as an activation record needs it.
@@ -89,7 +90,7 @@ class Model {
 
  private:
   friend class Sewing;
-  void split(const std::vector<spline::SurfaceData>& surfaces);
+  void split(const std::vector<spline::SurfaceData>& surfaces, spline::Form form);
 
   std::vector<Patch> patches_;
   std::vector<int> first_patch_;

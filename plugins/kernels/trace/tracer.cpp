@@ -57,17 +57,6 @@ void Tracer::reset() noexcept {
   has_last_ = false;
 }
 
-void Tracer::prefetch() const noexcept {
-  constexpr std::size_t kLine = 64;
-  if (nearest_ < 0) return;
-  const Track& t = tracks_[nearest_];
-  for (std::size_t at = 0; at < sizeof(Track); at += kLine) __builtin_prefetch(reinterpret_cast<const char*>(&t) + at);
-  const Patch& patch = model_.patch(t.patch);
-  for (std::size_t at = 0; at < sizeof(Patch); at += kLine)
-    __builtin_prefetch(reinterpret_cast<const char*>(&patch) + at);
-  patch.surface.prefetch(t.at.E);
-}
-
 bool Tracer::active(int surface) const noexcept {
   if (surface < 0 || surface >= model_.surfaceCount()) return false;
   for (int i = model_.firstPatch(surface); i < model_.lastPatch(surface); ++i)

@@ -65,9 +65,6 @@ class Tracer {
   /// [rt] Nearest foot of probe `p` (model frame). A probe that is no finite position leaves all tracks unchanged.
   Foot step(const Eigen::Vector3d& p, const TraceOptions& options = {}) noexcept;
 
-  /// [rt] Brings to the cache what the next step() will read if the probe stays near. For the time before a tick.
-  void prefetch() const noexcept;
-
   bool active(int surface) const noexcept;
   int activeCount() const noexcept { return static_cast<int>(tracks_.active().size()); }
   const Model& model() const noexcept { return model_; }

@@ -47,6 +47,7 @@ std::vector<std::unique_ptr<Solver>> occtSolvers(const spline::SurfaceData& data
 std::vector<std::unique_ptr<Solver>> sislSolvers(const spline::SurfaceData& data);
 
 void printEvaluations();
+void printFloat();
 void printTicks();
 void printCold();
 void printMany();

@@ -17,8 +17,7 @@ std::string processor() {
 }
 
 void printHead() {
-  std::printf(
-      "# What tracing costs\n\nMade by `bench_trace > driver/docs/bench_trace.md` (in the build folder's `bench/`). ");
+  std::printf("# What tracing costs\n\nMade by `bench_trace --write` (in the build folder's `bench/`). ");
   std::printf("Compare ratios, not times: they hold for one %s.\n", processor().c_str());
 #ifndef HAPTICD_WITH_OCCT
   std::printf("Without Open CASCADE: install libocct-modeling-algorithms-dev libocct-modeling-data-dev.\n");
@@ -35,14 +34,22 @@ struct Part {
 
 }  // namespace
 
-/// Prints all parts, or those named.
+/// Prints all parts, or those named; with --write, all into driver/docs/bench_trace.md.
 int main(int count, char** names) {
   using namespace hapticd::bench;
   constexpr Part kParts[] = {{"evaluation", printEvaluations},
+                             {"float", printFloat},
                              {"tick", printTicks},
                              {"cold", printCold},
                              {"many", printMany},
                              {"scale", printScale}};
+  if (count == 2 && std::strcmp(names[1], "--write") == 0) {
+    count = 1;
+    if (std::freopen(HAPTICD_SOURCE_DIR "/driver/docs/bench_trace.md", "w", stdout) == nullptr) {
+      std::perror("error: driver/docs/bench_trace.md");
+      return 1;
+    }
+  }
   if (count == 1) printHead();
   for (const Part& part : kParts) {
     bool wanted = count == 1;

@@ -228,15 +228,5 @@ TEST(Surface, NeedsLessMemoryAsANet) {
   EXPECT_LT(3 * Surface(data, Form::kNet).bytes(), Surface(data, Form::kTable).bytes());
 }
 
-TEST(Surface, PrefetchTakesAnyHint) {
-  const Surface surface(samples::torus(0.06, 0.02)), net(samples::torus(0.06, 0.02), Form::kNet);
-  SurfacePoint E;
-  for (std::int32_t hint : {0, 3, 4, -1, 1 << 30}) {
-    E.span = {hint, hint};
-    surface.prefetch(E);
-    net.prefetch(E);
-  }
-}
-
 }  // namespace
 }  // namespace hapticd::spline
