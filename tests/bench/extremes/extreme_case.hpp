@@ -20,6 +20,8 @@ struct Case {
   std::vector<double> distance;        ///< [m] true one; not-a-number where there is none
   double allowed = 1e-4;               ///< [m] a foot farther than this from the best one is wrong
   bool bifurcation = false;            ///< the nearest point truly jumps: 5 ms to recover
+  bool unite = true;                   ///< parts that run into each other are one solid
+  int direct_steps = 0;                ///< steps a tick of the paper's method; 0: Newton
 };
 
 /// Reads one file, see tests/cases/extremes/README.md. @throws std::exception
@@ -27,6 +29,9 @@ Case readCase(const std::filesystem::path& file);
 
 /// Cases with closed forms: sizes from subnormal to 1e59 m, weights, knots, degenerate patches, speeds and rates.
 std::vector<Case> closedForms();
+
+/// Walks over the models of config/models; the truth is the global search.
+std::vector<Case> modelWalks();
 
 /// Random walks near random patches; the truth is the global search. `ticks` in all.
 std::vector<Case> randomWalks(int ticks);

@@ -1,6 +1,6 @@
 /// Traces extreme surfaces and probe paths with the production tracer, in lockstep with the global search as
 /// `hapticd trace` runs it, and prints what came of each. Exit code 1 if any case is not ok.
-///   extremes [--random TICKS] [FOLDER...]   without a folder: tests/cases/extremes, and the closed forms
+///   extremes [--random TICKS] [FOLDER...]   without a folder: tests/cases/extremes, closed forms, walks
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,6 +35,7 @@ struct Outcome {
   bool lost = false;      // wrong in the last tick
 
   bool ok(const Case& c) const {
+    if (c.direct_steps > 0) return !poisoned && worst_evaluations <= kMostEvaluations;  // the method may lose its way
     const double allowed = c.bifurcation ? kRecovery * c.rate : 0;
     return !poisoned && !lost && worst_evaluations <= kMostEvaluations && longest_bad <= allowed;
   }
@@ -58,6 +59,12 @@ void offerAll(const Model& model, Tracer& tracer, const Vector3d& p) {
 Outcome run(const Case& c) {
   const Model model(c.surfaces);
   Tracer tracer(model);
+  TraceOptions options;
+  options.unite = c.unite;
+  if (c.direct_steps > 0) {
+    options.method = Method::kDirect;
+    options.iterations = c.direct_steps;
+  }
   if (c.started) tracer.activate(0, c.start_u, c.start_v, 0);
   Outcome out;
   Vector3d last = c.probe.front();
@@ -71,7 +78,7 @@ Outcome run(const Case& c) {
       offerAll(model, tracer, last);  // the search knows the newest probe before this tick
       if (t >= next_search) next_search += kSearchPeriod;
     }
-    const Foot foot = tracer.step(p);
+    const Foot foot = tracer.step(p, options);
     out.worst_evaluations = std::max(out.worst_evaluations, foot.evaluations);
     search = !p.allFinite() || !((p - last).norm() <= kMaxProbeSpeed / c.rate);
     if (p.allFinite()) last = p;
@@ -93,7 +100,8 @@ bool print(const Case& c, const Outcome& out) {
   const bool ok = out.ok(c);
   fmt::print("| {} | {:.1e} | {} | {:.1f} | {} | {} |\n", c.name, 1e3 * out.worst_excess, out.bad_ticks,
              1e3 * out.longest_bad / c.rate, out.worst_evaluations,
-             ok ? (out.bad_ticks == 0 ? "ok" : "ok, recovered") : (out.lost || out.poisoned ? "LOST" : "FAILED"));
+             ok ? (out.bad_ticks == 0 ? "ok" : (c.direct_steps > 0 ? "bounded" : "ok, recovered"))
+                : (out.lost || out.poisoned ? "LOST" : "FAILED"));
   return ok;
 }
 
@@ -119,9 +127,9 @@ bool runFolder(const fs::path& folder) {
   return all_ok;
 }
 
-bool runClosedForms() {
+bool runAll(const std::vector<Case>& cases) {
   bool ok = true;
-  for (const Case& c : hapticd::extremes::closedForms()) {
+  for (const Case& c : cases) {
     try {
       ok = print(c, run(c)) && ok;
     } catch (const std::exception& e) {
@@ -167,7 +175,8 @@ int main(int argc, char** argv) {
     ok = runFolder(folder) && ok;
   }
   if (all) {
-    ok = runClosedForms() && ok;
+    ok = runAll(hapticd::extremes::closedForms()) && ok;
+    ok = runAll(hapticd::extremes::modelWalks()) && ok;
     ok = runRandomWalks(random_ticks) && ok;
   }
   return ok ? 0 : 1;
