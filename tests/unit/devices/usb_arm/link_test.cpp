@@ -19,6 +19,7 @@ namespace {
 struct FakeBoard {
   std::atomic<bool> plugged{true}, pushed{false}, stalled{false};
   std::atomic<int> opened{0};
+  int kept = 0;  ///< reports from before anybody read
   emulator::BoardState state;
   Nanoseconds next = 0;
 };
@@ -42,7 +43,9 @@ class FakeTransport final : public Transport {
     clock.waitUntil(board_.next);
     board_.next = std::max(board_.next, now - 5'000'000) + 1'000'000;
     ++board_.state.sequence;
-    const auto bytes = board_.state.bytes();
+    emulator::BoardState state = board_.state;
+    if (board_.kept > 0) --board_.kept, state.counts = {};
+    const auto bytes = state.bytes();
     std::copy(bytes.begin(), bytes.end(), to.begin());
     size = bytes.size();
     return Status::kOk;
@@ -99,6 +102,17 @@ class LinkTest : public ::testing::Test {
   std::string said;
   Wish wish;
 };
+
+TEST_F(LinkTest, ReportsThatWaitedWhileTheArmMovedAreNoJump) {
+  board.kept = 4;
+  board.state.counts = {20000, 20000, 20000};
+  auto link = make();
+  ASSERT_TRUE(link->open());
+  ASSERT_TRUE(link->start());
+  Sample sample;
+  ASSERT_TRUE(pushUntil(*link, [&](const Sample& s) { return sample = s, s.sequence > 20; }));
+  EXPECT_EQ(sample.trouble, Trouble::kNone) << describe(sample.trouble);
+}
 
 TEST_F(LinkTest, PushesLosesFindsAndPushesAgain) {
   auto link = make();
