@@ -9,6 +9,7 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
+#include "cli/explain_cost.hpp"
 #include "servo/lockstep.hpp"
 #include "servo/world.hpp"
 
@@ -93,6 +94,12 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
 void explainServo(const scene::Scene& scene, const servo::World& world) {
   std::printf("servo\n");
   say("rate", std::to_string(static_cast<int>(scene.servo.rate)) + " Hz");
+  constexpr double kShare = 0.8;
+  char deadline[160];
+  std::snprintf(deadline, sizeof deadline,
+                "%.4g us for all models; beyond it the least important are answered coarser, never left out",
+                scene.servo.budget_us > 0 ? scene.servo.budget_us : kShare * 1e6 / scene.servo.rate);
+  say("budget of a tick", deadline);
   say("velocity estimator", world.needsVelocity()
                                 ? scene.servo.velocity.estimator + " (" +
                                       std::to_string(scene.servo.velocity.parameter) + "): a model uses velocity"
@@ -101,10 +108,12 @@ void explainServo(const scene::Scene& scene, const servo::World& world) {
 
 void explainSimulation(servo::World& world) {
   std::printf("simulation side\n");
-  const size_t models = world.proximity().modelCount();
-  say("proximity search", models == 0
-                              ? "none: no model has surfaces to search"
-                              : "every 5 ms over " + std::to_string(models) + " models, on a thread of its own");
+  const std::string every = "every 5 ms over " + std::to_string(world.proximity().modelCount()) + " models, ";
+  const sim::Searching amount = world.proximity().amount();
+  say("proximity search", amount == sim::Searching::kNone ? "none: no model has surfaces to search"
+                          : amount == sim::Searching::kSmall
+                              ? every + "by the main thread: one small surface needs none"
+                              : every + "on a thread of its own");
 }
 
 void explainFiles(const scene::Scene& scene) {
@@ -120,9 +129,22 @@ void explainFiles(const scene::Scene& scene) {
   }
 }
 
-int explain(const std::string& file) {
-  auto scene = loadSceneOrReport(file);
+struct Options {
+  std::string scene;
+  bool cost = false, json = false;
+};
+
+int explainCost(const Options& options, const scene::Scene& scene) {
+  const auto rows = costOf(scene);
+  if (!rows) return fail(kBadInput, rows.error());
+  std::fputs((options.json ? costJson(options.scene, *rows) : costTable(*rows)).c_str(), stdout);
+  return kWorked;
+}
+
+int explain(const Options& options) {
+  auto scene = loadSceneOrReport(options.scene);
   if (!scene) return kBadInput;
+  if (options.cost || options.json) return explainCost(options, *scene);
   auto world = servo::World::build(*scene, {.rate = scene->servo.rate, .measure = true}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   const std::vector<uint64_t> costs = measureSteps(**world, *scene);
@@ -139,12 +161,16 @@ int explain(const std::string& file) {
 }  // namespace
 
 void addExplain(CLI::App& app, int& exit_code) {
-  auto file = std::make_shared<std::string>();
+  auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("explain", "What a scene makes the daemon load, start and compute, why, and its cost.");
-  command->add_option("scene", *file, "scene file (YAML)")->required();
-  command->footer("Example:\n  hapticd explain config/scenes/teapot.yaml");
-  command->callback([file, &exit_code] { exit_code = explain(*file); });
+  command->add_option("scene", options->scene, "scene file (YAML)")->required();
+  command->add_flag("--cost", options->cost,
+                    "a table of every part: the line that asked for it, ns a tick and bytes, which are what leaving it "
+                    "out saves; and what is not there");
+  command->add_flag("--json", options->json, "the same table for programs");
+  command->footer("Example:\n  hapticd explain config/scenes/teapot.yaml --cost");
+  command->callback([options, &exit_code] { exit_code = explain(*options); });
 }
 
 }  // namespace hapticd::cli

@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+"""Looks at running daemons from outside: threads and mapped libraries are those that the scene asks for, and a build
+that has nothing but nurbs_rigid and its arm is no smaller. Usage: only_what_a_scene_needs.py HAPTICD SOURCE_DIR"""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+hapticd, source = sys.argv[1:3]
+MEGABYTE = 1 << 20
+
+
+def scene(name):
+    return f"{source}/config/scenes/{name}.yaml"
+
+
+def look(name):
+    """Names of the threads and files of the libraries of a daemon that runs a scene."""
+    with tempfile.TemporaryDirectory() as runtime:
+        environment = {**os.environ, "XDG_RUNTIME_DIR": runtime, "XDG_STATE_HOME": runtime}
+        daemon = subprocess.Popen([hapticd, "run", scene(name), "--name", f"needed-{os.getpid()}"], env=environment,
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        try:
+            for _ in range(200):
+                time.sleep(0.1)
+                assert daemon.poll() is None, f"{name}: ended: {daemon.stderr.read()}"
+                threads = {(task / "comm").read_text().strip() for task in pathlib.Path(f"/proc/{daemon.pid}/task").iterdir()}
+                if "hapticd-servo" in threads:
+                    break
+            maps = pathlib.Path(f"/proc/{daemon.pid}/maps").read_text().split()
+        finally:
+            daemon.terminate()
+            daemon.communicate(timeout=30)
+    assert "hapticd-servo" in threads, f"{name}: no servo thread in {threads}"
+    return threads, {os.path.basename(file) for file in maps if "/hapticd/plugins/" in file or "/hapticd/devices/" in file}
+
+
+threads, modules = look("sphere")
+assert modules == {"nurbs_rigid.so", "simulated.so"}, f"a scene of one sphere loads {modules}"
+assert "hapticd-sim" not in threads, f"one small surface needs no thread of its own: {threads}"
+threads, modules = look("teapot")
+assert modules == {"nurbs_rigid.so", "simulated.so"}, modules
+assert "hapticd-sim" in threads, f"many surfaces are searched on a thread of their own: {threads}"
+threads, modules = look("soft-leaf")
+assert modules == {"mat_deformable.so", "simulated.so"}, modules
+assert "hapticd-sim" not in threads, f"no surfaces, no search: {threads}"
+
+# Plugins are files: a build without the others is this one without their files.
+with tempfile.TemporaryDirectory() as folder:
+    build = pathlib.Path(hapticd).resolve().parent.parent
+    for part in ("bin/hapticd", "lib/hapticd/plugins/nurbs_rigid.so", "lib/hapticd/devices/simulated.so"):
+        target = pathlib.Path(folder) / part
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(build / part, target)
+    resident, ticks = {}, {}
+    for name, program in (("all", hapticd), ("alone", f"{folder}/bin/hapticd")):
+        runs = []
+        for _ in range(5):
+            subprocess.run([program, "run", scene("sphere"), "--virtual-time", "--for", "3", "--report", f"{folder}/r.json"],
+                           check=True, capture_output=True)
+            runs.append(json.load(open(f"{folder}/r.json")))
+        resident[name] = min(run["resident_bytes"] for run in runs)
+        ticks[name] = min(run["models"]["sphere"]["step_ns"]["p50"] for run in runs)
+    more = resident["all"] - resident["alone"]
+    print(f"one sphere: {resident['all'] / MEGABYTE:.2f} MB resident, {resident['alone'] / MEGABYTE:.2f} MB in a build "
+          f"of nurbs_rigid alone; a step {ticks['all']:.0f} ns and {ticks['alone']:.0f} ns")
+    assert abs(more) < MEGABYTE, f"{more} bytes more for plugins that are not used"
