@@ -49,6 +49,9 @@ class Arm {
   /// [any] The pose in the middle of the workspace.
   virtual JointVector neutral() const noexcept = 0;
 
+  /// [main] Stops of one arm inside those of its mechanism. Throws std::invalid_argument with a message for the user.
+  void narrow(const JointLimits& limits);
+
   /// [any] True within the limits, the coupled ones included.
   virtual bool allowed(const JointVector& q) const noexcept;
 

@@ -88,9 +88,7 @@ std::unique_ptr<kinematics::Arm> chain(const MechanismParameters& p) {
   return std::make_unique<kinematics::Passengers>(std::move(arm), others);
 }
 
-}  // namespace
-
-std::unique_ptr<kinematics::Arm> makeMechanism(const MechanismParameters& p) {
+std::unique_ptr<kinematics::Arm> mechanism(const MechanismParameters& p) {
   switch (static_cast<Kind>(p.kind)) {
     case Kind::kPhantom:
       return phantom(p);
@@ -100,6 +98,22 @@ std::unique_ptr<kinematics::Arm> makeMechanism(const MechanismParameters& p) {
       return chain(p);
   }
   return nullptr;
+}
+
+}  // namespace
+
+std::unique_ptr<kinematics::Arm> makeMechanism(const MechanismParameters& p) {
+  auto arm = mechanism(p);
+  if (p.limits.empty() || static_cast<Kind>(p.kind) == Kind::kChain) return arm;
+  const auto rows = static_cast<Eigen::Index>(p.limits.size() / 2);
+  needRows(p.limits, 2, static_cast<size_t>(arm->jointCount()), "arm.limits", "one a joint");
+  kinematics::JointLimits limits{kinematics::JointVector(rows), kinematics::JointVector(rows)};
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    limits.min[i] = p.limits[static_cast<size_t>(2 * i)];
+    limits.max[i] = p.limits[static_cast<size_t>(2 * i + 1)];
+  }
+  arm->narrow(limits);
+  return arm;
 }
 
 }  // namespace hapticd::usb

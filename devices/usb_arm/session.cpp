@@ -63,6 +63,7 @@ void Session::attach(Nanoseconds now, const JointArray& zero, bool calibrated) n
   have_raw_ = false;
   turns_ = {};
   reports_ = 0;
+  attached_at_ = sent_;
   good_at_ = now;
   last_bad_ = codec::Verdict::kGood;
   // Not healthy yet: the trouble ends, like every other, after some time of good reports.
@@ -178,6 +179,10 @@ void Session::publish(Nanoseconds now, const codec::State& state) noexcept {
 
 bool Session::tooSlow(Nanoseconds now) noexcept {
   if (settings_.health.least_rate <= 0 || reports_ <= kRateWindow) return false;
+  if (wire_.exchange == codec::Exchange::kPoll) {  // it can answer no more commands than we sent
+    const auto answers = static_cast<double>(reports_ - answered_[sent_ % kRateWindow]);
+    return sent_ > attached_at_ + kRateWindow && answers < settings_.health.least_rate * (kRateWindow - 1);
+  }
   const Nanoseconds oldest = arrivals_[reports_ % kRateWindow];
   return seconds(oldest, now) > static_cast<double>(kRateWindow) / (wire_.rate * settings_.health.least_rate);
 }
@@ -222,6 +227,7 @@ size_t Session::command(Nanoseconds now, const Wish& wish, std::span<uint8_t> by
     order.position[i] = raw_[i] + part * (wish.position[i] - zero_[i] - raw_[i]);
   }
   order.calibrate = calibrate_;
+  answered_[sent_ % kRateWindow] = reports_;
   order.sequence = ++sent_;
   return codec::encode(wire_.output, order, bytes);
 }

@@ -102,9 +102,10 @@ class Session {
   codec::State state_;
   JointArray raw_{}, zero_{}, turns_{}, span_{};  ///< span: of a wrapping position, 0: it does not wrap
   std::array<Nanoseconds, kRateWindow> arrivals_{};
+  std::array<uint64_t, kRateWindow> answered_{};  ///< reports before each of the last commands
   uint64_t reports_ = 0, bad_reports_ = 0;
   Nanoseconds good_at_ = 0, trouble_at_ = 0, healthy_at_ = 0;
-  uint32_t last_sequence_ = 0, last_starts_ = 0, sent_ = 0;
+  uint32_t last_sequence_ = 0, last_starts_ = 0, sent_ = 0, attached_at_ = 0;
   bool attached_ = false, have_raw_ = false, calibrated_ = false, calibrate_ = false;
   codec::Verdict last_bad_ = codec::Verdict::kGood;
 };

@@ -219,5 +219,27 @@ TEST(Session, CountersThatWrapAreFollowed) {
   }
 }
 
+/// Commands of a WoodenHaptics every `period`, of which it answers every `n`th. @return troubles met
+Trouble polled(Nanoseconds period, int n) {
+  const auto wire = codec::readWire(emulator::wireOf(HAPTICD_SOURCE_DIR "/config/devices/woodenhaptics.yaml"), 3);
+  Session session(wire, Rig::settings(Calibration::kNone));
+  Nanoseconds now = kMs;
+  session.attach(now, {}, true);
+  std::array<uint8_t, 64> out{};
+  const std::vector<uint8_t> answer(14, 0);
+  for (int i = 0; i < 400; ++i, now += period) {
+    (void)session.command(now, Wish{}, out);
+    if (i % n == 0) session.receive(now + kMs / 10, answer);
+    session.watch(now + kMs / 5);
+  }
+  return session.trouble();
+}
+
+TEST(Session, AnArmThatAnswersEachOfFewCommandsIsNotSlow) {
+  EXPECT_EQ(polled(kMs, 1), Trouble::kNone);
+  EXPECT_EQ(polled(4 * kMs, 1), Trouble::kNone) << "it was asked no more often";
+  EXPECT_EQ(polled(kMs, 2), Trouble::kSlow);
+}
+
 }  // namespace
 }  // namespace hapticd::usb
