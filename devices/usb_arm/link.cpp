@@ -163,8 +163,13 @@ void Link::serve(Nanoseconds now) noexcept {
   if (now >= due_ || news) send(now);
   if (!open_) return;
   now = monotonicNow();
-  // A timeout of whole milliseconds is all that hidapi has: the arm's own reports end the wait in time.
-  receive(due_ > now ? due_ - now : 0);
+  const Nanoseconds wait = due_ > now ? due_ - now : 0;
+  // A timeout of whole milliseconds is all that hidapi has: the arm's own reports end the wait in time. An arm that has
+  // answered sends none until it is asked again.
+  if (answered_ && wire_.exchange == codec::Exchange::kPoll)
+    pause(wait);
+  else
+    receive(wait);
   if (open_ && session_.watch(monotonicNow())) publish();
   if (zero_wanted_.load(std::memory_order_acquire)) {
     const std::lock_guard lock(mutex_);
@@ -185,7 +190,19 @@ void Link::receive(Nanoseconds wait) noexcept {
     fresh = session_.receive(monotonicNow(), {in_.data(), size}) || fresh;
     if (session_.trouble() != Trouble::kNone) publish();
   }
+  answered_ = answered_ || fresh;
   if (fresh) publish();
+}
+
+/// When to ask a polled arm, so that its answer comes half-way between two reads of the servo: wherever the phases
+/// begin, each read then finds a new one.
+Nanoseconds Link::midway(Nanoseconds due) const noexcept {
+  constexpr int64_t kShare = 8;  // of the error, at each command: a late one does not throw the phase about
+  const auto period = static_cast<int64_t>(period_), at = static_cast<int64_t>(due);
+  const auto read = static_cast<int64_t>(wishes_.front().time);
+  if (read == 0 || wire_.exchange != codec::Exchange::kPoll) return due;
+  const int64_t phase = ((at - read) % period + period) % period;
+  return static_cast<Nanoseconds>(at - (phase - period / 2) / kShare);
 }
 
 void Link::send(Nanoseconds now) noexcept {
@@ -194,6 +211,8 @@ void Link::send(Nanoseconds now) noexcept {
   sent_at_ = now;
   due_ += period_;
   if (due_ + 10 * period_ < now || due_ > now + period_) due_ = now + period_;
+  due_ = midway(due_);
+  answered_ = false;
   const Status status = transport_->send({out_.data(), size});
   if (status != Status::kOk && status != Status::kNothing) lose(troubleOf(status));
 }

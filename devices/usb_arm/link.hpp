@@ -63,6 +63,7 @@ class Link {
   void serve(Nanoseconds now) noexcept;
   void receive(Nanoseconds wait) noexcept;
   void send(Nanoseconds now) noexcept;
+  Nanoseconds midway(Nanoseconds due) const noexcept;
   void lose(Trouble trouble) noexcept;
   void lookForIt() noexcept;
   void tell() noexcept;
@@ -82,7 +83,7 @@ class Link {
   mutable std::mutex mutex_;  ///< identity_ and pose_; the servo thread takes it never
   Identity identity_;
   JointArray pose_{}, offset_{};
-  bool open_ = false;
+  bool open_ = false, answered_ = false;
   Trouble told_ = Trouble::kNone;
   std::string refusal_;  ///< why the device could not be opened again
   Nanoseconds due_ = 0, period_ = 0, sent_at_ = 0;
