@@ -14,6 +14,7 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
+#include "cli/device_bus.hpp"
 #include "watch/quarantine.hpp"
 
 namespace hapticd::cli {
@@ -221,21 +222,13 @@ Finding checkQuarantine() {
           "hapticd plugin clear NAME, when the plugin is good again"};
 }
 
-/// Haptic devices that the maker's id tells, and whether this process may open them.
+/// Haptic devices on the machine's buses, and whether this process may open them.
 Finding checkDevices() {
-  static constexpr const char* kVendors[] = {"0403:cb48", "2988:", "1451:", "16c0:0486", "1234:0006"};
   std::string open, closed;
-  std::error_code code;
-  for (const auto& entry : std::filesystem::directory_iterator("/sys/bus/usb/devices", code)) {
-    const std::string id = firstLine(entry.path() / "idVendor") + ":" + firstLine(entry.path() / "idProduct");
-    const bool haptic = std::any_of(std::begin(kVendors), std::end(kVendors),
-                                    [&](const char* known) { return id.rfind(known, 0) == 0; });
-    if (!haptic) continue;
-    char node[64];
-    std::snprintf(node, sizeof node, "/dev/bus/usb/%03d/%03d", std::atoi(firstLine(entry.path() / "busnum").c_str()),
-                  std::atoi(firstLine(entry.path() / "devnum").c_str()));
-    std::string& list = access(node, R_OK | W_OK) == 0 ? open : closed;
-    list += (list.empty() ? "" : ", ") + id + " at " + node;
+  for (const BusDevice& device : scanBuses()) {
+    std::string& list = device.may_open ? open : closed;
+    list +=
+        (list.empty() ? "" : ", ") + device.product + (device.id.empty() ? "" : " " + device.id) + " at " + device.node;
   }
   if (!closed.empty())
     return {"device", Verdict::kFail, closed + " cannot be opened by this user", "the arm stays limp",
