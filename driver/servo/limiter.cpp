@@ -29,13 +29,23 @@ bool cap(Vector3d& v, double most) noexcept HSP_RT {
 }
 
 /// A force may grow and turn only so fast; it may always shrink, because what a shape no longer gives is never held.
-bool limitSlew(Vector3d& v, const Vector3d& last, double most) noexcept HSP_RT {
+/// @param slow the force as it would be if it never changed faster than the limit
+bool limitSlew(Vector3d& v, const Vector3d& slow, double most) noexcept HSP_RT {
   const double asked = v.norm();
-  const Vector3d change = v - last;
+  const Vector3d change = v - slow;
   const double size = change.norm();
   if (size <= most) return false;
-  v = last + change * (most / size);
+  v = slow + change * (most / size);
   return !cap(v, asked);
+}
+
+/// Moves `slow` toward the last force, and never leaves it farther behind than the rest of the window.
+void follow(Vector3d& slow, const Vector3d& last, double slew, double dt) noexcept HSP_RT {
+  const Vector3d behind = slow - last;
+  const double size = behind.norm(), rest = slew * std::max(0.0, Limiter::kSlewWindow - dt);
+  const double kept = std::clamp(size - slew * dt, 0.0, rest);
+  slow = last;
+  if (kept > 0) slow += behind * (kept / size);
 }
 
 }  // namespace
@@ -58,6 +68,8 @@ void Limiter::apply(Vector3d& force, Vector3d& torque, const Vector3d& position,
     torque.setZero();
   }
   clipped_ = false;
+  follow(slow_force_, last_force_, limits_.slew, dt);
+  follow(slow_torque_, last_torque_, limits_.torque_slew, dt);
   if (fault() != Fault::kNone) {
     // Fade along the last force: the new one may be the fault itself.
     fade_ = rampedDown(fade_, dt, limits_.ramp_out);
@@ -92,8 +104,9 @@ void Limiter::limit(Vector3d& force, Vector3d& torque, const Vector3d& position,
   if (limits_.torque > 0 && cap(torque, limits_.torque)) count(Limit::kTorque);
   if (limits_.power > 0) limitPower(force);
   if (limits_.impulse > 0) limitImpulse(force, dt);
-  if (limits_.slew > 0 && limitSlew(force, last_force_, limits_.slew * dt)) count(Limit::kSlew);
-  if (limits_.torque_slew > 0 && limitSlew(torque, last_torque_, limits_.torque_slew * dt)) count(Limit::kSlew);
+  const double window = std::max(dt, kSlewWindow);
+  if (limits_.slew > 0 && limitSlew(force, slow_force_, limits_.slew * window)) count(Limit::kSlew);
+  if (limits_.torque_slew > 0 && limitSlew(torque, slow_torque_, limits_.torque_slew * window)) count(Limit::kSlew);
 }
 
 void Limiter::limitPower(Vector3d& force) noexcept HSP_RT {

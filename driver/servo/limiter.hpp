@@ -26,6 +26,9 @@ struct Clips {
 class Limiter {
  public:
   static constexpr double kImpulseWindow = 0.1;  ///< [s] over which limits.impulse is counted
+  /// [s] over which limits.slew is counted: a step of an encoder is as large at 20 kHz as at 1 kHz, so a bound on each
+  /// tick would clip good contact the more, the faster the servo.
+  static constexpr double kSlewWindow = 0.001;
 
   /// [main] @param device_max_force [N] of the device, 0: unknown
   Limiter(const scene::Limits& limits, double device_max_force);
@@ -89,6 +92,7 @@ class Limiter {
   Vector3d velocity_ = Vector3d::Zero();
   Vector3d fault_force_ = Vector3d::Zero(), fault_torque_ = Vector3d::Zero();
   Vector3d last_force_ = Vector3d::Zero(), last_torque_ = Vector3d::Zero();
+  Vector3d slow_force_ = Vector3d::Zero(), slow_torque_ = Vector3d::Zero();  // follow the last ones at limits.slew
 };
 
 }  // namespace hapticd::servo

@@ -72,6 +72,28 @@ TEST(Limiter, NeverGrowsOrTurnsFasterThanTheSlewLimitAndNeverHoldsAForceThatIsGo
   }
 }
 
+TEST(Limiter, TheSlewLimitIsTheSameAtEveryRate) {
+  scene::Limits limits = generous();
+  limits.slew = 2000;
+  for (const double rate : {1000.0, 5000.0, 10000.0, 20000.0}) {
+    Limiter contact(limits, 0);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> noise(-0.4, 0.4);  // steps of an encoder times stiffness and damping
+    for (int i = 0; i < 2000; ++i) {
+      const double asked = 3 * std::sin(i / rate * 20) + noise(random);
+      EXPECT_EQ(limited(contact, {asked, 1, 0}, 1 / rate).x(), asked) << rate << " Hz";
+    }
+    Limiter kick(limits, 0);
+    double t = 0, last = 0;
+    for (; t < 0.1 && last < 8; t += 1 / rate) {
+      const double force = limited(kick, {8, 0, 0}, 1 / rate).x();
+      EXPECT_LE(force, limits.slew * (t + Limiter::kSlewWindow) + 1e-9) << rate << " Hz";
+      last = force;
+    }
+    EXPECT_NEAR(t, 8 / limits.slew, 1.001e-3) << rate << " Hz";
+  }
+}
+
 /// Every limit at once, with random bounds.
 scene::Limits anyLimits(std::mt19937& random) {
   std::uniform_real_distribution<double> unit(0, 1);
