@@ -15,7 +15,8 @@ constexpr double kStaleAfter = 0.05;  ///< [s] without a new sample: no force on
 /// As the kinematics extension writes it.
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HDV_MAX_JOINTS>;
 
-constexpr double kAssumedMass = 0.05;   ///< [kg] of a light arm: the damping that the passivity controller may add stays small
+constexpr double kAssumedMass =
+    0.05;  ///< [kg] of a light arm: the damping that the passivity controller may add stays small
 
 }  // namespace
 
@@ -66,6 +67,15 @@ Result<void> Arm::start(Nanoseconds now, const Eigen::Vector3d& gravity_world) {
   Eigen::Map<Eigen::Vector3d>(how.gravity) = gravity_device_;
   fresh_at_ = now;
   return device_->start(how);
+}
+
+void Arm::exchangeDry(Nanoseconds now) noexcept HSP_RT {
+  if (taken_.exchange(true)) return;
+  hdv_sample sample{};
+  (void)device_->read(now, sample);  // what is wrong with it, the first tick will find too
+  (void)device_->write(now, {sizeof(hdv_command), HDV_OFF, {}, {}});
+  fresh_at_ = now;
+  taken_.store(false);
 }
 
 const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
@@ -177,13 +187,15 @@ bool Arm::comply(double dt, const Eigen::Vector3d& force) noexcept HSP_RT {
   const auto hand = handForce();
   Eigen::Vector3d tip;
   std::array<double, 4> turn{};
-  const bool measured = device_->kinematics().forward(device_->handle(), sample_.position, tip.data(), turn.data()) >= 0;
+  const bool measured =
+      device_->kinematics().forward(device_->handle(), sample_.position, tip.data(), turn.data()) >= 0;
   if (!hand || !measured) return false;
   admittance_->step(R_world_device_.transpose() * (force + *hand), tip, dt);
   command_.mode = HDV_POSITION;
   for (uint32_t i = 0; i < device_->info().joint_count; ++i) command_.position[i] = admittance_->joints()[i];
   std::array<double, HDV_MAX_JOINTS> gravity{};  // the arm adds it to its own loop, which then need not sag to carry it
-  if (device_->kinematics().gravity(device_->handle(), sample_.position, gravity_device_.data(), gravity.data()) == HSP_OK)
+  if (device_->kinematics().gravity(device_->handle(), sample_.position, gravity_device_.data(), gravity.data()) ==
+      HSP_OK)
     std::copy(gravity.begin(), gravity.end(), command_.torque);
   return true;
 }

@@ -36,6 +36,9 @@ class Arm {
   Result<void> start(Nanoseconds now, const Eigen::Vector3d& gravity_world);
   void stop() { device_->stop(); }  ///< [main] motors off
 
+  /// [rt] One exchange with the device before the first tick: motors off, and nothing of it is kept.
+  void exchangeDry(Nanoseconds now) noexcept HSP_RT;
+
   /// [rt] The newest sample as a probe in the world frame. A bad sample gives an invalid probe and a fault.
   const Probe& read(Nanoseconds now, double dt) noexcept HSP_RT;
 

@@ -40,7 +40,22 @@ Loop::Loop(World& world, std::vector<std::unique_ptr<Arm>>& arms, Clock& clock, 
   ramp_ticks_ = static_cast<uint64_t>(std::ceil(ramp * 1e9 / static_cast<double>(settings_.period_ns))) + 1;
 }
 
+/// Nothing of these cycles is kept: what follows is the same with and without them.
+void Loop::runDry() noexcept HSP_RT {
+  Nanoseconds deadline = clock_.now();
+  for (uint64_t n = 0; n < settings_.dry_cycles && !stop_; ++n) {
+    const Nanoseconds woke = clock_.waitUntil(deadline);
+    for (const auto& arm : arms_) arm->exchangeDry(woke);
+    if (woke >= deadline + settings_.period_ns) {
+      late_dry_cycles_.store(late_dry_cycles_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+      deadline = woke;
+    }
+    deadline += settings_.period_ns;
+  }
+}
+
 void Loop::run() noexcept {
+  runDry();
   const Nanoseconds start = clock_.now();
   Nanoseconds deadline = start, last = start;
   const long faults_before = os::pageFaultsOfThread();
@@ -49,7 +64,7 @@ void Loop::run() noexcept {
   long faults_warm = faults_before;
   uint64_t allocations_warm = allocationsOfThread();
   for (uint64_t n = 0, done = 0;; ++n) {
-    if (stop_ || (settings_.ticks != 0 && done + ramp_ticks_ >= settings_.ticks)) trip(Fault::kStopped);
+    if (stop_ || (settings_.ticks != 0 && done + ramp_ticks_ >= settings_.ticks)) rampOut();
     const Nanoseconds woke = clock_.waitUntil(deadline);
     deadline = skipMissed(deadline, woke);
     const Nanoseconds begun = monotonicNow();
@@ -80,6 +95,12 @@ void Loop::run() noexcept {
 
 void Loop::trip(Fault fault, double measured) noexcept HSP_RT {
   for (const auto& arm : arms_) arm->limiter().trip(fault, measured);
+}
+
+/// The end of the run. What failed before keeps its name: it is what the user must know.
+void Loop::rampOut() noexcept HSP_RT {
+  for (const auto& arm : arms_)
+    if (arm->limiter().fault() == Fault::kNone) arm->limiter().trip(Fault::kStopped);
 }
 
 bool Loop::allSilent() const noexcept HSP_RT {
@@ -142,8 +163,7 @@ void Loop::tick(Nanoseconds now, double t, double dt) noexcept HSP_RT {
   if (settings_.lockstep) search(t);
   world_.core().tick(t, dt, probes_);
   const Core& core = world_.core();
-  for (uint32_t i = 0; i < arms_.size(); ++i)
-    arms_[i]->write(now, dt, core.force(i), core.torque(i), core.exchange(i));
+  for (uint32_t i = 0; i < arms_.size(); ++i) arms_[i]->write(now, dt, core.force(i), core.torque(i), core.exchange(i));
   wants_search_.store(world_.core().wantsSearch(), std::memory_order_relaxed);
 }
 

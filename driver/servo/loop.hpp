@@ -18,6 +18,7 @@ struct LoopSettings {
   Nanoseconds period_ns = 1'000'000;
   uint64_t ticks = 0;     ///< length of the run in periods; 0: until stopped
   bool lockstep = false;  ///< search in step with the ticks (virtual time) instead of from a thread of its own
+  uint64_t dry_cycles = 0;  ///< before the first tick: wake-ups and device traffic with motors off, to judge the machine
 };
 
 /// [main] What these arms make of a tick's answers.
@@ -39,6 +40,9 @@ class Loop {
   /// [any] Asks for an end: forces ramp to zero first. Async-signal-safe.
   void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
 
+  /// [any] Dry cycles that woke a period late or more; final once there were ticks.
+  uint64_t lateDryCycles() const noexcept { return late_dry_cycles_.load(std::memory_order_relaxed); }
+
   /// [any] Ticks done so far, for watchdogs and status lines.
   uint64_t ticks() const noexcept { return tick_count_.load(std::memory_order_relaxed); }
   /// [any] The core lost a track or saw a jump: search now.
@@ -53,10 +57,12 @@ class Loop {
 
  private:
   void tick(Nanoseconds now, double t, double dt) noexcept HSP_RT;
+  void runDry() noexcept HSP_RT;
   void obey(double t) noexcept HSP_RT;
   void balance() noexcept HSP_RT;
   void search(double t) noexcept;
   void trip(Fault fault, double measured = 0) noexcept HSP_RT;
+  void rampOut() noexcept HSP_RT;
   bool allSilent() const noexcept HSP_RT;
   bool simulated() const noexcept HSP_RT;
   Nanoseconds skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT;
@@ -75,7 +81,7 @@ class Loop {
   SpscRing<Order> orders_{256};
   std::atomic<uint64_t> orders_done_{0};
   std::atomic<bool> stop_{false}, wants_search_{true}, finished_{false};
-  std::atomic<uint64_t> tick_count_{0};
+  std::atomic<uint64_t> tick_count_{0}, late_dry_cycles_{0};
   std::atomic<Nanoseconds> first_tick_{0}, tick_begun_{0};
   std::atomic<clockid_t> cpu_clock_{CLOCK_MONOTONIC};
 };

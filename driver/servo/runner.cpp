@@ -1,6 +1,7 @@
 #include "servo/runner.hpp"
 
 #include <cmath>
+#include <cstdlib>
 
 #include "base/os.hpp"
 #include "servo/about.hpp"
@@ -15,7 +16,8 @@ namespace hapticd::servo {
 namespace {
 
 constexpr Nanoseconds kStatusPeriod = 200'000'000;
-constexpr uint64_t kDryTicks = 2;         ///< the servo lives: the service manager may say so
+constexpr uint64_t kReadyTicks = 2;       ///< the servo lives: the service manager may say so
+constexpr uint64_t kDryCycles = 2000;     ///< with motors off, to judge the machine before a hand relies on it
 constexpr uint64_t kLongestRunUs = 100'000;  ///< of CPU time without sleep; a tick takes a hundredth of it
 
 /// Handles crashes of plugins while one lives. The sanitizers have handlers of their own.
@@ -84,6 +86,11 @@ std::string describe(const ModelState& model) {
   return "";
 }
 
+std::string readyMessage(const Loop& loop) {
+  return "READY=1\nSTATUS=the servo ticks; " + std::to_string(loop.lateDryCycles()) + " of " +
+         std::to_string(kDryCycles) + " dry cycles woke a period late";
+}
+
 std::string noFifo(int priority, const std::error_code& code, bool hardware) {
   return "cannot run the servo thread at FIFO " + std::to_string(priority) + ": " + code.message() + "\n  " +
          os::realTimeRights() + "\n  " +
@@ -109,7 +116,8 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
                                                 std::unique_ptr<World> world, const host::Services::Log& log) {
   std::unique_ptr<Runner> runner(new Runner(scene, options));
   runner->world_ = std::move(world);
-  if (auto opened = runner->openArms(log); !opened) return Error{opened.error()};
+  if (auto opened = runner->openArms(log); !opened)
+    return Error{opened.error() + (options.virtual_time ? "\n  note: --virtual-time takes simulated devices only" : "")};
   if (options.virtual_time && !runner->onlySimulated())
     return Error{
         "--virtual-time runs faster than any clock, and the scene names real hardware; expected simulated devices "
@@ -120,6 +128,9 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
   settings.period_ns = static_cast<Nanoseconds>(std::llround(1e9 / options.rate));
   settings.ticks = options.duration ? static_cast<uint64_t>(std::llround(*options.duration * options.rate)) : 0;
   settings.lockstep = options.virtual_time;
+  // A simulation at a terminal starts at once: there is no hand, and nobody waits for READY.
+  const bool watched = std::getenv("NOTIFY_SOCKET") != nullptr;
+  settings.dry_cycles = !options.virtual_time && (watched || !runner->onlySimulated()) ? kDryCycles : 0;
   if (auto opened = runner->openBlackBox(settings); !opened) return Error{opened.error()};
   if (options.virtual_time && runner->recorder_) {
     runner->clock_ = std::make_unique<RecordedClock>(*runner->recorder_);
@@ -209,7 +220,7 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   for (Nanoseconds status_due = 0; !loop_->finished();) {
     if (clock.now() >= status_due) {
       status_due = clock.now() + kStatusPeriod;
-      if (!told && loop_->ticks() > kDryTicks) told = watch::notify("READY=1\nSTATUS=the servo ticks") || true;
+      if (!told && loop_->ticks() > kReadyTicks) told = watch::notify(readyMessage(*loop_)) || true;
       feeder.feed(clock.now(), loop_->ticks());
       if (ready && !warnings_.empty() && !onlySimulated() && !options_.allow_non_rt) break;
       every(*this);

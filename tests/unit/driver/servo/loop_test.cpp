@@ -21,6 +21,20 @@ TEST(Loop, TicksOncePerPeriodAndEndsWithZeroForce) {
   EXPECT_EQ(rig.arms[0]->limiter().fault(), Fault::kStopped);
 }
 
+TEST(Loop, DryCyclesPushNothingAndLeaveTheRunAsItIs) {
+  Rig plain(0),
+      dry(0, [](Nanoseconds deadline) { return deadline == 50'000'000 ? Nanoseconds{2'500'000} : Nanoseconds{0}; });
+  plain.loop->run();
+  dry.settings.dry_cycles = 2000;
+  Loop loop(*dry.world, dry.arms, dry.clock, dry.settings, *dry.telemetry);
+  loop.run();
+  EXPECT_EQ(dry.log->writes, 2300);
+  EXPECT_EQ(loop.lateDryCycles(), 1u);
+  const auto expected = plain.telemetry->blackBox(), got = dry.telemetry->blackBox();
+  ASSERT_EQ(got.size(), expected.size());
+  for (size_t i = 0; i < got.size(); ++i) EXPECT_EQ(got[i].force, expected[i].force) << i;
+}
+
 TEST(Loop, SkipsWholePeriodsKeepsThePhaseAndCountsThem) {
   // Tick 100 wakes 3.4 periods late: three periods are skipped, the next deadline is on the old grid.
   Rig rig(0, [](Nanoseconds deadline) { return deadline == 100'000'000 ? Nanoseconds{3'400'000} : Nanoseconds{0}; });
@@ -43,8 +57,8 @@ TEST(Loop, LatenessBelowAPeriodIsBookedAndCostsNoTick) {
 }
 
 TEST(Loop, EveryFailureOfTheDeviceEndsInZeroForceWithItsName) {
-  const Fault expected[] = {Fault::kNone, Fault::kDeviceLost, Fault::kNotFinite, Fault::kStale, Fault::kDeviceFault,
-                            Fault::kNotCalibrated};
+  const Fault expected[] = {Fault::kNone,  Fault::kDeviceLost,  Fault::kNotFinite,
+                            Fault::kStale, Fault::kDeviceFault, Fault::kNotCalibrated};
   for (int failure = 1; failure <= 5; ++failure) {
     Rig rig(failure);
     rig.loop->run();
@@ -62,10 +76,13 @@ TEST(Loop, EveryFailureOfTheDeviceEndsInZeroForceWithItsName) {
 }
 
 TEST(Loop, StopRampsTheForceDownBeforeItEnds) {
-  Rig rig(0, [&rig](Nanoseconds deadline) {
-    if (deadline == 150'000'000) rig.loop->stop();
-    return Nanoseconds{0};
-  }, 0);
+  Rig rig(
+      0,
+      [&rig](Nanoseconds deadline) {
+        if (deadline == 150'000'000) rig.loop->stop();
+        return Nanoseconds{0};
+      },
+      0);
   rig.loop->run();
   EXPECT_NEAR(static_cast<double>(rig.loop->ticks()), 172, 2);
   double last = 2;
@@ -81,14 +98,16 @@ TEST(Loop, StopRampsTheForceDownBeforeItEnds) {
 constexpr uint64_t kEnoughTicks = 1000;
 
 TEST(Loop, ServoPathAllocatesNothing) {
-  Rig rig(0, [](Nanoseconds) { return Nanoseconds{0}; }, kEnoughTicks);
+  Rig rig(
+      0, [](Nanoseconds) { return Nanoseconds{0}; }, kEnoughTicks);
   rig.loop->run();
   EXPECT_EQ(rig.telemetry->report({}).servo_allocations, 0u);
 }
 
 #ifndef HAPTICD_SANITIZED  // the sanitizers have an allocator of their own, which is not counted
 TEST(Loop, CountsEveryAllocationOfAPlugin) {
-  Rig rig(0, [](Nanoseconds) { return Nanoseconds{0}; }, kEnoughTicks, "allocating");
+  Rig rig(
+      0, [](Nanoseconds) { return Nanoseconds{0}; }, kEnoughTicks, "allocating");
   rig.loop->run();
   EXPECT_GE(rig.telemetry->report({}).servo_allocations, kEnoughTicks / 2);
 }
@@ -99,7 +118,8 @@ TEST(Loop, CountsEveryAllocationOfAPlugin) {
 TEST(LoopDeathTest, RealTimeSanitizerStopsAPluginThatAllocates) {
   EXPECT_DEATH(
       {
-        Rig rig(0, [](Nanoseconds) { return Nanoseconds{0}; }, 10, "allocating");
+        Rig rig(
+            0, [](Nanoseconds) { return Nanoseconds{0}; }, 10, "allocating");
         rig.loop->run();
       },
       "RealtimeSanitizer");
