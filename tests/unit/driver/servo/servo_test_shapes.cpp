@@ -1,4 +1,8 @@
 /// Small shapes with known answers, and shapes that misbehave, for the tests of the servo.
+#include <pthread.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
 #include <cmath>
 #include <csignal>
 #include <limits>
@@ -39,7 +43,8 @@ struct Misbehaving : hapticd::Shape {
   int how, after, times;
   int ticks = 0;
   static constexpr const char* kHows[] = {"not_finite", "bad_status", "lost", "degraded"};
-  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.misbehaving", "misbehaving", "1.0.0", "MIT", "Misbehaves."};
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.misbehaving", "misbehaving", "1.0.0", "MIT",
+                                            "Misbehaves."};
   static constexpr auto fields() {
     using F = Fields<Misbehaving>;
     return std::array{F::choice("how", &Misbehaving::how, kHows, 0, "What goes wrong."),
@@ -74,7 +79,8 @@ struct Turning : hapticd::Shape {
 
 /// A wall that falls along -x at 1 m/s, for poses and relative velocity.
 struct Sliding : hapticd::Shape {
-  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.sliding", "sliding", "1.0.0", "MIT", "Moves.", HSP_C_MOVES};
+  static constexpr hapticd::ShapeInfo kInfo{
+      "org.hapticd.test.sliding", "sliding", "1.0.0", "MIT", "Moves.", HSP_C_MOVES};
   int unused;
   static constexpr auto fields() {
     return std::array{Fields<Sliding>::integer("unused", &Sliding::unused, "", 0, 1, 0, "Nothing.")};
@@ -100,6 +106,24 @@ struct Allocating : hapticd::Shape {
     char* block = new char[64];
     asm volatile("" : : "r"(block) : "memory");  // a pair of new and delete may be optimised away
     delete[] block;
+    return HSP_OK;
+  }
+};
+
+/// Takes a lock or asks the kernel in each step, for the proof that a run over the scenes would see it.
+struct Rude : hapticd::Shape {
+  int how;
+  static constexpr const char* kHows[] = {"lock", "ask"};
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.rude", "rude", "1.0.0", "MIT",
+                                            "Locks or asks the kernel."};
+  static constexpr auto fields() {
+    return std::array{Fields<Rude>::choice("how", &Rude::how, kHows, 0, "What it does.")};
+  }
+  void activate(const hsp_activation&, hsp_report&) {}
+  hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept {
+    static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
+    if (how == 1) syscall(SYS_getppid);
+    if (how == 0 && pthread_mutex_lock(&mutex) == 0) pthread_mutex_unlock(&mutex);
     return HSP_OK;
   }
 };
@@ -144,4 +168,4 @@ struct Throwing : hapticd::Shape {
 
 }  // namespace
 
-HAPTICD_SHAPES(Wall, Misbehaving, Sliding, Allocating, Throwing, Deadly, Turning)
+HAPTICD_SHAPES(Wall, Misbehaving, Sliding, Allocating, Throwing, Deadly, Turning, Rude)

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Every shipped scene in real time: the servo thread allocates nothing, locks nothing, faults no page and asks the kernel
+for nothing but sleep. Planted violations must be seen.
+
+Usage: quiet_ticks.py HAPTICD SOURCE_DIR WITNESS.so TEST_SHAPES.so     prints a line a check; exit 1 when one fails.
+"""
+import concurrent.futures
+import glob
+import json
+import os
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+
+HAPTICD, SOURCE, WITNESS, SHAPES = sys.argv[1:5]
+SECONDS = 2
+strace = shutil.which("strace")
+can_lock = os.geteuid() == 0 or resource.getrlimit(resource.RLIMIT_MEMLOCK)[0] == resource.RLIM_INFINITY
+failures = 0
+
+
+def check(name, holds, detail=""):
+    global failures
+    failures += not holds
+    print(f"{'ok' if holds else 'FAILED':6} {name}{'' if holds else ': ' + str(detail)}", flush=True)
+
+
+def systemCalls(log):
+    """Calls of the servo thread, but for sleeping, between the end of its warm-up and of its run: both ask for the faults."""
+    lines = [re.match(r"\d+<(.*?)> \d+\.\d+ (\w+)\(", line) for line in open(log)]
+    calls = [m[2] for m in lines if m and m[1] == "hapticd-servo"]
+    asked = [i for i, name in enumerate(calls) if name == "getrusage"]
+    return calls[asked[-2] + 1:asked[-1]] if len(asked) >= 3 else ["no window found: " + " ".join(calls)]
+
+
+def watched(scene, environment):
+    """What one run was seen to do."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = {name: os.path.join(folder, name) for name in ("report", "witness", "strace")}
+        command = [HAPTICD, "run", scene, "--for", str(SECONDS), "--report", file["report"], "--name", "x"]
+        if strace:
+            command = [strace, "-f", "--seccomp-bpf", "--decode-pids=comm", "-ttt", "-o", file["strace"], "-e",
+                       "trace=!clock_nanosleep", "-E", "LD_PRELOAD=" + WITNESS, *command]
+        else:
+            environment = dict(environment, LD_PRELOAD=WITNESS)
+        done = subprocess.run(command, env=dict(environment, WITNESS=file["witness"], RUNTIME_DIRECTORY=folder,
+                                                STATE_DIRECTORY=folder), capture_output=True, text=True, timeout=120)
+        if not os.path.exists(file["witness"]) or not os.path.exists(file["report"]):
+            return {"error": (done.returncode, done.stderr[-500:])}
+        report, witness = json.load(open(file["report"])), json.load(open(file["witness"]))
+        return {"error": None, "allocations": report["servo_allocations"], "page_faults": report["page_faults"],
+                "locks": witness["locks"], "sleeps": witness["sleeps"],
+                "calls": systemCalls(file["strace"]) if strace else []}
+
+
+def quiet(scene):
+    seen = watched(scene, os.environ)
+    name = os.path.basename(scene)
+    return name, seen
+
+
+def planted(folder):
+    """A shape that misbehaves must be seen, or the checks above mean nothing."""
+    os.makedirs(os.path.join(folder, "plugins"))
+    shutil.copy(SHAPES, os.path.join(folder, "plugins"))
+    environment = dict(os.environ, HAPTICD_PLUGIN_PATH=os.path.join(folder, "plugins"))
+    found = {}
+    for name, plugin, parameters in (("allocation", "allocating", "{}"), ("lock", "rude", "{how: lock}"),
+                                     ("call", "rude", "{how: ask}")):
+        scene = os.path.join(folder, name + ".yaml")
+        open(scene, "w").write(f"hapticd: 1\nmodels:\n  - {{name: it, plugin: {plugin}, parameters: {parameters}}}\n")
+        found[name] = watched(scene, environment)
+    check("a planted allocation is seen", found["allocation"].get("allocations", 0) > 0, found["allocation"])
+    check("a planted lock is seen", found["lock"].get("locks", 0) > 0, found["lock"])
+    if strace:
+        check("a planted system call is seen", "getppid" in found["call"].get("calls", []), found["call"])
+
+
+def onSimulatedArm(scene):
+    named = re.search(r"^device: *(\S+)", open(scene).read(), re.M)
+    return named is None or "module: simulated" in open(os.path.join(os.path.dirname(scene), named[1])).read()
+
+
+scenes = sorted(glob.glob(os.path.join(SOURCE, "config", "scenes", "*.yaml")))
+scenes = [scene for scene in scenes if onSimulatedArm(scene)]
+check("there are scenes", len(scenes) > 5, scenes)
+with concurrent.futures.ThreadPoolExecutor(2) as pool:
+    for scene, seen in pool.map(quiet, scenes):
+        good = seen["error"] is None and seen["sleeps"] > 100 and seen["allocations"] == 0 and seen["locks"] == 0
+        good = good and (seen["page_faults"] == 0 or not can_lock) and not seen["calls"]
+        check(f"{scene}: no allocation, lock, page fault or system call in {seen.get('sleeps')} ticks", good, seen)
+if not strace:
+    print("skipped: system calls, strace is missing")
+with tempfile.TemporaryDirectory() as scratch:
+    planted(scratch)
+sys.exit(1 if failures else 0)
