@@ -13,6 +13,9 @@ import sys
 import tempfile
 import time
 
+import h5py
+import numpy
+
 HAPTICD, SCENES = sys.argv[1], sys.argv[2]
 failures = 0
 
@@ -31,7 +34,7 @@ class Daemon:
     def __init__(self, folder):
         self.folder = folder
         self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
-        self.run = subprocess.Popen([HAPTICD, "run", scene("teapot"), "--for", "100", "--name", "x"], env=self.environment,
+        self.run = subprocess.Popen([HAPTICD, "run", scene("teapot"), "--for", "100", "--name", "x", "--record", os.path.join(folder, "recording.h5")], env=self.environment,
                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def ask(self, *arguments):
@@ -95,7 +98,8 @@ def kinematic(daemon):
     daemon.expect(0, "add", file, "door")
     check("a kinematic model is listed so",
           daemon.until(lambda: daemon.models().get("door", {}).get("kinematic") is True))
-    daemon.expect(0, "move", "door", "--position", "0.1", "0", "0", "--seconds", "0.5")
+    daemon.expect(0, "move", "door", "--position", "0.1", "0.02", "0", "--seconds", "0.5")
+    time.sleep(0.8)  # s: it is there now, and stays
     daemon.expect(1, "move", "door", "--position", "nan", "0", "0")
     daemon.expect(0, "remove", "door")
 
@@ -105,6 +109,60 @@ def malformed(daemon):
                  b"[" * 100, b"\xff\xfe"):
         check(f"{line[:24]} is refused", daemon.raw(line).get("ok") is False)
     check("the daemon answers after all that", daemon.ask("status")[0] == 0)
+
+
+def bounds(daemon):
+    """As many clients and as long a request as there may be, and one more."""
+    most = 64 * 1024
+    request = b'{"do":"status"}'
+    check("a request of 64 KiB is answered", daemon.raw(request + b" " * (most - len(request))).get("ok") is True)
+    check("a longer one is refused", daemon.raw(request + b" " * most).get("ok") is False)
+    crowd = [socket.socket(socket.AF_UNIX) for _ in range(33)]
+    for client in crowd:
+        client.connect(os.path.join(daemon.folder, "x.sock"))
+        client.settimeout(10)
+    for client in crowd[:32]:
+        client.sendall(request + b"\n")
+    check("32 clients are answered at once", all(b'"ok"' in client.recv(65536) for client in crowd[:32]))
+    crowd[32].sendall(request + b"\n")
+    crowd[32].settimeout(1)
+    try:
+        early = crowd[32].recv(1)
+    except TimeoutError:
+        early = b""
+    check("the 33rd waits", early == b"", early)
+    crowd[0].close()
+    crowd[32].settimeout(10)
+    check("until one has gone", b'"ok"' in crowd[32].recv(65536))
+    for client in crowd[1:]:
+        client.close()
+
+
+def effects(file):
+    """What the recording says that orders did to the hand."""
+    with h5py.File(file) as recording:
+        ticks, orders, poses = (recording[name][:] for name in ("ticks", "orders", "poses"))
+    force = numpy.stack([ticks["arm0_sent_f" + axis] for axis in "xyz"], axis=1)
+    size = numpy.linalg.norm(force, axis=1)
+    change = numpy.linalg.norm(numpy.diff(force, axis=0), axis=1)
+    enable, disable, move, clear, hold, adopt, release = 1, 2, 3, 5, 6, 7, 8
+    tickOf = lambda kind: [int(t) - int(ticks["tick"][0]) for t in orders["tick"][orders["kind"] == kind]]
+    slew, window, period = 2000, 1e-3, 1e-3  # N/s, s, s
+    check("there was a force to change", size.max() > 0.3, size.max())
+    for kind, name in ((enable, "enable"), (disable, "disable"), (adopt, "adopt"), (release, "release")):
+        steps = [change[max(t - 2, 0):t + 150].max() for t in tickOf(kind) if t < len(change)]
+        check(f"no force steps beyond the slew limit at {name}", steps and max(steps) <= slew * (window + period), steps)
+    at, end = tickOf(hold)[0], tickOf(clear)[0]
+    check("hold ramps to zero within 20 ms and never pushes more",
+          end > at + 22 and size[at + 21:end].max() == 0 and all(size[at:end] <= size[at - 1] + 1e-9), size[at - 1:at + 25])
+    at = tickOf(move)[-1]
+    door = orders["target"][orders["kind"] == move][-1]
+    there = poses[(poses["model"] == door) & (poses["tick"] > ticks["tick"][0] + at)]
+    place = numpy.array([[row["x"], row["y"], row["z"]] for row in there])
+    step = numpy.linalg.norm(numpy.diff(place, axis=0), axis=1)
+    check("a moved model goes there without a jump and stays",
+          len(place) > 500 and numpy.allclose(place[len(place) * 3 // 4], [0.1, 0.02, 0], atol=1e-9) and step.max() < 2e-3,
+          (place[:1], place[-1:]))
 
 
 def killedReader(daemon):
@@ -129,9 +187,11 @@ with tempfile.TemporaryDirectory() as scratch:
         commands(it)
         kinematic(it)
         malformed(it)
+        bounds(it)
         killedReader(it)
         it.expect(0, "stop")
         check("stop ends the run in order", it.run.wait(timeout=30) == 0)
+        effects(os.path.join(scratch, "recording.h5"))
         check("a run that ends in order leaves nothing shown", not [f for f in os.listdir(scratch) if f.startswith("x.")])
     finally:
         it.run.kill()
