@@ -1,5 +1,8 @@
 /// `hapticd plot`: a picture of a recording.
+#include <fmt/format.h>
+
 #include <cmath>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -54,23 +57,32 @@ record::Sample sampleAt(const record::RecordedStream& ticks, const Columns& c, u
 }
 
 int plot(const Options& options) {
+  const std::string out = options.out.empty() ? options.file + ".svg" : options.out;
+  if (options.from && options.to && *options.from >= *options.to)
+    return fail(kBadInput, "--from is not before --to: nothing lies between them");
   auto recording = record::Recording::open(options.file);
   if (!recording) return fail(kBadInput, recording.error());
   const record::RecordedStream* ticks = (*recording)->stream("ticks");
   const auto columns = ticks != nullptr ? columnsOf(*ticks, options.arm) : std::nullopt;
   if (!columns) return fail(kBadInput, options.file + ": has no ticks of arm " + std::to_string(options.arm));
+  if (!std::ofstream(out, std::ios::app))
+    return fail(kBadInput, out + ": cannot be written, expected a file in a folder that you may write to");
   std::vector<record::Sample> samples;
+  double first = 0, last = 0;
   for (uint64_t row = 0; row < ticks->rows(); ++row) {
     const double t = ticks->number(row, *columns->t);
+    (row == 0 ? first : last) = t;
     if (!std::isfinite(t) || (options.from && t < *options.from) || (options.to && t > *options.to)) continue;
     samples.push_back(sampleAt(*ticks, *columns, row));
   }
+  if (samples.empty() && ticks->rows() > 0)
+    return fail(kBadInput, fmt::format("{}: has no tick from --from to --to; it runs from {:g} to {:g} s", options.file,
+                                       first, last));
   record::RunReport report;
   report.scene = options.file;
   report.ticks = samples.size();
   report.seconds = samples.empty() ? 0 : samples.back().t - samples.front().t;
   report.rate_hz = report.seconds > 0 ? static_cast<double>(samples.size() - 1) / report.seconds : 0;
-  const std::string out = options.out.empty() ? options.file + ".svg" : options.out;
   if (auto drawn = record::drawRun(report, samples, out, true); !drawn) return fail(kFailed, drawn.error());
   std::printf("%s: %zu ticks, %.2f s\n", out.c_str(), samples.size(), report.seconds);
   return kWorked;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -200,6 +201,14 @@ int run(const Options& options) {
   return conclude(options, **runner, left_out);
 }
 
+/// "1s" is met with what to write instead of a failed conversion.
+std::string plainSeconds(const std::string& text) {
+  char* end = nullptr;
+  std::strtod(text.c_str(), &end);
+  if (end != text.c_str() && *end == '\0') return "";
+  return "\"" + text + "\": expected seconds as a plain number, as --for 10";
+}
+
 }  // namespace
 
 void addRun(CLI::App& app, int& exit_code) {
@@ -208,11 +217,12 @@ void addRun(CLI::App& app, int& exit_code) {
   command->add_option("scene", options->scene, "scene file (YAML)")->required();
   command->add_option("--device", options->device, "device file to use instead of the scene's");
   command->add_option("--for", options->duration, "seconds to run; without it, until stopped (Ctrl-C)")
+      ->check(plainSeconds)
       ->check(CLI::Range(1e-3, 1e9));
   command->add_flag("--virtual-time", options->virtual_time,
                     "as fast as the processor allows, on simulated devices; same input, same bits");
   command->add_option("--rate", options->rate, "servo rate in Hz instead of the scene's")
-      ->check(CLI::Range(1.0, 20000.0));
+      ->check(CLI::Range(10.0, 20000.0));  // as servo.rate
   command->add_option("--cpu", options->cpu, "processor to pin the servo thread to")->check(CLI::Range(0, 1023));
   command
       ->add_option("--priority", options->priority,

@@ -148,13 +148,16 @@ scene::Device toDevice(const Json& json) {
   device.limits.ramp_out = toReal(limits.at("ramp_out"));
   if (const Json& passivity = limits.at("passivity"); !passivity.is_null())
     device.limits.passivity = passivity.get<bool>();
-  device.limits.torque_slew = toReal(limits.at("torque_slew"));
-  device.limits.power = toReal(limits.at("power"));
-  device.limits.impulse = toReal(limits.at("impulse"));
-  if (const Json& enable = limits.at("enable"); !enable.is_null())
+  // Recordings older than these limits were made without them.
+  const auto later = [&](const char* key) { return limits.contains(key) ? limits.at(key) : Json(); };
+  const auto bound = [&](const char* key) { return limits.contains(key) ? toReal(limits.at(key)) : 0.0; };
+  device.limits.torque_slew = bound("torque_slew");
+  device.limits.power = bound("power");
+  device.limits.impulse = bound("impulse");
+  if (const Json enable = later("enable"); !enable.is_null())
     device.limits.enable = {enable.at("button").get<int>(),
                             enable.at("toggle") ? scene::EnableMode::kToggle : scene::EnableMode::kHold};
-  for (const Json& motor : limits.at("motors")) {
+  for (const Json& motor : later("motors")) {
     scene::Motor& m = device.limits.motors.emplace_back();
     size_t i = 0;
     for (double* value : {&m.ratio, &m.torque_constant, &m.resistance, &m.winding_housing, &m.housing_air,

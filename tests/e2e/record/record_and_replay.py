@@ -33,6 +33,18 @@ def replayIsExact(folder, scene):
     return file
 
 
+def theManualReadsIt(file):
+    """The Python of the manual, run as it stands there."""
+    manual = open(os.path.join(SCENES, "..", "..", "driver", "docs", "recording.md")).read()
+    lines = manual.split("## Reading one")[1].split("\n    ticks = h5read")[0].split("\n")
+    code = "\n".join(line[4:] for line in lines if line.startswith("    ")).replace("run.h5", file)
+    names = {}
+    exec(code, names)
+    ticks = names["ticks"]
+    check("the manual's Python reads a recording",
+          len(ticks) == 1000 and ticks["arm0_fx"].shape == (1000,) and "columns" in names["about"], ticks.dtype)
+
+
 def killLeavesAReadableFile(folder, environment):
     file = os.path.join(folder, "killed.h5")
     command = [HAPTICD, "run", os.path.join(SCENES, "teapot.yaml"), "--for", "60", "--name", "killed", "--record", file]
@@ -55,6 +67,13 @@ def killLeavesAReadableFile(folder, environment):
 with tempfile.TemporaryDirectory() as scratch:
     teapot = replayIsExact(scratch, "teapot")
     replayIsExact(scratch, "moving-box")
+    theManualReadsIt(teapot)
+    status, text = hapticd("plot", teapot, "--from", "2", "--to", "1")
+    check("--from after --to is refused by its name", status == 2 and "--from is not before --to" in text, text)
+    status, text = hapticd("plot", teapot, "--from", "50")
+    check("a time beyond the recording is refused with the times it has", status == 2 and "it runs from" in text, text)
+    status, text = hapticd("plot", teapot, "--out", "/nonexistent/a.svg")
+    check("a picture that cannot be written is bad input, as it is to run", status == 2 and "cannot be written" in text, text)
     status, text = hapticd("replay", teapot, "--set", "teapot.stiffness=900")
     check("a changed stiffness is found", status == 1 and "differ" in text, text)
     killLeavesAReadableFile(scratch, dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch))
