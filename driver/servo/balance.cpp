@@ -4,6 +4,12 @@
 
 namespace hapticd::servo {
 
+namespace {
+
+constexpr uint32_t kWeight = 4;  ///< of a tick that was too long against one that was not: every fifth is forgiven
+
+}  // namespace
+
 std::span<const Balance::Change> Balance::judge(std::span<const Load> loads, uint64_t budget_ns) noexcept HSP_RT {
   count_ = 0;
   uint64_t spent = 0;
@@ -13,8 +19,12 @@ std::span<const Balance::Change> Balance::judge(std::span<const Load> loads, uin
     // What was given back did not fit: the next attempt waits longer, so that accuracy does not flap.
     patience_ = since_raise_ < patience_ ? std::min(2 * patience_, kLongest) : patience_;
     calm_ = 0;
+    over_ = std::min(over_ + kWeight, 2 * kWeight * kLasting);
     lower(loads, spent, budget_ns);
-  } else if (static_cast<double>(spent) > kComfort * static_cast<double>(budget_ns)) {
+    return {changes_.data(), count_};
+  }
+  if (over_ > 0) --over_;
+  if (static_cast<double>(spent) > kComfort * static_cast<double>(budget_ns)) {
     calm_ = 0;
   } else if (++calm_ >= kPatience) {
     raise(loads, spent, budget_ns);
@@ -22,23 +32,27 @@ std::span<const Balance::Change> Balance::judge(std::span<const Load> loads, uin
   return {changes_.data(), count_};
 }
 
+/// What is touched stays as it is through a tick that was merely interrupted.
+bool Balance::mayLower(const Load& load) const noexcept HSP_RT {
+  return load.step_ns > 0 && load.level < Accuracy::kCoarsest && (load.importance <= 0 || over_ >= kWeight * kLasting);
+}
+
 bool Balance::changed(uint32_t model) const noexcept HSP_RT {
   return std::any_of(changes_.begin(), changes_.begin() + static_cast<long>(count_),
                      [&](const Change& c) { return c.model == model; });
 }
 
-/// The least important first; a shape that takes more than all may together goes down at once, wherever it is.
+/// The least important first; a shape that takes more than all may together goes down at once.
 void Balance::lower(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT {
   for (const Load& load : loads)
-    if (load.step_ns > budget_ns && load.level < Accuracy::kCoarsest && count_ < kMostChanges)
+    if (load.step_ns > budget_ns && mayLower(load) && count_ < kMostChanges)
       changes_[count_++] = {load.model, Accuracy::kCoarsest};
   while (count_ < kMostChanges && spent > budget_ns) {
     const Load* least = nullptr;
     for (const Load& load : loads)
-      if (load.step_ns > 0 && load.level < Accuracy::kCoarsest && !changed(load.model) &&
-          (least == nullptr || load.importance < least->importance))
+      if (mayLower(load) && !changed(load.model) && (least == nullptr || load.importance < least->importance))
         least = &load;
-    if (least == nullptr) return;  // all are at their coarsest: ticks will be late, and are counted
+    if (least == nullptr) return;  // nothing is left to lower: ticks will be late, and are counted
     changes_[count_++] = {least->model, least->level + 1};
     spent -= std::min(spent, least->step_ns / 2);  // what a level may save
   }

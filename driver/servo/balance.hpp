@@ -36,6 +36,7 @@ class Balance {
  public:
   static constexpr size_t kMostChanges = 4;     ///< in a tick
   static constexpr double kComfort = 0.8;       ///< of the budget: what accuracy is given back up to
+  static constexpr uint32_t kLasting = 20;      ///< [ticks] of overload in a row before a shape in contact is lowered
   static constexpr uint32_t kPatience = 200;    ///< [ticks] of comfort before that
   static constexpr uint32_t kLongest = 20'000;  ///< [ticks] the same after attempts that failed
 
@@ -49,10 +50,12 @@ class Balance {
  private:
   void lower(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT;
   void raise(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT;
+  bool mayLower(const Load& load) const noexcept HSP_RT;
   bool changed(uint32_t model) const noexcept HSP_RT;
 
   std::array<Change, kMostChanges> changes_{};
   size_t count_ = 0;
+  uint32_t over_ = 0;                ///< ticks of overload in a row
   uint32_t calm_ = 0;                ///< ticks of comfort in a row
   uint32_t since_raise_ = kLongest;  ///< ticks
   uint32_t patience_ = kPatience;

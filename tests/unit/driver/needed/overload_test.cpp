@@ -65,7 +65,7 @@ struct Overload {
   int count = 0, touched = 0, late = 0, changes = 0;
 };
 
-constexpr double kDear = 400, kCheap = 10;  ///< [ns] an evaluation
+constexpr double kDear = 600, kCheap = 10;  ///< [ns] an evaluation
 
 TEST(Overload, LowersTheFarOnesKeepsTheDeadlineAndLosesNoContact) {
   Overload dear(kDear);

@@ -70,7 +70,7 @@ TEST(Balance, CountsWhatIsNotTracedForLeastImportant) {
 
 TEST(Balance, LowersAShapeAtOnceThatTakesMoreThanAllMay) {
   Tick tick;
-  tick.add(0.002, 50'000);
+  tick.add(-0.002, 50'000);
   tick.add(-0.1, 100);
   tick.run(1, 10'000);
   EXPECT_EQ(tick.loads[0].level, Accuracy::kCoarsest);
@@ -104,6 +104,20 @@ TEST(Balance, BelievesASpikeNoLongerThanItLasts) {
   EXPECT_EQ(tick.loads[3].level, Accuracy::kCoarsest);
   tick.run(100'000, 10'000);
   EXPECT_EQ(tick.loads[3].level, 0u);
+}
+
+TEST(Balance, LeavesWhatIsTouchedAloneThroughASpike) {
+  Tick tick;
+  tick.add(0.002, 1000);
+  tick.add(-0.1, 1000);
+  for (int spikes = 0; spikes < 100; ++spikes) {
+    tick.loads[0].step_ns = 50'000;
+    tick.run(5, 10'000);
+  }
+  EXPECT_EQ(tick.loads[0].level, 0u);
+  tick.full[0] = 50'000;  // now it lasts
+  tick.run(30, 10'000);
+  EXPECT_EQ(tick.loads[0].level, Accuracy::kCoarsest);
 }
 
 TEST(Balance, AsksShapesForLessLevelByLevel) {
