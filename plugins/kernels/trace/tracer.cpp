@@ -107,10 +107,11 @@ int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions
       continue;
     }
     index = refine(index, p, options);
-    if (last)
-      index = crossed = tracks_[index].foot.sides == 0
-                            ? index
-                            : cross(index, p, options);  // first things first: there may be no budget left for it
+    if (last) {  // first things first: there may be no budget left for it
+      index = crossed = tracks_[index].foot.sides == 0 ? index : cross(index, p, options);
+    } else if (tracks_[index].foot.sides != 0) {
+      crossSeams(index, p, options);
+    }
     if (nearest < 0 || tracks_[nearest].slot < 0 || tracks_[index].foot.distance < best) nearest = index;
     best = std::min(best, tracks_[index].foot.distance);
     if (index != nearest && tracks_.isRival(index) && isHopeless(tracks_[index], best)) tracks_.drop(index);
@@ -168,6 +169,18 @@ int Tracer::cross(int track, const Vector3d& p, const TraceOptions& options) noe
     track = next;
   }
   return track;
+}
+
+/// Follows a foot across the seams and poles that it meets. Beyond other sides another track goes on; here there is
+/// none, and a foot left on a seam would tell that the surface is farther than it is.
+void Tracer::crossSeams(int track, const Vector3d& p, const TraceOptions& options) noexcept {
+  if (options.method == Method::kDirect) return;
+  const Track& t = tracks_[track];
+  for (int side = 0; side < kSides; ++side) {
+    const Side& edge = model_.patch(t.patch).sides[static_cast<std::size_t>(side)];
+    const bool own = edge.kind == SideKind::kPole || (edge.kind == SideKind::kJoined && edge.patch == t.patch);
+    if (own && (t.foot.sides & bit(side)) && crossSide(track, side, p, options) >= 0) return;
+  }
 }
 
 /// The track on which the foot goes on nearer to the probe beyond a side, -1: none.

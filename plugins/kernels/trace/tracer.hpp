@@ -82,6 +82,7 @@ class Tracer {
   int refine(int track, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   bool tryFrom(int track, const Eigen::Array2d& uv, const Eigen::Vector3d& p, double tolerance) noexcept;
   int cross(int track, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
+  void crossSeams(int track, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   int crossSide(int track, int side, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   bool leavePole(int track, int side, const Eigen::Vector3d& p, double tolerance) noexcept;
   void drop(int track) noexcept;

@@ -280,6 +280,23 @@ TEST(Walks, ForceRoundSharpEdgesIsContinuousButBetweenTheFaces) {
   EXPECT_GT(edges, 12);
 }
 
+/// A surface that does not hold the nearest foot is followed over its seam all the same.
+TEST(Walks, AFootThatWaitsGoesOnOverTheSeam) {
+  const Model model = solid("cylinder");
+  Tracer tracer(model);
+  Found found;
+  for (int tick = 0; tick < 40; ++tick) {  // over the bottom beside the seam of the round face, then up along that
+    const double x = std::min(-0.006 + 1e-3 * tick, 0.006);
+    const Vector3d p(x, -0.0485 + 2e-4 * std::max(tick - 12, 0), 0.0365);
+    if (tick == 0) {
+      model.search(p, 0.15, found);
+      offer(found, tracer);
+    }
+    const Foot foot = tracer.step(p);
+    EXPECT_NEAR(foot.depth, -signedDistance("cylinder", p), 1e-9) << tick;
+  }
+}
+
 /// The inside of a box is a room: its corners are concave.
 TEST(Walks, DeepCornersDoNotTrapTheProbe) {
   std::vector<spline::SurfaceData> faces = readModelFile(HAPTICD_SOURCE_DIR "/config/models/box.yaml").surfaces;
