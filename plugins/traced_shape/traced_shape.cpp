@@ -16,6 +16,7 @@ void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
   ModelFile file = readModelFile(geometry_);
   trace::ModelOptions options;
   options.edges = std::move(file.edges);
+  options.form = evaluation_ == 0 ? spline::Form::kTable : spline::Form::kNet;
   model_ = std::make_unique<trace::Model>(file.surfaces, options);
   if (host() != nullptr && host()->log != nullptr)
     for (const std::string& warning : model_->warnings())

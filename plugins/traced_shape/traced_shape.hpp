@@ -45,6 +45,9 @@ class TracedShape : public Shape {
                   "dpt: the first-order step of Thompson et al.; newton: safeguarded Newton to tolerance",
                   HSP_P_ACCURACY),
         F::integer("iterations", &TracedShape::iterations_, "", 1, 4, 1, "steps a tick of method dpt", HSP_P_ACCURACY),
+        F::choice("evaluation", &TracedShape::evaluation_, kEvaluationNames, 0,
+                  "table: polynomials of each knot span, fastest; net: control points alone, a tenth of the memory",
+                  HSP_P_ACCURACY),
         F::real("tolerance", &TracedShape::tolerance_, "m", 1e-12, 1e-3, 1e-9,
                 "error of the foot point at which method newton stops", HSP_P_ACCURACY | HSP_P_LIVE),
         F::real("hold", &TracedShape::hold_, "m", 0, 1, 0,
@@ -77,12 +80,13 @@ class TracedShape : public Shape {
   const void* tracedExtension(const char* name);
 
   std::string geometry_;
-  int sides_ = kFront, method_ = 1, iterations_ = 1;
+  int sides_ = kFront, method_ = 1, iterations_ = 1, evaluation_ = 0;
   double tolerance_ = 1e-9, hold_ = 0;
 
  private:
   static constexpr const char* kSideNames[] = {"front", "back", "both"};
   static constexpr const char* kMethodNames[] = {"dpt", "newton"};
+  static constexpr const char* kEvaluationNames[] = {"table", "net"};
 
   /// What the search offered since the last step: all that holds after a jump.
   struct Offers {

@@ -165,6 +165,19 @@ TEST(NurbsRigid, AHeldContactKeepsItsFace) {
   }
 }
 
+TEST(NurbsRigid, ControlNetsAndTablesFeelTheSame) {
+  Plugin table, net;
+  for (Plugin* plugin : {&table, &net}) {
+    plugin->set("geometry", kModels + "torus.yaml");
+    plugin->set("evaluation", plugin == &net ? 1 : 0);
+    ASSERT_EQ(plugin->activate(), HSP_OK);
+  }
+  for (int i = 0; i < 100; ++i) {
+    const double x = 1e-4 * i;
+    EXPECT_NEAR(table.at(x, 0.019, 0.05).force[1], net.at(x, 0.019, 0.05).force[1], 1e-9);
+  }
+}
+
 TEST(NurbsRigid, SidesSayWhereTheSolidIs) {
   for (const auto& [sides, inside, outside] : {std::tuple{0, true, false}, {1, false, true}}) {
     Plugin plugin;
