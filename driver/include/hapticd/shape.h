@@ -116,9 +116,9 @@ typedef struct hsp_near { /* an activation record */
 } hsp_near;
 typedef struct hsp_ext_surfaces {
   uint32_t struct_size, surface_count;
-  /* [sim] Global search: every surface within radius_m, nearest first. The nearest has its global foot; for surfaces that
-   * cannot become the nearest before the next search (5 ms), param may be rough and distance_m a lower bound.
-   * Returns how many there are, even beyond cap. */
+  /* [sim] Global search: every surface within radius_m, nearest first, and again where it has other feet (offer them all).
+   * The nearest has its global foot; for those that cannot become the nearest before the next search (5 ms), param may be
+   * rough and distance_m a lower bound. Returns how many records there are, even beyond cap. */
   int64_t (*nearby)(const hsp_shape *, const double p_model[3], double radius_m, hsp_near *, uint64_t cap);
   /* [rt] Start tracing the surface at param. Where it is traced already, the record is a second candidate that the
    * next step takes if it is nearer: so periodic searches cure a track that left the global minimum. */
