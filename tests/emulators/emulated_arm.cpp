@@ -93,13 +93,13 @@ struct EmulatedArm::Inside {
   bool still = false;
   uint64_t commands = 0, reports = 0;
 
-  void buildPhantom(const kinematics::PhantomGeometry& geometry) {
+  void buildPhantom(const kinematics::PhantomGeometry& geometry, const Vector3d& gravity) {
     const kinematics::Phantom arm(geometry);
     const JointSettings joints = simulated::jointsOf(parameters, 3);
     kinematics::PhantomInertia inertia;
     inertia.rotor = joints.rotor;
     plant = std::make_unique<PlantOf<simulated::PhantomMechanism>>(
-        joints, simulated::PhantomMechanism(arm, inertia, parameters.mass, {0, -9.81, 0}));
+        joints, simulated::PhantomMechanism(arm, inertia, parameters.mass, gravity));
     begin(arm);
   }
 
@@ -175,12 +175,12 @@ EmulatedArm::EmulatedArm(const std::string& name, const simulated::Parameters& h
     case Body::kPremium:
       in.drives = boardDrives();
       in.firmware = boardFirmware();
-      in.buildPhantom({});
+      in.buildPhantom({}, {0, -9.81, 0});
       break;
     case Body::kWooden:
       in.drives = woodenDrives();
       in.firmware = woodenFirmware(in.about.input_bytes);
-      in.buildPhantom(woodenGeometry());
+      in.buildPhantom(woodenGeometry(), {0, 0, 0});  // its counterweights carry it
       break;
     case Body::kDelta:
       in.drives = falconDrives();
