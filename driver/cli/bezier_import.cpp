@@ -237,7 +237,7 @@ std::string toModelJson(const BezierModel& model) {
     for (const Vector3d& p : patch.points) surface["points"].push_back({p.x(), p.y(), p.z()});
     json["surfaces"].push_back(surface);
   }
-  return json.dump(1) + "\n";
+  return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace hapticd::cli
