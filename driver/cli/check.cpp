@@ -5,6 +5,7 @@
 
 #include "cli/command.hpp"
 #include "cli/trial.hpp"
+#include "cli/try_device.hpp"
 #include "host/device_instance.hpp"
 #include "tune/stability.hpp"
 
@@ -47,6 +48,7 @@ int check(const Options& options) {
     scene::Problems found = scene::checkFile(file, catalog(), &scene);
     std::vector<double> stiffness;
     if (scene && !options.files_only) found = tryModels(*scene, &stiffness);
+    if (!scene && found.empty()) found = tryDevice(file);
     printProblems(found, stdout);
     if (scene && found.empty()) printWarnings(unstable(*scene, stiffness), stdout);
     if (found.empty() && !options.quiet) std::printf("%s: ok\n", file.c_str());

@@ -101,7 +101,7 @@ void printHardware(host::DeviceInstance& device) {
                 info.max_torque[i]);
 }
 
-int info(const std::string& file) {
+int info(const std::string& file, bool with_parameters) {
   const scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
   printProblems(loaded.problems, stderr);
   if (!loaded.device) return kBadInput;
@@ -118,6 +118,8 @@ int info(const std::string& file) {
               q.y(), q.z());
   printLimits(description.limits);
   printHardware(**device);
+  if (with_parameters)
+    if (auto about = catalog().device(description.module)) printClass(**about);
   return kWorked;
 }
 
@@ -137,7 +139,9 @@ void addDevice(CLI::App& app, int& exit_code) {
   CLI::App* info_command = command->add_subcommand("info", "Facts of one arm; opens it if it is there, moves nothing.");
   info_command->add_option("file", *file, "device file (YAML)")->required();
   info_command->footer("Example:\n  hapticd device info config/devices/simulated-premium15.yaml");
-  info_command->callback([file, &exit_code] { exit_code = info(*file); });
+  auto parameters = std::make_shared<bool>(false);
+  info_command->add_flag("--parameters", *parameters, "also every parameter of the module");
+  info_command->callback([file, parameters, &exit_code] { exit_code = info(*file, *parameters); });
 }
 
 }  // namespace hapticd::cli

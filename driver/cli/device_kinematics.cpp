@@ -110,9 +110,14 @@ class Table {
     add(J.data(), 6 * n);
     add(held.data(), n);
     if (values.size() > n) addTorques(values, J.data());
+    std::array<double, HDV_MAX_JOINTS> back = q;
+    outside_ += kinematics_.inverse(device_, p.data(), back.data()) < 0 ? 1 : 0;
     std::fprintf(out_, "%s\n", line_.c_str());
     return {};
   }
+
+  /// Rows whose tip the arm cannot reach within its joint limits.
+  size_t outside() const { return outside_; }
 
  private:
   /// tau = J^T W (Thompson et al. 1999, Eq. 9).
@@ -136,6 +141,7 @@ class Table {
   const hdv_device* device_;
   Eigen::Vector3d gravity_;
   std::string line_;
+  size_t outside_ = 0;
 };
 
 int kinematics(const Options& options) {
@@ -157,6 +163,11 @@ int kinematics(const Options& options) {
   for (size_t i = 0; i < rows->rows.size(); ++i)
     if (auto done = table.row(rows->rows[i]); !done)
       return fail(kFailed, options.joints + ": row " + std::to_string(i + 1) + ": " + done.error());
+  if (table.outside() > 0)
+    std::fprintf(stderr,
+                 "warning: %s: in %zu of %zu rows the tip is where the arm's joint limits do not let it\n  the numbers are "
+                 "those of its mechanism without stops\n  fix: correct the joints, or arm.limits in %s\n",
+                 options.joints.c_str(), table.outside(), rows->rows.size(), options.file.c_str());
   return std::fflush(out) == 0 ? kWorked : fail(kFailed, options.out + ": cannot be written");
 }
 
