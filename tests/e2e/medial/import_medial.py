@@ -1,0 +1,264 @@
+#!/usr/bin/env python3
+"""Known shapes are recovered from their triangles: torus, capsule, branching body, box; bad input is refused.
+
+Usage: import_medial.py HAPTICD CONFIG     prints a line a case; exit 1 when one is off.
+"""
+import math
+import os
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+
+HAPTICD, CONFIG = sys.argv[1], sys.argv[2]
+failures = 0
+
+
+def check(name, good, told=""):
+    global failures
+    failures += not good
+    print("ok  " if good else "FAIL", name, "" if good else told, flush=True)
+
+
+def hapticd(*arguments):
+    done = subprocess.run([HAPTICD, *arguments], capture_output=True, text=True, timeout=120)
+    return done.returncode, done.stdout + done.stderr
+
+
+def save(name, text):
+    with open(name, "w", encoding="utf-8") as file:
+        file.write(text)
+    return name
+
+
+def obj(points, faces):
+    return "".join(f"v {x:.9f} {y:.9f} {z:.9f}\n" for x, y, z in points) + "".join(
+        "f " + " ".join(str(i + 1) for i in face) + "\n" for face in faces)
+
+
+def turned(rows, columns, at, closed):
+    """A surface of rows (closed or between two poles) and closed columns."""
+    points = [at(i, j) for i in range(rows) for j in range(columns)]
+    faces = []
+    for i in range(rows if closed else rows - 1):
+        for j in range(columns):
+            k, l = (i + 1) % rows, (j + 1) % columns
+            faces.append([i * columns + j, k * columns + j, k * columns + l, i * columns + l])
+    if not closed:
+        low, high = at(0, None), at(rows - 1, None)
+        points += [low, high]
+        for j in range(columns):
+            l = (j + 1) % columns
+            faces.append([len(points) - 2, j, l])
+            faces.append([len(points) - 1, (rows - 1) * columns + l, (rows - 1) * columns + j])
+    return points, faces
+
+
+def torus(big, small, n=96, m=48):
+    def at(i, j):
+        a, b = 2 * math.pi * i / n, 2 * math.pi * j / m
+        return ((big + small * math.cos(b)) * math.cos(a), (big + small * math.cos(b)) * math.sin(a),
+                small * math.sin(b))
+    return obj(*turned(n, m, at, True))
+
+
+def capsule(length, radius, n=40, m=40):
+    def at(i, j):
+        a = math.pi * (i + 1) / (n + 1)
+        z = (length if i >= n // 2 else 0) - radius * math.cos(a)
+        if j is None:
+            return (0, 0, -radius if i == 0 else length + radius)
+        b = 2 * math.pi * j / m
+        return (radius * math.sin(a) * math.cos(b), radius * math.sin(a) * math.sin(b), z)
+    # a row every 2 mm along the cylinder would do; two rings at the ends do as well: quads may be long
+    return obj(*turned(n, m, at, False))
+
+
+def box(x, y, z):
+    points = [(x * i, y * j, z * k) for i in (0, 1) for j in (0, 1) for k in (0, 1)]
+    return obj(points, [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+
+
+def read(file):
+    spheres, edges, triangles = [], [], []
+    for line in open(file, encoding="utf-8"):
+        words = line.split()
+        if words[0] == "v":
+            spheres.append([float(w) for w in words[1:]])
+        elif words[0] == "e":
+            edges.append([int(w) for w in words[1:]])
+        elif words[0] == "f":
+            triangles.append([int(w) for w in words[1:]])
+    return spheres, edges, triangles
+
+
+def told(text):
+    """Spheres, parts, and the two distances in m that the program reports."""
+    found = re.search(r"(\d+) spheres, (\d+) edges, (\d+) triangles, (\d+) part", text)
+    there = re.search(r"at most ([\d.]+) mm from the body", text)
+    back = re.search(r"the body at most ([\d.]+) mm", text)
+    return int(found[1]), int(found[4]), 1e-3 * float(there[1]), 1e-3 * float(back[1])
+
+
+def recoverTorus(folder):
+    out = os.path.join(folder, "torus.ma")
+    code, text = hapticd("import", "--medial", save(os.path.join(folder, "torus.obj"), torus(.05, .012)),
+                         "--tolerance", "0.001", out)
+    check("a torus is imported", code == 0, text)
+    spheres, edges, triangles = read(out)
+    off = max(abs(math.hypot(x, y) - .05) + abs(z) + abs(r - .012) for x, y, z, r in spheres)
+    check("its spheres lie near its circle with its radius: errors together below 3.5 tolerances", off < 3.5e-3, f"{off}")
+    degree = [sum(i in e for e in edges) for i in range(len(spheres))]
+    check("its axis is one closed loop without slabs", not triangles and set(degree) == {2}, f"{degree} {triangles}")
+    count, parts, there, back = told(text)
+    check("its surface is within the tolerance", parts == 1 and there <= 1e-3 and back <= 2e-3, text)
+
+
+def recoverCapsule(folder):
+    out = os.path.join(folder, "capsule.yaml")
+    code, text = hapticd("import", "--medial", save(os.path.join(folder, "capsule.obj"), capsule(.06, .01)),
+                         "--tolerance", "0.0005", "-o", out, "--stiffness", "250")
+    check("a capsule is imported to YAML", code == 0, text)
+    count, parts, there, back = told(text)
+    check("its surface is within the tolerance", parts == 1 and there <= 5e-4 and back <= 1.5e-3, text)
+    written = open(out, encoding="utf-8").read()
+    check("the material is written", "stiffness: 250" in written, written[-200:])
+    scene = save(os.path.join(folder, "scene.yaml"), "hapticd: 1\nmodels:\n  - {name: body, plugin: mat_deformable, "
+                 "parameters: {geometry: capsule.yaml}}\n")
+    probe = save(os.path.join(folder, "probe.csv"), "t,x,y,z\n" + "".join(
+        f"{1e-3 * k:.3f},{.012 - 2e-5 * k:.9f},0,0.03\n" for k in range(200)))
+    code, text = hapticd("trace", scene, "--probe", probe, "--out", os.path.join(folder, "trace.csv"))
+    rows = [line.split(",") for line in open(os.path.join(folder, "trace.csv"), encoding="utf-8")]
+    depth = float(rows[-1][rows[0].index("depth")])
+    check("it is felt where its surface was", code == 0 and abs(depth - (.01 - .00802)) < 3e-4, f"{depth} {text}")
+
+
+def recoverBranches(folder):
+    """From the shipped branching body: its own triangles, drawn and read again."""
+    out = os.path.join(folder, "branch.ma")
+    mesh = os.path.join(folder, "branch.obj")
+    n, spacing = 60, .0019
+    axis = read(os.path.join(CONFIG, "models", "branch.ma"))
+    save(mesh, cubes(axis, n, spacing))
+    code, text = hapticd("import", "--medial", mesh, "--tolerance", "0.0025", "--angle", "75", out)
+    check("a branching body is imported", code == 0, text)
+    if code == 0:
+        count, parts, there, back = told(text)
+        check("it is one body within 4 mm of its steps of 1.9 mm", parts == 1 and there <= 4e-3 and back <= 5e-3, text)
+
+
+def cubes(axis, n, spacing):
+    """The surface of the little cubes whose middles are inside the body: stairs of `spacing`."""
+    spheres, edges, triangles = axis
+    solid = []
+    for a, b in edges:
+        solid += [[(1 - t / 8) * u + t / 8 * v for u, v in zip(spheres[a], spheres[b])] for t in range(9)]
+    for a, b, c in triangles:
+        for i in range(7):
+            for j in range(7 - i):
+                s, t = i / 6, j / 6
+                solid.append([(1 - s - t) * u + s * v + t * w for u, v, w in zip(spheres[a], spheres[b], spheres[c])])
+    inside = set()
+    for x, y, z, r in solid:
+        low = [int(math.floor((q - r) / spacing)) for q in (x, y, z)]
+        high = [int(math.ceil((q + r) / spacing)) for q in (x, y, z)]
+        for i in range(low[0], high[0] + 1):
+            for j in range(low[1], high[1] + 1):
+                for k in range(low[2], high[2] + 1):
+                    if math.dist((i * spacing, j * spacing, k * spacing), (x, y, z)) <= r:
+                        inside.add((i, j, k))
+    # no cube may touch the body by an edge or corner alone: fill until none does
+    changed = True
+    while changed:
+        changed = False
+        for cell in list(inside):
+            for d in ((1, 1, 0), (1, -1, 0), (1, 0, 1), (1, 0, -1), (0, 1, 1), (0, 1, -1)):
+                other = tuple(c + e for c, e in zip(cell, d))
+                if other not in inside:
+                    continue
+                axes = [m for m in range(3) if d[m]]
+                one = tuple(c + (d[m] if m == axes[0] else 0) for m, c in enumerate(cell))
+                two = tuple(c + (d[m] if m == axes[1] else 0) for m, c in enumerate(cell))
+                if one not in inside and two not in inside:
+                    inside.add(one)
+                    changed = True
+    points, index, faces = [], {}, []
+
+    def corner(p):
+        if p not in index:
+            index[p] = len(points)
+            points.append(tuple((q - .5) * spacing for q in p))
+        return index[p]
+
+    for i, j, k in inside:
+        for m, side in ((0, 0), (0, 1), (1, 0), (1, 1), (2, 0), (2, 1)):
+            step = [0, 0, 0]
+            step[m] = 1 if side else -1
+            if (i + step[0], j + step[1], k + step[2]) in inside:
+                continue
+            a, b = (m + 1) % 3, (m + 2) % 3
+            base = [i, j, k]
+            base[m] += side
+            square = []
+            for da, db in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                p = list(base)
+                p[a] += da
+                p[b] += db
+                square.append(corner(tuple(p)))
+            faces.append(square if side else square[::-1])
+    return obj(points, faces)
+
+
+def recoverNurbs(folder):
+    out = os.path.join(folder, "nurbs.ma")
+    code, text = hapticd("import", "--medial", os.path.join(CONFIG, "models", "torus.yaml"), "--tolerance", "0.001", out)
+    check("a NURBS torus is imported", code == 0, text)
+    if code == 0:
+        count, parts, there, back = told(text)
+        check("it is within the tolerance", parts == 1 and there <= 1e-3, text)
+
+
+def recoverBox(folder):
+    """Binary STL; its axis is a sheet with walls toward the edges, which a wide angle leaves out."""
+    name = os.path.join(folder, "box.stl")
+    corners = [line.split()[1:] for line in box(.08, .06, .02).splitlines() if line[0] == "v"]
+    faces = [[int(i) - 1 for i in line.split()[1:]] for line in box(.08, .06, .02).splitlines() if line[0] == "f"]
+    triangles = [t for f in faces for t in ([f[0], f[1], f[2]], [f[0], f[2], f[3]])]
+    with open(name, "wb") as file:
+        file.write(b"box".ljust(80) + struct.pack("<I", len(triangles)))
+        for t in triangles:
+            file.write(struct.pack("<3f", 0, 0, 0))
+            for i in t:
+                file.write(struct.pack("<3f", *(1000 * float(c) for c in corners[i])))
+            file.write(b"\0\0")
+    out = os.path.join(folder, "box.ma")
+    code, text = hapticd("import", "--medial", name, "--scale", "0.001", "--tolerance", "0.0015", out)
+    check("a box in millimetres is imported from binary STL", code == 0, text)
+    if code == 0:
+        count, parts, there, back = told(text)
+        check("its faces are within 1.5 tolerances, slabs among its parts",
+              there <= 2.25e-3 and parts == 1 and len(read(out)[2]) > 10, text)
+
+
+def refuse(folder):
+    def refused(name, text, expected, *more):
+        code, said = hapticd("import", "--medial", save(os.path.join(folder, name), text),
+                             os.path.join(folder, "out.ma"), *more)
+        check(f"{name} is refused with its reason", code == 2 and expected in said, said)
+
+    refused("open.obj", obj([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [[0, 1, 2]]), "expected a closed surface")
+    refused("bad.obj", "v 0 0 zero\n", "bad.obj:1: expected v x y z")
+    refused("index.obj", "v 0 0 0\nf 1 2 3\n", "index.obj:2: point '2', expected 1 to 1")
+    refused("empty.stl", "solid nothing\nendsolid\n", "no triangles")
+    refused("what.ply", "ply\n", "expected .obj, .stl")
+    code, said = hapticd("import", "--medial", os.path.join(folder, "none.obj"), os.path.join(folder, "out.ma"))
+    check("a file that is not there is refused", code == 2 and "none.obj" in said, said)
+    code, said = hapticd("import", "--medial", os.path.join(folder, "open.obj"), os.path.join(folder, "out.txt"))
+    check("an output of another kind is refused", code == 2 and ".ma or .yaml" in said, said)
+
+
+with tempfile.TemporaryDirectory() as work:
+    for case in (recoverTorus, recoverCapsule, recoverBranches, recoverNurbs, recoverBox, refuse):
+        case(work)
+sys.exit(1 if failures else 0)
