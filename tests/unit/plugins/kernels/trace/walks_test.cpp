@@ -1,8 +1,6 @@
 /// A hand on whole models: walks near and through them against the exact global search, stand-off, deep corners.
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "kernels/trace/tracer.hpp"
 #include "shapes.hpp"
 
@@ -232,52 +230,6 @@ TEST(Walks, ContactOnSmoothPatchesIsGoodToANanometre) {
         const StandOff result = standOff(models[m], patch, offset, 0.3);
         EXPECT_LE(result.worst, 1e-9) << m << ' ' << offset << ", patch " << patch;
       }
-}
-
-/// Circles round points of sharp edges: the depth is continuous everywhere, the direction everywhere but where both
-/// faces are equally near.
-TEST(Walks, ForceRoundSharpEdgesIsContinuousButBetweenTheFaces) {
-  constexpr int kSteps = 4000;
-  constexpr double kRadius = 2e-4, kStep = kRadius * 2 * std::numbers::pi / kSteps;
-  int edges = 0;
-  for (const char* name : {"box", "cylinder", "goblet"}) {
-    const Model model = solid(name);
-    for (int index = 0; index < model.patchCount(); ++index)
-      for (int side = 0; side < kSides; ++side) {
-        const Patch& patch = model.patch(index);
-        const Side& edge = patch.sides[static_cast<std::size_t>(side)];
-        if (edge.kind != SideKind::kJoined) continue;
-        const auto uv = patch.onSide(side, 0.37);
-        const Patch& next = model.patch(edge.patch);
-        const Vector3d n = patch.normalAt(uv);
-        const Vector3d m = next.normalAt(next.onSide(edge.side, edge.flipped ? 0.63 : 0.37));
-        if (n.dot(m) > 0.99) continue;
-        ++edges;
-        spline::SurfacePoint E;
-        patch.surface.evaluate1(uv[0], uv[1], E);
-        const Vector3d x = n, y = n.cross(m).normalized().cross(n);
-        Tracer tracer(model);
-        Found found;
-        Vector3d last = Vector3d::Zero();
-        for (int tick = 0; tick <= kSteps; ++tick) {
-          const double a = 2 * std::numbers::pi * tick / kSteps;
-          const Vector3d p = E.S + kRadius * (std::cos(a) * x + std::sin(a) * y);
-          model.search(p, 0.15, found);
-          if (tick % kSearchTicks == 0) offer(found, tracer);
-          const Foot foot = tracer.step(p);
-          const Vector3d force = foot.depth > 0 ? Vector3d(foot.depth * foot.normal) : Vector3d::Zero();
-          const bool between = std::abs((p - E.S).dot((n - m).normalized())) < 0.02 * kRadius;
-          if (tick > 0) {
-            EXPECT_LE(std::abs(force.norm() - last.norm()), 1.01 * kStep) << name << ' ' << index << ' ' << side;
-            if (!between) {
-              EXPECT_LE((force - last).norm(), 1.1 * kStep) << name << ' ' << index << ' ' << side << ' ' << tick;
-            }
-          }
-          last = force;
-        }
-      }
-  }
-  EXPECT_GT(edges, 12);
 }
 
 /// A surface that does not hold the nearest foot is followed over its seam all the same.

@@ -1,0 +1,163 @@
+/// Force round sharp and open edges, in circles about points of them.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "kernels/trace/tracer.hpp"
+#include "shapes.hpp"
+
+namespace hapticd::trace {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kSteps = 2000;      ///< of a circle
+constexpr int kSearchTicks = 5;   ///< 5 ms at 1 kHz
+constexpr double kRadius = 2e-4;  ///< [m] less than half of the thickness of any lip
+constexpr double kFractions[] = {0.07, 0.37, 0.83};
+
+/// A point of an edge, with the outward normals on both sides of it.
+struct EdgePoint {
+  Vector3d at, n, m;
+  Vector3d aside;  ///< unit, at right angles to the edge and to n
+};
+
+EdgePoint joinedAt(const Model& model, int index, int side, double fraction) {
+  const Patch& patch = model.patch(index);
+  const Side& edge = patch.sides[static_cast<std::size_t>(side)];
+  const Patch& next = model.patch(edge.patch);
+  const auto uv = patch.onSide(side, fraction);
+  spline::SurfacePoint E;
+  patch.surface.evaluate1(uv[0], uv[1], E);
+  const Vector3d n = patch.normalAt(uv);
+  const Vector3d m = next.normalAt(next.onSide(edge.side, edge.flipped ? 1 - fraction : fraction));
+  return {E.S, n, m, n.cross(m).normalized().cross(n)};
+}
+
+EdgePoint freeAt(const Model& model, int index, int side, double fraction) {
+  const Patch& patch = model.patch(index);
+  const auto uv = patch.onSide(side, fraction);
+  spline::SurfacePoint E;
+  patch.surface.evaluate1(uv[0], uv[1], E);
+  const Vector3d n = patch.normalAt(uv), along = Patch::axisOf(side) == 0 ? E.Sv : E.Su;
+  return {E.S, n, n, along.normalized().cross(n)};
+}
+
+void search(const Model& model, const Vector3d& p, Tracer& tracer) {
+  Found found;
+  model.search(p, 0.15, found);
+  for (const auto* records : {&found.nearest, &found.rivals})
+    for (const Near& near : *records) tracer.activate(near.surface, near.u, near.v, near.distance);
+}
+
+/// The greatest changes in a step of a circle, as shares of the step.
+struct Change {
+  double length = 0;  ///< of the length of the force, anywhere
+  double force = 0;   ///< of the force, but where both sides of the edge are equally near
+};
+
+Change around(const Model& model, const EdgePoint& edge, double radius) {
+  const double step_length = radius * 2 * std::numbers::pi / kSteps;
+  const bool sharp = (edge.n - edge.m).norm() > 0;
+  Tracer tracer(model);
+  Change worst;
+  Vector3d last = Vector3d::Zero();
+  for (int tick = 0; tick <= kSteps; ++tick) {
+    const double a = 2 * std::numbers::pi * tick / kSteps;
+    const Vector3d aside = radius * (std::cos(a) * edge.n + std::sin(a) * edge.aside), p = edge.at + aside;
+    if (tick % kSearchTicks == 0) search(model, p, tracer);
+    const Foot foot = tracer.step(p);
+    const Vector3d force = foot.depth > 0 ? Vector3d(foot.depth * foot.normal) : Vector3d::Zero();
+    const bool between = sharp && std::abs(aside.dot((edge.n - edge.m).normalized())) < 0.02 * radius;
+    if (tick > 0) {
+      worst.length = std::max(worst.length, std::abs(force.norm() - last.norm()) / step_length);
+      if (!between) worst.force = std::max(worst.force, (force - last).norm() / step_length);
+    }
+    last = force;
+  }
+  return worst;
+}
+
+/// Circles round all sharp edges. Returns how many.
+int expectContinuous(const Model& model, const std::string& name) {
+  int circles = 0;
+  for (int index = 0; index < model.patchCount(); ++index)
+    for (int side = 0; side < kSides; ++side) {
+      if (model.patch(index).sides[static_cast<std::size_t>(side)].kind != SideKind::kJoined) continue;
+      for (double fraction : kFractions) {
+        const EdgePoint edge = joinedAt(model, index, side, fraction);
+        if (edge.n.dot(edge.m) > 0.99) continue;
+        ++circles;
+        const Change worst = around(model, edge, kRadius);
+        EXPECT_LE(worst.length, 1.01) << name << ' ' << index << ' ' << side << ' ' << fraction;
+        EXPECT_LE(worst.force, 1.1) << name << ' ' << index << ' ' << side << ' ' << fraction;
+      }
+    }
+  return circles;
+}
+
+/// A closed ring whose cross-section has four creases, all of random shape: bicubic, and around periodic.
+spline::SurfaceData creasedRing(std::mt19937& random) {
+  constexpr int kAround = 12, kCreases = 4, kAcross = 3 * kCreases, kWrap = 3;
+  std::uniform_real_distribution<double> bump(-0.003, 0.003);
+  double bumps[kAround][kAcross];
+  for (auto& row : bumps)
+    for (double& b : row) b = bump(random);
+  spline::SurfaceData data;
+  data.degree = {3, 3};
+  for (int i = 0; i <= kAround + 2 * kWrap; ++i) data.knots[0].push_back(i);
+  for (int crease = 0; crease <= kCreases; ++crease) data.knots[1].insert(data.knots[1].end(), 3, crease);
+  data.knots[1].insert(data.knots[1].begin(), 0);
+  data.knots[1].push_back(kCreases);
+  for (int i = 0; i < kAround + kWrap; ++i)
+    for (int j = 0; j <= kAcross; ++j) {
+      const double a = 2 * std::numbers::pi * i / kAround, b = 2 * std::numbers::pi * j / kAcross;
+      const double r = 0.02 + bumps[i % kAround][j % kAcross], out = 0.05 + r * std::cos(b);
+      data.points.emplace_back(out * std::sin(a), r * std::sin(b), out * std::cos(a));
+    }
+  return data;
+}
+
+/// The depth is continuous everywhere, the direction everywhere but where both faces are equally near.
+TEST(Edges, ForceRoundSharpEdgesIsContinuousButBetweenTheFaces) {
+  int circles = 0;
+  for (const char* name : {"box", "cylinder", "goblet"}) circles += expectContinuous(solid(name), name);
+  EXPECT_GT(circles, 3 * 12);
+  EXPECT_GE(expectContinuous(solid("teapot"), "teapot"), 3 * 8);  // the lip, where body and rim meet
+}
+
+TEST(Edges, ForceRoundCreasesOfRandomClosedModelsIsContinuousButBetweenTheFaces) {
+  std::mt19937 random(21);
+  int circles = 0;
+  for (int i = 0; i < 3; ++i) {
+    spline::SurfaceData data = creasedRing(random);
+    for (bool reversed : {false, true}) {  // convex creases, then concave ones: the probe is in the ring
+      data.reversed = reversed;
+      const Model ring({data});
+      ASSERT_TRUE(ring.closed(0));
+      ASSERT_EQ(ring.patchCount(), 4);
+      circles += expectContinuous(ring, reversed ? "hollow" : "ring");
+    }
+  }
+  EXPECT_GE(circles, 2 * 3 * 3 * 4);
+}
+
+/// The surface is a bevel of 45 degrees beyond an open edge, and parts act together: steeper, but no jump.
+TEST(Edges, ForceRoundOpenEdgesOfTheTeapotIsContinuous) {
+  const Model model = solid("teapot");
+  int circles = 0;
+  for (int index = 0; index < model.patchCount(); ++index)
+    for (int side = 0; side < kSides; ++side) {
+      if (model.patch(index).sides[static_cast<std::size_t>(side)].kind != SideKind::kFree) continue;
+      for (double fraction : kFractions) {
+        ++circles;
+        const Change worst = around(model, freeAt(model, index, side, fraction), kRadius);
+        EXPECT_LE(worst.length, 1.5) << index << ' ' << side << ' ' << fraction;
+        EXPECT_LE(worst.force, 2) << index << ' ' << side << ' ' << fraction;
+      }
+    }
+  EXPECT_EQ(circles, 3 * 16);  // rim and lid, the mouth of the spout, and the buried ends of spout and handle
+}
+
+}  // namespace
+}  // namespace hapticd::trace
