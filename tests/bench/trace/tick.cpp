@@ -95,7 +95,7 @@ void printTicks() {
               1e3 * kStep, 1e3 * kDepth, kRounds);
   std::printf(
       "\"waiting\": the next probe waits for this foot. Ratios: to the first row of the surface, and to\n"
-      "the second, which is exact to rounding as OCCT is.\n");
+      "the second, which like OCCT goes on until rounding stops it: a few units in the last place.\n");
   for (const auto& data : surfaces()) {
     const Path path = contactPath(data, kStep, kDepth, kTicks);
     auto solvers = allSolvers(data);
