@@ -159,5 +159,41 @@ TEST(Edges, ForceRoundOpenEdgesOfTheTeapotIsContinuous) {
   EXPECT_EQ(circles, 3 * 16);  // rim and lid, the mouth of the spout, and the buried ends of spout and handle
 }
 
+/// Farther in than half of a lip's thickness its two sides are equally near somewhere. Only there may the force jump.
+TEST(Edges, ForceJumpsOnlyWhereTheNearestFootOfAPartDoes) {
+  constexpr double kWide = 1e-3, kStep = kWide * 2 * std::numbers::pi / kSteps;
+  std::vector<spline::SurfaceData> body = readModelFile(HAPTICD_SOURCE_DIR "/config/models/teapot.yaml").surfaces;
+  const std::vector<spline::SurfaceData> tubes(body.begin() + 12, body.begin() + 20);  // handle and spout
+  body.erase(body.begin() + 12, body.begin() + 20);
+  const Model models[] = {solid("teapot"), Model(body), Model(tubes)};
+  int jumps = 0;
+  for (int index = 0; index < models[0].patchCount(); ++index)
+    for (int side = 0; side < kSides; ++side) {
+      if (models[0].patch(index).sides[static_cast<std::size_t>(side)].kind != SideKind::kFree) continue;
+      const EdgePoint edge = freeAt(models[0], index, side, 0.37);
+      Tracer tracers[] = {Tracer(models[0]), Tracer(models[1]), Tracer(models[2])};
+      Vector3d last_force = Vector3d::Zero(), last_feet[3];
+      for (int tick = 0; tick <= kSteps; ++tick) {
+        const double a = 2 * std::numbers::pi * tick / kSteps;
+        const Vector3d p = edge.at + kWide * (std::cos(a) * edge.n + std::sin(a) * edge.aside);
+        Vector3d force = Vector3d::Zero();
+        bool changed = false;
+        for (int i = 0; i < 3; ++i) {
+          if (tick % kSearchTicks == 0) search(models[i], p, tracers[i]);
+          const Foot foot = tracers[i].step(p);
+          if (i == 0 && foot.depth > 0) force = foot.depth * foot.normal;
+          changed = changed || (i > 0 && (foot.point - last_feet[i]).norm() > 20 * kStep);
+          last_feet[i] = foot.point;
+        }
+        const bool jump = tick > 0 && (force - last_force).norm() > 2.5 * kStep;
+        jumps += jump ? 1 : 0;
+        EXPECT_TRUE(!jump || changed) << index << ' ' << side << ' ' << tick;
+        last_force = force;
+      }
+    }
+  EXPECT_GT(jumps, 0);
+  EXPECT_LT(jumps, 40);  // one or two an edge
+}
+
 }  // namespace
 }  // namespace hapticd::trace
