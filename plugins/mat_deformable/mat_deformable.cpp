@@ -251,8 +251,11 @@ hsp_status MatDeformable::stop(uint32_t probe) noexcept HSP_RT {
   return HSP_OK;
 }
 
+/// A body that is not there yet is as it was loaded; one that is gone, as it was last.
 int64_t MatDeformable::save(void* buffer, uint64_t capacity) const {
-  const std::vector<unsigned char> state = body_ ? stateOf(body_->nodes()) : states_->kept;
+  const std::vector<unsigned char> state = body_                     ? stateOf(body_->nodes())
+                                           : states_->loaded.empty() ? states_->kept
+                                                                     : states_->loaded;
   if (buffer != nullptr && state.size() <= capacity)
     std::copy(state.begin(), state.end(), static_cast<unsigned char*>(buffer));
   return static_cast<int64_t>(state.size());

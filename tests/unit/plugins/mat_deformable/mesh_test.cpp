@@ -190,6 +190,9 @@ TEST(SavedState, ABodyGoesOnFromWhereItWasSaved) {
     std::vector<char> bytes(static_cast<std::size_t>(state.save(saved.handle(), nullptr, 0)));
     ASSERT_EQ(state.save(saved.handle(), bytes.data(), bytes.size()), static_cast<int64_t>(bytes.size()));
     ASSERT_EQ(state.load(loaded.handle(), bytes.data(), bytes.size()), HSP_OK);
+    std::vector<char> again(bytes.size());  // before it is there, it is what was loaded
+    ASSERT_EQ(state.save(loaded.handle(), again.data(), again.size()), static_cast<int64_t>(bytes.size()));
+    EXPECT_EQ(again, bytes) << path;
     ASSERT_EQ(loaded.activate(), HSP_OK);
     loaded.search({0, 0, .03});
     EXPECT_GT(saved.energy(), 0) << path;
