@@ -43,7 +43,8 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   }
   if (described.limits.passivity.value_or((arm->info().capabilities & HDV_C_UNVERIFIED) != 0)) {
     const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
-    arm->passivity_.emplace(mass * options.rate / 2, arm->info().damping);
+    arm->passivity_.emplace(passivity::stableDamping(mass, 1 / options.rate), arm->info().damping,
+                            arm->info().resolution_m);
   }
   const auto& button = described.limits.enable.button;
   if (button && static_cast<uint32_t>(*button) >= arm->info().buttons && options.playback == nullptr)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 namespace hapticd::passivity {
 namespace {
@@ -30,7 +31,7 @@ double swingOf(double stiffness, PassivityController* controller) {
 
 TEST(Controller, CalmsAWallTenTimesTooStiff) {
   const double stiffness = 10 * 2 * 0.1 / kPeriod;
-  PassivityController controller(0.075 / kPeriod / 2, 0.1);
+  PassivityController controller(stableDamping(0.075, kPeriod), 0.1);
   const double alone = swingOf(stiffness, nullptr), calmed = swingOf(stiffness, &controller);
   EXPECT_GT(alone, 10e-3);
   EXPECT_LT(calmed, alone / 20);
@@ -41,6 +42,88 @@ TEST(Controller, LeavesASoftWallAlone) {
   PassivityController controller(37.5, 0.1);
   EXPECT_EQ(swingOf(150, nullptr), swingOf(150, &controller));
   EXPECT_EQ(controller.dissipated(), 0);
+}
+
+/// What a motor got in four strokes of a hand into a wall and out again.
+struct Strokes {
+  double jump = 0, variation = 0;              ///< [N] largest change between two ticks, and the sum of all
+  double model_jump = 0, model_variation = 0;  ///< of the wall's own force
+  double swing = 0;                            ///< [m] of the tip in the last second
+};
+
+/// A light arm of 275 g with its hand, on a spring of 500 N/m that goes 30 mm in and out each second. Positions are
+/// counted in steps of 25 um; one in seven samples is a tick late; a force acts `delay` ticks late.
+Strokes stroke(double stiffness, int delay, double step, PassivityController* controller) {
+  double x = -1e-3, v = 0, seen = x, last_model = 0, last_sent = 0, low = 1e9, high = -1e9;
+  std::deque<double> on_the_way(static_cast<size_t>(delay), 0.0);
+  Strokes strokes;
+  for (int i = 0; i < 4000; ++i) {
+    if (i % 7 != 3) seen = step > 0 ? std::round(x / step) * step : x;
+    const double model = seen > 0 ? -stiffness * seen : 0;
+    double sent = model;
+    if (controller != nullptr) sent = controller->update({seen, 0, 0}, {model, 0, 0}, kPeriod, {0, -model * seen}).x();
+    strokes.jump = std::max(strokes.jump, std::abs(sent - last_sent));
+    strokes.model_jump = std::max(strokes.model_jump, std::abs(model - last_model));
+    strokes.variation += std::abs(sent - last_sent), strokes.model_variation += std::abs(model - last_model);
+    last_model = model, last_sent = sent;
+    on_the_way.push_back(sent);
+    const double held = on_the_way.front();
+    on_the_way.pop_front();
+    for (int k = 0; k < 50; ++k) {
+      const double phase = 2 * M_PI * (i + k / 50.0) * kPeriod;
+      const double target = 0.015 * (1 - std::cos(phase)), speed = 0.015 * 2 * M_PI * std::sin(phase);
+      v += (held + 500 * (target - x) + 5 * (speed - v)) / 0.275 * kPeriod / 50;
+      x += v * kPeriod / 50;
+    }
+    if (i > 3000) low = std::min(low, x), high = std::max(high, x);
+  }
+  strokes.swing = high - low;
+  return strokes;
+}
+
+constexpr double kStep = 25e-6;
+PassivityController ofAnUntriedArm() {
+  return PassivityController(stableDamping(0.075, kPeriod), 0, kStep);
+}
+
+TEST(Controller, DoesNotChatterWhereCountsAndDelayMakeLittleEnergy) {
+  for (const double stiffness : {400.0, 800.0, 2000.0})
+    for (int delay = 0; delay < (stiffness < 2000 ? 3 : 2); ++delay) {
+      PassivityController controller = ofAnUntriedArm();
+      const Strokes strokes = stroke(stiffness, delay, kStep, &controller);
+      EXPECT_LT(strokes.jump, strokes.model_jump + 0.1) << stiffness << " N/m, delay " << delay;
+      EXPECT_LT(strokes.variation, 1.25 * strokes.model_variation) << stiffness << " N/m, delay " << delay;
+      EXPECT_GT(controller.dissipated(), 0) << "nothing was asked of it";
+    }
+}
+
+TEST(Controller, CalmsAHandThatADelayedWallThrowsOff) {
+  for (const int delay : {2, 3}) {
+    PassivityController controller = ofAnUntriedArm();
+    const double stiffness = delay == 2 ? 3500 : 2000;
+    const Strokes alone = stroke(stiffness, delay, kStep, nullptr);
+    const Strokes calmed = stroke(stiffness, delay, kStep, &controller);
+    EXPECT_LT(calmed.swing, alone.swing / 2) << "delay " << delay;
+    EXPECT_LT(calmed.variation, alone.variation / 2) << "delay " << delay;
+  }
+}
+
+TEST(Controller, TurnsNoForceRoundAndAtMostDoublesIt) {
+  for (const double stiffness : {1000.0, 2000.0, 3500.0}) {
+    PassivityController controller = ofAnUntriedArm();
+    double x = 1e-4, v = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const double model = x > 0 ? -stiffness * x : 0;
+      const Vector3d sent = controller.update({x, 0, 0}, {model, 0, 0}, kPeriod);
+      ASSERT_LE(sent.x(), 1e-12) << i;
+      ASSERT_GE(sent.x(), 2 * model - 1e-12) << i;
+      for (int k = 0; k < 20; ++k) {
+        v += (sent.x() + 2.0 - 0.1 * v) / 0.075 * kPeriod / 20;
+        x += v * kPeriod / 20;
+      }
+    }
+    EXPECT_GT(controller.dissipated(), 0) << stiffness;
+  }
 }
 
 TEST(Controller, DoesNotTakeAPushOfAMovingModelForEnergyFromNowhere) {
