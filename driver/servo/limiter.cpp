@@ -75,6 +75,7 @@ void Limiter::apply(Vector3d& force, Vector3d& torque, const Vector3d& position,
     fade_ = rampedDown(fade_, dt, limits_.ramp_out);
     force = fade_ * fault_force_;
     torque = fade_ * fault_torque_;
+    if (fade_ == 0 && cleared_) clear();
   } else {
     ramp(force, torque, dt);
     limit(force, torque, position, dt);
@@ -158,6 +159,7 @@ void Limiter::watchButtons(uint32_t buttons) noexcept HSP_RT {
 
 void Limiter::trip(Fault fault, double measured) noexcept HSP_RT {
   const Fault before = fault_.get();
+  if (fault != Fault::kNone) cleared_ = false;  // there is more to clear
   if (fault == Fault::kNone || (before != Fault::kNone && (endsByItself(fault) || !endsByItself(before)))) return;
   measured_ = measured;
   if (before != Fault::kNone) return fault_.set(fault);  // the force is on its way down already
@@ -181,6 +183,8 @@ void Limiter::recover() noexcept HSP_RT {
 }
 
 void Limiter::clear() noexcept HSP_RT {
+  cleared_ = fade_ > 0;
+  if (cleared_) return;  // a force that is on its way down gets there first
   fault_.set(Fault::kNone);
   ramp_ = 0;
 }

@@ -58,7 +58,7 @@ class Limiter {
   /// [rt] A fault that ends by itself is over: the force ramps in again. Others stay.
   void recover() noexcept HSP_RT;
 
-  /// [rt] Clears a latched fault by the user's order: the force ramps in again.
+  /// [rt] Clears a latched fault by the user's order: the force ramps in again, once it has ramped out.
   void clear() noexcept HSP_RT;
 
   Fault fault() const noexcept { return fault_.get(); }          ///< [any]
@@ -87,6 +87,7 @@ class Limiter {
   double measured_ = 0;
   bool enabled_ = true, button_was_down_ = true;  // a toggle must be pressed, not be found pressed
   bool clipped_ = false;                          // in this tick
+  bool cleared_ = false;                          // by the user, while the force was still on its way down
   double heat_factor_ = 1, impulse_ = 0;
   Clips clips_;
   Vector3d velocity_ = Vector3d::Zero();

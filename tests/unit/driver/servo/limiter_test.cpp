@@ -245,9 +245,39 @@ TEST(Limiter, KeepsTheFirstFaultUntilTheUserClearsIt) {
   limiter.trip(Fault::kDeviceLost);
   limiter.trip(Fault::kStale);
   EXPECT_EQ(limiter.fault(), Fault::kDeviceLost);
+  while (!limiter.silent()) limited(limiter, {1, 0, 0});
   limiter.clear();
   EXPECT_EQ(limiter.fault(), Fault::kNone);
   EXPECT_GT(limited(limiter, {1, 0, 0}).norm(), 0);
+}
+
+TEST(Limiter, AFaultClearedOnItsWayDownGetsThereWithoutAStep) {
+  Limiter limiter(generous(), 8.5);
+  double last = 0;
+  for (int i = 0; i < 2000; ++i) last = limited(limiter, {2, 0, 0}).norm();
+  limiter.trip(Fault::kStopped);
+  const double step = last - limited(limiter, {2, 0, 0}).norm();
+  limiter.clear();
+  last -= step;
+  while (limiter.fault() != Fault::kNone) {
+    const double force = limited(limiter, {2, 0, 0}).norm();
+    ASSERT_LE(force, last);
+    ASSERT_LE(last - force, 1.01 * step);
+    last = force;
+  }
+  EXPECT_EQ(last, 0);
+  EXPECT_GT(limited(limiter, {2, 0, 0}).norm(), 0) << "it was cleared";
+}
+
+TEST(Limiter, AFaultAfterTheUsersOrderStaysLatched) {
+  Limiter limiter(generous(), 8.5);
+  for (int i = 0; i < 2000; ++i) limited(limiter, {2, 0, 0});
+  limiter.trip(Fault::kStopped);
+  limited(limiter, {2, 0, 0});
+  limiter.clear();
+  limiter.trip(Fault::kTooFast);
+  for (int i = 0; i < 100; ++i) limited(limiter, {2, 0, 0});
+  EXPECT_TRUE(limiter.silent());
 }
 
 TEST(Limiter, SpeedThatIsNotANumberIsTooFast) {
