@@ -54,7 +54,7 @@ class MatDeformable final : public Shape {
         F::real("friction_dynamic", &T::friction_dynamic_, "", 0, 10, 0, "mu_d: of a sliding probe"),
         F::real("viscosity", &T::viscosity_, "N s/m", 0, 100, 0, "drag along the surface in contact"),
         F::choice("volume", &T::volume_, kSwitchNames, 0,
-                  "on: what a press pushes in comes out all round, so that the volume stays", HSP_P_ACCURACY),
+                  "on: what a press pushes in comes out all round, so that the volume stays"),
         F::real("stiffness", &T::stiffness_, "N/m", 0, 1e6, 300, "of a medial mesh whose file has none (.ma)"),
         F::real("damping", &T::damping_, "N s/m", 0, 1e6, 0.5, "likewise"),
         F::real("mass", &T::mass_, "kg", 0, 1e6, 0.01, "of a vertex, likewise"),
