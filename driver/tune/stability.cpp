@@ -60,9 +60,18 @@ void judgeHeat(const scene::Device& device, const hdv_info& info, scene::Problem
 
 }  // namespace
 
+scene::Problems idleSettings(const scene::Scene& scene) {
+  scene::Problems problems;
+  if (scene.servo.pace == scene::Pace::kDevice)
+    scene::report(problems, scene.file.string(), 0, 0, "servo.pace",
+                  "device has no effect in this version: the clock drives the loop, and each tick takes the newest "
+                  "sample; expected clock");
+  return problems;
+}
+
 scene::Problems unstableSettings(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
                                  const std::vector<double>& stiffness) {
-  scene::Problems problems;
+  scene::Problems problems = idleSettings(scene);
   const double period = 1 / scene.servo.rate;
   const double alone =
       info.mass_kg > 0 ? passivity::maxStiffnessAlone(info.mass_kg, windowOf(scene.servo.velocity), period) : 0;

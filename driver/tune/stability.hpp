@@ -9,6 +9,9 @@
 
 namespace hapticd::tune {
 
+/// [main] Settings that this version reads and does not obey; part of unstableSettings(), and true whatever the arm.
+scene::Problems idleSettings(const scene::Scene& scene);
+
 /// [main] What to warn of: a stiffness beyond what the device was found to bear, or beyond what its mass bears by
 /// itself at this rate and with this window of the velocity estimator (Colgate & Schenkel 1997 give the bound with
 /// damping); a force step of one count that a hand feels as buzz; a budget beyond the period; a rate beyond the

@@ -53,6 +53,12 @@ TEST(UnstableSettings, NameTheBoundAndTheNearestSetting) {
   EXPECT_NE(text.find("models[0]"), std::string::npos) << text;
 }
 
+TEST(UnstableSettings, SayThatThePaceOfTheDeviceDoesNothingYet) {
+  Case paced;
+  paced.scene.servo.pace = scene::Pace::kDevice;
+  EXPECT_NE(paced.told(800).find("servo.pace: device has no effect"), std::string::npos) << paced.told(800);
+}
+
 TEST(UnstableSettings, SayThatAWindowIsTooLong) {
   Case slow;
   slow.scene.servo.velocity = {"window", 15};
