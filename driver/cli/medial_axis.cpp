@@ -19,7 +19,7 @@ constexpr double kShrunk = 1e-9;               ///< relative change of a radius 
 constexpr std::size_t kMostCandidates = 6000;  ///< balls that may be kept
 constexpr std::size_t kMostCovered = 12000;    ///< samples that are to be covered
 constexpr int kChecks = 8;                     ///< spheres looked at along an edge
-constexpr double kEnough = 0.9995;             ///< share of the samples at which covering ends
+constexpr double kFlatCosine = 0.94;  ///< of 20 degrees: triangles that meet flatter stand for a smooth surface
 
 struct Ball {
   Vector3d center;
@@ -74,8 +74,7 @@ std::vector<Ball> cover(const std::vector<Ball>& candidates, const std::vector<V
   std::vector<std::pair<std::ptrdiff_t, std::size_t>> heap;
   for (std::size_t b = 0; b < candidates.size(); ++b) heap.emplace_back(gain(b), b);
   std::make_heap(heap.begin(), heap.end());
-  while (!heap.empty() && static_cast<int>(kept.size()) < options.most_spheres &&
-         static_cast<double>(points.size() - left) < kEnough * static_cast<double>(points.size())) {
+  while (!heap.empty() && static_cast<int>(kept.size()) < options.most_spheres && left > 0) {
     std::pop_heap(heap.begin(), heap.end());
     const auto [old, b] = heap.back();
     heap.pop_back();
@@ -214,6 +213,37 @@ void join(const std::vector<Ball>& kept, const std::vector<Ball>& witnesses, con
   axis.edges.assign(edges.begin(), edges.end());
 }
 
+/// The normal at each corner of each triangle: the mean, weighted by angle, of the triangles about it that are no edge
+/// away from this one. With the flat triangle's own, a ball between two feet 60 degrees apart is off by three times the
+/// turn from facet to facet, times its radius.
+std::vector<std::array<Vector3d, 3>> cornerNormals(const Triangles& mesh) {
+  struct Fan {
+    Vector3d normal;
+    double angle;
+  };
+  const auto fanOf = [&mesh](const std::array<uint32_t, 3>& c, std::size_t k) {
+    const Vector3d &p = mesh.points[c[k]], a = mesh.points[c[(k + 1) % 3]] - p, b = mesh.points[c[(k + 2) % 3]] - p;
+    const Vector3d normal = a.cross(b);
+    return Fan{normal.normalized(), std::atan2(normal.norm(), a.dot(b))};
+  };
+  std::vector<std::vector<Fan>> about(mesh.points.size());
+  for (const auto& c : mesh.corners)
+    for (std::size_t k = 0; k < 3; ++k) about[c[k]].push_back(fanOf(c, k));
+  std::vector<std::array<Vector3d, 3>> normals;
+  for (const auto& c : mesh.corners) {
+    std::array<Vector3d, 3> corner;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vector3d own = fanOf(c, k).normal;
+      corner[k] = 1e-9 * own;
+      for (const Fan& fan : about[c[k]])
+        if (fan.normal.dot(own) > kFlatCosine) corner[k] += fan.angle * fan.normal;
+      corner[k].normalize();
+    }
+    normals.push_back(corner);
+  }
+  return normals;
+}
+
 }  // namespace
 
 SurfaceSamples sampleSurface(const Triangles& mesh, std::size_t count) {
@@ -227,6 +257,7 @@ SurfaceSamples sampleSurface(const Triangles& mesh, std::size_t count) {
   }
   if (!(area > 0)) return samples;
   samples.spacing = std::sqrt(area / static_cast<double>(count));
+  const auto normals = cornerNormals(mesh);
   std::size_t t = 0;
   double r = .5, s = .5;
   for (std::size_t k = 0; k < count; ++k) {
@@ -236,8 +267,10 @@ SurfaceSamples sampleSurface(const Triangles& mesh, std::size_t count) {
     r = std::fmod(r + kFirst, 1);
     s = std::fmod(s + kSecond, 1);
     const bool beyond = r + s > 1;
-    samples.points.push_back(mesh.points[c[0]] + (beyond ? 1 - r : r) * a + (beyond ? 1 - s : s) * b);
-    samples.normals.push_back(a.cross(b).normalized());
+    const double x = beyond ? 1 - r : r, y = beyond ? 1 - s : s;
+    samples.points.push_back(mesh.points[c[0]] + x * a + y * b);
+    const Vector3d normal = (1 - x - y) * normals[t][0] + x * normals[t][1] + y * normals[t][2];
+    samples.normals.push_back(normal.normalized());
   }
   return samples;
 }
