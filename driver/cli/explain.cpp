@@ -71,10 +71,11 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
     const host::ShapeInstance& shape = *world.shapes()[i];
     const hsp_report& report = shape.report();
     std::printf("  %s  (%s, %s)\n", model.name.c_str(), model.plugin.c_str(), where(model.place).c_str());
-    const std::string surfaces =
-        shape.surfaces() != nullptr
-            ? std::to_string(shape.surfaces()->surface_count) + " surfaces, traced while within the activation radius"
-            : "traces itself, every tick";
+    const uint32_t count = shape.surfaces() != nullptr ? shape.surfaces()->surface_count : 0;
+    const std::string surfaces = shape.surfaces() != nullptr
+                                     ? std::to_string(count) + (count == 1 ? " surface" : " surfaces") +
+                                           ", traced while within the activation radius"
+                                     : "traces itself, every tick";
     say("  surfaces", surfaces);
     say("  motion", (report.flags & HSP_R_MOVES) != 0 ? "moves by itself: integrated every tick"
                     : model.kinematic ? "follows " + std::to_string(model.path.size()) + " points of a path"
