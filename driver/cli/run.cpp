@@ -1,6 +1,7 @@
 /// `hapticd run`: the daemon itself, in the foreground.
 #include <unistd.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -32,11 +33,23 @@ struct Options {
 
 const Nanoseconds program_start = monotonicNow();  ///< when the libraries were loaded
 
-servo::Runner* running = nullptr;  ///< for the signal handler; set before it is installed
+std::atomic<servo::Runner*> running{nullptr};  ///< for the signal handler; set before it is installed
 
 void onStop(int) {
-  if (running != nullptr) running->stop();
+  if (servo::Runner* runner = running.load()) runner->stop();
 }
+
+/// Ctrl-C and SIGTERM end this run as long as one lives; a second one, while the first ends it, finds no run any more.
+class StopBySignal {
+ public:
+  explicit StopBySignal(servo::Runner& runner) {
+    running = &runner;
+    os::onStopSignal(onStop);
+  }
+  ~StopBySignal() { running = nullptr; }
+  StopBySignal(const StopBySignal&) = delete;
+  StopBySignal& operator=(const StopBySignal&) = delete;
+};
 
 /// A file that cannot be written must be known before the run, not after.
 bool writable(const std::string& file) {
@@ -182,8 +195,7 @@ int run(const Options& options) {
   auto runner = servo::Runner::prepare(*scene, how, std::move(*world), logToTerminal);
   if (!runner) return fail(kFailed, runner.error());
   warnOfSettings(**runner, how.rate);
-  running = runner->get();
-  os::onStopSignal(onStop);
+  const StopBySignal stop(**runner);
   if (outside) outside->serve(**runner, options.device);
 
   const bool terminal = isatty(STDERR_FILENO) != 0;

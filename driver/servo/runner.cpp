@@ -1,7 +1,9 @@
 #include "servo/runner.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 
 #include "base/os.hpp"
 #include "servo/about.hpp"
@@ -16,8 +18,9 @@ namespace hapticd::servo {
 namespace {
 
 constexpr Nanoseconds kStatusPeriod = 200'000'000;
-constexpr uint64_t kReadyTicks = 2;       ///< the servo lives: the service manager may say so
-constexpr uint64_t kDryCycles = 2000;     ///< with motors off, to judge the machine before a hand relies on it
+constexpr Nanoseconds kReadyPoll = 1'000'000;
+constexpr uint64_t kReadyTicks = 2;          ///< the servo lives: the service manager may say so
+constexpr uint64_t kDryCycles = 2000;        ///< with motors off, to judge the machine before a hand relies on it
 constexpr uint64_t kLongestRunUs = 100'000;  ///< of CPU time without sleep; a tick takes a hundredth of it
 
 /// Handles crashes of plugins while one lives. The sanitizers have handlers of their own.
@@ -77,11 +80,13 @@ std::string describe(const ModelState& model) {
       return who + "answered status " + std::to_string(model.failed_status) +
              ", which a step may not answer; it was silenced";
     case Trouble::kOverrun:
-      return who + "took longer than all shapes may take in a tick, again and again; it was silenced; measure it with: "
-                   "hapticd plugin check FILE.so";
+      return who +
+             "took longer than all shapes may take in a tick, again and again; it was silenced; measure it with: "
+             "hapticd plugin check FILE.so";
     case Trouble::kJump:
-      return who + "answered forces that jumped beyond the stiffness it claims; it was silenced; look at it with: "
-                   "hapticd plugin check FILE.so";
+      return who +
+             "answered forces that jumped beyond the stiffness it claims; it was silenced; look at it with: "
+             "hapticd plugin check FILE.so";
   }
   return "";
 }
@@ -117,7 +122,8 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
   std::unique_ptr<Runner> runner(new Runner(scene, options));
   runner->world_ = std::move(world);
   if (auto opened = runner->openArms(log); !opened)
-    return Error{opened.error() + (options.virtual_time ? "\n  note: --virtual-time takes simulated devices only" : "")};
+    return Error{opened.error() +
+                 (options.virtual_time ? "\n  note: --virtual-time takes simulated devices only" : "")};
   if (options.virtual_time && !runner->onlySimulated())
     return Error{
         "--virtual-time runs faster than any clock, and the scene names real hardware; expected simulated devices "
@@ -181,8 +187,8 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every) {
   const Nanoseconds begun = monotonicNow();
   ServoWatch watched(*loop_, *world_, arms_, *telemetry_);
   const CrashGuard crash(watched, options_.state_dir);
+  os::prepareSignalStack();  // this thread may search, which runs plugins
   if (options_.virtual_time) {
-    os::prepareSignalStack();
     loop_->run();
   } else {
     done = runReal(watched, every);
@@ -204,17 +210,22 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   watch::Watchdog watchdog(watched, [] { watch::dieOf("a step that did not come back"); });
   if (const auto code = watchdog.start(options_.priority + 1))
     return Error{"cannot start the watchdog thread: " + code.message()};
+  std::vector<std::string> refused;  // the servo thread's until `ready`, then this thread's
+  const bool anyhow = onlySimulated() || options_.allow_non_rt, locked = warnings_.empty();
   os::Thread servo;
-  const auto code = servo.start("hapticd-servo", [this, &ready] {
+  const auto code = servo.start("hapticd-servo", [this, &ready, &refused, anyhow, locked] {
     host::Services::markServoThread();
-    enterRealTime();
+    refused = enterRealTime();
     os::prepareSignalStack();
     os::prefaultStack();
+    const bool runs = anyhow || (locked && refused.empty());
     ready = true;
-    if (warnings_.empty() || onlySimulated() || options_.allow_non_rt) loop_->run();
+    if (runs) loop_->run();
   });
   if (code) return Error{"cannot start the servo thread: " + code.message() + "\n  " + os::realTimeRights()};
   RealClock clock(0);
+  while (!ready) clock.waitUntil(clock.now() + kReadyPoll);
+  std::move(refused.begin(), refused.end(), std::back_inserter(warnings_));
   watch::Feeder feeder;
   bool told = false;
   for (Nanoseconds status_due = 0; !loop_->finished();) {
@@ -222,7 +233,7 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
       status_due = clock.now() + kStatusPeriod;
       if (!told && loop_->ticks() > kReadyTicks) told = watch::notify(readyMessage(*loop_)) || true;
       feeder.feed(clock.now(), loop_->ticks());
-      if (ready && !warnings_.empty() && !onlySimulated() && !options_.allow_non_rt) break;
+      if (!warnings_.empty() && !anyhow) break;
       every(*this);
     }
     clock.waitUntil(clock.now() + proximity.turn(kStatusPeriod));
@@ -243,14 +254,15 @@ void Runner::lockMemory() {
                         "  fix: raise memlock to 524288 for the group haptic in /etc/security/limits.d");
 }
 
-void Runner::enterRealTime() {
+std::vector<std::string> Runner::enterRealTime() const {
+  std::vector<std::string> refused;
   if (options_.cpu)
     if (const auto code = os::pinTo(*options_.cpu))
-      warnings_.push_back("cannot pin the servo thread to CPU " + std::to_string(*options_.cpu) + ": " +
-                          code.message());
+      refused.push_back("cannot pin the servo thread to CPU " + std::to_string(*options_.cpu) + ": " + code.message());
   if (const auto code = os::setFifo(options_.priority))
-    warnings_.push_back(noFifo(options_.priority, code, !onlySimulated()));
+    refused.push_back(noFifo(options_.priority, code, !onlySimulated()));
   (void)os::limitRealTimeRun(kLongestRunUs);  // refused: the limit is lower already
+  return refused;
 }
 
 void Runner::nameModel(uint32_t place, const std::string& name, const std::string& plugin) {

@@ -79,7 +79,7 @@ class Runner {
   Result<void> openArms(const host::Services::Log& log);
   Result<void> runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every);
   void lockMemory();
-  void enterRealTime();
+  std::vector<std::string> enterRealTime() const;  ///< servo thread. @return what was refused
   bool onlySimulated() const;
 
   scene::Scene scene_;
