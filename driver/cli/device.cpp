@@ -1,4 +1,6 @@
 /// `hapticd device list|info`: modules, device files, what is plugged in, and the facts of one arm.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -101,6 +103,29 @@ void printHardware(host::DeviceInstance& device) {
                 info.max_torque[i]);
 }
 
+bool hasParameter(const hdv_class& module, const std::string& id) {
+  const auto* table = reinterpret_cast<const char*>(module.params);
+  for (uint32_t i = 0; i < module.param_count; ++i)
+    if (id == reinterpret_cast<const hsp_param*>(table + size_t{i} * module.params->struct_size)->id) return true;
+  return false;
+}
+
+/// What must be known before the arm is there: whether anybody tried its description, and whether its own weight is
+/// held.
+void printDoubts(const scene::Device& description, const host::DeviceInstance& device) {
+  constexpr const char* kVerified = "device.verified";
+  const bool tried = std::any_of(description.parameters.begin(), description.parameters.end(),
+                                 [](const scene::Value& value) { return value.id == kVerified && value.number != 0; });
+  if (hasParameter(device.description(), kVerified) && !tried) std::printf("  description not tried on hardware\n");
+  const hdv_ext_kinematics& kinematics = device.kinematics();
+  std::array<double, HDV_MAX_JOINTS> q, torque{};
+  q.fill(0.5);  // no special pose, where an arm may stand in balance
+  constexpr double kAnyway[3] = {4, -8, 3};
+  if (kinematics.gravity(device.handle(), q.data(), kAnyway, torque.data()) < 0) return;
+  if (std::all_of(torque.begin(), torque.end(), [](double t) { return t == 0; }))
+    std::printf("  no masses in its description: gravity is not compensated\n");
+}
+
 int info(const std::string& file, bool with_parameters) {
   const scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
   printProblems(loaded.problems, stderr);
@@ -116,6 +141,7 @@ int info(const std::string& file, bool with_parameters) {
   const Eigen::Quaterniond& q = description.mount.orientation;
   std::printf("  mount   position [%g, %g, %g] m, orientation [%g, %g, %g, %g]\n", p.x(), p.y(), p.z(), q.w(), q.x(),
               q.y(), q.z());
+  printDoubts(description, **device);
   printLimits(description.limits);
   printHardware(**device);
   if (with_parameters)

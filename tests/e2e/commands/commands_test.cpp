@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "run_program.hpp"
@@ -43,6 +45,8 @@ constexpr const char* kScene =
     "    plugin: test_shape\n"
     "    pose: {orientation: [1.0005, 0, 0, 0]}\n"
     "    parameters: {radius: 0.05, detent: [[0, 1], [2, 3]], inner: {mass: 2}}\n";
+/// The modules that ship, not those of tests alone.
+constexpr const char* kShipped = "HAPTICD_PLUGIN_PATH=" HAPTICD_BINARY_DIR "/" HAPTICD_MODULES "/devices";
 constexpr const char* kArm = "hapticd-device: 1\nmodule: test_device\nhand: {mass: 0.2}\n";
 
 TEST_F(Commands, EverySubcommandHasHelpWithAnExample) {
@@ -188,6 +192,62 @@ TEST_F(Commands, KinematicsGivesPoseJacobianAndTorques) {
   const Outcome wrong = run("device kinematics " + arm + " --joints " + put("wrong.csv", "q1,q2\n0,nan\n"));
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_TRUE(has(wrong.text, "wrong.csv:2:1: column 2")) << wrong.text;
+}
+
+TEST_F(Commands, CheckPlacesWhatADeviceModuleRefusesInTheFile) {
+  std::ifstream shipped(HAPTICD_SOURCE_DIR "/config/devices/sarcos.yaml");
+  std::string good((std::istreambuf_iterator<char>(shipped)), {});
+  const std::string window = "/dev/bus/vme/m0";
+  good.replace(good.find(window), window.size(), put("window", ""));
+  const auto problem = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    const size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+    const std::string file = put("sarcos.yaml", text);
+    const Outcome outcome = run("check " + file, kShipped);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.text;
+    // Where the value stands: its line, and its column after "key: ".
+    const size_t value = at + to.find(": ") + 2, line_start = text.rfind('\n', value) + 1;
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(value), '\n');
+    const std::string place = file + ":" + std::to_string(line) + ":" + std::to_string(value - line_start + 1) + ": ";
+    EXPECT_TRUE(has(outcome.text, place)) << place << "\n" << outcome.text;
+    return outcome.text;
+  };
+  EXPECT_TRUE(has(problem("rate: 1500", "rate: 900000"), "parameters.wire.rate: "));
+  EXPECT_TRUE(has(problem("exchange: stream", "exchange: pull"), "\"pull\", expected one of stream, poll"));
+  EXPECT_TRUE(has(problem("address: 0x100000", "address: 0x100001"), "expected a multiple of 64 KiB"));
+}
+
+TEST_F(Commands, DeviceInfoPrintsTheParametersWhenAsked) {
+  const std::string arm = put("arm.yaml", kArm);
+  const Outcome plain = run("device info " + arm), full = run("device info --parameters " + arm);
+  EXPECT_EQ(full.exit_code, 0) << full.text;
+  EXPECT_FALSE(has(plain.text, " gain")) << plain.text;
+  EXPECT_TRUE(has(full.text, " gain")) << full.text;
+}
+
+TEST_F(Commands, DeviceInfoSaysWhatNobodyTriedAlthoughNothingIsPluggedIn) {
+  for (const char* name : {"woodenhaptics", "polhem"}) {
+    const Outcome outcome =
+        run("device info " HAPTICD_SOURCE_DIR "/config/devices/" + std::string(name) + ".yaml", kShipped);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
+    EXPECT_TRUE(has(outcome.text, "not tried on hardware")) << outcome.text;
+    EXPECT_TRUE(has(outcome.text, "gravity is not compensated")) << outcome.text;
+  }
+}
+
+TEST_F(Commands, KinematicsWarnsOfJointsBeyondTheArmsLimits) {
+  const std::string arm = HAPTICD_SOURCE_DIR "/config/devices/woodenhaptics.yaml";
+  const Outcome inside =
+      run("device kinematics " + arm + " --joints " + put("in.csv", "q1,q2,q3\n0,1,1.5\n"), kShipped);
+  EXPECT_EQ(inside.exit_code, 0) << inside.text;
+  EXPECT_FALSE(has(inside.text, "warning")) << inside.text;
+  const Outcome outside =
+      run("device kinematics " + arm + " --joints " + put("out.csv", "q1,q2,q3\n0,1,1.5\n1.6,1,1.5\n"), kShipped);
+  EXPECT_EQ(outside.exit_code, 0) << outside.text;
+  EXPECT_TRUE(has(outside.text, "in 1 of 2 rows the tip is where the arm's joint limits do not let it"))
+      << outside.text;
 }
 
 TEST_F(Commands, ImportScalesCentresAndKeepsTheCredit) {
