@@ -1,6 +1,7 @@
 /// `hapticd ctl`: asks a running daemon.
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -17,12 +18,27 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct Options {
-  std::string name = "hapticd", model, device, parameter, file, line;
+  std::string name = "hapticd", model, device, parameter, file, line, obj;
   std::vector<double> position, orientation;
   std::optional<double> seconds;
-  double value = 0;
+  double value = 0, tolerance = 0;
   bool consent = false;
 };
+
+/// Writes the triangles of an answer.
+int saveObj(const Json& json, const std::string& file) {
+  std::ofstream out(file);
+  const Json &xyz = json.at("xyz"), &corners = json.at("triangles");
+  for (std::size_t i = 0; i + 2 < xyz.size(); i += 3)
+    out << "v " << xyz[i].dump() << " " << xyz[i + 1].dump() << " " << xyz[i + 2].dump() << "\n";
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3)
+    out << "f " << corners[i].get<uint32_t>() + 1 << " " << corners[i + 1].get<uint32_t>() + 1 << " "
+        << corners[i + 2].get<uint32_t>() + 1 << "\n";
+  if (!(out << std::flush))
+    return fail(kFailed, file + ": cannot be written, expected a file in a folder that you may write to");
+  std::printf("%s: %zu vertices, %zu triangles\n", file.c_str(), xyz.size() / 3, corners.size() / 3);
+  return kWorked;
+}
 
 int send(const Options& options, const std::string& line) {
   const std::string socket = status::runtimeFolder(false) + "/" + options.name + ".sock";
@@ -31,6 +47,7 @@ int send(const Options& options, const std::string& line) {
   const Json json = Json::parse(*answer, nullptr, false);
   if (!json.is_object()) return fail(kFailed, "the answer cannot be read: " + *answer);
   if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
+  if (!options.obj.empty()) return saveObj(json, options.obj);
   std::printf("%s\n", json.dump(2).c_str());
   return kWorked;
 }
@@ -46,6 +63,18 @@ CLI::App* addRequest(CLI::App& parent, const char* word, const char* doc, const 
     exit_code = send(*options, json.dump(-1, ' ', false, Json::error_handler_t::replace));
   });
   return command;
+}
+
+void addGeometryRequest(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
+  CLI::App* geometry =
+      addRequest(ctl, "geometry", "Triangles of a model as it looks now: a soft body as it is pressed.", options,
+                 exit_code, [options](Json& json) {
+                   json["model"] = options->model;
+                   if (options->tolerance > 0) json["tolerance"] = options->tolerance;
+                 });
+  geometry->add_option("model", options->model, "its name")->required();
+  geometry->add_option("--obj", options->obj, "write an OBJ file, in the model's frame, instead of printing JSON");
+  geometry->add_option("--tolerance", options->tolerance, "chord error in m; 0: 5/1000 of the model's size");
 }
 
 std::string absolute(const std::string& file) {
@@ -116,6 +145,7 @@ void addCtl(CLI::App& app, int& exit_code) {
   addModelRequests(*ctl, options, exit_code);
   addSceneRequests(*ctl, options, exit_code);
   addDeviceRequests(*ctl, options, exit_code);
+  addGeometryRequest(*ctl, options, exit_code);
   addRequest(*ctl, "dump", "Write the black box: the last 10 s of every tick.", options, exit_code, nothing);
   addRequest(*ctl, "stop", "End the run in order.", options, exit_code, nothing);
   ctl->footer("Example:\n  hapticd ctl set teapot stiffness 600 --consent");

@@ -14,7 +14,8 @@ using Kind = Request::Kind;
 
 constexpr int kMaxDepth = 8;
 constexpr size_t kMaxText = 4096;
-constexpr double kMaxPlace = 10;  ///< [m] no arm reaches farther
+constexpr double kMaxPlace = 10;         ///< [m] no arm reaches farther
+constexpr double kFinestDrawing = 1e-5;  ///< [m] no screen shows less
 
 /// What a request may and must say. Keys in the order: what it needs, then what it may have.
 struct Form {
@@ -23,8 +24,8 @@ struct Form {
   std::set<std::string> needs, may;
 };
 
-const std::array<Form, 13>& forms() {
-  static const std::array<Form, 13> all = {{{"status", Kind::kStatus, {}, {}},
+const std::array<Form, 14>& forms() {
+  static const std::array<Form, 14> all = {{{"status", Kind::kStatus, {}, {}},
                                             {"list", Kind::kList, {}, {}},
                                             {"enable", Kind::kEnable, {"model"}, {}},
                                             {"disable", Kind::kDisable, {"model"}, {}},
@@ -36,6 +37,7 @@ const std::array<Form, 13>& forms() {
                                             {"hold", Kind::kHold, {}, {"device"}},
                                             {"clear", Kind::kClear, {}, {"device"}},
                                             {"dump", Kind::kDump, {}, {}},
+                                            {"geometry", Kind::kGeometry, {"model"}, {"tolerance"}},
                                             {"stop", Kind::kStop, {}, {}}}};
   return all;
 }
@@ -151,6 +153,7 @@ Result<Request> parseRequest(std::string_view line) {
   take.text("parameter", request.parameter);
   take.text("file", request.file);
   take.number("value", -1e300, 1e300, request.value);
+  take.number("tolerance", kFinestDrawing, 1, request.tolerance);
   take.flag("consent", request.consent);
   take.numbers("position", kMaxPlace, request.position);
   readOrientation(take, request);

@@ -25,11 +25,13 @@ struct Request {
     kHold,
     kClear,
     kDump,
+    kGeometry,
     kStop
   };
   Kind kind = Kind::kStatus;
   std::string model, device, parameter, file;     ///< as the kind needs them
   double value = 0;                               ///< kSet
+  double tolerance = 0;                           ///< [m] kGeometry: chord error; 0: as the daemon chooses
   bool consent = false;                           ///< kSet: the operator agrees to change what is felt
   std::array<double, 3> position{};               ///< [m] kMove, world frame
   std::array<double, 4> orientation{1, 0, 0, 0};  ///< kMove: unit quaternion w,x,y,z

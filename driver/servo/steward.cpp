@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/nearest.hpp"
+#include "servo/drawing.hpp"
 
 namespace hapticd::servo {
 
@@ -113,6 +114,11 @@ Result<std::string> Steward::obey(const Request& request) {
       auto file = dump("asked for");
       if (!file) return Error{file.error()};
       return text({{"ok", true}, {"file", *file}});
+    }
+    case Request::Kind::kGeometry: {
+      const auto place = placeOf(request.model);
+      if (!place) return Error{place.error()};
+      return drawingOf(*runner_.world().shapes()[*place], request.tolerance);
     }
     case Request::Kind::kStop:
       runner_.stop();

@@ -10,7 +10,8 @@ TEST(Request, TakesWhatTheManualSays) {
        {R"({"do":"status"})", R"({"do":"list"})", R"({"do":"dump"})", R"({"do":"stop"})", R"({"do":"reload"})",
         R"({"do":"enable","model":"a"})", R"({"do":"disable","model":"a"})", R"({"do":"remove","model":"a"})",
         R"({"do":"add","file":"/a.yaml"})", R"({"do":"add","file":"/a.yaml","model":"b"})", R"({"do":"hold"})",
-        R"({"do":"clear","device":"arm"})"})
+        R"({"do":"clear","device":"arm"})", R"({"do":"geometry","model":"a"})",
+        R"({"do":"geometry","model":"a","tolerance":0.001})"})
     EXPECT_TRUE(parseRequest(line)) << line;
   const auto set = parseRequest(R"({"do":"set","model":"a","parameter":"k","value":600,"consent":true})");
   ASSERT_TRUE(set);
@@ -44,6 +45,8 @@ TEST(Request, SaysWhatIsWrongAndWhatWasExpected) {
       {R"({"do":"move","model":"a","position":[0,0,0],"orientation":[1,1,0,0]})", "unit quaternion"},
       {R"({"do":"move","model":"a","position":[0,0,0],"seconds":0})", "from 0.05"},
       {R"({"do":"add","file":"a.yaml"})", "absolute path"},
+      {R"({"do":"geometry"})", "\"model\" is missing"},
+      {R"({"do":"geometry","model":"a","tolerance":0})", "\"tolerance\": expected a number"},
       {R"({"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":1}}}}}}}}}})", "JSON object"}};
   for (const auto& [line, part] : wrong) {
     const auto request = parseRequest(line);

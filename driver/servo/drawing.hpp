@@ -1,0 +1,15 @@
+/// A model as it looks now, for a viewer at the other end of the control socket.
+#pragma once
+#include <string>
+
+#include "base/result.hpp"
+#include "host/shape_instance.hpp"
+
+namespace hapticd::servo {
+
+/// [main] The triangles of an active model in its own frame, a soft body's as it is pressed now: one line of JSON with
+/// xyz [m] and triangles, both flat lists. @param tolerance chord error [m]; 0: 5/1000 of the model's size. Fails
+/// where the model has no triangles, or more than one answer may hold.
+Result<std::string> drawingOf(const host::ShapeInstance& shape, double tolerance);
+
+}  // namespace hapticd::servo

@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""A soft body of a running daemon is drawn as it is pressed: `hapticd ctl geometry`.
+
+Usage: draw_a_body.py HAPTICD CONFIG     prints a line a case; exit 1 when one is off.
+"""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+HAPTICD, CONFIG = sys.argv[1], os.path.abspath(sys.argv[2])
+failures = 0
+
+
+def check(name, good, told=""):
+    global failures
+    failures += not good
+    print("ok  " if good else "FAIL", name, "" if good else told, flush=True)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
+
+    def ctl(*arguments):
+        done = subprocess.run([HAPTICD, "ctl", "--name", "drawn", *arguments], env=environment, capture_output=True,
+                              text=True, timeout=30)
+        return done.returncode, done.stdout, done.stderr
+
+    scene = os.path.join(folder, "pressed.yaml")  # the front of the plate is at z = 30 mm
+    with open(scene, "w", encoding="utf-8") as out:
+        out.write(f"hapticd: 1\nservo: {{rate: 1000}}\nhand: {{script: press, radius: 0.033, rise: 0.01, rate: 0.5}}\n"
+                  f"models:\n  - name: plate\n    plugin: mat_deformable\n    pose: {{position: [0, 0, 0.02]}}\n"
+                  f"    parameters: {{geometry: {os.path.join(CONFIG, 'models', 'soft-plate.yaml')}}}\n")
+    run = subprocess.Popen([HAPTICD, "run", scene, "--for", "100", "--name", "drawn"],
+                           env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        end = time.monotonic() + 60
+        while time.monotonic() < end and run.poll() is None and ctl("status")[0] != 0:
+            time.sleep(0.1)
+        check("the daemon answers", run.poll() is None and ctl("status")[0] == 0, ctl("status"))
+        end = time.monotonic() + 30
+        seen, moved, drawn = None, 0, {"xyz": [], "triangles": [0]}
+        while time.monotonic() < end and moved < 5e-4:
+            code, out, err = ctl("geometry", "plate", "--tolerance", "0.001")
+            if code != 0:
+                check("the body is drawn", False, err)
+                break
+            drawn = json.loads(out)
+            seen = seen or drawn
+            moved = max(abs(a - b) for a, b in zip(seen["xyz"], drawn["xyz"]))
+            time.sleep(0.05)
+        check("its vertices move when it is pressed", moved >= 5e-4, moved)
+        seen = seen or drawn
+        check("its triangles stay and join its vertices",
+              drawn["triangles"] == seen["triangles"] and max(drawn["triangles"]) < len(drawn["xyz"]) // 3)
+        file = os.path.join(folder, "plate.obj")
+        code, out, err = ctl("geometry", "plate", "--tolerance", "0.001", "--obj", file)
+        lines = open(file, encoding="utf-8").read().splitlines() if code == 0 else []
+        check("an OBJ file holds the same triangles", sum(line[0] == "v" for line in lines) == len(seen["xyz"]) // 3 and
+              [int(w) - 1 for line in lines if line[0] == "f" for w in line.split()[1:]] == seen["triangles"], err)
+        check("a rigid model is added", ctl("add", os.path.join(CONFIG, "scenes", "teapot.yaml"))[0] == 0)
+        check("it is drawn as well", len(json.loads(ctl("geometry", "teapot")[1] or "{}").get("triangles", [])) > 1000)
+        for arguments, why in ((("geometry", "nobody"), "no model"), (("geometry", "plate", "--tolerance", "2"), "from 1e-05"),
+                               (("geometry", "teapot", "--tolerance", "0.00001"), "coarser")):
+            code, out, err = ctl(*arguments)
+            check(" ".join(arguments) + " is refused with its reason", code == 1 and why in err, (code, out[:200], err))
+        code, out, err = ctl("stop")
+        check("the run ends in order", code == 0 and run.wait(timeout=30) == 0, err)
+    finally:
+        run.kill()
+sys.exit(1 if failures else 0)
