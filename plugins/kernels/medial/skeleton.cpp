@@ -102,6 +102,36 @@ void Skeleton::measure() {
   }
 }
 
+Steepness Skeleton::steepest() const {
+  constexpr int kLooks = 4;            // a cell, each way
+  constexpr double kCollapsed = 1e-9;  // of the trace squared: a pole, without a direction across
+  Steepness most;
+  const auto look = [&](double u, double v) {
+    spline::SurfacePoint s;
+    surface_->evaluate1(u, v, s);
+    const ScalarField::Value r = radius_.evaluate(u, v);
+    const double a = s.Su.squaredNorm(), b = s.Su.dot(s.Sv), c = s.Sv.squaredNorm(), area2 = a * c - b * b;
+    double square = 0;
+    if (curve_) {
+      if (c > 0) square = r.fv * r.fv / c;
+    } else if (area2 > kCollapsed * (a + c) * (a + c)) {
+      square = (c * r.fu * r.fu - 2 * b * r.fu * r.fv + a * r.fv * r.fv) / area2;
+    }
+    if (square > most.slope * most.slope) most = {std::sqrt(square), u, v};
+  };
+  const auto places = [](const std::vector<double>& t) {
+    std::vector<double> all;
+    for (std::size_t i = 0; i + 1 < t.size(); ++i)
+      for (int k = 0; k < kLooks; ++k) all.push_back(t[i] + (t[i + 1] - t[i]) * k / kLooks);
+    all.push_back(t.back());
+    return all;
+  };
+  const std::vector<double> along = places(parameters_[1]);
+  for (const double u : curve_ ? std::vector<double>{0} : places(parameters_[0]))
+    for (const double v : along) look(u, v);
+  return most;
+}
+
 std::size_t Skeleton::bytes() const noexcept {
   std::size_t sum = sizeof *this + surface_->bytes() + radius_.bytes() + control_.points.capacity() * sizeof(Vector3d);
   for (std::size_t a = 0; a < 2; ++a)

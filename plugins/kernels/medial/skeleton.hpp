@@ -53,6 +53,12 @@ struct ControlGrid {
   std::vector<Eigen::Vector3d> points;                 ///< [m]
 };
 
+/// Where radii change most along a skeleton.
+struct Steepness {
+  double slope = 0;     ///< metres of radius a metre of skeleton; from 1 on spheres are swallowed by their neighbours
+  double u = 0, v = 0;  ///< there
+};
+
 class Skeleton {
  public:
   /// [main] Interpolates the grid with degree at most `degree` each way.
@@ -73,6 +79,9 @@ class Skeleton {
   const ScalarField& radius() const noexcept { return radius_; }
   bool curve() const noexcept { return curve_; }                          ///< one row of points
   const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }  ///< of all spheres
+  /// [main] Looks between all points of the grid. A body is right where the slope is below 1; from there on what was
+  /// given is not the medial axis of anything, and searches may end in spheres inside others.
+  Steepness steepest() const;
   const std::array<std::vector<double>, 2>& parameters() const noexcept { return parameters_; }
   double spacing() const noexcept { return spacing_; }  ///< [m] greatest distance of neighbouring points
   const ControlGrid& control() const noexcept { return control_; }

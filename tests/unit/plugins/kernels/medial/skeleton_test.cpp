@@ -167,6 +167,26 @@ TEST(ScalarField, EqualSamplesTakeNoMemory) {
   EXPECT_EQ(field.evaluate2(.3, .3).f, 3.5);
 }
 
+TEST(Skeleton, TellsWhereRadiiChangeFasterThanCentresMoveApart) {
+  for (const Sheet& sheet : test::sheets()) {
+    EXPECT_EQ(test::build(sheet, false).steepest().slope, 0) << sheet.name;
+    const Steepness steep = test::build(sheet, true).steepest();
+    if (std::string(sheet.name) == "nearly degenerate") {  // 4 mm of radius over an edge of 2 mm
+      EXPECT_GT(steep.slope, 1.5);
+      EXPECT_LT(steep.u, .01);
+    } else {
+      EXPECT_LT(steep.slope, 1) << sheet.name;
+    }
+  }
+  SkeletonGrid cone;
+  cone.count = {1, 5};
+  for (int j = 0; j < 5; ++j) {
+    cone.points.emplace_back(.02 * j, 0, 0);
+    cone.radius.push_back(.01 + .006 * j);
+  }
+  EXPECT_NEAR(Skeleton(cone).steepest().slope, .3, 1e-6);
+}
+
 TEST(Skeleton, RefusesWhatIsNoGrid) {
   SkeletonGrid grid;
   grid.count = {1, 1};
