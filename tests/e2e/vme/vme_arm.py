@@ -6,13 +6,15 @@ Usage: vme_arm.py HAPTICD VME_BOARD SOURCE_DIR MODULE_DIR
 """
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
 
 HAPTICD, BOARD, SOURCE, MODULES = sys.argv[1:5]
 CONFIG = pathlib.Path(SOURCE) / "config"
-TRIES = 4  # a machine that stands still for 15 ms in a real-time run without rights is no fault of ours
+TRIES = 12  # of a machine that stands still in the middle of a real-time run; any other failure counts at once
+LATE = 2e-3  # [s] the watchdog cuts a tick that is 3 ms old, and the board looks every 0.67 ms
 
 
 def device(folder, window):
@@ -44,6 +46,17 @@ def run(folder, arm, seconds, *more, admittance=False):
     return done, json.loads(report.read_text())
 
 
+told = []  # what each board said at its end
+
+
+def late(report):
+    """How the machine held up the daemon or the board; "": it did not."""
+    worst = report["lateness_us"]["max"] * 1e-6
+    board = float(re.search(r"longest cycle ([\d.]+) ms", told[-1])[1]) * 1e-3
+    held_up = worst > LATE or report["missed_ticks"] > 0 or report["compute_us"]["max"] * 1e-6 > LATE or board > LATE
+    return f"a tick {worst * 1e3:.1f} ms late, a board's cycle of {board * 1e3:.1f} ms" if held_up else ""
+
+
 def with_board(folder, seconds, *fault, admittance=False):
     window = folder / "window"
     board = subprocess.Popen([BOARD, window, "--arm", CONFIG / "devices/simulated-sarcos.yaml", "--plugin-path", MODULES,
@@ -53,8 +66,8 @@ def with_board(folder, seconds, *fault, admittance=False):
         return run(folder, device(folder, window), seconds, "--allow-non-rt", admittance=admittance)
     finally:
         board.terminate()
-        said = board.communicate()[0]
-        assert "commands" in said, said
+        told.append(board.communicate()[0])
+        assert "commands" in told[-1], told[-1]
 
 
 def contact(report):
@@ -70,10 +83,12 @@ def alike(found, measure):
 
 def attempt(what, check):
     for _ in range(TRIES):
-        problem = check()
+        problem, report = check()
         if not problem:
-            return print(f"{what}: ok")
-        print(f"{what}: once more: {problem}")
+            return print(f"{what}: ok", flush=True)
+        if not (excuse := late(report)):
+            break
+        print(f"{what}: once more, the machine was late ({excuse}): {problem}", flush=True)
     sys.exit(f"{what}: {problem}")
 
 
@@ -86,18 +101,19 @@ def main():
         def strokes(admittance):
             done, report = with_board(folder, 4, admittance=admittance)
             if done.returncode != 0 or report["faults"]:
-                return done.stdout + done.stderr
+                return done.stdout + done.stderr, report
             if not alike(contact(report), measure[admittance]):
-                return f"contact {contact(report)}, of the simulated arm {measure[admittance]}"
-            return ""
+                return f"contact {contact(report)}, of the simulated arm {measure[admittance]}", report
+            return "", report
 
         def falls_silent():
-            done, report = with_board(folder, 5, "--fault", "absent", "--at", "2.5", "--lasts", "0.3")
+            done, report = with_board(folder, 6, "--fault", "absent", "--at", "0.7", "--lasts", "0.3", "--in-force")
+            faults = report["faults"]
             if done.returncode != 0:
-                return done.stdout + done.stderr
-            if len(report["faults"]) != 1 or "nobody answers on the bus" not in report["faults"][0]:
-                return f"faults {report['faults']}"
-            return "" if "came back" in report["faults"][0] else report["faults"][0]
+                return done.stdout + done.stderr, report
+            if len(faults) != 1 or "nobody answers on the bus" not in faults[0] or "came back" not in faults[0]:
+                return f"faults {faults}", report
+            return "", report
 
         attempt("strokes a cylinder by force", lambda: strokes(False))
         attempt("strokes a cylinder by compliance", lambda: strokes(True))

@@ -1,10 +1,11 @@
 /// Runs an arm controller board on a slave window of a VME bus, or on a plain file that stands in for it.
 ///
-///   vme_board WINDOW --arm FILE [--plugin-path DIR] [--rate HZ] [--for S] [--fault NAME --at S --lasts S]
+///   vme_board WINDOW --arm FILE [--plugin-path DIR] [--rate HZ] [--for S] [--fault NAME --at S --lasts S [--in-force]]
 ///
 /// WINDOW: /dev/bus/vme/s0, or a file, which is made. FILE: a simulated arm of eight joints with its hand, such as
 /// config/devices/simulated-sarcos.yaml. NAME: silent, torn, corrupt, protocol, hydraulics, jump, half-rate, absent,
-/// restart. Says "ready" once its first state block is written, and at the end how many commands came.
+/// restart; with --in-force, S counts from the first torque that was ordered. Says "ready" once its first state block
+/// is written, and at the end how many commands came.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -30,6 +31,7 @@ struct Options {
   std::string window, arm, fault;
   std::vector<std::string> modules;
   double rate = 1500, duration = 1e9, at = 1, lasts = 0.5;
+  bool in_force = false;
 };
 
 const std::map<std::string, VmeFault> kFaults = {{"silent", VmeFault::kSilent},   {"torn", VmeFault::kTorn},
@@ -62,10 +64,11 @@ int serve(int fd, VmeBoard& board, const Options& options) {
   (void)!pwrite(fd, command.data(), command.size(), kCommand);
   uint64_t pushed = 0, cycles = 0, longest = 0;
   bool restarted = false;
-  Nanoseconds before = start;
+  Nanoseconds before = start, zero = options.in_force ? 0 : start;  // the faults' time; 0: it has not come
+  const auto since = [&](Nanoseconds now) { return zero == 0 ? -1.0 : static_cast<double>(now - zero) * 1e-9; };
   for (Nanoseconds due = start + period; g_stop == 0 && due < at(options.duration); due += period) {
     const Nanoseconds now = clock.waitUntil(due);
-    const bool wrong = !options.fault.empty() && now >= at(options.at) && now < at(options.at + options.lasts);
+    const bool wrong = !options.fault.empty() && since(now) >= options.at && since(now) < options.at + options.lasts;
     if (wrong && options.fault == "restart" && !restarted) board.restart(), restarted = true;
     board.spoil(wrong ? kFaults.at(options.fault) : VmeFault::kNone);
     if (pread(fd, command.data(), command.size(), kCommand) != static_cast<ssize_t>(command.size())) return 1;
@@ -73,6 +76,7 @@ int serve(int fd, VmeBoard& board, const Options& options) {
     if (board.cycle(command, state, static_cast<double>(now - before) * 1e-9) && !writeState(fd, state)) return 1;
     before = now;
     pushed += board.pushed() ? 1 : 0;
+    if (zero == 0 && board.pushed()) zero = now;
     if (++cycles == 1) std::printf("ready\n"), std::fflush(stdout);
     if (now > due + 50 * period) due = now;  // the machine held it up: no burst
   }
@@ -110,6 +114,7 @@ int main(int argc, char** argv) {
   app.add_option("--fault", options.fault)->check(CLI::IsMember(kFaults));
   app.add_option("--at", options.at);
   app.add_option("--lasts", options.lasts);
+  app.add_flag("--in-force", options.in_force);
   CLI11_PARSE(app, argc, argv);
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { g_stop = 1; });
   try {
