@@ -109,7 +109,8 @@ void explainServo(const scene::Scene& scene, const servo::World& world) {
 
 void explainSimulation(servo::World& world) {
   std::printf("simulation side\n");
-  const std::string every = "every 5 ms over " + std::to_string(world.proximity().modelCount()) + " models, ";
+  const size_t count = world.proximity().modelCount();
+  const std::string every = "every 5 ms over " + std::to_string(count) + (count == 1 ? " model, " : " models, ");
   const sim::Searching amount = world.proximity().amount();
   say("proximity search", amount == sim::Searching::kNone ? "none: no model has surfaces to search"
                           : amount == sim::Searching::kSmall
