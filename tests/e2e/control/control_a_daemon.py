@@ -83,6 +83,7 @@ def commands(daemon):
     check("a removed model goes", daemon.until(lambda: "sphere" not in daemon.models()))
     for command in (["reload"], ["hold"], ["clear"], ["dump"]):
         daemon.expect(0, *command)
+        time.sleep({"reload": 1, "hold": 0.1}.get(command[0], 0))  # s: the new models push again; the ramp is over
     dumps = [f for f in os.listdir(daemon.folder) if f.startswith("blackbox-")]
     check("a dump is a file", len(dumps) == 1, dumps)
 
