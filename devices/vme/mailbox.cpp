@@ -70,6 +70,7 @@ Result<usb::Identity> Mailbox::open(const usb::Address&, const codec::Wire& wire
   // What stands there now may be what a board left behind when it died: only a newer block counts.
   std::memcpy(seen_.data(), block.data() + last_.at, last_.bytes);
   have_seen_ = last_.bytes > 0;
+  alive_ = !have_seen_;
   usb::Identity identity;
   identity.product =
       window_.isFile() ? "controller board, in a plain file instead of a bus" : "controller board, " + where;
@@ -109,6 +110,7 @@ Status Mailbox::look(std::span<uint8_t> block) noexcept {
     const bool old = have_seen_ && std::memcmp(last.data(), seen_.data(), last.size()) == 0;
     seen_ = number;
     have_seen_ = true;
+    alive_ |= !old;
     return old ? Status::kNothing : Status::kOk;
   }
   return Status::kOk;  // half a block: the codec sees that its numbers differ, and the session gives it a name
@@ -120,6 +122,7 @@ Status Mailbox::take(std::span<uint8_t> block) noexcept {
 }
 
 Status Mailbox::send(std::span<const uint8_t> bytes) noexcept {
+  if (!alive_) return Status::kOk;  // a wrong address may be memory of somebody else: write only where a board counts
   return window_.write(place_.command, bytes) == static_cast<long>(bytes.size()) ? Status::kOk : Status::kFailed;
 }
 

@@ -41,6 +41,7 @@ class Mailbox final : public usb::Transport {
   size_t block_bytes_ = 0;
   std::array<uint8_t, 8> seen_{};  ///< the last number of the newest whole block
   bool have_seen_ = false;
+  bool alive_ = false;  // the board has counted on since the window was opened
   Nanoseconds looked_at_ = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "cli/command.hpp"
 
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <cstdlib>
 
@@ -37,6 +39,15 @@ void applyDaemon(const scene::Daemon& daemon, scene::Scene& scene) {
 }
 
 }  // namespace
+
+CLI::Validator within(double low, double high) {
+  const auto refuse = [=](const std::string& text) {
+    double value = 0;
+    const bool good = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+    return good ? std::string() : fmt::format("Value {} not in range {} to {}", text, low, high);
+  };
+  return {refuse, fmt::format("FLOAT in [{} - {}]", low, high)};
+}
 
 int fail(int exit_code, const std::string& message) {
   std::fprintf(stderr, "error: %s\n", message.c_str());

@@ -18,6 +18,9 @@ constexpr int kWorked = 0;    ///< exit code: worked
 constexpr int kFailed = 1;    ///< exit code: failed while running
 constexpr int kBadInput = 2;  ///< exit code: bad input or usage
 
+/// [main] A number from low to high. CLI::Range takes what is not a number, too.
+CLI::Validator within(double low, double high);
+
 /// Prints "error: MESSAGE" and gives back the exit code.
 int fail(int exit_code, const std::string& message);
 

@@ -59,7 +59,7 @@ void addDoctor(CLI::App& app, int& exit_code) {
       app.add_subcommand("doctor", "What keeps real time or a device from working, each with its cure.");
   command->add_flag("--json", *json, "as JSON, for issue reports");
   command->add_option("--seconds", *seconds, "length of the latency run; 0: none")
-      ->check(CLI::Range(0.0, 3600.0))
+      ->check(within(0.0, 3600.0))
       ->capture_default_str();
   command->footer(
       "Exit code 0 when all is well, 1 with warnings, 2 when a check fails.\n\nExample:\n  hapticd doctor --json > "

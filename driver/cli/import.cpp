@@ -57,7 +57,7 @@ void addMedialOptions(CLI::App& command, Options& options) {
   CLI::Option* medial = command.add_flag("--medial", options.medial,
                                          "find the medial axis of a closed surface: a soft body of cones and slabs");
   command.add_option("--tolerance", body.tolerance, "m by which the body may differ; without it 1 % of its size")
-      ->check(CLI::Range(1e-7, 1.0))
+      ->check(within(1e-7, 1.0))
       ->needs(medial);
   command.add_option("--samples", body.samples, "points on the surface; without it 20000")
       ->check(CLI::Range(100, 1'000'000))
@@ -68,13 +68,11 @@ void addMedialOptions(CLI::App& command, Options& options) {
   command
       .add_option("--angle", body.least_angle,
                   "degrees between the feet of a medial point; larger: fewer branches toward edges; without it 60")
-      ->check(CLI::Range(0.0, 180.0))
+      ->check(within(0.0, 180.0))
       ->needs(medial);
-  command.add_option("--stiffness", body.stiffness, "N/m, written to .yaml")
-      ->check(CLI::Range(0.0, 1e6))
-      ->needs(medial);
-  command.add_option("--damping", body.damping, "N s/m, likewise")->check(CLI::Range(0.0, 1e6))->needs(medial);
-  command.add_option("--mass", body.mass, "kg of a vertex, likewise")->check(CLI::Range(0.0, 1e6))->needs(medial);
+  command.add_option("--stiffness", body.stiffness, "N/m, written to .yaml")->check(within(0.0, 1e6))->needs(medial);
+  command.add_option("--damping", body.damping, "N s/m, likewise")->check(within(0.0, 1e6))->needs(medial);
+  command.add_option("--mass", body.mass, "kg of a vertex, likewise")->check(within(0.0, 1e6))->needs(medial);
 }
 
 }  // namespace
@@ -93,10 +91,10 @@ void addImport(CLI::App& app, int& exit_code) {
       ->add_option("-o,--out,out", options->out,
                    "model file: .yaml or .json; - for standard output. With --medial: .ma or .yaml")
       ->required();
-  CLI::Option* scale = command->add_option("--scale", options->placement.scale, "metres per unit of the file")
-                           ->check(CLI::Range(1e-9, 1e9));
+  CLI::Option* scale =
+      command->add_option("--scale", options->placement.scale, "metres per unit of the file")->check(within(1e-9, 1e9));
   command->add_option("--fit", options->placement.fit, "scale so that the largest extent is this many metres")
-      ->check(CLI::Range(1e-6, 1e3))
+      ->check(within(1e-6, 1e3))
       ->excludes(scale);
   command->add_flag("--center", options->placement.center, "put the middle of the bounding box at the origin");
   command->add_option("--up", options->up, "axis of the file that points up; the world's is y")

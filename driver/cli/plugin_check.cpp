@@ -155,7 +155,7 @@ void addPluginCheck(CLI::App& app, int& exit_code) {
   command->add_option("--set", options->set, "id=value of a parameter, again for more");
   command->add_flag("--json", options->json, "results as JSON");
   command->add_option("--fuzz", options->fuzz, "seconds of random parameters and probes, after the tests")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(within(0.0, 1e6));
   command->add_option("--seed", options->seed, "of everything random; a failure names the seed that repeats it")
       ->capture_default_str();
   command->footer(

@@ -230,11 +230,11 @@ void addRun(CLI::App& app, int& exit_code) {
   command->add_option("--device", options->device, "device file to use instead of the scene's");
   command->add_option("--for", options->duration, "seconds to run; without it, until stopped (Ctrl-C)")
       ->check(plainSeconds)
-      ->check(CLI::Range(1e-3, 1e9));
+      ->check(within(1e-3, 1e9));
   command->add_flag("--virtual-time", options->virtual_time,
                     "as fast as the processor allows, on simulated devices; same input, same bits");
   command->add_option("--rate", options->rate, "servo rate in Hz instead of the scene's")
-      ->check(CLI::Range(10.0, 20000.0));  // as servo.rate
+      ->check(within(10.0, 20000.0));  // as servo.rate
   command->add_option("--cpu", options->cpu, "processor to pin the servo thread to")->check(CLI::Range(0, 1023));
   command
       ->add_option("--priority", options->priority,

@@ -235,7 +235,7 @@ void addTop(CLI::App& app, int& exit_code) {
   command->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
   command->add_option("--sort", options->sort, "models by step time, force, depth or name")
       ->check(CLI::IsMember({"step", "force", "depth", "name"}));
-  command->add_option("--every", options->every, "seconds between two looks")->check(CLI::Range(0.05, 60.0));
+  command->add_option("--every", options->every, "seconds between two looks")->check(within(0.05, 60.0));
   command->add_flag("--once", options->once, "one look, then end");
   command->add_flag("--json", options->json, "with --once: as JSON");
   command->footer("Keys: s, f, d, n sort by step time, force, depth, name; q ends.");

@@ -185,15 +185,15 @@ void addTune(CLI::App& app, int& exit_code) {
   auto* budget = command
                      ->add_option("--budget-us", options->budget_us,
                                   "take the most accurate setting whose p99 of a tick is below this [us]")
-                     ->check(CLI::Range(1e-3, 1e6));
+                     ->check(within(1e-3, 1e6));
   command
       ->add_option("--tolerance-um", options->tolerance_um,
                    "take the cheapest setting whose foot points are this exact [um]")
-      ->check(CLI::Range(1e-6, 1e6))
+      ->check(within(1e-6, 1e6))
       ->excludes(budget)
       ->capture_default_str();
   command->add_option("--force-tolerance-n", options->force_tolerance, "and whose forces are this exact [N]")
-      ->check(CLI::Range(1e-9, 1e3))
+      ->check(within(1e-9, 1e3))
       ->capture_default_str();
   auto* probe = command->add_option("--probe", options->probe,
                                     "measure over this path (CSV, as for trace) instead of the scene's hand");
@@ -202,10 +202,10 @@ void addTune(CLI::App& app, int& exit_code) {
                    "measure over the motion in this recording (of run --record, or a black box)")
       ->excludes(probe);
   command->add_option("--motion-seconds", options->motion_seconds, "length of the hand's motion [s]")
-      ->check(CLI::Range(0.2, 10.0))
+      ->check(within(0.2, 10.0))
       ->capture_default_str();
   command->add_option("--limit-seconds", options->limit_seconds, "stop trying settings after this [s]")
-      ->check(CLI::Range(1.0, 86400.0))
+      ->check(within(1.0, 86400.0))
       ->capture_default_str();
   command->add_flag("--write", options->write, "write SCENE.tuned.yaml beside the scene, with what was chosen and why");
   command->add_option("--page", options->page, "write a report (HTML, one file, needs no network)");

@@ -67,6 +67,18 @@ TEST_F(Commands, BadUsageEndsWithTwo) {
   EXPECT_TRUE(has(run("chekc x.yaml").text, "did you mean \"check\"?"));
 }
 
+TEST_F(Commands, ANumberThatIsNoneIsOutOfEveryRange) {
+  for (const char* command :
+       {"run x.yaml --virtual-time --for nan", "run x.yaml --rate nan", "tune x.yaml --motion-seconds nan",
+        "tune x.yaml --tolerance-um nan", "import x.bpt y.yaml --scale nan", "import x.bpt y.yaml --fit nan",
+        "import x.obj y.ma --medial --tolerance nan", "import x.obj y.ma --medial --angle nan",
+        "ctl geometry x --tolerance nan", "doctor --seconds nan"}) {
+    const Outcome outcome = run(command);
+    EXPECT_EQ(outcome.exit_code, 2) << command;
+    EXPECT_TRUE(has(outcome.text, "nan not in range")) << command << outcome.text;
+  }
+}
+
 TEST_F(Commands, VersionIsOneLine) {
   const Outcome outcome = run("--version");
   EXPECT_EQ(outcome.exit_code, 0);

@@ -45,6 +45,20 @@ TEST_F(MailboxTest, EachBlockComesOnce) {
   EXPECT_EQ(receive(mailbox), Status::kNothing);
 }
 
+TEST_F(MailboxTest, NothingIsWrittenToMemoryWhereNoBoardCounts) {
+  Mailbox mailbox(place);
+  file.write(0, block(7, 7));
+  ASSERT_TRUE(mailbox.open({}, wire));
+  const std::array<uint8_t, 4> order{1, 2, 3, 4};
+  EXPECT_EQ(receive(mailbox), Status::kNothing);
+  EXPECT_EQ(mailbox.send(order), Status::kOk);
+  EXPECT_EQ(file.read(0x100), VmeBlock{}) << "a wrong address may be somebody else's";
+  file.write(0, block(8, 8));
+  ASSERT_EQ(receive(mailbox), Status::kOk);
+  EXPECT_EQ(mailbox.send(order), Status::kOk);
+  EXPECT_EQ(file.read(0x100)[3], 4);
+}
+
 TEST_F(MailboxTest, ABlockThatIsBeingWrittenIsNotTakenForWhole) {
   Mailbox mailbox(place);
   file.write(0, block(7, 7));
