@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -23,7 +24,8 @@ Json modelJson(const ModelReport& model) {
   const Histogram& step = c.stepUs();
   return {
       {"plugin", model.plugin},
-      {"degraded", {{"ticks", model.degraded_ticks}, {"level", model.coarsest}, {"residual_um", model.residual_m * 1e6}}},
+      {"degraded",
+       {{"ticks", model.degraded_ticks}, {"level", model.coarsest}, {"residual_um", model.residual_m * 1e6}}},
       {"contact_ticks", c.contactTicks()},
       {"penetration_mm", {{"mean", c.meanDepth() * kMm}, {"std", c.stdDepth() * kMm}, {"max", c.maxDepth() * kMm}}},
       {"force_n", {{"mean", c.meanForce()}, {"max", c.maxForce()}}},
@@ -47,13 +49,27 @@ std::string modelText(const ModelReport& model, const RunReport& report) {
     text += fmt::format("  force     mean {:.2f} N   max {:.2f} N\n", c.meanForce(), c.maxForce());
   }
   if (model.degraded_ticks > 0)
-    text += fmt::format("  degraded  {} ticks, to level {} of 3, so that the tick's budget holds; residual up to {:.3g} um\n",
-                        model.degraded_ticks, model.coarsest, model.residual_m * 1e6);
+    text += fmt::format(
+        "  degraded  {} ticks, to level {} of 3, so that the tick's budget holds; residual up to {:.3g} um\n",
+        model.degraded_ticks, model.coarsest, model.residual_m * 1e6);
   const Histogram& step = c.stepUs();
   if (step.total() > 0)
     text += fmt::format("  step      p50 {:.0f} ns   p99 {:.0f} ns   max {:.0f} ns\n", step.quantile(0.5) * 1e3,
                         step.quantile(0.99) * 1e3, step.max() * 1e3);
   return text;
+}
+
+/// Models that answered coarser than they were asked to, those without contact too.
+std::string degradedText(const RunReport& report) {
+  uint64_t models = 0, most = 0;
+  for (const ModelReport& model : report.models) {
+    models += model.degraded_ticks > 0 ? 1 : 0;
+    most = std::max(most, model.degraded_ticks);
+  }
+  if (models == 0 || report.ticks == 0) return "";
+  return fmt::format(
+      "  accuracy  lowered for {} of {} models, in up to {:.2g} % of the ticks, to keep the tick's budget\n", models,
+      report.models.size(), 100.0 * static_cast<double>(most) / static_cast<double>(report.ticks));
 }
 
 std::string limitText(const LimitReport& device, uint64_t ticks) {
@@ -116,6 +132,7 @@ std::string summary(const RunReport& report) {
                       report.servo_allocations);
   text += fmt::format("  process   {:.1f} MB resident, first tick {:.0f} ms after the start\n",
                       static_cast<double>(report.resident_bytes) / 1e6, report.start_ms);
+  text += degradedText(report);
   constexpr size_t kMostModels = 12;
   size_t shown = 0;
   for (const ModelReport& model : report.models)

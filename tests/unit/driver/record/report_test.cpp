@@ -72,6 +72,14 @@ TEST_F(Report, TellsPeopleFaultsAndContact) {
     EXPECT_NE(text.find(words), std::string::npos) << text;
 }
 
+TEST_F(Report, TellsPeopleOfModelsThatAnsweredCoarserWithoutContact) {
+  RunReport report = sample();
+  EXPECT_EQ(summary(report).find("accuracy"), std::string::npos);
+  report.models.push_back({"far", "sphere", {}});
+  report.models[1].degraded_ticks = 500;
+  EXPECT_NE(summary(report).find("lowered for 1 of 2 models, in up to 50 % of the ticks"), std::string::npos);
+}
+
 TEST_F(Report, DrawsEveryPeakAndEscapesNames) {
   std::vector<Sample> samples(5000);
   for (size_t i = 0; i < samples.size(); ++i) samples[i].t = static_cast<double>(i) * 1e-3;
