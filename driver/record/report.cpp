@@ -68,7 +68,7 @@ std::string degradedText(const RunReport& report) {
   }
   if (models == 0 || report.ticks == 0) return "";
   return fmt::format(
-      "  accuracy  lowered for {} of {} models, in up to {:.2g} % of the ticks, to keep the tick's budget\n", models,
+      "  accuracy  lowered for {} of {} models, in up to {:.0f} % of the ticks, to keep the tick's budget\n", models,
       report.models.size(), 100.0 * static_cast<double>(most) / static_cast<double>(report.ticks));
 }
 
