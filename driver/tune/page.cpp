@@ -140,14 +140,16 @@ std::string picture(const Findings& findings) {
     }
   svg.label((kLeft + kRight) / 2, kBottom + 40,
             "median of a tick; black: the front, red: chosen, blue: the scene as it is", "middle");
-  for (const Candidate& c : findings.tuning.candidates) {
-    const char* colour = &c == &chosenOf(findings)              ? "#c0392b"
-                         : &c == &findings.tuning.candidates[0] ? "#2962a3"
-                         : c.on_front                           ? "#222"
-                                                                : "#bbb";
-    const double half = c.on_front || &c == &findings.tuning.candidates[0] ? 4 : 2.5;
+  const auto mark = [&](const Candidate& c, double half, const char* colour) {
     svg.rectangle(x(c.cost.p50_ns) - half, y(c.error.geometry()) - half, 2 * half, 2 * half, colour);
-  }
+  };
+  const auto& tried = findings.tuning.candidates;
+  for (const Candidate& c : tried)
+    if (!c.on_front) mark(c, 2.5, "#bbb");
+  for (const Candidate& c : tried)
+    if (c.on_front) mark(c, 4, "#222");
+  mark(tried[0], 6, "#2962a3");  // larger than the chosen one, so that both are seen where they are the same
+  mark(chosenOf(findings), 4, "#c0392b");
   return svg.finished();
 }
 
