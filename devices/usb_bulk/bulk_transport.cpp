@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <cstring>
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 constexpr size_t kReads = 4;                     ///< transfers that always wait for the device
@@ -295,4 +295,4 @@ std::unique_ptr<Transport> makeBulkTransport() {
   return std::make_unique<BulkTransport>();
 }
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

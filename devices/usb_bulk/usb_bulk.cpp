@@ -1,8 +1,8 @@
 /// The device module `usb_bulk`: any arm with bulk or interrupt endpoints, described by its device file.
-#include "usb_arm/arm.hpp"
 #include "usb_bulk/bulk_transport.hpp"
+#include "wire_arm/arm.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 class BulkArm final : public Arm<BulkArm> {
@@ -16,6 +16,6 @@ class BulkArm final : public Arm<BulkArm> {
 };
 
 }  // namespace
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm
 
-HAPTICD_DEVICES(hapticd::usb::BulkArm)
+HAPTICD_DEVICES(hapticd::wire_arm::BulkArm)

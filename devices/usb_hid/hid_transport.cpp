@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <mutex>
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 /// hidapi keeps its start-up and its last message in process-wide variables: one call of these at a time.
@@ -146,4 +146,4 @@ std::unique_ptr<Transport> makeHidTransport() {
   return std::make_unique<HidTransport>();
 }
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

@@ -2,11 +2,11 @@
 #pragma once
 #include <memory>
 
-#include "usb_arm/transport.hpp"
+#include "wire_arm/transport.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 
 /// [main] A transport over hidraw; nothing is opened yet.
 std::unique_ptr<Transport> makeHidTransport();
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

@@ -1,8 +1,8 @@
 /// The device module `usb_hid`: any arm that speaks HID reports, described by its device file.
-#include "usb_arm/arm.hpp"
 #include "usb_hid/hid_transport.hpp"
+#include "wire_arm/arm.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 class HidArm final : public Arm<HidArm> {
@@ -16,6 +16,6 @@ class HidArm final : public Arm<HidArm> {
 };
 
 }  // namespace
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm
 
-HAPTICD_DEVICES(hapticd::usb::HidArm)
+HAPTICD_DEVICES(hapticd::wire_arm::HidArm)

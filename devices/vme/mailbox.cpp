@@ -6,7 +6,7 @@
 namespace hapticd::vme {
 namespace {
 
-using usb::Status;
+using wire_arm::Status;
 constexpr int kTries = 3;  ///< to read a block while the board writes it
 
 /// What a bus answers where nobody does: all lines stay high, and vme_user reports no error.
@@ -48,7 +48,7 @@ void Mailbox::findNumbers(const codec::Report& report) {
   block_bytes_ = report.size;
 }
 
-Result<usb::Identity> Mailbox::open(const usb::Address&, const codec::Wire& wire) {
+Result<wire_arm::Identity> Mailbox::open(const wire_arm::Address&, const codec::Wire& wire) {
   if (auto opened = window_.open(place_.window); !opened) return Error{opened.error()};
   findNumbers(wire.input);
   std::array<uint8_t, codec::kMaxReportBytes> block{};
@@ -71,7 +71,7 @@ Result<usb::Identity> Mailbox::open(const usb::Address&, const codec::Wire& wire
   std::memcpy(seen_.data(), block.data() + last_.at, last_.bytes);
   have_seen_ = last_.bytes > 0;
   alive_ = !have_seen_;
-  usb::Identity identity;
+  wire_arm::Identity identity;
   identity.product =
       window_.isFile() ? "controller board, in a plain file instead of a bus" : "controller board, " + where;
   identity.serial =

@@ -4,8 +4,8 @@
 #pragma once
 #include <array>
 
-#include "usb_arm/transport.hpp"
 #include "vme/window.hpp"
+#include "wire_arm/transport.hpp"
 
 namespace hapticd::vme {
 
@@ -16,24 +16,24 @@ struct MailboxPlace {
 };
 
 /// Looks for new blocks by polling: no interrupt of the bus reaches a program through vme_user.
-class Mailbox final : public usb::Transport {
+class Mailbox final : public wire_arm::Transport {
  public:
   explicit Mailbox(const MailboxPlace& place) : place_(place) {}
 
-  Result<usb::Identity> open(const usb::Address& address, const codec::Wire& wire) override;
+  Result<wire_arm::Identity> open(const wire_arm::Address& address, const codec::Wire& wire) override;
   void close() noexcept override { window_.close(); }
   /// Waits for the next look at most, so that a command never waits for a state.
-  usb::Status receive(std::span<uint8_t> to, size_t& size, Nanoseconds wait) noexcept override;
-  usb::Status send(std::span<const uint8_t> bytes) noexcept override;
-  usb::Status control(const codec::StartStep&) noexcept override { return usb::Status::kFailed; }
+  wire_arm::Status receive(std::span<uint8_t> to, size_t& size, Nanoseconds wait) noexcept override;
+  wire_arm::Status send(std::span<const uint8_t> bytes) noexcept override;
+  wire_arm::Status control(const codec::StartStep&) noexcept override { return wire_arm::Status::kFailed; }
 
  private:
   struct Number {
     size_t at = 0, bytes = 0;  ///< of a sequence number inside the state block; no bytes: there is none
   };
   void findNumbers(const codec::Report& report);
-  usb::Status look(std::span<uint8_t> block) noexcept;
-  usb::Status take(std::span<uint8_t> block) noexcept;
+  wire_arm::Status look(std::span<uint8_t> block) noexcept;
+  wire_arm::Status take(std::span<uint8_t> block) noexcept;
 
   MailboxPlace place_;
   Window window_;

@@ -1,8 +1,8 @@
 /// The device module `vme`: an arm behind a controller board on a VME bus, such as the Sarcos Dextrous Arm Master,
 /// through Linux' vme_user. The board runs the torque loop; its device file says what its mailbox holds.
-#include "usb_arm/arm.hpp"
 #include "vme/mailbox.hpp"
 #include "vme/vme_user.hpp"
+#include "wire_arm/arm.hpp"
 
 namespace hapticd::vme {
 namespace {
@@ -11,7 +11,7 @@ constexpr const char* kSpaces[] = {"a16", "a24", "a32"};
 constexpr const char* kWidths[] = {"d16", "d32"};
 constexpr const char* kCycles[] = {"user_data", "super_data", "user_program", "super_program"};
 
-class VmeArm final : public usb::Arm<VmeArm> {
+class VmeArm final : public wire_arm::Arm<VmeArm> {
  public:
   static constexpr DeviceInfo kInfo = {"org.hapticd.device.vme", "vme", "0.1.0", "MIT",
                                        "An arm behind a controller board on a VME bus; its device file says which."};
@@ -32,15 +32,15 @@ class VmeArm final : public usb::Arm<VmeArm> {
                 HSP_P_ACCURACY)};
   }
   static constexpr auto fields() {
-    return join(bus(), usb::ParameterTable<VmeArm>::device(), usb::ParameterTable<VmeArm>::arm());
+    return join(bus(), wire_arm::ParameterTable<VmeArm>::device(), wire_arm::ParameterTable<VmeArm>::arm());
   }
 
   /// Nothing of USB: the window is the address. Throws std::invalid_argument where it makes no sense.
-  usb::Address address() const {
+  wire_arm::Address address() const {
     if (auto fits = check(place(), format()); !fits) throw std::invalid_argument(fits.error());
     return {};
   }
-  std::unique_ptr<usb::Transport> makeTransport() const { return std::make_unique<Mailbox>(place()); }
+  std::unique_ptr<wire_arm::Transport> makeTransport() const { return std::make_unique<Mailbox>(place()); }
 
   std::string node, base, extent, state, command;
   int space = 1, width = 0, cycle = 0;

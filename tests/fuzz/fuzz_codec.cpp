@@ -7,7 +7,7 @@
 #include <random>
 
 #include "emulators/wire_file.hpp"
-#include "usb_arm/session.hpp"
+#include "wire_arm/session.hpp"
 
 namespace {
 
@@ -39,9 +39,9 @@ std::vector<uint8_t> mutated(hapticd::codec::Report report, uint32_t sequence, s
 int run(const std::filesystem::path& file, long reports) {
   const size_t joints = hapticd::emulator::jointsOf(file);
   const auto wire = hapticd::codec::readWire(hapticd::emulator::wireOf(file), joints);
-  hapticd::usb::SessionSettings settings;
+  hapticd::wire_arm::SessionSettings settings;
   settings.joints = joints;
-  hapticd::usb::Session session(wire, settings);
+  hapticd::wire_arm::Session session(wire, settings);
   std::mt19937_64 random(1);
   Nanoseconds now = 1;
   session.attach(now, {}, true);
@@ -52,7 +52,7 @@ int run(const std::filesystem::path& file, long reports) {
     if (wire.framing.used) bytes.insert(bytes.begin(), wire.framing.header, 1);
     good += session.receive(now, bytes) ? 1 : 0;
     session.watch(now);
-    hapticd::usb::Wish wish;
+    hapticd::wire_arm::Wish wish;
     wish.time = now, wish.sequence = 1, wish.on = true;
     wish.torque.fill(random() % 16 == 0 ? std::nan("") : 1.0);
     wish.follow = random() % 2 == 0;

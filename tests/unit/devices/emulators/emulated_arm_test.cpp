@@ -7,10 +7,10 @@
 #include <filesystem>
 
 #include "emulators/wire_file.hpp"
-#include "usb_arm/mechanism.hpp"
-#include "usb_arm/session.hpp"
+#include "wire_arm/mechanism.hpp"
+#include "wire_arm/session.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 constexpr Nanoseconds kMs = 1'000'000;
@@ -133,4 +133,4 @@ TEST(DeviceFiles, EachHasAnEmulatorThatAnswersToItsId) {
 }
 
 }  // namespace
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

@@ -5,11 +5,11 @@
 
 #include "emulators/wire_file.hpp"
 #include "played_usb.hpp"
-#include "usb_arm/falcon_loader.hpp"
-#include "usb_arm/link.hpp"
 #include "usb_bulk/bulk_transport.hpp"
+#include "wire_arm/falcon_loader.hpp"
+#include "wire_arm/link.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 using emulator::Fault;
@@ -143,4 +143,4 @@ TEST_F(BulkTest, TheFalconTakesItsFirmwareThroughTheRealLibusb) {
 }
 
 }  // namespace
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

@@ -6,10 +6,10 @@
 
 #include "emulators/wire_file.hpp"
 #include "played_hidraw.hpp"
-#include "usb_arm/link.hpp"
 #include "usb_hid/hid_transport.hpp"
+#include "wire_arm/link.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 class HidrawTest : public ::testing::Test {
@@ -97,4 +97,4 @@ TEST_F(HidrawTest, PushesLosesFindsAndPushesAgain) {
 }
 
 }  // namespace
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

@@ -51,7 +51,7 @@ Contact throughTheBoard(double seconds) {
   int tick = 0;
   uint64_t seen = 0;
   kinematics::JointVector tau = kinematics::JointVector::Zero(10);
-  rig.want = [&](const usb::Sample& sample, usb::Wish& wish) {
+  rig.want = [&](const wire_arm::Sample& sample, wire_arm::Wish& wish) {
     if (sample.sequence != seen) {
       seen = sample.sequence;
       const kinematics::JointVector q = Eigen::Map<const kinematics::JointVector>(sample.position.data(), 10);
@@ -62,7 +62,7 @@ Contact throughTheBoard(double seconds) {
     for (size_t i = 0; i < 10; ++i) wish.torque[i] = tau[static_cast<int>(i)];
   };
   rig.run(seconds);
-  EXPECT_EQ(rig.session.trouble(), usb::Trouble::kNone) << describe(rig.session.trouble());
+  EXPECT_EQ(rig.session.trouble(), wire_arm::Trouble::kNone) << describe(rig.session.trouble());
   EXPECT_TRUE(rig.board.pushed());
   return contact;
 }
@@ -104,10 +104,10 @@ TEST(VmeClosedLoop, ContactIsAsOfTheSimulatedArmItself) {
 
 TEST(VmeClosedLoop, OnReferencesTheArmStandsWhereItIsTold) {
   Rig rig("follow");
-  usb::JointArray target{};
+  wire_arm::JointArray target{};
   bool have = false;
   const auto arm = mechanismOf(kSarcos);
-  rig.want = [&](const usb::Sample& sample, usb::Wish& wish) {
+  rig.want = [&](const wire_arm::Sample& sample, wire_arm::Wish& wish) {
     if (!have && sample.calibrated) target = sample.position, target[0] += 0.05, target[3] -= 0.05, have = true;
     const kinematics::JointVector q = Eigen::Map<const kinematics::JointVector>(sample.position.data(), 10);
     const kinematics::JointVector weight = torques(*arm, q, Vector3d::Zero());

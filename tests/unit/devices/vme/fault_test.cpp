@@ -6,7 +6,7 @@ namespace hapticd::vme {
 namespace {
 
 using emulator::VmeFault;
-using usb::Trouble;
+using wire_arm::Trouble;
 
 TEST(VmeSession, AHealthyBoardGetsItsTorqueAfterARamp) {
   Rig rig("healthy");
@@ -25,7 +25,7 @@ TEST(VmeSession, SamplesAreTheArmsJointsAndLoadCells) {
   Rig rig("samples");
   rig.run(0.5);
   const hdv_sample& truth = rig.board.truth();
-  const usb::Sample& sample = rig.session.sample();
+  const wire_arm::Sample& sample = rig.session.sample();
   for (size_t i = 0; i < 8; ++i) {
     EXPECT_NEAR(sample.position[i], truth.position[i], 1e-3) << i;  // a block late, and a count
     EXPECT_NEAR(sample.torque[i], truth.torque[i], 0.5) << i;

@@ -5,7 +5,7 @@ namespace hapticd::vme {
 namespace {
 
 using emulator::VmeBlock;
-using usb::Status;
+using wire_arm::Status;
 
 class MailboxTest : public ::testing::Test {
  protected:

@@ -10,9 +10,9 @@
 
 #include "emulators/vme/vme_board.hpp"
 #include "emulators/wire_file.hpp"
-#include "usb_arm/mechanism.hpp"
-#include "usb_arm/session.hpp"
 #include "vme/mailbox.hpp"
+#include "wire_arm/mechanism.hpp"
+#include "wire_arm/session.hpp"
 
 namespace hapticd::vme {
 
@@ -37,8 +37,8 @@ inline std::unique_ptr<kinematics::Arm> mechanismOf(const std::string& file) {
         for (const auto& value : row) out.push_back(value.as<double>());
     return out;
   };
-  usb::MechanismParameters p;
-  p.kind = static_cast<int>(usb::Kind::kChain);
+  wire_arm::MechanismParameters p;
+  p.kind = static_cast<int>(wire_arm::Kind::kChain);
   p.dh = flat("dh"), p.limits = flat("limits"), p.masses = flat("masses"), p.centers = flat("centers");
   p.base_orientation = flat("base_orientation");
   p.others = arm["others"].as<int>(0);
@@ -46,7 +46,7 @@ inline std::unique_ptr<kinematics::Arm> mechanismOf(const std::string& file) {
     p.origin[i] = arm[arm["origin"] ? "origin" : "base_position"][i].as<double>();
     p.tool_position[i] = arm["tool_position"][i].as<double>();
   }
-  return usb::makeMechanism(p);
+  return wire_arm::makeMechanism(p);
 }
 
 /// A file of one window's size, removed at the end.
@@ -83,7 +83,7 @@ class WindowFile {
 class Rig {
  public:
   static constexpr Nanoseconds kStep = 333'333;  ///< half a period of the board
-  using Torque = std::function<void(const usb::Sample&, usb::Wish&)>;
+  using Torque = std::function<void(const wire_arm::Sample&, wire_arm::Wish&)>;
 
   explicit Rig(const std::string& name)
       : file(name),
@@ -101,10 +101,10 @@ class Rig {
     p.window.address = 0x100000;
     return p;
   }
-  static usb::SessionSettings settings() {
-    usb::SessionSettings s;
+  static wire_arm::SessionSettings settings() {
+    wire_arm::SessionSettings s;
     s.joints = 10;
-    s.calibration = usb::Calibration::kDevice;
+    s.calibration = wire_arm::Calibration::kDevice;
     s.health.max_speed = 60;
     return s;
   }
@@ -135,8 +135,8 @@ class Rig {
   Mailbox mailbox_;
 
  public:
-  usb::Session session;
-  Torque want = [](const usb::Sample&, usb::Wish& wish) { wish.torque[6] = 0.5; };
+  wire_arm::Session session;
+  Torque want = [](const wire_arm::Sample&, wire_arm::Wish& wish) { wish.torque[6] = 0.5; };
   bool powered = true, attached = false;
   Nanoseconds now = 1'000'000'000, open_at = 0;
   double torque = 0;  ///< [N m] of joint 7 in the newest command block
@@ -158,10 +158,11 @@ class Rig {
     if (!attached && (now / kStep) % 300 == 0) attach();  // ten times a second
     size_t size = 0;
     std::array<uint8_t, codec::kMaxReportBytes> bytes{};
-    const usb::Status status = attached ? mailbox_.receive(bytes, size, 0) : usb::Status::kNothing;
-    if (status == usb::Status::kOk) session.receive(now, {bytes.data(), size});
-    if (status != usb::Status::kOk && status != usb::Status::kNothing) {
-      session.lose(now, status == usb::Status::kAbsent ? usb::Trouble::kAbsent : usb::Trouble::kBusError);
+    const wire_arm::Status status = attached ? mailbox_.receive(bytes, size, 0) : wire_arm::Status::kNothing;
+    if (status == wire_arm::Status::kOk) session.receive(now, {bytes.data(), size});
+    if (status != wire_arm::Status::kOk && status != wire_arm::Status::kNothing) {
+      session.lose(now,
+                   status == wire_arm::Status::kAbsent ? wire_arm::Trouble::kAbsent : wire_arm::Trouble::kBusError);
       attached = false;
     }
     session.watch(now);
@@ -173,7 +174,7 @@ class Rig {
     torque = (bytes[9] & 1) != 0 ? 0.005 * static_cast<int16_t>(bytes[24] << 8 | bytes[25]) : 0;
   }
 
-  usb::Wish wish_;
+  wire_arm::Wish wish_;
   int steps_ = 0;
 };
 

@@ -1,9 +1,9 @@
-#include "usb_arm/session.hpp"
+#include "wire_arm/session.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 double seconds(Nanoseconds from, Nanoseconds to) noexcept {
@@ -238,4 +238,4 @@ void Session::setZero(const JointArray& zero) noexcept {
   if (sample_.trouble == Trouble::kJump) sample_.trouble = Trouble::kStale;
 }
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

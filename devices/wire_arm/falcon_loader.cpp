@@ -1,4 +1,4 @@
-#include "usb_arm/falcon_loader.hpp"
+#include "wire_arm/falcon_loader.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 
 #include "codec/framer.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 constexpr size_t kLargestFirmware = 1u << 20;
@@ -134,4 +134,4 @@ Result<void> loadFalcon(Transport& transport, const codec::Wire& wire, const std
                " tries\n  it stays off\n  fix: unplug its power and USB, plug both in again; check the image"};
 }
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

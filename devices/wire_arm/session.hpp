@@ -10,9 +10,9 @@
 #include "codec/framer.hpp"
 #include "codec/report.hpp"
 #include "codec/wire.hpp"
-#include "usb_arm/trouble.hpp"
+#include "wire_arm/trouble.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 
 using JointArray = std::array<double, codec::kMaxJoints>;
 
@@ -110,4 +110,4 @@ class Session {
   codec::Verdict last_bad_ = codec::Verdict::kGood;
 };
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

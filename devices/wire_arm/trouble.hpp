@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 
 enum class Trouble : uint8_t {
   kNone,
@@ -24,4 +24,4 @@ enum class Trouble : uint8_t {
 /// Words for a trouble: what failed and what cures it.
 const char* describe(Trouble trouble) noexcept;
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

@@ -14,12 +14,12 @@
 #include "hapticd/device.hpp"
 #include "hapticd/device_trouble.h"
 #include "kinematics/extension.hpp"
-#include "usb_arm/calibration.hpp"
-#include "usb_arm/falcon_loader.hpp"
-#include "usb_arm/link.hpp"
-#include "usb_arm/mechanism.hpp"
+#include "wire_arm/calibration.hpp"
+#include "wire_arm/falcon_loader.hpp"
+#include "wire_arm/link.hpp"
+#include "wire_arm/mechanism.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 
 inline constexpr const char* kKinds[] = {"phantom", "delta", "chain"};
 inline constexpr const char* kMethods[] = {"none", "device", "pose"};
@@ -290,7 +290,7 @@ class Arm : public Device, public Parameters {
 
   static const char* why(const hdv_device* device) noexcept HSP_RT {
     const Trouble trouble = reinterpret_cast<const T*>(device)->trouble_.load(std::memory_order_relaxed);
-    return trouble == Trouble::kNone ? nullptr : usb::describe(trouble);
+    return trouble == Trouble::kNone ? nullptr : wire_arm::describe(trouble);
   }
 
   static hsp_status calibrate(hdv_device* device) {
@@ -343,4 +343,4 @@ class Arm : public Device, public Parameters {
   bool velocity_ = false, torque_ = false, follows_ = false;
 };
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

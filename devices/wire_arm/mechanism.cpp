@@ -1,4 +1,4 @@
-#include "usb_arm/mechanism.hpp"
+#include "wire_arm/mechanism.hpp"
 
 #include <stdexcept>
 #include <string>
@@ -8,7 +8,7 @@
 #include "kinematics/passengers.hpp"
 #include "kinematics/phantom.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 using Eigen::Vector3d;
@@ -116,4 +116,4 @@ std::unique_ptr<kinematics::Arm> makeMechanism(const MechanismParameters& p) {
   return arm;
 }
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

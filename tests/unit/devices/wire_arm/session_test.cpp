@@ -1,6 +1,6 @@
 /// Faults at the level of bytes, in virtual time: each ends the force within 20 ms, has a name, and is over when the
 /// hardware is well again.
-#include "usb_arm/session.hpp"
+#include "wire_arm/session.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "emulators/board.hpp"
 #include "emulators/wire_file.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 constexpr Nanoseconds kMs = 1'000'000;
@@ -242,4 +242,4 @@ TEST(Session, AnArmThatAnswersEachOfFewCommandsIsNotSlow) {
 }
 
 }  // namespace
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

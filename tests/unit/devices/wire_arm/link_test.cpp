@@ -1,5 +1,5 @@
 /// The I/O thread over a transport that a test plays: nothing here asserts times.
-#include "usb_arm/link.hpp"
+#include "wire_arm/link.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 
 #include "emulators/board.hpp"
 #include "emulators/wire_file.hpp"
-#include "usb_arm/calibration.hpp"
+#include "wire_arm/calibration.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 /// A board that streams at 1 kHz of the real clock.
@@ -173,4 +173,4 @@ TEST_F(LinkTest, ADeviceThatSendsNothingDoesNotStart) {
 }
 
 }  // namespace
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

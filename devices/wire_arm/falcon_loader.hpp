@@ -3,9 +3,9 @@
 #pragma once
 #include <vector>
 
-#include "usb_arm/transport.hpp"
+#include "wire_arm/transport.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 
 inline constexpr int kFalconTries = 20;     ///< of the whole upload
 inline constexpr size_t kFalconChunk = 62;  ///< firmware bytes a USB packet
@@ -16,4 +16,4 @@ Result<std::vector<uint8_t>> readFalconFirmware(const std::string& file);
 /// [main] and I/O thread. Leaves a running Falcon alone; else uploads, with retries. Blocks for up to some seconds.
 Result<void> loadFalcon(Transport& transport, const codec::Wire& wire, const std::vector<uint8_t>& firmware);
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

@@ -1,12 +1,12 @@
 /// Mechanisms from device files: stops that a file gives are those that the kinematics keep.
-#include "usb_arm/mechanism.hpp"
+#include "wire_arm/mechanism.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 #include <stdexcept>
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 using kinematics::JointVector;
@@ -66,4 +66,4 @@ TEST(Mechanism, WrongLimitsAreNamed) {
 }
 
 }  // namespace
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

@@ -3,9 +3,9 @@
 #pragma once
 #include <filesystem>
 
-#include "usb_arm/link.hpp"
+#include "wire_arm/link.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 
 /// [main] $STATE_DIRECTORY, $XDG_STATE_HOME/hapticd or ~/.local/state/hapticd.
 std::filesystem::path stateFolder();
@@ -17,4 +17,4 @@ Result<void> storeZero(const std::filesystem::path& folder, const Address& addre
 /// [main] and I/O thread. Nothing known: never calibrated, or plugged in since.
 Zero loadZero(const std::filesystem::path& folder, const Address& address, const Identity& identity, size_t count);
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

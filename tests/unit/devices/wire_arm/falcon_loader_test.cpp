@@ -1,5 +1,5 @@
 /// The firmware upload against a Falcon that follows the published protocol, and one that garbles it.
-#include "usb_arm/falcon_loader.hpp"
+#include "wire_arm/falcon_loader.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "emulators/wire_file.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 /// Answers as the boot loader and, once it has the whole firmware, as the firmware.
@@ -94,4 +94,4 @@ TEST(FalconLoader, SaysWhereFirmwareComesFromAndGivesUpSomeTime) {
 }
 
 }  // namespace
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

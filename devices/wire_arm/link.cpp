@@ -1,9 +1,9 @@
-#include "usb_arm/link.hpp"
+#include "wire_arm/link.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 constexpr Nanoseconds kMillisecond = 1'000'000;
@@ -284,4 +284,4 @@ Identity Link::identity() const {
   return identity_;
 }
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

@@ -6,7 +6,7 @@
 
 #include "kinematics/arm.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 
 enum class Kind { kPhantom, kDelta, kChain };
 
@@ -20,4 +20,4 @@ struct MechanismParameters {
 /// [main] Throws std::invalid_argument with a message for the user.
 std::unique_ptr<kinematics::Arm> makeMechanism(const MechanismParameters& p);
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

@@ -10,10 +10,10 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "base/triple_buffer.hpp"
-#include "usb_arm/session.hpp"
-#include "usb_arm/transport.hpp"
+#include "wire_arm/session.hpp"
+#include "wire_arm/transport.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 
 /// Where an arm is when it is plugged in, before anybody calibrated it.
 struct Zero {
@@ -91,4 +91,4 @@ class Link {
   std::array<uint8_t, codec::kMaxReportBytes + 1> in_{}, out_{};
 };
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

@@ -8,7 +8,7 @@
 #include "base/result.hpp"
 #include "codec/wire.hpp"
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 
 enum class Status : uint8_t {
   kOk,
@@ -47,4 +47,4 @@ class Transport {
   virtual Status control(const codec::StartStep& step) noexcept = 0;
 };
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm

@@ -1,11 +1,11 @@
-#include "usb_arm/calibration.hpp"
+#include "wire_arm/calibration.hpp"
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 
-namespace hapticd::usb {
+namespace hapticd::wire_arm {
 namespace {
 
 namespace fs = std::filesystem;
@@ -74,4 +74,4 @@ Zero loadZero(const fs::path& folder, const Address& address, const Identity& id
   return zero;
 }
 
-}  // namespace hapticd::usb
+}  // namespace hapticd::wire_arm
