@@ -62,6 +62,7 @@ int plot(const Options& options) {
     return fail(kBadInput, "--from is not before --to: nothing lies between them");
   auto recording = record::Recording::open(options.file);
   if (!recording) return fail(kBadInput, recording.error());
+  if (!(*recording)->closed()) std::fprintf(stderr, "note: its writer was cut off; drawing what is there\n");
   const record::RecordedStream* ticks = (*recording)->stream("ticks");
   const auto columns = ticks != nullptr ? columnsOf(*ticks, options.arm) : std::nullopt;
   if (!columns) return fail(kBadInput, options.file + ": has no ticks of arm " + std::to_string(options.arm));

@@ -56,6 +56,8 @@ Result<tune::Motion> motionOfRecording(const std::string& file, double rate) {
   for (size_t i = 0; i < 4; ++i)
     if (ticks == nullptr || (columns[i] = ticks->find(names[i])) == nullptr)
       return Error{file + ": has no column " + names[i] + " in ticks, expected a recording of `hapticd run --record`"};
+  if (!(*recording)->closed())
+    std::fprintf(stderr, "note: %s: its writer was cut off; measuring over what is there\n", file.c_str());
   if (ticks->rows() < 100) return Error{file + ": " + std::to_string(ticks->rows()) + " ticks, expected at least 100"};
   std::vector<Eigen::Vector3d> position;
   for (uint64_t i = 0; i < ticks->rows(); ++i) {

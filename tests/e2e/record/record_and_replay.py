@@ -61,7 +61,10 @@ def killLeavesAReadableFile(folder, environment):
     check("what a kill left replays with every bit the same", code == 0, told)
     picture = os.path.join(folder, "killed.svg")
     code, told = hapticd("plot", file, "--out", picture)
-    check("what a kill left can be drawn", code == 0 and os.path.isfile(picture), told)
+    check("what a kill left can be drawn, and says that it was cut off",
+          code == 0 and os.path.isfile(picture) and "cut off" in told, told)
+    code, told = hapticd("tune", os.path.join(SCENES, "teapot.yaml"), "--motion", file, "--limit-seconds", "1")
+    check("tuning over what a kill left says that it was cut off", code in (0, 1) and "cut off" in told, told)
 
 
 with tempfile.TemporaryDirectory() as scratch:
