@@ -65,8 +65,13 @@ Result<std::unique_ptr<Subject>> Subject::make(const Recipe& recipe) {
   if (subject->shape_ == nullptr) return Error{"create() made no instance: " + subject->services_->lastError()};
   for (uint32_t i = 0; i < c.param_count; ++i) {
     const auto given = recipe.set.find(paramAt(c, i).id);
-    if (given == recipe.set.end()) continue;
+    const bool damps = host::damps(c, i);
+    if (given == recipe.set.end()) {
+      if (damps) subject->damping_ = std::max(subject->damping_, paramAt(c, i).def);
+      continue;
+    }
     const hsp_value value = valueOf(paramAt(c, i), given->second);
+    if (damps) subject->damping_ = std::max(subject->damping_, value.number);
     if (c.set(subject->shape_, i, &value) < 0)
       return Error{"set(" + given->first + ", " + given->second + "): " + subject->services_->lastError()};
   }

@@ -56,6 +56,7 @@ class Subject {
   hsp_shape* handle() const { return shape_; }
   const void* extension(const char* name) const;
   bool moves() const { return (report_.flags & HSP_R_MOVES) != 0; }
+  double damping() const { return damping_; }  ///< [N s/m] the largest that its parameters ask for
   double energy() const;  ///< [J] stored, NaN: it does not say
   /// Box of the shape in its own frame, or a guess of 0.1 m about the origin.
   std::pair<Eigen::Vector3d, Eigen::Vector3d> bounds() const;
@@ -73,6 +74,7 @@ class Subject {
   hsp_shape* shape_ = nullptr;
   hsp_report report_{};
   bool active_ = false;
+  double damping_ = 0;
   hsp_pose pose_{};
   Answer answer_;
   std::vector<Eigen::Vector3d> last_;

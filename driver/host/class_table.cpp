@@ -1,5 +1,7 @@
 #include "host/class_table.hpp"
 
+#include <cstring>
+
 namespace hapticd::host {
 
 std::string statusText(hsp_status status) {
@@ -40,6 +42,12 @@ hsp_value toAbi(const scene::Value& value) {
     given.count = static_cast<uint32_t>(value.numbers.size());
   }
   return given;
+}
+
+bool damps(const hsp_class& shape, uint32_t param) noexcept {
+  if (param >= shape.param_count) return false;
+  const hsp_param& described = *HSP_AT(const hsp_param, shape.params, shape.params[0].struct_size, param);
+  return described.kind == HSP_REAL && described.unit != nullptr && std::strcmp(described.unit, "N s/m") == 0;
 }
 
 bool complete(const hsp_class& shape) {

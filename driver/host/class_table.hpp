@@ -23,6 +23,9 @@ hsp_value toAbi(const scene::Value& value);
 bool complete(const hsp_class& shape);
 bool complete(const hdv_class& device);
 
+/// [any] True if the parameter is a damping: a number in N s/m.
+bool damps(const hsp_class& shape, uint32_t param) noexcept;
+
 /// [main] The class with that name (or id) in an entry; nullptr if there is none.
 template <class Class, class Entry>
 const Class* findClass(const Entry& entry, const std::string& name) {

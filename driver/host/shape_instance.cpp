@@ -1,5 +1,6 @@
 #include "host/shape_instance.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "host/class_table.hpp"
@@ -21,6 +22,19 @@ std::string wrongIn(const hsp_report& report) {
     if (!std::isfinite(claim) || claim < 0)
       return "its report claims " + std::to_string(claim) + " as a stiffness, force or size; expected 0 or more";
   return "";
+}
+
+/// The largest damping among the parameters, given or left at their defaults.
+double dampingOf(const hsp_class& shape, const std::vector<scene::Value>& given) {
+  double most = 0;
+  for (uint32_t i = 0; i < shape.param_count; ++i) {
+    if (!damps(shape, i)) continue;
+    double value = HSP_AT(const hsp_param, shape.params, shape.params[0].struct_size, i)->def;
+    for (const scene::Value& v : given)
+      if (v.index == i) value = v.number;
+    most = std::max(most, value);
+  }
+  return most;
 }
 
 }  // namespace
@@ -49,6 +63,7 @@ Result<std::unique_ptr<ShapeInstance>> ShapeInstance::create(const scene::Model&
       model.parameters, instance->class_->param_count, instance->services_,
       [&](uint32_t index, const hsp_value* value) { return instance->class_->set(instance->shape_, index, value); });
   if (!set) return Error{who + set.error()};
+  instance->damping_ = dampingOf(*instance->class_, model.parameters);
   return instance;
 }
 

@@ -27,7 +27,9 @@ class ShapeInstance {
 
   const std::string& name() const { return name_; }
   const hsp_class& description() const { return *class_; }
-  const hsp_report& report() const { return report_; }            ///< valid while active
+  const hsp_report& report() const { return report_; }  ///< valid while active
+  /// [N s/m] The damping that the shape was asked for: the largest of its parameters in that unit.
+  double claimedDamping() const { return damping_; }
   const hsp_ext_surfaces* surfaces() const { return surfaces_; }  ///< nullptr: the shape traces itself
   const hsp_ext_geometry* geometry() const { return geometry_; }
   const hsp_ext_energy* energy() const { return energy_; }
@@ -45,6 +47,7 @@ class ShapeInstance {
   const hsp_ext_surfaces* surfaces_ = nullptr;
   const hsp_ext_geometry* geometry_ = nullptr;
   const hsp_ext_energy* energy_ = nullptr;
+  double damping_ = 0;
   bool active_ = false;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/clock.hpp"
 #include "base/os.hpp"
@@ -60,6 +61,7 @@ ModelState Core::stateOf(host::ShapeInstance& shape, const scene::Model& describ
   if (described.kinematic) model.path = Path(described.path);
   model.moves = moves_itself || described.kinematic;
   model.always = moves_itself || shape.surfaces() == nullptr;
+  model.damping = shape.claimedDamping();
   return model;
 }
 
@@ -182,6 +184,7 @@ void Core::fillProbe(const ModelState& model, const Probe& probe, uint32_t index
 
 void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT {
   ModelState& model = models_[index];
+  model.overran = false;
   if (model.guard.quarantined() && model.guard.gain(false, dt) == 0) return clearContacts(index);
   for (uint32_t i = 0; i < probe_count_; ++i) {
     fillProbe(model, probes[i], i, t);
@@ -300,7 +303,7 @@ Trouble Core::judge(ModelState& model, uint32_t index, double dt, const hsp_pose
   if (moves_itself && answers_finite) answers_finite = takePose(model, pose);
   if (uses_.exchange && model.moves && dt > 0) bookMotion(model, index);
   Trouble trouble = model.guard.judge(model.status, answers_finite);
-  if (trouble == Trouble::kNone) trouble = holdToClaims(model, index);
+  if (trouble == Trouble::kNone) trouble = holdToClaims(model, index, dt);
   if (trouble == Trouble::kBadStatus && model.failed_status == HSP_OK) model.failed_status = model.status;
   if (trouble == Trouble::kLost) {
     model.shape->reset();
@@ -318,26 +321,33 @@ void Core::fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP
 }
 
 /// What a healthy answer may still break: the time it was given, and the stiffness that was claimed for it.
-Trouble Core::holdToClaims(ModelState& model, uint32_t index) noexcept HSP_RT {
-  constexpr int kOverruns = 4, kJumps = 3;
+Trouble Core::holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
+  constexpr int kJumps = 3;
   Trouble trouble = Trouble::kNone;
   const bool moves_itself = (model.shape->report().flags & HSP_R_MOVES) != 0;
   for (uint32_t i = 0; i < probe_count_; ++i) {
     const Vector3d p_model =
         moves_itself ? model.frame.pointToModel(last_position_[i]) : Vector3d(ConstMap(inputs_[i].position));
-    const double part =
-        claims_[size_t{index} * probe_count_ + i].judge(model.shape->report(), inputs_[i], outputs_[i], p_model);
+    const double part = claims_[size_t{index} * probe_count_ + i].judge(model.shape->report(), inputs_[i], outputs_[i],
+                                                                        p_model, model.damping, dt);
     if (part >= 1) continue;
     Map(outputs_[i].force) *= part;
     Map(outputs_[i].torque) *= part;
     trouble = model.guard.strike(Trouble::kJump, kJumps);
   }
+  return trouble == Trouble::kNone ? holdToTime(model) : trouble;
+}
+
+Trouble Core::holdToTime(ModelState& model) noexcept HSP_RT {
+  constexpr int kOverruns = 4;
+  if (std::exchange(model.overran_then, false)) return model.guard.strike(Trouble::kOverrun, kOverruns);
   const bool overran = settings_.budget_ns > 0 && settings_.measure && model.step_ns > settings_.budget_ns;
   const bool may_hasten = settings_.evaluation_ns > 0 || model.level < Accuracy::kCoarsest;
-  if (!overran || may_hasten || trouble != Trouble::kNone) return trouble;
+  if (!overran || may_hasten) return Trouble::kNone;
   preempted_ |= os::wasPreempted();
-  if (!preempted_) trouble = model.guard.strike(Trouble::kOverrun, kOverruns);
-  return trouble;
+  if (preempted_) return Trouble::kNone;
+  model.overran = true;
+  return model.guard.strike(Trouble::kOverrun, kOverruns);
 }
 
 /// The force of the last tick was held while the model's surface moved on: that work is the model's.

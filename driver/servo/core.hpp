@@ -55,7 +55,10 @@ struct ModelState {
   hsp_status status = HSP_OK;
   hsp_status failed_status = HSP_OK;  ///< the first that was no status of a step
   Guard guard;
-  uint64_t step_ns = 0;  ///< CPU time of the last step; 0 when not measured
+  double damping = 0;         ///< [N s/m] that it claims
+  bool overran = false;       ///< its last step was held against it for the time it took
+  bool overran_then = false;  ///< it was in the run of which this is a replay
+  uint64_t step_ns = 0;       ///< CPU time of the last step; 0 when not measured
   // How exactly it answers: lowered while a tick takes too long, see balance.hpp.
   uint32_t level = 0, coarsest = 0;  ///< now, and at most so far
   uint64_t finer_ns = 0;             ///< what a step took before the level was lowered
@@ -141,7 +144,8 @@ class Core {
   void callShape(ModelState& model, uint32_t index, double dt, hsp_pose& pose) noexcept HSP_RT;
   Trouble judge(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT;
   void fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP_RT;
-  Trouble holdToClaims(ModelState& model, uint32_t index) noexcept HSP_RT;
+  Trouble holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT;
+  Trouble holdToTime(ModelState& model) noexcept HSP_RT;
   bool takePose(ModelState& model, const hsp_pose& pose) noexcept HSP_RT;
   void bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT;
   void bookContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "host/class_table.hpp"
 #include "servo/core.hpp"
 
 namespace hapticd::servo {
@@ -25,6 +26,8 @@ bool Core::obey(const Order& order, double t) noexcept HSP_RT {
       return change(model, order);
     case Order::Kind::kAccuracy:
       return order.value >= 0 && setLevel(model, static_cast<uint32_t>(order.value));
+    case Order::Kind::kOverran:
+      return model.overran_then = true;
     case Order::Kind::kRelease:
       model.enabled = false;
       if (!model.leaving) ++leaving_;
@@ -49,6 +52,7 @@ bool Core::change(ModelState& model, const Order& order) noexcept HSP_RT {
   if (found == model.changes.data() + model.changes.size()) return false;
   if (found == end) ++model.change_count;
   *found = {order.param, 0, order.value};
+  if (host::damps(model.shape->description(), order.param)) model.damping = std::max(model.damping, order.value);
   return true;
 }
 

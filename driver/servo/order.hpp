@@ -20,14 +20,17 @@ struct Order {
     kHold,     ///< the arm's force ramps out until it is cleared
     kAdopt,    ///< a prepared model takes an empty place
     kRelease,  ///< the model fades out and leaves its place
-    kAccuracy  ///< how exactly a model answers; given by the servo itself, and kept because it changes forces
+    // What the servo does by itself, because of times that a replay cannot measure again; kept as orders are.
+    kAccuracy,  ///< how exactly a model answers
+    kOverran,   ///< the model's step took longer than it may, and was held against it
+    kCut        ///< the watchdog cut the arm's motors
   };
   Kind kind = Kind::kNone;
-  uint32_t target = 0;                                     ///< model or arm
-  uint32_t param = 0;                                      ///< kSet
-  uint32_t ticket = 0;                                     ///< of the request, for the answer
-  double value = 0;                                        ///< kSet; kAccuracy: the level
-  double seconds = 0;                                      ///< kMove: how long it takes
+  uint32_t target = 0;  ///< model or arm
+  uint32_t param = 0;   ///< kSet
+  uint32_t ticket = 0;  ///< of the request, for the answer
+  double value = 0;     ///< kSet; kAccuracy: the level; kCut: 1 found before the tick's read, 0 at its write
+  double seconds = 0;   ///< kMove: how long it takes; kCut: how long the servo was stuck
   double position[3] = {}, orientation[4] = {1, 0, 0, 0};  ///< kMove: world frame
   ModelState* model = nullptr;                             ///< kAdopt: swapped with the empty place
 };

@@ -88,6 +88,18 @@ TEST(Core, BadSampleGivesNoForceAndTheNextGoodOneIsFeltAgain) {
   EXPECT_DOUBLE_EQ(tickOnce(*world, 2, good).y(), 1.0);
 }
 
+TEST(Core, ADampedWallMayPushAsHardAsItsDampingSays) {
+  scene::Scene scene;
+  scene.models.push_back(testModel("wall", {number(0, HSP_REAL, 1000), number(1, HSP_REAL, 500)}));
+  auto world = testWorld(scene);
+  for (int i = 0; i < 50; ++i) {  // from 5 mm above to 20 mm below, at 0.5 m/s, which ends at once
+    const double y = 0.005 - 0.0005 * i, v = i < 40 ? -0.5 : 0;
+    const Vector3d force = tickOnce(*world, i, probeAt({0, y, 0}, {0, v, 0}));
+    EXPECT_NEAR(force.y(), y < 0 ? -1000 * y - 500 * v : 0, 1e-9) << i;
+  }
+  EXPECT_EQ(world->core().models()[0].guard.trouble(), Trouble::kNone);
+}
+
 TEST(Core, NotANumberSilencesOnlyTheShapeThatAnsweredIt) {
   scene::Scene scene;
   scene.models.push_back(testModel("misbehaving"));
