@@ -80,7 +80,10 @@ void Arm::exchangeDry(Nanoseconds now) noexcept HSP_RT {
 }
 
 const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
-  if (cut_.load()) limiter_.cut(Fault::kStuck, cut_after_.load());
+  if (cut_.load()) {
+    findCut(CutFound::kInRead);
+    limiter_.cut(Fault::kStuck, cut_after_.load());
+  }
   if (taken_.exchange(true)) {  // the watchdog is writing its zero force
     probe_.valid = false;
     return probe_;
@@ -235,8 +238,12 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
 
 void Arm::send(Nanoseconds now) noexcept HSP_RT {
   if (taken_.exchange(true)) return;  // the watchdog is writing its zero force
-  // After a cut the module waits for this tick's acknowledgement: motors off.
-  if (cut_.load()) command_ = {sizeof command_, HDV_OFF, {}, {}};
+  if (cut_in_write_) cut_.store(true);
+  cut_in_write_ = false;
+  if (cut_.load()) {  // the module waits for this tick's acknowledgement: motors off
+    findCut(CutFound::kInWrite);
+    command_ = {sizeof command_, HDV_OFF, {}, {}};
+  }
   write_status_ = device_->write(now, command_);
   taken_.store(false);
 }
@@ -262,8 +269,21 @@ void Arm::cut(double after) noexcept {
   taken_.store(false);
 }
 
+void Arm::findCut(CutFound when) noexcept HSP_RT {
+  if (!cut_known_) cut_found_ = when;
+  cut_known_ = true;
+}
+
+void Arm::cutAsThen(CutFound when, double after) noexcept HSP_RT {
+  cut_known_ = true;  // the recording has it already
+  cut_after_.store(after);
+  cut_in_write_ = when == CutFound::kInWrite;
+  if (when == CutFound::kInRead) cut_.store(true);
+}
+
 void Arm::clear() noexcept HSP_RT {
   cut_.store(false);
+  cut_known_ = cut_in_write_ = false;
   limiter_.clear();
 }
 

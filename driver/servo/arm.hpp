@@ -5,6 +5,7 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "base/clock.hpp"
 #include "base/result.hpp"
@@ -21,8 +22,8 @@
 namespace hapticd::servo {
 
 struct ArmOptions {
-  double rate = 1000;           ///< [Hz]
-  bool needs_velocity = false;  ///< run the estimator
+  double rate = 1000;                        ///< [Hz]
+  bool needs_velocity = false;               ///< run the estimator
   const host::Playback* playback = nullptr;  ///< samples from a recording instead of the hardware
 };
 
@@ -53,6 +54,14 @@ class Arm {
   /// [rt] Clears the latched fault, and a cut, by the user's order.
   void clear() noexcept HSP_RT;
 
+  /// When the servo finds that its motors were cut: a replay must find it then too.
+  enum class CutFound : uint8_t { kNo, kInWrite, kInRead };
+  /// [rt] Since the last call.
+  CutFound takeCutFound() noexcept HSP_RT { return std::exchange(cut_found_, CutFound::kNo); }
+  double cutAfter() const noexcept { return cut_after_.load(); }  ///< [s] that the servo was stuck
+  /// [rt] Before a tick of a replay: the cut will be found in it, as it was then.
+  void cutAsThen(CutFound when, double after) noexcept HSP_RT;
+
   const hdv_info& info() const { return device_->info(); }
   host::DeviceInstance& device() { return *device_; }
   Limiter& limiter() noexcept { return limiter_; }
@@ -65,9 +74,9 @@ class Arm {
   const hdv_command& command() const noexcept { return command_; }   ///< as write() gave it
   hsp_status readStatus() const noexcept { return read_status_; }    ///< of the last read
   hsp_status writeStatus() const noexcept { return write_status_; }  ///< of the last write
-  /// [rt] Force [N] of the hand on the arm, world frame, from the joint torques of the newest sample less what carries the
-  /// arm's own weight: -pinv(J^T) (tau - gravity). Nothing: the device measures no torque. In motion it has the inertia of
-  /// what lies beyond the load cells in it.
+  /// [rt] Force [N] of the hand on the arm, world frame, from the joint torques of the newest sample less what carries
+  /// the arm's own weight: -pinv(J^T) (tau - gravity). Nothing: the device measures no torque. In motion it has the
+  /// inertia of what lies beyond the load cells in it.
   std::optional<Eigen::Vector3d> handForce() const noexcept HSP_RT;
   /// Compliance control; nullptr: this arm is driven by force.
   const Admittance* admittance() const noexcept { return admittance_ ? &*admittance_ : nullptr; }
@@ -83,6 +92,7 @@ class Arm {
   Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter);
   bool judge(hsp_status status, Nanoseconds now) noexcept HSP_RT;
   void trip(Fault fault, double measured = 0) noexcept HSP_RT;
+  void findCut(CutFound when) noexcept HSP_RT;
   void recover(double dt, bool pushes) noexcept HSP_RT;
   bool locate() noexcept HSP_RT;
   bool comply(double dt, const Eigen::Vector3d& force) noexcept HSP_RT;
@@ -103,6 +113,8 @@ class Arm {
   MotorHeat heat_;
   std::atomic<bool> cut_{false}, taken_{false};  // taken: a thread is inside the module
   std::atomic<double> cut_after_{0};
+  CutFound cut_found_ = CutFound::kNo;
+  bool cut_known_ = false, cut_in_write_ = false;
   hdv_sample sample_{};
   hdv_command command_{};
   hsp_status read_status_ = HSP_OK, write_status_ = HSP_OK;

@@ -117,12 +117,14 @@ RowLayout activationColumns() {
 RowLayout orderColumns() {
   RowLayout layout;
   layout.add("tick", ColumnType::kCount, "", "number of the tick that obeyed");
-  layout.add("kind", ColumnType::kWord, "", "1 enable, 2 disable, 3 move, 4 set, 5 clear, 6 hold, 7 adopt, 8 release");
-  layout.add("target", ColumnType::kWord, "", "model, or arm of 5 and 6");
+  layout.add("kind", ColumnType::kWord, "",
+             "1 enable, 2 disable, 3 move, 4 set, 5 clear, 6 hold, 7 adopt, 8 release; by the servo itself: 9 "
+             "accuracy, 10 overran, 11 cut");
+  layout.add("target", ColumnType::kWord, "", "model, or arm of 5, 6 and 11");
   layout.add("param", ColumnType::kWord, "", "of a set: index in the plugin's table");
   layout.add("reserved", ColumnType::kWord, "", "0");
-  layout.add("value", ColumnType::kReal, "", "of a set");
-  layout.add("seconds", ColumnType::kReal, "s", "that a move takes");
+  layout.add("value", ColumnType::kReal, "", "of a set; 9: the level; 11: 1 found before the tick, 0 in it");
+  layout.add("seconds", ColumnType::kReal, "s", "that a move takes; 11: that the servo was stuck");
   vector(layout, "", "m", "where a move goes, world frame");
   quaternion(layout, "", "where a move goes");
   return layout;
@@ -140,7 +142,7 @@ void copyAll(T& to, const T& from) noexcept HSP_RT {
 }  // namespace
 
 std::vector<StreamSpec> flightStreams(const scene::Scene& scene, const std::vector<std::unique_ptr<Arm>>& arms,
-                                      double rate, double seconds) {
+                                      double rate, double seconds, size_t moving) {
   // A row more than is kept: the one being written. Contacts beyond four models at a time shorten what is kept of them.
   constexpr uint64_t kModelsAtOnce = 4, kFewest = 1024, kRecords = 16384;
   const auto ticks = static_cast<uint64_t>(std::ceil(seconds * rate)) + 1;
@@ -149,9 +151,10 @@ std::vector<StreamSpec> flightStreams(const scene::Scene& scene, const std::vect
   streams[kTicks] = {"ticks", {}, ticks};
   streams[kContacts] = {"contacts", contactColumns(),
                         std::max(kFewest, ticks * models * std::max<uint64_t>(arms.size(), 1))};
-  const bool moving =
-      std::any_of(scene.models.begin(), scene.models.end(), [](const scene::Model& m) { return m.kinematic; });
-  streams[kPoses] = {"poses", poseColumns(), std::max(kFewest, ticks * (moving ? models : 1))};
+  // What moves may also come while it runs: of that a second is kept.
+  const auto second = static_cast<uint64_t>(rate);
+  streams[kPoses] = {"poses", poseColumns(),
+                     std::max({kFewest, second, ticks * std::min<uint64_t>(moving, kModelsAtOnce)})};
   streams[kActivations] = {"activations", activationColumns(), kRecords};
   streams[kOrders] = {"orders", orderColumns(), kFewest};
   RowLayout& layout = streams[kTicks].layout;
@@ -184,6 +187,20 @@ Flight::Flight(std::unique_ptr<record::FlightRing> ring, const std::vector<std::
     columns_.push_back({offsetOf(arm + "sequence"), offsetOf(arm + "q0"), offsetOf(arm + "dq0"),
                         offsetOf(arm + "measured0"), offsetOf(arm + "command0"), arms[i]->info().joint_count});
   }
+}
+
+uint64_t Flight::oldest() const noexcept {
+  const uint64_t end = ring_->written(kTicks), kept = ring_->capacity(kTicks) - 1;
+  return end > kept ? end - kept : 0;
+}
+
+bool Flight::read(uint64_t tick, TickRow& row, ArmRow& arm) const {
+  std::vector<std::byte> bytes(ring_->rowBytes(kTicks));
+  if (ring_->copy(kTicks, tick, 1, bytes.data()) != 1) return false;
+  std::memcpy(&row, bytes.data(), sizeof row);
+  arm = {};
+  if (!columns_.empty()) std::memcpy(&arm, bytes.data() + columns_.front().arm, sizeof arm);
+  return true;
 }
 
 template <class Row>

@@ -58,9 +58,9 @@ struct OrderRow {
   double value = 0, seconds = 0, position[3] = {}, orientation[4] = {};
 };
 
-/// [main] The streams of a run. @param rate [Hz] @param seconds that the black box keeps
+/// [main] The streams of a run. @param rate [Hz] @param seconds that the black box keeps @param moving models that move
 std::vector<record::StreamSpec> flightStreams(const scene::Scene& scene, const std::vector<std::unique_ptr<Arm>>& arms,
-                                              double rate, double seconds);
+                                              double rate, double seconds, size_t moving);
 
 class Flight {
  public:
@@ -80,6 +80,11 @@ class Flight {
   record::FlightRing& ring() { return *ring_; }
   const record::FlightRing& ring() const { return *ring_; }
   uint64_t ticks() const noexcept { return ring_->written(kTicks); }  ///< [any]
+
+  /// [main] The oldest tick that is kept.
+  uint64_t oldest() const noexcept;
+  /// [main] One tick and its first arm. False: it is not kept any more, or was not yet.
+  bool read(uint64_t tick, TickRow& row, ArmRow& arm) const;
 
  private:
   /// Where the columns of one arm begin in a row, and how many joints it has.

@@ -66,6 +66,7 @@ void Loop::run() noexcept {
   for (uint64_t n = 0, done = 0;; ++n) {
     if (stop_ || (settings_.ticks != 0 && done + ramp_ticks_ >= settings_.ticks)) rampOut();
     const Nanoseconds woke = clock_.waitUntil(deadline);
+    const Nanoseconds due = std::min(deadline, woke);
     deadline = skipMissed(deadline, woke);
     const Nanoseconds begun = monotonicNow();
     tick_begun_.store(begun, std::memory_order_relaxed);
@@ -75,7 +76,7 @@ void Loop::run() noexcept {
     const double t = static_cast<double>(deadline - start) * kSecondsPerNanosecond;
     telemetry_.begin(deadline, arms_);
     tick(deadline, t, dt);
-    telemetry_.tick(t, dt, woke - deadline, monotonicNow() - begun - search_time_, world_.core(), arms_);
+    telemetry_.tick(t, dt, woke - due, monotonicNow() - begun - search_time_, world_.core(), arms_);
     last = deadline;
     deadline += settings_.period_ns;
     tick_count_.store(n + 1, std::memory_order_relaxed);
@@ -115,15 +116,45 @@ void Loop::obey(double t) noexcept HSP_RT {
   constexpr int kOrdersPerTick = 16;
   Order order;
   for (int i = 0; i < kOrdersPerTick && orders_.pop(order); ++i) {
-    const bool to_arm = order.kind == Order::Kind::kClear || order.kind == Order::Kind::kHold;
+    const bool to_arm = order.kind == Order::Kind::kClear || order.kind == Order::Kind::kHold ||
+                        order.kind == Order::Kind::kCut;
     if (!to_arm) {
       world_.core().obey(order, t);
     } else if (order.target < arms_.size()) {
-      Arm& arm = *arms_[order.target];
-      order.kind == Order::Kind::kClear ? arm.clear() : arm.limiter().trip(Fault::kStopped);
+      obey(order, *arms_[order.target]);
     }
     telemetry_.order(order);
     orders_done_.store(orders_done_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+  }
+}
+
+void Loop::obey(const Order& order, Arm& arm) noexcept HSP_RT {
+  if (order.kind == Order::Kind::kClear)
+    arm.clear();
+  else if (order.kind == Order::Kind::kHold)
+    arm.limiter().trip(Fault::kStopped);
+  else
+    arm.cutAsThen(order.value > 0 ? Arm::CutFound::kInRead : Arm::CutFound::kInWrite, order.seconds);
+}
+
+/// After a tick: what came of times that were measured in it.
+void Loop::noteDeeds() noexcept HSP_RT {
+  Order order;
+  order.kind = Order::Kind::kOverran;
+  const Core& core = world_.core();
+  for (const uint32_t index : core.live()) {
+    if (!core.models()[index].overran) continue;
+    order.target = index;
+    telemetry_.order(order);
+  }
+  order.kind = Order::Kind::kCut;
+  for (uint32_t i = 0; i < arms_.size(); ++i) {
+    const Arm::CutFound found = arms_[i]->takeCutFound();
+    if (found == Arm::CutFound::kNo) continue;
+    order.target = i;
+    order.value = found == Arm::CutFound::kInRead ? 1 : 0;
+    order.seconds = arms_[i]->cutAfter();
+    telemetry_.order(order);
   }
 }
 
@@ -164,6 +195,7 @@ void Loop::tick(Nanoseconds now, double t, double dt) noexcept HSP_RT {
   world_.core().tick(t, dt, probes_);
   const Core& core = world_.core();
   for (uint32_t i = 0; i < arms_.size(); ++i) arms_[i]->write(now, dt, core.force(i), core.torque(i), core.exchange(i));
+  noteDeeds();
   wants_search_.store(world_.core().wantsSearch(), std::memory_order_relaxed);
 }
 

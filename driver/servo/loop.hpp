@@ -59,6 +59,8 @@ class Loop {
   void tick(Nanoseconds now, double t, double dt) noexcept HSP_RT;
   void runDry() noexcept HSP_RT;
   void obey(double t) noexcept HSP_RT;
+  void obey(const Order& order, Arm& arm) noexcept HSP_RT;
+  void noteDeeds() noexcept HSP_RT;
   void balance() noexcept HSP_RT;
   void search(double t) noexcept;
   void trip(Fault fault, double measured = 0) noexcept HSP_RT;

@@ -266,7 +266,7 @@ Result<std::unique_ptr<Replay>> Replay::prepare(const record::Recording& recordi
     if (!arm) return Error{arm.error()};
     replay->arms_.push_back(std::move(*arm));
   }
-  const auto streams = flightStreams(scene, replay->arms_, options.rate, kKeptSeconds);
+  const auto streams = flightStreams(scene, replay->arms_, options.rate, kKeptSeconds, scene.models.size());
   if (const std::string missing = missingIn(recording, replay->run_, streams); !missing.empty())
     return Error{"the recording " + missing};
   auto ring = record::FlightRing::create(streams, {});

@@ -151,7 +151,10 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
 }
 
 Result<void> Runner::openBlackBox(const LoopSettings& settings) {
-  const auto streams = flightStreams(scene_, arms_, options_.rate, Telemetry::kBlackBoxSeconds);
+  const auto models = world_->core().models();
+  const auto moving = std::count_if(models.begin(), models.end(), [](const ModelState& m) { return m.moves; });
+  const auto streams =
+      flightStreams(scene_, arms_, options_.rate, Telemetry::kBlackBoxSeconds, static_cast<size_t>(moving));
   const RunFacts facts{options_.rate, settings.period_ns, settings.ticks, options_.virtual_time};
   auto ring = record::FlightRing::create(streams, aboutRun(scene_, *world_, arms_, facts, streams), options_.black_box);
   if (!ring) return Error{ring.error()};

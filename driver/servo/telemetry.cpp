@@ -5,13 +5,20 @@
 namespace hapticd::servo {
 
 Telemetry::Telemetry(const scene::Scene& scene, double rate, uint32_t places)
-    : rate_(rate), models_(std::max<size_t>(scene.models.size(), places)), rows_(static_cast<size_t>(std::ceil(kBlackBoxSeconds * rate))) {
+    : rate_(rate),
+      models_(std::max<size_t>(scene.models.size(), places)),
+      rows_(static_cast<size_t>(std::ceil(kBlackBoxSeconds * rate))) {
   for (const scene::Model& model : scene.models) {
     names_.push_back(model.name);
     plugins_.push_back(model.plugin);
   }
   names_.resize(models_.size());
   plugins_.resize(models_.size());
+}
+
+void Telemetry::attach(std::unique_ptr<Flight> flight) {
+  flight_ = std::move(flight);
+  rows_ = {};
 }
 
 void Telemetry::name(uint32_t place, const std::string& name, const std::string& plugin) {
@@ -40,6 +47,11 @@ void Telemetry::tick(double t, double dt, Nanoseconds late, Nanoseconds spent, c
     }
     row.fault = static_cast<uint32_t>(arm.limiter().fault());
   }
+  newest_ = row;
+  if (!rows_.empty()) keep(row);
+}
+
+void Telemetry::keep(const BlackBoxRow& row) noexcept HSP_RT {
   rows_[next_] = row;
   next_ = next_ + 1 == rows_.size() ? 0 : next_ + 1;
   if (row_count_ < rows_.size()) ++row_count_;
@@ -89,7 +101,29 @@ record::RunReport Telemetry::report(const std::vector<std::string>& faults) cons
   return report;
 }
 
+std::vector<BlackBoxRow> Telemetry::fromFlight() const {
+  std::vector<BlackBoxRow> rows;
+  TickRow tick;
+  ArmRow arm;
+  for (uint64_t n = flight_->oldest(); flight_->read(n, tick, arm); ++n) {
+    BlackBoxRow row;
+    row.t = tick.t;
+    row.lateness_us = tick.lateness_us, row.compute_us = tick.compute_us;
+    for (size_t i = 0; i < 3; ++i) {
+      row.position[i] = static_cast<float>(arm.position[i]);
+      row.force[i] = static_cast<float>(arm.sent[i]);
+    }
+    row.depth_m = tick.model >= 0 ? static_cast<float>(tick.depth) : 0;
+    row.model = tick.model >= 0 ? static_cast<uint32_t>(tick.model) : UINT32_MAX;
+    row.status = tick.status;
+    row.fault = arm.fault;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
 std::vector<BlackBoxRow> Telemetry::blackBox() const {
+  if (flight_) return fromFlight();
   std::vector<BlackBoxRow> ordered;
   ordered.reserve(row_count_);
   const size_t oldest = row_count_ < rows_.size() ? 0 : next_;

@@ -40,8 +40,9 @@ class Telemetry {
   /// [main] A model takes an empty place; before the servo adopts it.
   void name(uint32_t place, const std::string& name, const std::string& plugin);
 
-  /// [main] Keeps every tick in a black box too.
-  void attach(std::unique_ptr<Flight> flight) { flight_ = std::move(flight); }
+  /// [main] Keeps every tick in a black box, with all that came in and went out; the short rows kept until now are not
+  /// needed any more.
+  void attach(std::unique_ptr<Flight> flight);
   /// [main] Shows every tick on a page for others too.
   void attach(std::unique_ptr<StatusWriter> status) { status_ = std::move(status); }
   StatusWriter* statusWriter() { return status_.get(); }
@@ -79,16 +80,19 @@ class Telemetry {
   std::vector<BlackBoxRow> blackBox() const;
 
   /// [any] Newest row, for the status line; may be torn, so for eyes only.
-  const BlackBoxRow& newest() const noexcept { return rows_[(next_ + rows_.size() - 1) % rows_.size()]; }
+  const BlackBoxRow& newest() const noexcept { return newest_; }
 
  private:
+  std::vector<BlackBoxRow> fromFlight() const;
+  void keep(const BlackBoxRow& row) noexcept HSP_RT;
   void bookModels(double dt, const Core& core, BlackBoxRow& row) noexcept HSP_RT;
 
   std::vector<std::string> names_, plugins_;
   double rate_, simulated_seconds_ = 0;
   record::Histogram lateness_us_, compute_us_;
   std::vector<record::ContactStatistics> models_;
-  std::vector<BlackBoxRow> rows_;
+  std::vector<BlackBoxRow> rows_;  // where there is no flight
+  BlackBoxRow newest_;
   size_t next_ = 0, row_count_ = 0;
   uint64_t ticks_ = 0, overruns_ = 0, missed_ = 0, allocations_ = 0;
   long page_faults_ = 0;

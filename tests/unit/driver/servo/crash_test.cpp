@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 /// What a daemon does around its loop.
 void runWatched(int how, const fs::path& dir) {
   Rig rig(0, [](Nanoseconds) { return Nanoseconds{0}; }, 300, "deadly", {number(0, HSP_ENUM, how)});
-  const auto streams = flightStreams(rig.scene, rig.arms, 1000, 1);
+  const auto streams = flightStreams(rig.scene, rig.arms, 1000, 1, 0);
   rig.telemetry->attach(
       std::make_unique<Flight>(std::move(*record::FlightRing::create(streams, record::About{})), rig.arms));
   ServoWatch watched(*rig.loop, *rig.world, rig.arms, *rig.telemetry);

@@ -42,6 +42,7 @@ TEST(Loop, SkipsWholePeriodsKeepsThePhaseAndCountsThem) {
   const record::RunReport report = rig.telemetry->report({});
   EXPECT_EQ(report.overruns, 1u);
   EXPECT_EQ(report.missed_ticks, 3u);
+  EXPECT_EQ(report.lateness_us.max(), 3400) << "how late it woke, not how late in the period it then took";
   EXPECT_EQ(report.ticks, 297u);
   for (const Nanoseconds deadline : rig.clock.deadlines) EXPECT_EQ(deadline % 1'000'000, 0u);
   EXPECT_EQ(rig.clock.deadlines[101], 104'000'000u);
