@@ -4,6 +4,9 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <mutex>
+#include <utility>
+#include <vector>
 
 #include "hapticd/abi.h"
 
@@ -17,6 +20,18 @@ struct Settings {
 
 Settings& settings() {
   static Settings instance;
+  return instance;
+}
+
+/// Errors of modules that a failing set-up will tell.
+struct Waiting {
+  std::mutex mutex;
+  bool open = false;
+  std::vector<std::pair<std::string, std::string>> errors;  ///< who, text
+};
+
+Waiting& waiting() {
+  static Waiting instance;
   return instance;
 }
 
@@ -49,13 +64,34 @@ CLI::Validator within(double low, double high) {
   return {refuse, fmt::format("FLOAT in [{} - {}]", low, high)};
 }
 
+SetupErrors::SetupErrors() {
+  const std::lock_guard lock(waiting().mutex);
+  waiting().open = true;
+}
+
+void SetupErrors::tell() {
+  const std::lock_guard lock(waiting().mutex);
+  for (const auto& [who, text] : waiting().errors) std::fprintf(stderr, "error: %s: %s\n", who.c_str(), text.c_str());
+  waiting().errors.clear();
+  waiting().open = false;
+}
+
 int fail(int exit_code, const std::string& message) {
+  {
+    const std::lock_guard lock(waiting().mutex);
+    std::erase_if(waiting().errors, [&](const auto& e) { return message.find(e.second) != std::string::npos; });
+  }
+  SetupErrors::tell();
   std::fprintf(stderr, "error: %s\n", message.c_str());
   return exit_code;
 }
 
 void logToTerminal(int level, const std::string& who, const std::string& text) {
   if (level < HSP_LOG_INFO) return;
+  if (const std::lock_guard lock(waiting().mutex); waiting().open && level == HSP_LOG_ERROR) {
+    waiting().errors.emplace_back(who, text);
+    return;
+  }
   const char* word = level == HSP_LOG_INFO ? "info" : level == HSP_LOG_WARNING ? "warning" : "error";
   std::fprintf(stderr, "%s: %s: %s\n", word, who.c_str(), text.c_str());
 }

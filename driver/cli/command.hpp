@@ -27,6 +27,18 @@ int fail(int exit_code, const std::string& message);
 /// Messages of plugins and modules, one a line, on standard error.
 void logToTerminal(int level, const std::string& who, const std::string& text);
 
+/// While one lives, errors of plugins and modules wait: a set-up that fails because of them tells them itself, in its
+/// own message, and so they are told once.
+class SetupErrors {
+ public:
+  SetupErrors();
+  ~SetupErrors() { tell(); }
+  SetupErrors(const SetupErrors&) = delete;
+  SetupErrors& operator=(const SetupErrors&) = delete;
+  /// [main] What waits is told, and nothing waits any more.
+  static void tell();
+};
+
 /// --config and --plugin-path, which stand before the subcommand.
 void addGlobalOptions(CLI::App& app);
 

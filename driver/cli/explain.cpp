@@ -147,6 +147,7 @@ int explain(const Options& options) {
   auto scene = loadSceneOrReport(options.scene);
   if (!scene) return kBadInput;
   if (options.cost || options.json) return explainCost(options, *scene);
+  const SetupErrors once;
   auto world = servo::World::build(*scene, {.rate = scene->servo.rate, .measure = true}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   const std::vector<uint64_t> costs = measureSteps(**world, *scene);

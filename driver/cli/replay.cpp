@@ -83,6 +83,7 @@ int replay(const Options& options) {
     if (auto done = change(run->scene, text); !done) return fail(kBadInput, done.error());
   warnOfChanges(*run);
   if (!(*recording)->closed()) std::fprintf(stderr, "note: its writer was cut off; replaying what is there\n");
+  const SetupErrors once;
   auto again = servo::Replay::prepare(**recording, *run, logToTerminal);
   if (!again) return fail(kBadInput, options.file + ": " + again.error());
   const servo::ReplayOutcome outcome = (*again)->run();

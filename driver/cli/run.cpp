@@ -190,10 +190,12 @@ int run(const Options& options) {
   how.state_dir = watch::stateDir().string();
   const std::vector<std::string> left_out = leaveOutQuarantined(*scene, how.state_dir);
   for (const std::string& text : left_out) std::fprintf(stderr, "warning: %s\n", text.c_str());
+  const SetupErrors once;
   auto world = servo::Runner::buildWorld(*scene, how, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   auto runner = servo::Runner::prepare(*scene, how, std::move(*world), logToTerminal);
   if (!runner) return fail(kFailed, runner.error());
+  once.tell();
   warnOfSettings(**runner, how.rate);
   const StopBySignal stop(**runner);
   if (outside) outside->serve(**runner, options.device);

@@ -74,6 +74,7 @@ int trace(const Options& options) {
   if (!rows) return fail(kBadInput, rows.error());
   auto models = chosenModels(*scene, options.models);
   if (!models) return fail(kBadInput, models.error());
+  const SetupErrors once;
   auto world = servo::World::build(*scene, {.rate = scene->servo.rate}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   auto writer = TraceWriter::open(options.out, *scene, *models);
