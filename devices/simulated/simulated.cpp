@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "guide.h"
+#include "hapticd/device_pace.h"
 #include "kinematics/extension.hpp"
 #include "kinematics/statics.hpp"
 #include "parameter_table.hpp"
@@ -86,6 +87,7 @@ class SimulatedArm : public Device, public Parameters {
   const void* extension(const char* name) {
     if (std::strcmp(name, HDV_EXT_HAND) == 0) return &kHand;
     if (std::strcmp(name, HDV_EXT_CUT) == 0) return &kCut;
+    if (std::strcmp(name, HDV_EXT_PACE) == 0) return &kPace;
     if (std::strcmp(name, HDV_EXT_KINEMATICS) != 0) return nullptr;
     try {
       arm_ = makeArm(*this);
@@ -118,6 +120,12 @@ class SimulatedArm : public Device, public Parameters {
     return HSP_OK;
   }
   static void cut(hdv_device* device) noexcept HSP_RT { self(device).cut_.store(true); }
+  static uint64_t nextSample(hdv_device* device, uint64_t until_ns) noexcept {
+    const SimulatedArm& arm = self(device);
+    const uint64_t period = arm.sequence_ == 0 ? 0 : static_cast<uint64_t>(std::llround(1e9 / arm.rate));
+    return std::min(until_ns, arm.now_ns_ + period);
+  }
+  static constexpr hdv_ext_pace kPace = {sizeof(hdv_ext_pace), 0, &nextSample};
   static constexpr hdv_ext_cut kCut = {sizeof(hdv_ext_cut), 0, &cut};
   static constexpr hdv_ext_hand kHand = {sizeof(hdv_ext_hand), 0, &guide, &truth};
 
@@ -125,7 +133,7 @@ class SimulatedArm : public Device, public Parameters {
   void describe(hdv_info& info) const {
     const int count = arm_->jointCount();
     info.joint_count = static_cast<uint32_t>(count);
-    info.capabilities = HDV_C_SIMULATED | (torque_sensors ? uint32_t{HDV_C_TORQUE} : 0u) |
+    info.capabilities = HDV_C_SIMULATED | HDV_C_PACING | (torque_sensors ? uint32_t{HDV_C_TORQUE} : 0u) |
                         (joints_.stiffness.size() > 0 ? uint32_t{HDV_C_POSITION} : 0u);
     info.rate_hz = rate;
     info.max_force = max_force;

@@ -66,6 +66,10 @@ class BulkTransport final : public Transport {
     for (ssize_t i = 0; i < count && handle_ == nullptr; ++i) tryOne(all[i], address, identity, trouble);
     if (count >= 0) libusb_free_device_list(all, 1);
     if (handle_ == nullptr) return Error{missing(address, trouble)};
+    // A halt outlasts closing: the host must lift it. Only then, since that also resets the toggles of the packets.
+    for (const uint8_t endpoint : {wire.endpoint_in, wire.endpoint_out})
+      if (halted_) (void)libusb_clear_halt(handle_, endpoint);
+    halted_ = false;
     if (const Status status = submitReads(wire); status != Status::kOk) {
       close();
       return Error{"USB device " + idText(address) + " takes no transfers; unplug it and plug it in again"};
@@ -91,6 +95,7 @@ class BulkTransport final : public Transport {
     in_flight_ = 0;
     writing_ = closing_ = false;
     first_ = filled_ = 0;
+    halted_ = halted_ || broken_ == Status::kStalled;
     broken_ = Status::kOk;
   }
 
@@ -285,6 +290,7 @@ class BulkTransport final : public Transport {
   Nanoseconds written_at_ = 0;
   int interface_ = 0;
   uint8_t endpoint_out_ = 0;
+  bool halted_ = false;  ///< it stalled when it was closed
   bool writing_ = false, waiting_ = false, closing_ = false, out_interrupt_ = false;
   Status broken_ = Status::kOk;
 };

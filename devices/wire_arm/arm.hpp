@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "hapticd/device.hpp"
+#include "hapticd/device_pace.h"
 #include "hapticd/device_trouble.h"
 #include "kinematics/extension.hpp"
 #include "wire_arm/calibration.hpp"
@@ -167,6 +168,7 @@ class Arm : public Device, public Parameters {
   }
 
   hsp_status write(uint64_t now_ns, const hdv_command& command) noexcept HSP_RT {
+    if (command.mode == HDV_OFF) link_->endCut();
     wish_.time = now_ns;
     ++wish_.sequence;
     wish_.follow = command.mode == HDV_POSITION && follows_;
@@ -203,6 +205,14 @@ class Arm : public Device, public Parameters {
       }
       kinematics_ = kinematics::Extension<T>::of(*arm_);
       return &kinematics_;
+    }
+    if (std::string_view(name) == HDV_EXT_CUT) {
+      static constexpr hdv_ext_cut kCut{sizeof(hdv_ext_cut), 0, &cut};
+      return &kCut;
+    }
+    if (std::string_view(name) == HDV_EXT_PACE) {
+      static constexpr hdv_ext_pace kPace{sizeof(hdv_ext_pace), 0, &waitForSample};
+      return &kPace;
     }
     if (std::string_view(name) == HDV_EXT_TROUBLE) {
       static constexpr hdv_ext_trouble kTrouble{sizeof(hdv_ext_trouble), 0, &why};
@@ -286,6 +296,16 @@ class Arm : public Device, public Parameters {
     std::snprintf(info.product, sizeof info.product, "%s", identity.product.c_str());
     std::snprintf(info.serial, sizeof info.serial, "%s", identity.serial.c_str());
     std::snprintf(info.firmware, sizeof info.firmware, "%s", identity.firmware.c_str());
+  }
+
+  /// Also before open() and after close(): there is nothing to cut then.
+  static void cut(hdv_device* device) noexcept HSP_RT {
+    if (Link* link = reinterpret_cast<T*>(device)->link_.get()) link->cut();
+  }
+
+  static uint64_t waitForSample(hdv_device* device, uint64_t until_ns) noexcept {
+    reinterpret_cast<T*>(device)->link_->waitForNews(until_ns);
+    return std::min<uint64_t>(monotonicNow(), until_ns);
   }
 
   static const char* why(const hdv_device* device) noexcept HSP_RT {

@@ -120,6 +120,7 @@ void Link::close() {
 }
 
 bool Link::read(Sample& sample) noexcept HSP_RT {
+  heard_ = news_.strikes();
   const bool fresh = samples_.update();
   sample = samples_.front();
   return fresh;
@@ -128,6 +129,18 @@ bool Link::read(Sample& sample) noexcept HSP_RT {
 void Link::write(const Wish& wish) noexcept HSP_RT {
   wishes_.back() = wish;
   wishes_.publish();
+  wished_.strike();
+}
+
+void Link::waitForNews(Nanoseconds until) noexcept {
+  paced_.store(true, std::memory_order_relaxed);
+  wished_.wake();
+  news_.wait(heard_, until);
+}
+
+void Link::cut() noexcept {
+  cut_.store(true);
+  wished_.strike();
 }
 
 void Link::run() noexcept {
@@ -160,7 +173,8 @@ void Link::serve(Nanoseconds now) noexcept {
   wishes_.update();
   const bool news = wire_.exchange == codec::Exchange::kStream && wishes_.front().sequence != sent_wish_ &&
                     now - sent_at_ >= period_ / 2;
-  if (now >= due_ || news) send(now);
+  const bool cut = cut_.load(std::memory_order_relaxed) && !cut_sent_;
+  if (now >= due_ || news || cut) send(now);
   if (!open_) return;
   now = monotonicNow();
   const Nanoseconds wait = due_ > now ? due_ - now : 0;
@@ -191,7 +205,16 @@ void Link::receive(Nanoseconds wait) noexcept {
     if (session_.trouble() != Trouble::kNone) publish();
   }
   answered_ = answered_ || fresh;
-  if (fresh) publish();
+  if (fresh) tellServo();
+}
+
+/// A servo that the samples drive answers each at once: its command need not wait for the next report to end a read.
+/// What the arm sends meanwhile waits in the kernel.
+void Link::tellServo() noexcept {
+  const uint32_t known = wished_.strikes();
+  publish();
+  if (paced_.load(std::memory_order_relaxed) && wire_.exchange == codec::Exchange::kStream)
+    wished_.wait(known, monotonicNow() + period_ / 2);
 }
 
 /// When to ask a polled arm, so that its answer comes half-way between two reads of the servo: wherever the phases
@@ -200,13 +223,15 @@ Nanoseconds Link::midway(Nanoseconds due) const noexcept {
   constexpr int64_t kShare = 8;  // of the error, at each command: a late one does not throw the phase about
   const auto period = static_cast<int64_t>(period_), at = static_cast<int64_t>(due);
   const auto read = static_cast<int64_t>(wishes_.front().time);
-  if (read == 0 || wire_.exchange != codec::Exchange::kPoll) return due;
+  const bool follows = paced_.load(std::memory_order_relaxed);  // the servo reads when the answer comes
+  if (read == 0 || follows || wire_.exchange != codec::Exchange::kPoll) return due;
   const int64_t phase = ((at - read) % period + period) % period;
   return static_cast<Nanoseconds>(at - (phase - period / 2) / kShare);
 }
 
 void Link::send(Nanoseconds now) noexcept {
-  const size_t size = session_.command(now, wishes_.front(), out_);
+  cut_sent_ = cut_.load(std::memory_order_relaxed);
+  const size_t size = session_.command(now, cut_sent_ ? Wish{} : wishes_.front(), out_);
   sent_wish_ = wishes_.front().sequence;
   sent_at_ = now;
   due_ += period_;
@@ -262,6 +287,7 @@ void Link::tell() noexcept {
 void Link::publish() noexcept {
   samples_.back() = session_.sample();
   samples_.publish();
+  news_.ring();
 }
 
 Result<JointArray> Link::calibrateAt(const JointArray& pose) {

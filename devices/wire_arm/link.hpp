@@ -7,6 +7,7 @@
 #include <mutex>
 #include <string>
 
+#include "base/bell.hpp"
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "base/triple_buffer.hpp"
@@ -47,8 +48,16 @@ class Link {
 
   /// [rt] The newest sample. @return false: no newer than the last
   bool read(Sample& sample) noexcept HSP_RT;
+  /// [rt] Between two exchanges: lets the newest wish go out at once, and sleeps until there is something that read()
+  /// did not give, or until `until`. From the first call on this thread sends each wish when it comes.
+  void waitForNews(Nanoseconds until) noexcept;
   /// [rt] Leaves the newest wish.
   void write(const Wish& wish) noexcept HSP_RT;
+
+  /// [any] Motors off, whatever the wishes say, until endCut(); async-signal-safe, and at most a report away.
+  void cut() noexcept;
+  /// [rt] Ends a cut: the next wish counts again.
+  void endCut() noexcept HSP_RT { cut_.store(false, std::memory_order_relaxed); }
 
   /// [main] The device shall find its zero (while true).
   void calibrateByDevice(bool wanted) noexcept { calibrate_.store(wanted); }
@@ -68,6 +77,7 @@ class Link {
   void lookForIt() noexcept;
   void tell() noexcept;
   void publish() noexcept;
+  void tellServo() noexcept;
   Result<Identity> bringUp();
   Result<void> startUp();
   Result<void> perform(const codec::StartStep& step);
@@ -78,7 +88,12 @@ class Link {
   Session session_;
   TripleBuffer<Sample> samples_;
   TripleBuffer<Wish> wishes_;
+  Bell news_, wished_;  ///< for the servo: a sample or a trouble; for this thread: a wish
+  uint32_t heard_ = 0;  ///< the servo's: of news_, as of its last read()
   os::Thread thread_;
+  std::atomic<bool> cut_{false};  ///< by the watchdog or in a crash
+  bool cut_sent_ = false;
+  std::atomic<bool> paced_{false};  ///< the servo waits for samples
   std::atomic<bool> stop_{false}, calibrate_{false}, zero_wanted_{false}, zero_done_{false};
   mutable std::mutex mutex_;  ///< identity_ and pose_; the servo thread takes it never
   Identity identity_;

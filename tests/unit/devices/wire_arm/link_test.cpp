@@ -15,13 +15,14 @@
 namespace hapticd::wire_arm {
 namespace {
 
-/// A board that streams at 1 kHz of the real clock.
+/// A board that streams, at 1 kHz of the real clock unless a test says otherwise.
 struct FakeBoard {
   std::atomic<bool> plugged{true}, pushed{false}, stalled{false};
   std::atomic<int> opened{0};
   int kept = 0;  ///< reports from before anybody read
   emulator::BoardState state;
-  Nanoseconds next = 0;
+  Nanoseconds next = 0, period = 1'000'000;
+  std::atomic<int> prompt{0}, late{0};  ///< answers to the newest report, and to the one before: its sign tells
 };
 
 class FakeTransport final : public Transport {
@@ -41,7 +42,7 @@ class FakeTransport final : public Transport {
     const Nanoseconds now = clock.now();
     if (board_.next > now + wait) return clock.waitUntil(now + wait), Status::kNothing;
     clock.waitUntil(board_.next);
-    board_.next = std::max(board_.next, now - 5'000'000) + 1'000'000;
+    board_.next = std::max(board_.next, now - 5 * board_.period) + board_.period;
     ++board_.state.sequence;
     emulator::BoardState state = board_.state;
     if (board_.kept > 0) --board_.kept, state.counts = {};
@@ -53,6 +54,8 @@ class FakeTransport final : public Transport {
   Status send(std::span<const uint8_t> bytes) noexcept override {
     const emulator::BoardCommand command(bytes);
     board_.pushed = command.pushes();
+    if (command.pushes())
+      ++((command.current[0] > 0) == (board_.state.sequence % 2 == 0) ? board_.prompt : board_.late);
     return !board_.plugged ? Status::kGone : command.valid ? Status::kOk : Status::kFailed;
   }
   Status control(const codec::StartStep&) noexcept override { return Status::kOk; }
@@ -129,6 +132,71 @@ TEST_F(LinkTest, PushesLosesFindsAndPushesAgain) {
   EXPECT_EQ(board.opened, 2);
   link->stop();
   EXPECT_FALSE(board.pushed) << "motors are off when the thread ends";
+}
+
+/// Slow enough that a busy machine is not.
+class PacedLinkTest : public LinkTest {
+ protected:
+  static constexpr Nanoseconds kPeriod = 20'000'000;
+  std::unique_ptr<Link> startSlow() {
+    board.period = kPeriod;
+    wire.rate = 50;
+    LinkSettings s = settings(Calibration::kDevice);
+    s.session.health.stale = 1, s.session.health.host_silent = 1, s.session.health.ramp = 0;
+    auto link = std::make_unique<Link>(std::make_unique<FakeTransport>(board), wire, std::move(s));
+    EXPECT_TRUE(link->open() && link->start());
+    return link;
+  }
+};
+
+TEST_F(PacedLinkTest, EachReportEndsTheWaitAndItsAnswerGoesOutBeforeTheNext) {
+  auto link = startSlow();
+  Sample sample;
+  link->read(sample);
+  const bool even = (sample.sequence - board.state.sequence) % 2 == 0;
+  int fresh = 0;
+  constexpr int kRounds = 50;
+  for (int i = 0; i < kRounds; ++i) {
+    const uint64_t before = sample.sequence;
+    link->waitForNews(monotonicNow() + 10 * kPeriod);
+    link->read(sample);
+    fresh += sample.sequence != before;
+    wish.time = monotonicNow(), ++wish.sequence, wish.on = true;
+    wish.torque = {(sample.sequence % 2 == 0) == even ? 0.5 : -0.5, 0, 0};
+    link->write(wish);
+  }
+  link->waitForNews(monotonicNow() + kPeriod);  // lets the last one out
+  EXPECT_GT(fresh, kRounds * 9 / 10);
+  EXPECT_GT(board.prompt, 9 * board.late) << board.late << " answers went out a report late";
+  EXPECT_GT(board.prompt, kRounds * 3 / 4);
+}
+
+TEST_F(PacedLinkTest, ACutEndsThePushOfAServoThatIsStuckAndHoldsUntilItIsEnded) {
+  auto link = startSlow();
+  ASSERT_TRUE(pushUntil(*link, [&](const Sample&) { return board.pushed.load(); }));
+  link->cut();  // nobody writes any more, and the last wish is good for a second
+  RealClock clock(0);
+  for (int i = 0; i < 500 && board.pushed; ++i) clock.waitUntil(clock.now() + 1'000'000);
+  EXPECT_FALSE(board.pushed);
+  int rounds = 0;
+  EXPECT_FALSE(pushUntil(*link, [&](const Sample&) { return board.pushed || ++rounds > 200; }) && board.pushed);
+  link->endCut();
+  EXPECT_TRUE(pushUntil(*link, [&](const Sample&) { return board.pushed.load(); }));
+}
+
+TEST_F(PacedLinkTest, ATroubleEndsTheWaitAndSilenceItsBound) {
+  auto link = startSlow();
+  Sample sample;
+  link->read(sample);
+  board.plugged = false;
+  for (int i = 0; i < 100 && sample.trouble != Trouble::kUnplugged; ++i) {
+    link->waitForNews(monotonicNow() + 100 * kPeriod);
+    link->read(sample);
+  }
+  EXPECT_EQ(sample.trouble, Trouble::kUnplugged);
+  const Nanoseconds until = monotonicNow() + kPeriod;
+  link->waitForNews(until);
+  EXPECT_GE(monotonicNow(), until);
 }
 
 TEST_F(LinkTest, AStalledEndpointIsNamedAndReopened) {

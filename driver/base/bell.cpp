@@ -1,0 +1,29 @@
+#include "base/bell.hpp"
+
+#include <linux/futex.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <ctime>
+
+namespace hapticd {
+
+static_assert(sizeof(std::atomic<uint32_t>) == sizeof(uint32_t), "the kernel looks at the bare number");
+
+void Bell::wake() noexcept {
+  if (sleeps_.load() != 0) syscall(SYS_futex, &strikes_, FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0);
+}
+
+void Bell::wait(uint32_t heard, Nanoseconds until) noexcept {
+  const timespec end{static_cast<time_t>(until / kNanosecondsPerSecond),
+                     static_cast<long>(until % kNanosecondsPerSecond)};
+  sleeps_.store(1);  // before the look at the strikes: who strikes after it sees somebody to wake
+  while (strikes_.load() == heard)
+    if (syscall(SYS_futex, &strikes_, FUTEX_WAIT_BITSET_PRIVATE, heard, &end, nullptr, FUTEX_BITSET_MATCH_ANY) != 0 &&
+        errno == ETIMEDOUT)
+      break;
+  sleeps_.store(0);
+}
+
+}  // namespace hapticd
