@@ -12,6 +12,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kSamplesPerInterval = 3;  ///< of a cold search, each way
+constexpr int kFiner = 4;               ///< times as many, where spheres are inside others
 constexpr int kColdStarts = 8;          ///< samples that Newton starts from in a cold search
 constexpr int kColdEvaluations = 60;
 constexpr double kSteepest = 0.99;        ///< slope of the radius beyond which spheres are nested
@@ -245,35 +246,79 @@ namespace {
 /// A sample of the skeleton from which a cold search may start.
 struct Start {
   double value = HUGE_VAL, u = 0, v = 0;
+  int row = -2, column = -2;
+
+  bool besides(const Start& other) const noexcept {
+    return std::abs(row - other.row) <= 1 && std::abs(column - other.column) <= 1;
+  }
 };
 using Starts = std::array<Start, kColdStarts>;
 
-/// Keeps the best samples, best first.
+/// Keeps the best samples, best first, and of neighbours the better one: a wide valley must not take all places, where
+/// the deepest is a narrow one.
 void offer(Start start, Starts& starts) noexcept {
-  for (Start& kept : starts)
-    if (start.value < kept.value) std::swap(start, kept);
-}
-
-double sampleAt(const std::vector<double>& t, int i) noexcept {
-  const auto cell = static_cast<std::size_t>(i / kSamplesPerInterval);
-  if (cell + 1 >= t.size()) return t.back();
-  return t[cell] + (t[cell + 1] - t[cell]) * (i % kSamplesPerInterval) / kSamplesPerInterval;
-}
-
-Starts coldStarts(const Skeleton& skeleton, const Vector3d& p, Envelope envelope) noexcept {
-  const auto& [tu, tv] = skeleton.parameters();
-  const int rows = skeleton.curve() ? 1 : kSamplesPerInterval * (static_cast<int>(tu.size()) - 1) + 1;
-  const int columns = kSamplesPerInterval * (static_cast<int>(tv.size()) - 1) + 1;
-  Starts starts;
-  spline::SurfacePoint s;
-  for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j < columns; ++j) {
-      const double u = sampleAt(tu, i), v = sampleAt(tv, j);
-      skeleton.surface().evaluate1(u, v, s);
-      offer({(p - s.S).norm() - (envelope == Envelope::kExact ? skeleton.radius().evaluate(u, v).f : 0), u, v}, starts);
-    }
+  std::size_t place = 0;
+  while (place < starts.size() && starts[place].value <= start.value) {
+    if (starts[place].besides(start)) return;
+    ++place;
   }
-  return starts;
+  const Start better = start;
+  for (; place < starts.size(); ++place) {
+    std::swap(start, starts[place]);
+    if (start.besides(better)) return;  // a worse neighbour makes room
+  }
+}
+
+double sampleAt(const std::vector<double>& t, int i, int per_interval) noexcept {
+  const auto cell = static_cast<std::size_t>(i / per_interval);
+  if (cell + 1 >= t.size()) return t.back();
+  return t[cell] + (t[cell + 1] - t[cell]) * (i % per_interval) / per_interval;
+}
+
+/// Samples of a whole skeleton for one query, `per_interval` to an interval of its parameters each way.
+class Samples {
+ public:
+  Samples(const Skeleton& skeleton, const Vector3d& p, Envelope envelope, int per_interval)
+      : skeleton_(skeleton), p_(p), exact_(envelope == Envelope::kExact), per_interval_(per_interval) {
+    for (std::size_t a = skeleton.curve() ? 1 : 0; a < 2; ++a)
+      last_[a] = per_interval * (static_cast<int>(skeleton.parameters()[a].size()) - 1);
+  }
+
+  void look(int i, int j, Starts& starts) const noexcept {
+    if (i < 0 || j < 0 || i > last_[0] || j > last_[1]) return;
+    const double u = sampleAt(skeleton_.parameters()[0], i, per_interval_);
+    const double v = sampleAt(skeleton_.parameters()[1], j, per_interval_);
+    spline::SurfacePoint s;
+    skeleton_.surface().evaluate1(u, v, s);
+    offer({(p_ - s.S).norm() - (exact_ ? skeleton_.radius().evaluate(u, v).f : 0), u, v, i, j}, starts);
+  }
+  Starts best() const noexcept {
+    Starts starts;
+    for (int i = 0; i <= last_[0]; ++i)
+      for (int j = 0; j <= last_[1]; ++j) look(i, j, starts);
+    return starts;
+  }
+
+ private:
+  const Skeleton& skeleton_;
+  const Vector3d& p_;
+  bool exact_;
+  int per_interval_;
+  std::array<int, 2> last_{0, 0};
+};
+
+/// Where spheres are inside others, several valleys may lie between two samples: finer ones about each start.
+Starts coldStarts(const Skeleton& skeleton, const Vector3d& p, Envelope envelope) noexcept {
+  const Starts starts = Samples(skeleton, p, envelope, kSamplesPerInterval).best();
+  if (!skeleton.nested()) return starts;
+  const Samples fine(skeleton, p, envelope, kFiner * kSamplesPerInterval);
+  Starts finer;
+  for (const Start& start : starts) {
+    if (start.value == HUGE_VAL) break;
+    for (int i = -kFiner; i <= kFiner; ++i)
+      for (int j = -kFiner; j <= kFiner; ++j) fine.look(kFiner * start.row + i, kFiner * start.column + j, finer);
+  }
+  return finer;
 }
 
 }  // namespace

@@ -100,6 +100,7 @@ void Skeleton::measure() {
       }
     }
   }
+  nested_ = steepest().slope >= 1;
 }
 
 Steepness Skeleton::steepest() const {

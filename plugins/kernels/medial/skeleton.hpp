@@ -79,9 +79,10 @@ class Skeleton {
   const ScalarField& radius() const noexcept { return radius_; }
   bool curve() const noexcept { return curve_; }                          ///< one row of points
   const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }  ///< of all spheres
-  /// [main] Looks between all points of the grid. A body is right where the slope is below 1; from there on what was
-  /// given is not the medial axis of anything, and searches may end in spheres inside others.
+  /// [main] Looks between all points of the grid. From a slope of 1 on, spheres are inside others, and what was given
+  /// is not the medial axis of anything. The body is then still the union of all spheres.
   Steepness steepest() const;
+  bool nested() const noexcept { return nested_; }  ///< [any] some slope is 1 or more
   const std::array<std::vector<double>, 2>& parameters() const noexcept { return parameters_; }
   double spacing() const noexcept { return spacing_; }  ///< [m] greatest distance of neighbouring points
   const ControlGrid& control() const noexcept { return control_; }
@@ -103,7 +104,7 @@ class Skeleton {
   ControlGrid control_;
   Eigen::AlignedBox3d bounds_;
   double spacing_ = 0;
-  bool curve_ = false;
+  bool curve_ = false, nested_ = false;
 };
 
 }  // namespace hapticd::medial
