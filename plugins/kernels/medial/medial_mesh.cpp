@@ -158,9 +158,11 @@ double MedialMesh::lowerBound(const Node& node, const Vector3d& p) noexcept {
   return (node.low - p).cwiseMax(p - node.high).cwiseMax(0.0).norm() - node.radius;
 }
 
-void MedialMesh::nearest(const Vector3d& p, uint32_t start, double band, MeshFeet& out) const noexcept {
+void MedialMesh::nearest(const Vector3d& p, uint32_t start, double band, MeshFeet& out,
+                         int most_visits) const noexcept {
   out.count = 0;
-  out.evaluations = 0;
+  out.evaluations = out.visits = 0;
+  out.doubt = 0;
   double best = std::numeric_limits<double>::infinity();
   const auto look = [&](uint32_t element) {
     ++out.evaluations;
@@ -186,6 +188,11 @@ void MedialMesh::nearest(const Vector3d& p, uint32_t start, double band, MeshFee
   while (depth > 0) {
     const Entry entry = stack[--depth];
     if (out.count > 0 && !(entry.bound < best + band)) continue;
+    if (out.visits >= most_visits && out.count > 0) {
+      out.doubt = std::max(out.doubt, best - entry.bound);
+      continue;
+    }
+    ++out.visits;
     const Node& node = nodes_[entry.node];
     if (node.leaf) {
       if (node.child != start) look(node.child);

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <climits>
 #include <cstdint>
 #include <vector>
 
@@ -29,6 +30,8 @@ struct MeshFeet {
   std::array<MeshFoot, kMost> feet;
   std::size_t count = 0;
   int evaluations = 0;  ///< primitives that were looked at
+  int visits = 0;       ///< nodes of the tree that were looked at, leaves too
+  double doubt = 0;     ///< [m] by which another primitive may be nearer; 0: none is
 };
 
 class MedialMesh {
@@ -39,13 +42,17 @@ class MedialMesh {
     uint8_t count = 0;
   };
   static constexpr uint32_t kNoStart = UINT32_MAX;
+  static constexpr int kMostVisits = 6000;  ///< of a search in a tick: half of a 1 kHz tick, where all are as near
 
   /// [main] Edges of triangles are part of their slabs, and vertices of edges part of their cones.
   /// @throws std::invalid_argument for no vertices, indices out of range or repeated, numbers that are not finite.
   explicit MedialMesh(const MeshData& data);
 
   /// [any] The feet of p within `band` [m] of the nearest one. `start`: an element that was nearest a moment ago.
-  void nearest(const Eigen::Vector3d& p, uint32_t start, double band, MeshFeet& out) const noexcept;
+  /// `most_visits`: nodes after which the search ends with what it has and with a doubt, as it may in the middle of a
+  /// body whose parts are all as near.
+  void nearest(const Eigen::Vector3d& p, uint32_t start, double band, MeshFeet& out,
+               int most_visits = INT_MAX) const noexcept;
   /// [any] Signed distance of p to the body: negative inside.
   double distance(const Eigen::Vector3d& p) const noexcept;
 

@@ -136,13 +136,14 @@ MeshBody::MeshBody(const MeshBodyData& data, const BodyOptions& options) : optio
   deformation_.emplace(mesh_, material, options.deformation);
 }
 
-SkeletonFoot MeshBody::foot(const Vector3d& p, uint32_t start, double crease) const noexcept {
+SkeletonFoot MeshBody::foot(const Vector3d& p, uint32_t start, double crease, int most_visits) const noexcept {
   MeshFeet feet;
-  mesh_.nearest(p, start, 0, feet);
+  mesh_.nearest(p, start, 0, feet, most_visits);
   int evaluations = feet.evaluations;
+  const double doubt = feet.doubt;
   const bool inside = feet.feet[0].distance < 0;
-  if (inside && crease > 0) {
-    mesh_.nearest(p, feet.feet[0].element, crease, feet);
+  if (inside && crease > 0 && !(doubt > 0)) {  // in the middle of a body there is no crease
+    mesh_.nearest(p, feet.feet[0].element, crease, feet, most_visits);
     evaluations += feet.evaluations;
   }
   const MeshFoot& best = feet.feet[0];
@@ -156,7 +157,8 @@ SkeletonFoot MeshBody::foot(const Vector3d& p, uint32_t start, double crease) co
   foot.normal = best.normal;
   foot.across = mesh_.across(best.element);
   foot.evaluations = evaluations;
-  foot.converged = std::isfinite(best.distance);
+  foot.residual = doubt;
+  foot.converged = std::isfinite(best.distance) && !(doubt > 0);
   if (feet.count < 2) return foot;
   // The opposite side of a sheet or tube is as near as this one in its middle: that is no crease.
   Vector3d sum = best.normal;

@@ -67,8 +67,9 @@ class MeshBody {
 
   /// [any] The foot of p, searched from `start` (MedialMesh::kNoStart: from nowhere). Inside, where other parts of the
   /// body are within `crease` [m] as near, the normal turns from one to the other over that width: at the crotch of
-  /// a branch the force has no jump.
-  SkeletonFoot foot(const Eigen::Vector3d& p, uint32_t start, double crease) const noexcept;
+  /// a branch the force has no jump. A foot of a search that ended at `most_visits` is not converged, and says by how
+  /// much another may be nearer.
+  SkeletonFoot foot(const Eigen::Vector3d& p, uint32_t start, double crease, int most_visits = INT_MAX) const noexcept;
   /// [rt] The force on a probe `depth` below the surface along `normal`: spring, and damping against `closing_speed`.
   BodyForce press(const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
                   double closing_speed) const noexcept;

@@ -70,6 +70,43 @@ TEST(MedialMesh, StartsChangeNothingButTheEvaluations) {
   EXPECT_LT(warm / 2000, 30);  // of 3042 slabs
 }
 
+/// Work is counted, not timed: what a tick may take at most holds on a busy machine as well.
+TEST(MedialMesh, ATickOnTenThousandSlabsLooksAtABoundedPart) {
+  const MedialMesh mesh(test::ball(71));
+  ASSERT_GT(mesh.elements().size(), 9'900u);
+  std::mt19937 engine(2);
+  std::uniform_real_distribution<double> place(-.12, .12);
+  MeshFeet feet, all;
+  uint32_t start = MedialMesh::kNoStart;
+  for (int k = 0; k < 2000; ++k) {
+    Vector3d p(place(engine), place(engine), place(engine));  // thrown about,
+    if (k % 4 == 1) p *= 1e-4;                                // in the middle, where all slabs are as near,
+    if (k % 4 == 2) p = Vector3d(.002 * k - 2, .01, .02);     // 2 m/s straight through,
+    if (k % 4 == 3) p = .054 * Vector3d(std::sin(k), std::cos(k), .3).normalized();  // and on its skin
+    mesh.nearest(p, start, 0, feet, MedialMesh::kMostVisits);
+    start = feet.feet[0].element;
+    ASSERT_LE(feet.visits, MedialMesh::kMostVisits);
+    ASSERT_LE(feet.evaluations, MedialMesh::kMostVisits / 2 + 2);
+    mesh.nearest(p, start, 0, all);
+    ASSERT_LE(feet.feet[0].distance - all.feet[0].distance, feet.doubt) << k;  // what it doubts is true
+    ASSERT_TRUE(k % 4 != 3 || feet.visits < 1000) << k << ": " << feet.visits;
+  }
+}
+
+TEST(MedialMesh, OnTheSkinTheSearchIsNeverCutShort) {
+  const MedialMesh mesh(test::ball(71));
+  MeshFeet feet;
+  uint32_t start = MedialMesh::kNoStart;
+  for (int k = 0; k < 2000; ++k) {
+    const double a = .01 * k, b = .0037 * k, r = .05 + .008 * std::sin(.1 * k);  // 8 mm in and out of a skin of 4 mm
+    mesh.nearest(r * Vector3d(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b)), start, 0, feet,
+                 MedialMesh::kMostVisits);
+    start = feet.feet[0].element;
+    ASSERT_EQ(feet.doubt, 0) << k;
+    ASSERT_LT(feet.evaluations, 200) << k;
+  }
+}
+
 TEST(MedialMesh, ABandHoldsEveryFootWithinIt) {
   const MedialMesh mesh(test::branches());
   const Vector3d crotch(.0, .009, .001);

@@ -38,6 +38,24 @@ inline MeshData sheet(int n) {
   return mesh;
 }
 
+/// A hollow ball of 50 mm, 4 mm thick each way: 2 n^2 slabs, but for those that meet at its poles.
+inline MeshData ball(int n) {
+  MeshData mesh;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= n; ++j) {
+      const double a = 2 * M_PI * i / n, b = M_PI * j / n;
+      mesh.vertices.push_back(
+          {{.05 * std::cos(a) * std::sin(b), .05 * std::sin(a) * std::sin(b), .05 * std::cos(b)}, .004});
+    }
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) {
+      const int a = i * (n + 1) + j, b = ((i + 1) % n) * (n + 1) + j;
+      mesh.triangles.push_back({a, b, b + 1});
+      mesh.triangles.push_back({a, b + 1, a + 1});
+    }
+  return mesh;
+}
+
 /// Spheres of any size joined at random: nested ones, thin triangles, crossing slabs.
 inline MeshData tangle(unsigned seed, int vertices, int edges, int triangles) {
   std::mt19937 engine(seed);
