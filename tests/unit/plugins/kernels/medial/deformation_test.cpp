@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <random>
 
 #include "bodies.hpp"
 
@@ -21,6 +23,48 @@ Press pressAt(double u, double v, double depth, double speed = 0) {
 double contourShift(const Deformation& body, double u, double v) {
   const Vector4d moved = body.at(u, v);
   return -moved.z() - moved[3];
+}
+
+/// The greatest factor by which a step can multiply the energy of a node of this material, whatever its state. The step
+/// is linear: in coordinates whose squared length is the energy, it is the square of the norm of its matrix.
+long double greatestGain(const Oscillator& o, double dt) {
+  const long double place = 1 / std::sqrt(static_cast<long double>(o.stiffness));
+  const long double rate = 1 / std::sqrt(static_cast<long double>(o.mass));
+  Nodes node(1, {o}, {});
+  std::array<long double, 4> matrix{};  // by columns: a place, a rate of energy 1/2
+  const double scale = 1 / std::max(static_cast<double>(place), static_cast<double>(rate));
+  for (std::size_t column = 0; column < 2; ++column) {
+    Eigen::Vector4d x = Eigen::Vector4d::Zero(), v = Eigen::Vector4d::Zero();
+    (column == 0 ? x : v)[0] = scale * static_cast<double>(column == 0 ? place : rate);
+    node.place(0, x, v);
+    const long double start = scale * (column == 0 ? place : rate) / (column == 0 ? x : v)[0] / scale;
+    node.advance(dt);
+    matrix[2 * column] = start * node.displacement(0)[0] / place;
+    matrix[2 * column + 1] = start * node.rate(0)[0] / rate;
+    node.reset();
+  }
+  const auto& [a, c, b, d] = matrix;
+  const long double norm = (std::hypot(a + d, b - c) + std::hypot(a - d, b + c)) / 2;  // its greatest singular value
+  return norm * norm;
+}
+
+TEST(Deformation, NoStepMakesEnergyWhateverTheMaterialTheStateAndTheTick) {
+  std::vector<std::array<double, 4>> all;  // k, m, zeta, dt
+  for (const double k : {1.0, 1e3, 1e6})
+    for (const double m : {1e-6, 1.0, 1e6})
+      for (const double zeta : {0.0, 1e-12, 1 - 1e-9, 1.0, 1 + 1e-9, 10.0})
+        for (const double dt : {1e-4, 1e-3, 1e-2}) all.push_back({k, m, zeta, dt});
+  std::mt19937 engine(11);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 20'000; ++i) {
+    const double k = std::pow(10, 6 * unit(engine)), m = std::pow(10, 12 * unit(engine) - 6);
+    const double zeta = i % 4 == 0 ? std::pow(10, -8 * unit(engine)) : 10 * unit(engine);
+    all.push_back({k, m, zeta, std::pow(10, -4 + 2 * unit(engine))});
+  }
+  for (const auto& [k, m, zeta, dt] : all) {
+    const Oscillator o{m, 2 * zeta * std::sqrt(k * m), k};
+    ASSERT_LE(greatestGain(o, dt), 1) << "k " << k << ", m " << m << ", zeta " << zeta << ", dt " << dt;
+  }
 }
 
 TEST(Deformation, EnergyOfAStruckBodyLeftAloneNeverGrows) {

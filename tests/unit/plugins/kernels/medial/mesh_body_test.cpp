@@ -85,16 +85,16 @@ TEST(MeshBody, NothingJumpsWhileAPressSlidesOverElements) {
 }
 
 TEST(MeshBody, EnergyOfAStruckBodyLeftAloneNeverGrows) {
-  for (double k = 1; k <= 1e6; k *= 100) {
-    for (double m = 1e-6; m <= 1e6; m *= 100) {
-      for (const double zeta : {0.0, 0.01, 1.0, 10.0}) {
+  for (double k = 1; k <= 1e6; k *= 10) {
+    for (double m = 1e-6; m <= 1e6; m *= 10) {
+      for (const double zeta : {0.0, 0.01, 0.3, 1.0, 3.0, 10.0}) {
         const Oscillator material{m, 2 * zeta * std::sqrt(k * m), k};
         MeshBody body(bodyOf(test::branches(), material), {});
         const Press strike = pressOf(body.foot({.0, .012, .003}, kNoStart, 0), .003, 1.5);
         body.deformation().press({&strike, 1});
         double before = body.deformation().energy();
         ASSERT_GT(before, 0);
-        for (int tick = 0; tick < 1000; ++tick) {
+        for (int tick = 0; tick < 300; ++tick) {
           body.deformation().advance(1e-3);
           ASSERT_LE(body.deformation().energy(), before) << k << " " << m << " " << zeta << " " << tick;
           before = body.deformation().energy();
