@@ -79,12 +79,13 @@ def planted(folder):
     environment = dict(os.environ, HAPTICD_PLUGIN_PATH=os.path.join(folder, "plugins"))
     found = {}
     for name, plugin, parameters in (("allocation", "allocating", "{}"), ("lock", "rude", "{how: lock}"),
-                                     ("call", "rude", "{how: ask}")):
+                                     ("call", "rude", "{how: ask}"), ("fault", "rude", "{how: fault}")):
         scene = os.path.join(folder, name + ".yaml")
         open(scene, "w").write(f"hapticd: 1\nmodels:\n  - {{name: it, plugin: {plugin}, parameters: {parameters}}}\n")
         found[name] = watched(scene, environment)
     check("a planted allocation is seen", found["allocation"].get("allocations", 0) > 0, found["allocation"])
     check("a planted lock is seen", found["lock"].get("locks", 0) > 0, found["lock"])
+    check("a planted page fault is seen", found["fault"].get("page_faults", 0) > 0, found["fault"])
     if strace:
         check("a planted system call is seen", "getppid" in found["call"].get("calls", []), found["call"])
 

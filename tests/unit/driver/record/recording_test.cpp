@@ -1,11 +1,15 @@
 #include "record/recording.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <string>
 #include <thread>
@@ -182,6 +186,52 @@ TEST(FlightRing, KeepsTheNewestRowsInOrder) {
 
   (*ring)->removeFile();
   EXPECT_FALSE(Recording::open(name));
+}
+
+TEST(FlightRing, KilledReadersChangeNothing) {
+  const std::string file = testing::TempDir() + "killed_readers.h5";
+  constexpr uint64_t kRows = 64;
+  std::vector<StreamSpec> streams(1);
+  streams[0].name = "ticks";
+  streams[0].layout.add("tick", ColumnType::kCount, "", "number");
+  streams[0].layout.add("twice", ColumnType::kCount, "", "twice that");
+  streams[0].ring_rows = kRows;
+  auto ring = FlightRing::create(streams, {"{\"columns\":" + columnsJson(streams) + "}", ""}, file);
+  ASSERT_TRUE(ring) << ring.error();
+  uint64_t written = 0;
+  const auto write = [&] {
+    const std::array<uint64_t, 2> row{written, 2 * written};
+    std::memcpy((*ring)->next(0), row.data(), sizeof row);
+    (*ring)->commit(0);
+    ++written;
+  };
+  void* shared = mmap(nullptr, sizeof(uint64_t), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(shared, MAP_FAILED);
+  auto& looks = *new (shared) std::atomic<uint64_t>(0);
+  for (uint64_t reader = 0; reader < 20; ++reader) {
+    const uint64_t enough = looks + 1 + reader;
+    const pid_t child = fork();
+    if (child == 0)
+      for (;;) {  // until it is killed, wherever it is then
+        if (!Recording::open(file)) _exit(1);
+        ++looks;
+      }
+    int status = 0;
+    while (looks < enough && waitpid(child, &status, WNOHANG) == 0)
+      for (int i = 0; i < 1000; ++i) write();
+    ASSERT_GE(looks, enough) << "a reader met no recording";
+    kill(child, SIGKILL);
+    waitpid(child, &status, 0);
+  }
+  munmap(shared, sizeof(uint64_t));
+  EXPECT_EQ((*ring)->written(0), written);
+  std::array<uint64_t, 2 * (kRows - 1)> rows{};
+  ASSERT_EQ((*ring)->copy(0, written - kRows + 1, kRows - 1, reinterpret_cast<std::byte*>(rows.data())), kRows - 1);
+  for (size_t i = 0; i < kRows - 1; ++i) {
+    EXPECT_EQ(rows[2 * i], written - kRows + 1 + i);
+    EXPECT_EQ(rows[2 * i + 1], 2 * rows[2 * i]);
+  }
+  (*ring)->removeFile();
 }
 
 TEST(FlightRing, SurvivesTheProcessThatWroteIt) {

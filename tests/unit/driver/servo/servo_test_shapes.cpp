@@ -1,5 +1,6 @@
 /// Small shapes with known answers, and shapes that misbehave, for the tests of the servo.
 #include <pthread.h>
+#include <sys/mman.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -110,14 +111,14 @@ struct Allocating : hapticd::Shape {
   }
 };
 
-/// Takes a lock in each step, or asks the kernel now and then (where it is watched, asking takes long), for the proof
-/// that a run over the scenes would see it.
+/// Takes a lock in each step, or asks the kernel now and then (where it is watched, asking takes long), or gives a page
+/// back and touches it again, for the proof that a run over the scenes would see it.
 struct Rude : hapticd::Shape {
   int how;
   unsigned ticks = 0;
-  static constexpr const char* kHows[] = {"lock", "ask"};
+  static constexpr const char* kHows[] = {"lock", "ask", "fault"};
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.rude", "rude", "1.0.0", "MIT",
-                                            "Locks or asks the kernel."};
+                                            "Locks, asks the kernel, or faults a page."};
   static constexpr auto fields() {
     return std::array{Fields<Rude>::choice("how", &Rude::how, kHows, 0, "What it does.")};
   }
@@ -125,8 +126,17 @@ struct Rude : hapticd::Shape {
   hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept {
     static pthread_mutex_t mutex = PTHREAD_MUTEX_INITIALIZER;
     if (how == 1 && ++ticks % 64 == 0) syscall(SYS_getppid);
+    if (how == 2 && ++ticks % 64 == 0) fault();
     if (how == 0 && pthread_mutex_lock(&mutex) == 0) pthread_mutex_unlock(&mutex);
     return HSP_OK;
+  }
+  static void fault() noexcept {
+    constexpr size_t kPage = 4096;
+    alignas(kPage) static volatile char page[kPage];
+    void* at = const_cast<char*>(page);
+    munlock(at, kPage);
+    madvise(at, kPage, MADV_DONTNEED);
+    page[0] = 1;
   }
 };
 
