@@ -30,11 +30,7 @@ scene::Problems unstable(const scene::Scene& scene, const std::vector<double>& s
   if (const auto file = host::shippedFile(scene::kDefaultDevice); devices.empty() && file)  // as `run` will
     if (auto loaded = scene::loadDevice(*file, catalog()); loaded.device) devices.push_back(*loaded.device);
   for (const scene::Device& device : devices) {
-    if (device.module != "simulated") {
-      const scene::Problems idle = tune::idleSettings(scene);
-      warnings.insert(warnings.end(), idle.begin(), idle.end());
-      continue;
-    }
+    if (device.module != "simulated") continue;
     auto arm = host::DeviceInstance::create(device, nullptr);
     if (!arm || !(*arm)->open()) continue;
     const scene::Problems found = tune::unstableSettings(scene, device, (*arm)->info(), stiffness);

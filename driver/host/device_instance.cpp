@@ -65,11 +65,12 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
   instance->kinematics_ = extensionOf<hdv_ext_kinematics>(*found, instance->device_, HDV_EXT_KINEMATICS);
   instance->calibration_ = extensionOf<hdv_ext_calibration>(*found, instance->device_, HDV_EXT_CALIBRATION);
   instance->cut_ = extensionOf<hdv_ext_cut>(*found, instance->device_, HDV_EXT_CUT);
+  instance->pace_ = extensionOf<hdv_ext_pace>(*found, instance->device_, HDV_EXT_PACE);
   instance->trouble_ = extensionOf<hdv_ext_trouble>(*found, instance->device_, HDV_EXT_TROUBLE);
   if (instance->kinematics_ == nullptr) {
     const std::string said = instance->services_.lastError();
-    return Error{who + "module '" + device.module + "' has no kinematics (" HDV_EXT_KINEMATICS ")" +
-                 (said.empty() ? "" : ": " + said)};
+    return Error{who +
+                 (said.empty() ? "module '" + device.module + "' has no kinematics (" HDV_EXT_KINEMATICS ")" : said)};
   }
   return instance;
 }

@@ -6,6 +6,7 @@
 
 #include "base/result.hpp"
 #include "hapticd/device.h"
+#include "hapticd/device_pace.h"
 #include "hapticd/device_trouble.h"
 #include "host/library.hpp"
 #include "host/services.hpp"
@@ -51,6 +52,11 @@ class DeviceInstance {
     return true;
   }
 
+  /// [any] Its samples can drive the loop: waitForSample() waits for them.
+  bool canPace() const { return pace_ != nullptr && (info_.capabilities & HDV_C_PACING) != 0; }
+  /// [rt] Between two ticks: sleeps until there is news of the arm, or until `until`. @return time of the next tick
+  uint64_t waitForSample(uint64_t until) noexcept { return playback_ == nullptr ? pace_->wait(device_, until) : until; }
+
   /// [any] Why the arm is not well as of the last read, in words of static storage: "cause; cure". nullptr: unknown.
   const char* trouble() const noexcept HSP_RT {
     return trouble_ != nullptr && playback_ == nullptr ? trouble_->why(device_) : nullptr;
@@ -74,6 +80,7 @@ class DeviceInstance {
   const hdv_ext_kinematics* kinematics_ = nullptr;
   const hdv_ext_calibration* calibration_ = nullptr;
   const hdv_ext_cut* cut_ = nullptr;
+  const hdv_ext_pace* pace_ = nullptr;
   const hdv_ext_trouble* trouble_ = nullptr;
   const Playback* playback_ = nullptr;
   bool open_ = false, started_ = false;

@@ -35,7 +35,7 @@ constexpr Key kServoKeys[] = {
     vector3<&Servo::gravity>("gravity", {-1000, 1000, "m/s^2"}, "[0, -9.81, 0]",
                              "Gravity in the world frame (y is up)."),
     choice<&Servo::pace>("pace", kPaces, "clock",
-                         "What drives the loop: the clock; `device`, the arm's own samples, has no effect yet."),
+                         "What drives the loop: the clock, or the samples of the first arm that can."),
     object<&Servo::velocity>("velocity", kVelocity, "The velocity estimator."),
     real<&Servo::spin_us>("spin_us", {0, 1000, "us"}, nullptr,
                           "Busy wait before each deadline; left out: chosen for the machine."),

@@ -16,6 +16,12 @@ constexpr double kLateFault = 0.1;      ///< [s] without a tick: a hand must not
 
 }  // namespace
 
+Arm* pacingArm(const scene::Servo& servo, const std::vector<std::unique_ptr<Arm>>& arms) {
+  if (servo.pace != scene::Pace::kDevice) return nullptr;
+  const auto found = std::find_if(arms.begin(), arms.end(), [](const auto& arm) { return arm->device().canPace(); });
+  return found != arms.end() ? found->get() : nullptr;
+}
+
 Uses usesOf(const std::vector<std::unique_ptr<Arm>>& arms) {
   Uses uses{false, false};
   for (const auto& arm : arms) {
@@ -50,14 +56,13 @@ void Loop::runDry() noexcept HSP_RT {
       late_dry_cycles_.store(late_dry_cycles_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
       deadline = woke;
     }
-    deadline += settings_.period_ns;
+    deadline = (settings_.paced ? woke : deadline) + settings_.period_ns;
   }
 }
 
 void Loop::run() noexcept {
   runDry();
-  const Nanoseconds start = clock_.now();
-  Nanoseconds deadline = start, last = start;
+  Nanoseconds start = clock_.now(), deadline = start, last = start;
   const long faults_before = os::pageFaultsOfThread();
   first_tick_ = monotonicNow();
   cpu_clock_ = os::cpuClockOfThread();
@@ -67,7 +72,8 @@ void Loop::run() noexcept {
     if (stop_ || (settings_.ticks != 0 && done + ramp_ticks_ >= settings_.ticks)) rampOut();
     const Nanoseconds woke = clock_.waitUntil(deadline);
     const Nanoseconds due = std::min(deadline, woke);
-    deadline = skipMissed(deadline, woke);
+    deadline = timeOfTick(deadline, woke);
+    if (n == 0) start = last = deadline;
     const Nanoseconds begun = monotonicNow();
     tick_begun_.store(begun, std::memory_order_relaxed);
     search_time_ = 0;
@@ -176,6 +182,12 @@ void Loop::search(double t) noexcept {
   lockstep_.before(t);
   search_allocations_ += allocationsOfThread() - allocations;
   search_time_ = monotonicNow() - begun;
+}
+
+/// Samples come when they come: a tick that follows them is at the time it woke.
+Nanoseconds Loop::timeOfTick(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT {
+  const Nanoseconds by_clock = skipMissed(deadline, woke);
+  return settings_.paced ? woke : by_clock;
 }
 
 Nanoseconds Loop::skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT {

@@ -18,8 +18,13 @@ struct LoopSettings {
   Nanoseconds period_ns = 1'000'000;
   uint64_t ticks = 0;     ///< length of the run in periods; 0: until stopped
   bool lockstep = false;  ///< search in step with the ticks (virtual time) instead of from a thread of its own
-  uint64_t dry_cycles = 0;  ///< before the first tick: wake-ups and device traffic with motors off, to judge the machine
+  bool paced = false;     ///< the clock follows an arm's samples: a tick is when it says, not when the deadline was
+  uint64_t dry_cycles =
+      0;  ///< before the first tick: wake-ups and device traffic with motors off, to judge the machine
 };
+
+/// [main] The arm whose samples drive the loop: the first that can, if the scene wants one to. nullptr: the clock does.
+Arm* pacingArm(const scene::Servo& servo, const std::vector<std::unique_ptr<Arm>>& arms);
 
 /// [main] What these arms make of a tick's answers.
 Uses usesOf(const std::vector<std::unique_ptr<Arm>>& arms);
@@ -67,6 +72,7 @@ class Loop {
   void rampOut() noexcept HSP_RT;
   bool allSilent() const noexcept HSP_RT;
   bool simulated() const noexcept HSP_RT;
+  Nanoseconds timeOfTick(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT;
   Nanoseconds skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT;
 
   World& world_;

@@ -87,7 +87,7 @@ class Replay::Player final : public Clock {
       replay_.loop_->stop();
       return now_ = std::max(deadline, now_);
     }
-    now_ = std::max(timeOf(tick_), deadline);
+    now_ = replay_.paced_ ? timeOf(tick_) : std::max(timeOf(tick_), deadline);
     feedArms();
     feedRecords();
     feedOrders();
@@ -277,6 +277,7 @@ Result<std::unique_ptr<Replay>> Replay::prepare(const record::Recording& recordi
   LoopSettings settings;
   settings.period_ns = replay->run_.facts.period_ns;
   settings.ticks = replay->run_.facts.ticks;
+  settings.paced = replay->paced_ = pacingArm(scene.servo, replay->arms_) != nullptr;
   replay->loop_ =
       std::make_unique<Loop>(*replay->world_, replay->arms_, *replay->player_, settings, *replay->telemetry_);
   return replay;

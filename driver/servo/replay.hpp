@@ -45,6 +45,7 @@ class Replay {
   const record::Recording& recording_;
   RecordedRun run_;
   std::vector<std::unique_ptr<host::Playback>> playbacks_;
+  bool paced_ = false;  ///< then, by the samples of an arm
   std::unique_ptr<World> world_;
   std::vector<std::unique_ptr<Arm>> arms_;
   std::unique_ptr<Telemetry> telemetry_;

@@ -7,6 +7,7 @@
 
 #include "base/os.hpp"
 #include "servo/about.hpp"
+#include "servo/paced_clock.hpp"
 #include "servo/servo_watch.hpp"
 #include "sim/proximity_thread.hpp"
 #include "watch/crash.hpp"
@@ -145,6 +146,10 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
   } else {
     runner->clock_ = std::make_unique<RealClock>(spinFor(scene.servo));
   }
+  if (Arm* pacing = pacingArm(runner->scene_.servo, runner->arms_)) {
+    settings.paced = true;
+    runner->clock_ = std::make_unique<PacedClock>(std::move(runner->clock_), pacing->device(), settings.period_ns);
+  }
   runner->loop_ =
       std::make_unique<Loop>(*runner->world_, runner->arms_, *runner->clock_, settings, *runner->telemetry_);
   return runner;
@@ -153,8 +158,8 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
 Result<void> Runner::openBlackBox(const LoopSettings& settings) {
   const auto models = world_->core().models();
   const auto moving = std::count_if(models.begin(), models.end(), [](const ModelState& m) { return m.moves; });
-  const auto streams =
-      flightStreams(scene_, arms_, options_.rate, Telemetry::kBlackBoxSeconds, static_cast<size_t>(moving));
+  const auto streams = flightStreams(scene_, arms_, options_.rate, Telemetry::kBlackBoxSeconds,
+                                     static_cast<size_t>(moving));
   const RunFacts facts{options_.rate, settings.period_ns, settings.ticks, options_.virtual_time};
   auto ring = record::FlightRing::create(streams, aboutRun(scene_, *world_, arms_, facts, streams), options_.black_box);
   if (!ring) return Error{ring.error()};

@@ -58,20 +58,37 @@ void judgeHeat(const scene::Device& device, const hdv_info& info, scene::Problem
                     text(info.continuous_force) + " N");
 }
 
-}  // namespace
-
-scene::Problems idleSettings(const scene::Scene& scene) {
-  scene::Problems problems;
-  if (scene.servo.pace == scene::Pace::kDevice)
-    scene::report(problems, scene.file.string(), 0, 0, "servo.pace",
-                  "device has no effect in this version: the clock drives the loop, and each tick takes the newest "
-                  "sample; expected clock");
-  return problems;
+/// Samples against ticks: who drives the loop, and how often.
+void judgeRate(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
+               scene::Problems& problems) {
+  constexpr double kSlack = 1.001;
+  const std::string file = scene.file.string(), rates = text(scene.servo.rate) + " Hz";
+  const std::string own = " (" + text(info.rate_hz) + " Hz)", nearest = "; nearest: " + text(info.rate_hz) + " Hz";
+  const bool paced = scene.servo.pace == scene::Pace::kDevice;
+  if (paced && (info.capabilities & HDV_C_PACING) == 0)
+    scene::report(problems, file, 0, 0, "servo.pace",
+                  "device, but " + device.name +
+                      " has a sample whenever it is asked: the clock drives the loop, unless "
+                      "another arm can; expected clock");
+  if (info.rate_hz <= 0) return;
+  const double ratio = scene.servo.rate / info.rate_hz;
+  if (paced && (ratio > kSlack || ratio < 1 / kSlack))
+    scene::report(problems, file, 0, 0, "servo.rate",
+                  rates + ", but the samples of " + device.name + own +
+                      " drive the loop: budgets and estimators are "
+                      "made for another rate than they meet" +
+                      nearest);
+  else if (ratio > kSlack && (info.capabilities & HDV_C_SIMULATED) == 0)
+    scene::report(
+        problems, file, 0, 0, "servo.rate",
+        rates + " is faster than the samples of " + device.name + own + ": ticks between see no news" + nearest);
 }
+
+}  // namespace
 
 scene::Problems unstableSettings(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
                                  const std::vector<double>& stiffness) {
-  scene::Problems problems = idleSettings(scene);
+  scene::Problems problems;
   const double period = 1 / scene.servo.rate;
   const double alone =
       info.mass_kg > 0 ? passivity::maxStiffnessAlone(info.mass_kg, windowOf(scene.servo.velocity), period) : 0;
@@ -83,11 +100,7 @@ scene::Problems unstableSettings(const scene::Scene& scene, const scene::Device&
                   text(scene.servo.budget_us) + " us is longer than the period of " + text(period * 1e6) +
                       " us, so every tick may be late; nearest: " + text(0.8 * period * 1e6) + " us");
   judgeHeat(device, info, problems);
-  constexpr double kSlack = 1.001;
-  if (info.rate_hz > 0 && scene.servo.rate > kSlack * info.rate_hz && (info.capabilities & HDV_C_SIMULATED) == 0)
-    scene::report(problems, file, 0, 0, "servo.rate",
-                  text(scene.servo.rate) + " Hz is faster than the samples of " + device.name + " (" +
-                      text(info.rate_hz) + " Hz): ticks between see no news; nearest: " + text(info.rate_hz) + " Hz");
+  judgeRate(scene, device, info, problems);
   return problems;
 }
 

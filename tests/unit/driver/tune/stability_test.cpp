@@ -53,10 +53,16 @@ TEST(UnstableSettings, NameTheBoundAndTheNearestSetting) {
   EXPECT_NE(text.find("models[0]"), std::string::npos) << text;
 }
 
-TEST(UnstableSettings, SayThatThePaceOfTheDeviceDoesNothingYet) {
+TEST(UnstableSettings, SayThatAnArmCannotDriveTheLoopOrDoesSoAtAnotherRate) {
   Case paced;
   paced.scene.servo.pace = scene::Pace::kDevice;
-  EXPECT_NE(paced.told(800).find("servo.pace: device has no effect"), std::string::npos) << paced.told(800);
+  paced.info.capabilities &= ~uint32_t{HDV_C_PACING};
+  EXPECT_NE(paced.told(800).find("servo.pace: device, but"), std::string::npos) << paced.told(800);
+  paced.info.capabilities |= HDV_C_PACING;
+  paced.info.rate_hz = paced.scene.servo.rate;
+  EXPECT_EQ(paced.told(800), "");
+  paced.info.rate_hz = paced.scene.servo.rate / 2;
+  EXPECT_NE(paced.told(800).find("servo.rate"), std::string::npos) << paced.told(800);
 }
 
 TEST(UnstableSettings, SayThatAWindowIsTooLong) {
