@@ -1,5 +1,6 @@
 #include "ma_file.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -11,6 +12,14 @@ namespace {
 
 constexpr std::size_t kMostProblems = 20;
 constexpr long kMostElements = 10'000'000;
+
+/// For a terminal: what is no plain character, as a question mark.
+std::string printable(std::string_view word) {
+  std::string text(word);
+  for (char& c : text)
+    if (c < ' ' || c > '~') c = '?';
+  return text;
+}
 
 /// The words of a line, one after the other.
 class Words {
@@ -54,7 +63,7 @@ class MaReader {
 
  private:
   void problem(const std::string& what) {
-    found_ += (problems_ > 0 ? "\n" : "") + file_ + ":" + std::to_string(line_) + ": " + what;
+    found_ += (problems_ > 0 ? "\n" : "") + file_ + ":" + std::to_string(std::max<std::size_t>(line_, 1)) + ": " + what;
     ++problems_;
   }
 
@@ -74,17 +83,24 @@ class MaReader {
     } else if (kind == "f") {
       readCorners(words, data_.triangles, "f i j k");
     } else {
-      problem("'" + std::string(kind.substr(0, 20)) + "', expected v, e, f or #");
+      problem("'" + printable(kind.substr(0, 20)) + "', expected v, e, f or #");
     }
   }
 
   void readCounts(Words words) {
     counted_ = true;
-    for (long& count : counts_)
-      if (!words.number(count) || count < 0 || count > kMostElements) {
+    for (long& count : counts_) {
+      const std::string_view word = words.next();
+      if (!Words(word).number(count)) {
         counts_known_ = false;
-        return problem("expected three numbers: how many vertices, edges and triangles follow");
+        return problem((word.empty() ? "too few numbers" : "'" + printable(word.substr(0, 20)) + "'") +
+                       ", expected three whole numbers: how many vertices, edges and triangles follow");
       }
+      if (count >= 0 && count <= kMostElements) continue;
+      counts_known_ = false;
+      return problem(std::to_string(count) + " of a kind, expected 0 to " + std::to_string(kMostElements) +
+                     " vertices, edges and triangles");
+    }
     if (counts_[0] == 0) problem("no vertices, expected at least one");
   }
 
@@ -106,14 +122,14 @@ class MaReader {
   void finish() {
     if (!counted_) return problem("empty, expected the numbers of vertices, edges and triangles");
     if (!counts_known_) return;
-    const auto check = [this](long promised, std::size_t found, const char* what) {
+    const auto check = [this](long promised, std::size_t found, const char* one, const char* many) {
       if (static_cast<std::size_t>(promised) != found)
-        problem(std::to_string(found) + " " + what + " in the file, expected " + std::to_string(promised) +
-                " as its first line says");
+        problem(std::to_string(found) + " " + (found == 1 ? one : many) + " in the file, expected " +
+                std::to_string(promised) + " as its first line says");
     };
-    check(counts_[0], data_.vertices.size(), "vertices");
-    check(counts_[1], data_.edges.size(), "edges");
-    check(counts_[2], data_.triangles.size(), "triangles");
+    check(counts_[0], data_.vertices.size(), "vertex", "vertices");
+    check(counts_[1], data_.edges.size(), "edge", "edges");
+    check(counts_[2], data_.triangles.size(), "triangle", "triangles");
   }
 
   std::string_view text_;
