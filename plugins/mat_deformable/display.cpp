@@ -1,5 +1,8 @@
 #include "display.hpp"
 
+#include <algorithm>
+#include <utility>
+
 namespace hapticd {
 
 namespace {
@@ -31,6 +34,46 @@ float Displaced::read(medial::Displacements& out) const {
     if (before % 2 == 0 && version_.load(std::memory_order_relaxed) == before) break;
   }
   return bulge;
+}
+
+Frames::Frames(std::unique_ptr<medial::MovingMesh> contour, std::size_t nodes)
+    : contour_(std::move(contour)), moved_(nodes) {
+  if (contour_->vertexCount() > kPart) whole_ = work_ = contour_->atRest();
+}
+
+void Frames::begin(const medial::Nodes& body) noexcept HSP_RT {
+  for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = body.displacement(i).cast<float>();
+  bulge_ = static_cast<float>(body.bulge());
+}
+
+void Frames::write(float* xyz, std::size_t first, std::size_t count) noexcept HSP_RT {
+  contour_->write([this](std::size_t i) -> const Eigen::Vector4f& { return moved_[i]; }, xyz, count, bulge_, first);
+}
+
+void Frames::step(const medial::Nodes& body, float* xyz, std::size_t capacity) noexcept HSP_RT {
+  if (whole_.empty()) {
+    if (xyz == nullptr) return;
+    begin(body);
+    return write(xyz, 0, capacity);
+  }
+  if (working_) {
+    const std::size_t count = std::min(kPart, contour_->vertexCount() - done_);
+    write(work_.data() + 3 * done_, done_, count);
+    done_ += count;
+    working_ = done_ < contour_->vertexCount();
+    if (!working_) std::swap(whole_, work_);
+  }
+  if (xyz == nullptr) return;
+  std::copy_n(whole_.data(), 3 * std::min(capacity, contour_->vertexCount()), xyz);
+  if (working_) return;
+  begin(body);
+  done_ = 0;
+  working_ = true;
+}
+
+std::size_t Frames::bytes() const noexcept {
+  return sizeof *this + contour_->bytes() + moved_.capacity() * sizeof moved_[0] +
+         (whole_.capacity() + work_.capacity()) * sizeof(float);
 }
 
 void Display::show(const SoftBody& body, const Displaced& displaced, double chord_error, hsp_mesh& out) {

@@ -100,8 +100,8 @@ class GridBody final : public SoftBody {
     if (const medial::Steepness steep = body_.skeleton().steepest(); steep.slope >= 1) {
       std::snprintf(text, sizeof text,
                     "%s: near u = %.3g, v = %.3g the radius changes by %.3g m a metre of skeleton, expected below 1: "
-                    "spheres there are inside others and the surface felt may be off by a hundredth of a radius; place "
-                    "points farther apart or radii nearer to each other",
+                    "spheres there are inside others, and only the union of all is felt; place points farther apart or "
+                    "radii nearer to each other",
                     file.c_str(), steep.u, steep.v, steep.slope);
       description = {description.warning ? description.text + "; " + text : text, true};
     }

@@ -16,6 +16,7 @@ using medial::SkeletonFoot;
 
 constexpr double kShowPeriod = 1.0 / 60;  ///< [s] between two sets of displacements for drawing
 constexpr double kFinestMesh = 1e-6;      ///< [m] finer meshes are for files, not for drawing
+constexpr double kLarge = 1.5;            ///< [m] no arm reaches round a longer body
 constexpr double kGapFactor = 1.5;        ///< so many ticks without a step: the body was left alone meanwhile
 
 }  // namespace
@@ -49,10 +50,10 @@ void MatDeformable::activate(const hsp_activation& activation, hsp_report& repor
   shown_at_rest_ = true;
   displaced_ = std::make_unique<Displaced>(body_->nodes().count());
   display_.reset();
-  contour_.reset();
+  frames_.reset();
   if (display_tolerance_ > 0) {
-    contour_ = body_->contour(std::max(display_tolerance_, kFinestMesh));
-    report.viz_vertices = static_cast<uint32_t>(contour_->vertexCount());
+    frames_ = std::make_unique<Frames>(body_->contour(displayed()), body_->nodes().count());
+    report.viz_vertices = static_cast<uint32_t>(frames_->contour().vertexCount());
   }
   keeper_.reset();
   std::size_t volume_bytes = 0;
@@ -68,7 +69,8 @@ void MatDeformable::activate(const hsp_activation& activation, hsp_report& repor
   if (file.swings || file.damps || viscosity_ > 0) report.flags |= HSP_R_VELOCITY;
   report.max_stiffness = body_->greatestStiffness();
   report.size_m = body_->bounds().diagonal().norm();
-  report.locked_bytes = body_->bytes() + displaced_->bytes() + volume_bytes + probes * sizeof(Track) + sizeof *this;
+  report.locked_bytes = body_->bytes() + displaced_->bytes() + volume_bytes + probes * sizeof(Track) + sizeof *this +
+                        (frames_ ? frames_->bytes() : 0);
   describe();
 }
 
@@ -77,13 +79,18 @@ void MatDeformable::describe() const {
   if (host() == nullptr || host()->log == nullptr) return;
   const Description description = body_->describe(geometry_);
   host()->log(host(), description.warning ? HSP_LOG_WARNING : HSP_LOG_INFO, description.text.c_str());
+  const double size = body_->bounds().sizes().maxCoeff();
+  if (!(size > kLarge)) return;
+  char text[128];
+  std::snprintf(text, sizeof text, ": the body is %.3g m long, expected metres: was the file in millimetres?", size);
+  host()->log(host(), HSP_LOG_WARNING, (geometry_ + text).c_str());
 }
 
 void MatDeformable::deactivate() {
   if (body_) states_->kept = stateOf(body_->nodes());
   tracks_.clear();
   display_.reset();
-  contour_.reset();
+  frames_.reset();
   keeper_.reset();
   displaced_.reset();
   body_.reset();
@@ -131,9 +138,7 @@ hsp_status MatDeformable::step(const hsp_step& step) noexcept HSP_RT {
 /// Leaves displacements for drawing 60 times a second while the body moves, and once when it has come to rest.
 void MatDeformable::show(const hsp_step& step) noexcept HSP_RT {
   const medial::Nodes& moved = body_->nodes();
-  if (contour_ && step.viz_xyz != nullptr)
-    contour_->write([&moved](std::size_t i) -> Eigen::Vector4f { return moved.displacement(i).cast<float>(); },
-                    step.viz_xyz, step.viz_capacity, static_cast<float>(moved.bulge()));
+  if (frames_) frames_->step(moved, step.viz_xyz, step.viz_capacity);
   since_shown_ += step.dt_s;
   const bool at_rest = moved.awake() == 0;
   if (since_shown_ < kShowPeriod || (at_rest && shown_at_rest_)) return;
@@ -142,8 +147,13 @@ void MatDeformable::show(const hsp_step& step) noexcept HSP_RT {
   shown_at_rest_ = at_rest;
 }
 
+double MatDeformable::displayed() const {
+  return std::max(display_tolerance_, kFinestMesh);
+}
+
 hsp_status MatDeformable::mesh(double chord_error, hsp_mesh& out) {
   if (!body_) return HSP_E_STATE;
+  if (chord_error == 0 && frames_) chord_error = displayed();  // the mesh of the vertices that steps write
   if (!(chord_error > 0)) return HSP_E_ARG;
   if (!display_) display_ = std::make_unique<Display>();
   display_->show(*body_, *displaced_, std::max(chord_error, kFinestMesh), out);

@@ -42,9 +42,9 @@ class MatDeformable final : public Shape {
         F::real("split", &T::split_, "", 0, 1, 0.5,
                 "g: share of the depth by which the skeleton moves; 0.5: the opposite side stays, 1: it follows"),
         F::array("influence", &T::influence_, "", 2, 2, 2, 1, medial::kMaxSkeletonDegree + 1, "[4, 4]",
-                 "p', q': control points that a contact moves; degree + 1: no jumps", HSP_P_ACCURACY),
+                 "p', q': control points that a contact moves; degree + 1: no jumps. Seen, not felt"),
         F::choice("dynamics", &T::dynamics_, kSwitchNames, 1,
-                  "on: control points swing and creep back; off: they return at once", HSP_P_ACCURACY),
+                  "on: control points swing and creep back; off: they return at once. Seen, not felt"),
         F::real("shear_offset", &T::shear_offset_, "", 0, 0.5, 0.05,
                 "distance of the four springs along the surface, as a share of the parameters; 0: none"),
         F::real("damping_scale", &T::damping_scale_, "m", 1e-6, 1, 5e-3,
@@ -59,16 +59,14 @@ class MatDeformable final : public Shape {
         F::real("damping", &T::damping_, "N s/m", 0, 1e6, 0.5, "likewise"),
         F::real("mass", &T::mass_, "kg", 0, 1e6, 0.01, "of a vertex, likewise"),
         F::integer("rings", &T::rings_, "", 0, 8, 2,
-                   "of a medial mesh: rings of neighbours that a contact moves with the cone or slab it is on",
-                   HSP_P_ACCURACY),
+                   "of a medial mesh: rings of neighbours that a contact moves with its cone or slab. Seen, not felt"),
         F::real(
             "crease", &T::crease_, "m", 0, 1, 1e-3,
             "of a medial mesh: width over which the force turns from one part to another in the crotch of a branch; "
             "0: at once",
             HSP_P_LIVE),
         F::real("display_tolerance", &T::display_tolerance_, "m", 0, 1e-2, 0,
-                "chord error of the vertices that a step writes for drawing; 0: none, drawing asks for its own",
-                HSP_P_ACCURACY)};
+                "chord error of the vertices that steps write 60 times a second for whoever draws; 0: none")};
   }
 
   void activate(const hsp_activation& activation, hsp_report& report);
@@ -106,6 +104,7 @@ class MatDeformable final : public Shape {
   int64_t save(void* buffer, uint64_t capacity) const;
   hsp_status load(const void* buffer, uint64_t length);
   void show(const hsp_step& step) noexcept HSP_RT;
+  double displayed() const;  ///< [m] chord error of the frames
   hsp_status mesh(double chord_error, hsp_mesh& out);
 
   std::string geometry_;
@@ -120,8 +119,8 @@ class MatDeformable final : public Shape {
   std::vector<Track> tracks_;           ///< one a probe
   std::vector<medial::Press> presses_;  ///< of this step, reserved for all probes
   std::unique_ptr<Displaced> displaced_;
-  std::unique_ptr<medial::MovingMesh> contour_;  ///< written by the step, if display_tolerance asks for it
-  std::unique_ptr<Keeper> keeper_;               ///< of the volume, if that was asked for
+  std::unique_ptr<Frames> frames_;  ///< written by the step, if display_tolerance asks for it
+  std::unique_ptr<Keeper> keeper_;  ///< of the volume, if that was asked for
   std::unique_ptr<States> states_ = std::make_unique<States>();
   std::unique_ptr<Display> display_;
   double since_shown_ = 0;  ///< [s]

@@ -24,9 +24,11 @@ class MeshSoftBody final : public SoftBody {
       greatest_radius_ = std::max(greatest_radius_, sphere.radius);
   }
 
-  /// Every search is global: the tree makes it as fast as following, and nothing is ever lost.
+  /// Every search is global: the tree makes it as fast as following, and nothing is ever lost. In the middle of a body
+  /// whose parts are all as near it ends early, from the foot of the last tick.
   void find(const Vector3d& p, uint32_t, const FindOptions& options, Track& track) const noexcept override {
-    track.foot = body_.foot(p, track.known ? track.foot.element : MedialMesh::kNoStart, options.crease);
+    track.foot =
+        body_.foot(p, track.known ? track.foot.element : MedialMesh::kNoStart, options.crease, MedialMesh::kMostVisits);
   }
   Felt felt(const Vector3d& p, const Vector3d& moved, Track& track) const noexcept override {
     return feltTurning(p, moved, track);

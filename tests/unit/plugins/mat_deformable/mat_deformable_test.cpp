@@ -169,6 +169,51 @@ TEST(MatDeformable, WritesVerticesInTheStepOnlyWhereAsked) {
   EXPECT_GT(drawn.report.viz_vertices, 100u);
 }
 
+/// Frames as a host asks for them, every 17th tick, while the body is held and has settled: the last one.
+std::vector<float> heldFrame(Plugin& body, const Vector3d& p, std::size_t vertices) {
+  std::vector<float> frame;
+  for (int i = 0; i < 40 * 17; ++i) {
+    if (i % 17 == 16) body.viz.assign(3 * vertices, NAN);
+    body.touch(p);
+    if (i % 17 == 16) std::swap(frame, body.viz);
+    body.viz.clear();
+  }
+  return frame;
+}
+
+TEST(MatDeformable, FramesOfAnySizeAreTheVerticesOfTheMesh) {
+  for (const double tolerance : {1e-3, 1e-5}) {  // written in one step, and in several
+    Plugin plate;
+    plate.set("display_tolerance", tolerance);
+    ASSERT_EQ(plate.activate(), HSP_OK);
+    const auto& geometry = plate.extension<hsp_ext_geometry>(HSP_EXT_GEOMETRY);
+    plate.search({0, 0, .03});
+    const std::vector<float> frame = heldFrame(plate, {0, 0, .006}, plate.report.viz_vertices);
+    hsp_mesh mesh{};
+    mesh.struct_size = sizeof mesh;
+    ASSERT_EQ(geometry.tessellate(plate.handle(), 0, &mesh), HSP_OK);
+    ASSERT_EQ(mesh.vertex_count, plate.report.viz_vertices);
+    EXPECT_EQ(mesh.vertex_count > 1024, tolerance < 1e-4);
+    float lowest = 1;
+    for (uint32_t i = 0; i < 3 * mesh.vertex_count; ++i) ASSERT_NEAR(frame[i], mesh.xyz[i], 1e-6) << i;
+    for (uint32_t i = 0; i < mesh.vertex_count; ++i)
+      if (mesh.normals[3 * i + 2] > 0 && std::hypot(mesh.xyz[3 * i], mesh.xyz[3 * i + 1]) < 2e-3F)
+        lowest = std::min(lowest, frame[3 * i + 2]);
+    EXPECT_NEAR(lowest, .006, 1e-4);
+  }
+}
+
+TEST(MatDeformable, WritesNoMoreVerticesThanThereIsRoomFor) {
+  Plugin plate;
+  plate.set("display_tolerance", 1e-3);
+  ASSERT_EQ(plate.activate(), HSP_OK);
+  plate.search({0, 0, .03});
+  plate.viz.assign(3 * 10, NAN);
+  plate.viz.reserve(3 * 20);
+  plate.touch({0, 0, .006});
+  for (const float x : plate.viz) EXPECT_TRUE(std::isfinite(x));
+}
+
 TEST(MatDeformable, ReportsWhatItNeeds) {
   Plugin plate;
   ASSERT_EQ(plate.activate(), HSP_OK);

@@ -76,6 +76,8 @@ class Plugin {
     step.in_stride = sizeof(hsp_probe);
     step.out_stride = sizeof(hsp_contact);
     step.dt_s = dt;
+    step.viz_xyz = viz.empty() ? nullptr : viz.data();
+    step.viz_capacity = static_cast<uint32_t>(viz.size() / 3);
     status = kind().step(shape_, &step);
     return contacts;
   }
@@ -84,6 +86,7 @@ class Plugin {
 
   hsp_status status = HSP_OK;
   hsp_report report{};
+  std::vector<float> viz;  ///< where steps write vertices, while it is not empty
 
  private:
   static const hsp_class& kind() { return *hsp_plugin_entry.classes[0]; }

@@ -61,6 +61,33 @@ TEST(Volume, APressOfThirtyPercentKeepsItWithinOnePercent) {
   }
 }
 
+TEST(Volume, IsKeptUnderSeveralContactsAtOnce) {
+  double changes[2];
+  for (const bool keep : {false, true}) {
+    Plugin body("loaf.yaml");
+    body.set("volume", keep ? 1.0 : 0.0);
+    ASSERT_EQ(body.activate(3), HSP_OK);
+    const double before = volumeOf(body);
+    const std::vector<Vector3d> places{{.001, .001, 0}, {.02, .01, 0}, {-.02, -.01, 0}};
+    std::vector<double> top;
+    for (uint32_t i = 0; i < 3; ++i) body.search(places[i] + Vector3d(0, 0, .04), i);
+    const auto at = [&](double z) {
+      std::vector<Vector3d> all = places;
+      for (Vector3d& p : all) p.z() = z;
+      return all;
+    };
+    for (const hsp_contact& rest : body.step(at(.04))) top.push_back(rest.point[2]);
+    for (int k = 0; k < 400; ++k) {
+      std::vector<Vector3d> probes = places;
+      for (std::size_t i = 0; i < 3; ++i) probes[i].z() = top[i] - .005 * std::min(1.0, k / 100.0);
+      for (const hsp_contact& contact : body.step(probes)) ASSERT_TRUE(k < 10 || contact.depth_m > 0);
+    }
+    changes[keep ? 1 : 0] = std::fabs(volumeOf(body) / before - 1);
+  }
+  EXPECT_GT(changes[0], 5 * changes[1]);
+  EXPECT_LE(changes[1], .01);
+}
+
 TEST(Volume, NothingGrowsWithoutBoundAtTheExtremes) {
   for (const double split : {0.0, 0.5, 1.0}) {
     for (const double share : {.1, .9, 3.0}) {
