@@ -37,7 +37,11 @@ struct Entry {
 /// Bounds of what is read. Beyond them a file is refused with a message.
 constexpr size_t kMaxFileBytes = 32u << 20;  ///< a scene of 10,000 models is 2 MB
 constexpr int kMaxDepth = 48;
-constexpr size_t kMaxNodes = 4'000'000;  ///< aliases included: "a billion laughs" ends here
+constexpr size_t kMaxNodes = 4'000'000;
+/// Of a short text, aliases included: "a billion laughs" ends here. Without aliases a byte is at most two values.
+constexpr size_t maxNodes(size_t bytes) {
+  return bytes < kMaxNodes / 4 - 5'000 ? 20'000 + 4 * bytes : kMaxNodes;
+}
 
 /// [main] Parses a text. Syntax errors, duplicate keys, cycles and sizes beyond the bounds become problems; nothing is
 /// returned when the text cannot be read at all.

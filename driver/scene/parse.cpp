@@ -23,7 +23,8 @@ struct Refused {
 /// Builds the tree from the parser's events. Anchors are kept as copies; an alias copies again and is counted.
 class Builder final : public YAML::EventHandler {
  public:
-  Builder(const std::string& file, Problems& problems) : file_(file), problems_(problems) {}
+  Builder(const std::string& file, size_t most_nodes, Problems& problems)
+      : file_(file), problems_(problems), most_nodes_(most_nodes) {}
 
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
@@ -78,8 +79,8 @@ class Builder final : public YAML::EventHandler {
   }
   void count(size_t nodes, const YAML::Mark& mark) {
     nodes_ += nodes;
-    if (nodes_ > kMaxNodes)
-      throw Refused{mark, "more than " + std::to_string(kMaxNodes) + " values (with aliases expanded)"};
+    if (nodes_ > most_nodes_)
+      throw Refused{mark, "more than " + std::to_string(most_nodes_) + " values (with aliases expanded)"};
   }
   static size_t sizeOf(const Node& node) {
     size_t size = 1;
@@ -136,7 +137,7 @@ class Builder final : public YAML::EventHandler {
   std::vector<Open> open_;
   std::vector<std::pair<YAML::anchor_t, Node>> anchors_;
   std::optional<Node> root_;
-  size_t nodes_ = 0;
+  size_t nodes_ = 0, most_nodes_;
 };
 
 /// The first byte that is no part of valid UTF-8, or npos. Overlong forms are let through: nothing decodes them here.
@@ -177,7 +178,7 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
                "), expected YAML in UTF-8");
     return std::nullopt;
   }
-  Builder builder(file, problems);
+  Builder builder(file, maxNodes(text.size()), problems);
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);
@@ -187,7 +188,7 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
     }
     std::optional<Node> root = builder.take();
     Problems ignored;
-    Builder second(file, ignored);
+    Builder second(file, maxNodes(text.size()), ignored);
     if (parser.HandleNextDocument(second)) {
       const std::optional<Node> next = second.take();
       report(problems, file, next ? next->line : 1, next ? next->column : 1, "",

@@ -52,6 +52,21 @@ TEST(Node, ExpandsAliases) {
   EXPECT_EQ(toJson(root), R"({"a":{"k":[1,2]},"b":{"k":[1,2]},"c":[{"k":[1,2]},{"k":[1,2]}]})");
 }
 
+TEST(Node, RefusesAliasesOfAliasesAfterFewValues) {
+  std::string text = "a0: &a0 [x, x, x, x, x, x, x, x]\n";
+  for (int i = 1; i < 9; ++i) {
+    const std::string alias = "*a" + std::to_string(i - 1);
+    text += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " [" + alias;
+    for (int k = 0; k < 7; ++k) text += ", " + alias;
+    text += "]\n";
+  }
+  Problems problems;
+  EXPECT_FALSE(parseText(text, "t.yaml", problems).has_value());
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_NE(problems[0].what.find("aliases expanded"), std::string::npos);
+  EXPECT_LT(problems[0].place.line, 6);
+}
+
 TEST(Node, BecomesJsonWithEverythingThatYamlSpellsOtherwise) {
   EXPECT_EQ(toJson(parsed("{a: 007, b: .5, c: 1., d: +1, e: yes, f: true, g: \"q\\\"\\n\", h: ~, i: .nan, j: 1e3}")),
             R"({"a":7,"b":0.5,"c":1,"d":1,"e":"yes","f":true,"g":"q\")"
