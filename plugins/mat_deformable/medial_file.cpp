@@ -203,13 +203,16 @@ class Reader {
 }  // namespace
 
 MedialFile readMedialFile(const std::string& path, const Material& material) {
-  const std::string text = readModelText(path);
+  return parseMedialFile(readModelText(path), path, material);
+}
+
+MedialFile parseMedialFile(const std::string& text, const std::string& name, const Material& material) {
   MedialFile file;
-  if (path.ends_with(".ma")) {
-    file.mesh = medial::MeshBodyData{parseMa(text, path), {material.stiffness}, {material.damping}, {material.mass}};
+  if (name.ends_with(".ma")) {
+    file.mesh = medial::MeshBodyData{parseMa(text, name), {material.stiffness}, {material.damping}, {material.mass}};
   } else {
-    const Json root = parseDocument(text, path);
-    Problems problems(path, text);
+    const Json root = parseDocument(text, name);
+    Problems problems(name, text);
     Reader(problems).read(root, file);
     problems.throwIfAny();
   }

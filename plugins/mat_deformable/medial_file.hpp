@@ -26,4 +26,7 @@ struct Material {
 /// @throws ModelFileError with every problem found, a line each; whatever the bytes of the file.
 MedialFile readMedialFile(const std::string& path, const Material& material);
 
+/// [main] The same from the text of a file; `name` stands in messages and tells the format.
+MedialFile parseMedialFile(const std::string& text, const std::string& name, const Material& material);
+
 }  // namespace hapticd

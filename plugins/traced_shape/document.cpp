@@ -13,7 +13,8 @@ namespace {
 
 using Json = nlohmann::json;
 constexpr std::size_t kMostProblems = 20;
-constexpr std::size_t kMostNodes = 50'000'000;  // aliases can make a small file a huge tree
+// Every value takes a byte or more, so that only aliases make a tree larger than its text.
+constexpr std::size_t kSpareNodes = 10'000;
 constexpr int kDeepest = 64;
 constexpr std::size_t kMostBytes = 1u << 30;
 
@@ -36,14 +37,14 @@ Json scalarOf(const YAML::Node& node) {
   return text;
 }
 
-Json treeOf(const YAML::Node& node, std::size_t& nodes, int depth) {
-  if (++nodes > kMostNodes || depth > kDeepest) throw YAML::ParserException(node.Mark(), "too large or too deep");
+Json treeOf(const YAML::Node& node, std::size_t& left, int depth) {
+  if (left-- == 0 || depth > kDeepest) throw YAML::ParserException(node.Mark(), "too large or too deep");
   switch (node.Type()) {
     case YAML::NodeType::Scalar:
       return scalarOf(node);
     case YAML::NodeType::Sequence: {
       Json list = Json::array();
-      for (const YAML::Node& item : node) list.push_back(treeOf(item, nodes, depth + 1));
+      for (const YAML::Node& item : node) list.push_back(treeOf(item, left, depth + 1));
       return list;
     }
     case YAML::NodeType::Map: {
@@ -52,7 +53,7 @@ Json treeOf(const YAML::Node& node, std::size_t& nodes, int depth) {
         if (!item.first.IsScalar()) throw YAML::ParserException(item.first.Mark(), "a key that is no text");
         if (map.contains(item.first.Scalar()))
           throw YAML::ParserException(item.first.Mark(), "key " + item.first.Scalar() + " appears twice");
-        map[item.first.Scalar()] = treeOf(item.second, nodes, depth + 1);
+        map[item.first.Scalar()] = treeOf(item.second, left, depth + 1);
       }
       return map;
     }
@@ -147,8 +148,8 @@ Json parseDocument(const std::string& text, const std::string& file) {
     if (!json.is_discarded()) return json;
   }
   try {
-    std::size_t nodes = 0;
-    return treeOf(YAML::Load(text), nodes, 0);
+    std::size_t left = text.size() + kSpareNodes;
+    return treeOf(YAML::Load(text), left, 0);
   } catch (const YAML::Exception& e) {
     throw ModelFileError(line(file, e.mark.line + 1, e.mark.column + 1, "not YAML or JSON: " + e.msg));
   }

@@ -59,8 +59,7 @@ class Reader {
     }
     checkKeys(json, at, {"name", "degree", "knots", "points", "weights", "outward"});
     const bool had = problems_.any();
-    if (const Json* name = member(json, "name"))
-      data.name = name->is_string() ? name->get<std::string>() : name->dump();
+    if (const Json* name = member(json, "name")) data.name = nameOf(*name, at / "name");
     readDegree(json, at / "degree", data);
     readKnots(json, at / "knots", data);
     readPoints(json, at / "points", data);
@@ -73,6 +72,14 @@ class Reader {
     }
     if (!had && !problems_.any()) checkWhole(data, at);
     return data;
+  }
+
+  std::string nameOf(const Json& json, const Path& at) {
+    if (json.is_string()) return json.get<std::string>();
+    if (json.is_number() || json.is_boolean()) return json.dump();
+    if (json.is_null()) return {};
+    problems_.add(at, "expected a text");
+    return {};
   }
 
   void checkWhole(const spline::SurfaceData& data, const Path& at) {
@@ -197,9 +204,12 @@ class Reader {
 }  // namespace
 
 ModelFile readModelFile(const std::string& path) {
-  const std::string text = readModelText(path);
-  const Json root = parseDocument(text, path);
-  Problems problems(path, text);
+  return parseModelFile(readModelText(path), path);
+}
+
+ModelFile parseModelFile(const std::string& text, const std::string& name) {
+  const Json root = parseDocument(text, name);
+  Problems problems(name, text);
   ModelFile file = Reader(problems).read(root);
   problems.throwIfAny();
   return file;

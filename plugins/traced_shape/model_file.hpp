@@ -24,4 +24,7 @@ class ModelFileError : public std::runtime_error {
 /// @throws ModelFileError with every problem found; whatever the bytes of the file.
 ModelFile readModelFile(const std::string& path);
 
+/// [main] The same from the text of a file; `name` stands in messages.
+ModelFile parseModelFile(const std::string& text, const std::string& name);
+
 }  // namespace hapticd

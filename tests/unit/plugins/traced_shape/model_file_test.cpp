@@ -71,6 +71,27 @@ TEST_F(ModelFileTest, ReadsStatedEdges) {
   EXPECT_NE(complaintOf(kSquare + with(edges, "u1", "w1")).find("edges[0].sides[0]"), std::string::npos);
 }
 
+TEST_F(ModelFileTest, TakesNamesThatAreNumbersAndRefusesThoseThatAreLists) {
+  EXPECT_EQ(parseModelFile(with(kSquare, "name: floor", "name: 3.5"), "t.yaml").surfaces[0].name, "3.5");
+  EXPECT_NE(
+      complaintOf(with(kSquare, "name: floor", "name: [\"\\xff\", \xff]")).find("surfaces[0].name: expected a text"),
+      std::string::npos);
+  const std::string deep = std::string(500'000, '[') + std::string(500'000, ']');
+  EXPECT_NE(
+      complaintOf(R"({"format": "hapticd-model/1", "surfaces": [{"name": )" + deep + "}]}").find("expected a text"),
+      std::string::npos);
+}
+
+TEST_F(ModelFileTest, RefusesAliasesThatMakeAShortFileAHugeTree) {
+  std::string text = "a: &a [x, x, x, x, x, x, x, x, x]\n";
+  for (char name = 'b'; name < 'h'; ++name) {
+    text += std::string(1, name) + ": &" + name + " [*" + static_cast<char>(name - 1);
+    for (int i = 0; i < 8; ++i) text += std::string(", *") + static_cast<char>(name - 1);
+    text += "]\n";
+  }
+  EXPECT_NE(complaintOf(text).find("too large or too deep"), std::string::npos) << complaintOf(text);
+}
+
 TEST_F(ModelFileTest, SurvivesDamagedFiles) {
   std::mt19937 random(1);
   for (int i = 0; i < 2000; ++i) {
