@@ -1,12 +1,16 @@
-/// Millions of virtual ticks with random faults: `soak TICKS [SEED]`. Exit 1 when a fault does not end in zero force
-/// within 20 ms, when a fault raises a force, when anything sent is not finite, or when memory grows.
+/// Millions of virtual ticks with random faults: `soak TICKS [SEED]`. A device that is lost, stale, faulty or sends
+/// NaN, late ticks, plugins that fail, readers of the status page that are killed. Exit 1 when a fault does not end in
+/// zero force within 20 ms, when a fault raises a force, when anything sent is not finite, or when memory grows.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <random>
 
 #include "base/allocation_count.hpp"
+#include "dying_readers.hpp"
 #include "servo/servo_watch.hpp"
+#include "servo/status_writer.hpp"
 #include "test_rig.hpp"
 
 namespace hapticd::servo {
@@ -77,20 +81,27 @@ int soak(uint64_t ticks, unsigned seed) {
   }
   Rig rig(6, lateness, ticks, "wall", {}, more);
   running = &rig;
+  const std::string page = std::filesystem::temp_directory_path() / ("soak-page-" + std::to_string(getpid()));
+  auto file = status::PageFile::create(page);
+  if (!file) return std::printf("no status page: %s\n", file.error().c_str());
+  rig.telemetry->attach(std::make_unique<StatusWriter>(std::move(*file), rig.scene, rig.arms, 1000));
+  DyingReaders readers(page);
   rig.loop->run();
+  const uint64_t killed = readers.stop();
   running = nullptr;
   const double grown = (static_cast<double>(os::residentBytes()) - static_cast<double>(memory)) / 1e6;
   int silenced = 0;
   for (const ModelState& model : rig.world->core().models()) silenced += model.guard.quarantined() ? 1 : 0;
   const record::RunReport report = rig.telemetry->report({});
   std::printf(
-      "%llu ticks, %llu device faults (%llu cleared), %llu late wake-ups, %d of %d plugins silenced, "
+      "%llu ticks, %llu device faults (%llu cleared), %llu late wake-ups, %d of %d plugins silenced, %llu readers "
+      "killed, "
       "%llu allocations, memory %+.3f MB, %llu violations\n",
       static_cast<unsigned long long>(report.ticks), static_cast<unsigned long long>(check.faults),
       static_cast<unsigned long long>(check.zeroed), static_cast<unsigned long long>(late), silenced, kModels,
-      static_cast<unsigned long long>(report.servo_allocations - looked), grown,
-      static_cast<unsigned long long>(check.bad));
-  const bool enough = check.faults > ticks / 10000 && silenced >= kModels / 4;
+      static_cast<unsigned long long>(killed), static_cast<unsigned long long>(report.servo_allocations - looked),
+      grown, static_cast<unsigned long long>(check.bad));
+  const bool enough = check.faults > ticks / 10000 && silenced >= kModels / 4 && killed > 0;
   if (!enough) std::printf("too few faults came about: this was no test\n");
   return check.bad == 0 && enough && report.servo_allocations == looked && grown < 1 ? 0 : 1;
 }
