@@ -8,6 +8,7 @@
 #include "cli/class_info.hpp"
 #include "cli/command.hpp"
 #include "cli/device_bus.hpp"
+#include "cli/try_device.hpp"
 #include "host/device_instance.hpp"
 #include "scene/reader.hpp"
 
@@ -126,12 +127,20 @@ void printDoubts(const scene::Device& description, const host::DeviceInstance& d
     std::printf("  no masses in its description: gravity is not compensated\n");
 }
 
+/// Errors come back as results too, and are printed where that is.
+void logButNoErrors(int level, const std::string& who, const std::string& text) {
+  if (level != HSP_LOG_ERROR) logToTerminal(level, who, text);
+}
+
 int info(const std::string& file, bool with_parameters) {
   const scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
   printProblems(loaded.problems, stderr);
   if (!loaded.device) return kBadInput;
   const scene::Device& description = *loaded.device;
-  auto device = host::DeviceInstance::create(description, logToTerminal);
+  const scene::Problems wrong = tryDevice(file);
+  printProblems(wrong, stderr);
+  if (!wrong.empty()) return kBadInput;
+  auto device = host::DeviceInstance::create(description, logButNoErrors);
   if (!device) return fail(kFailed, device.error());
   const hdv_class& module = (*device)->description();
   std::printf("%s\n  file    %s\n  module  %s %s (%s)\n  %s\n  joints  %u\n", description.name.c_str(),

@@ -113,6 +113,7 @@ Json toJson(const View& view) {
     devices.push_back({{"name", arm.name},
                        {"module", arm.module},
                        {"force_n", arm.force()},
+                       {"tip_m", arm.now.position},
                        {"samples", arm.now.sequence},
                        {"valid", arm.now.valid != 0},
                        {"fault", arm.now.fault == 0 ? Json() : Json(arm.fault())}});
@@ -143,10 +144,12 @@ std::string table(const View& view, size_t rows) {
       "{:.0f} us  (p50 / p99 / max)\n\n",
       view.now.t, view.rate, view.held, view.now.missed, view.late[0], view.late[1], view.late[2], view.compute[0],
       view.compute[1], view.compute[2]);
-  text += fmt::format("{:<28} {:<16} {:>9} {:>12}  {}\n", "DEVICE", "MODULE", "FORCE N", "SAMPLES", "FAULT");
+  text += fmt::format("{:<28} {:<16} {:>9} {:>26} {:>12}  {}\n", "DEVICE", "MODULE", "FORCE N", "TIP x y z mm",
+                      "SAMPLES", "FAULT");
   for (const ArmLine& arm : view.arms)
-    text += fmt::format("{:<28.28} {:<16.16} {:9.3f} {:12}  {}\n", arm.name, arm.module, arm.force(), arm.now.sequence,
-                        arm.fault());
+    text += fmt::format("{:<28.28} {:<16.16} {:9.3f} {:8.1f} {:8.1f} {:8.1f} {:12}  {}\n", arm.name, arm.module,
+                        arm.force(), 1e3 * arm.now.position[0], 1e3 * arm.now.position[1], 1e3 * arm.now.position[2],
+                        arm.now.sequence, arm.fault());
   text += fmt::format("\n{:<28} {:<16} {:>9} {:>9} {:>8} {:>8} {:>8} {:>5} {:>6}\n", "MODEL", "PLUGIN", "FORCE N",
                       "DEPTH mm", "p50 us", "p99 us", "max us", "ITER", "STATUS");
   for (size_t i = 0; i < std::min(rows, view.models.size()); ++i) {

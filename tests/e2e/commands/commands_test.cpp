@@ -224,6 +224,11 @@ TEST_F(Commands, CheckPlacesWhatADeviceModuleRefusesInTheFile) {
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(value), '\n');
     const std::string place = file + ":" + std::to_string(line) + ":" + std::to_string(value - line_start + 1) + ": ";
     EXPECT_TRUE(has(outcome.text, place)) << place << "\n" << outcome.text;
+    const Outcome info = run("device info " + file, kShipped);
+    EXPECT_EQ(info.exit_code, 2) << info.text;
+    const size_t told = info.text.find(place);
+    EXPECT_NE(told, std::string::npos) << info.text;
+    EXPECT_EQ(info.text.find("expected", info.text.find("expected") + 1), std::string::npos) << "twice:\n" << info.text;
     return outcome.text;
   };
   EXPECT_TRUE(has(problem("rate: 1500", "rate: 900000"), "parameters.wire.rate: "));
