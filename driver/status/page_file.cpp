@@ -1,8 +1,10 @@
 #include "status/page_file.hpp"
 
 #include <fcntl.h>
+#include <linux/magic.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/vfs.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -28,6 +30,13 @@ bool ownFolder(const std::string& folder) {
          (info.st_mode & S_IWOTH) == 0;
 }
 
+/// The servo writes into what is kept here: on a disk, each page that the kernel writes back faults in a tick, and may
+/// wait for the disk. A session's folder is in memory on most machines, but not in every container.
+bool inMemory(const std::string& folder) {
+  struct statfs info {};
+  return statfs(folder.c_str(), &info) == 0 && (info.f_type == TMPFS_MAGIC || info.f_type == RAMFS_MAGIC);
+}
+
 Error cannot(const std::string& what, const std::string& file, int code) {
   return Error{file + ": " + what + ": " + std::strerror(code)};
 }
@@ -41,10 +50,10 @@ std::string runtimeFolder(bool create) {
   std::error_code error;
   if (!create) {
     for (const std::string& folder : {session.empty() ? own : session + "/hapticd", own})
-      if (std::filesystem::is_directory(folder, error)) return folder;
+      if (std::filesystem::is_directory(folder, error) && inMemory(folder)) return folder;
     return "/run/hapticd";
   }
-  if (!session.empty() && ownFolder(session + "/hapticd")) return session + "/hapticd";
+  if (!session.empty() && inMemory(session) && ownFolder(session + "/hapticd")) return session + "/hapticd";
   return ownFolder(own) ? own : "";
 }
 

@@ -1,9 +1,13 @@
 #include <gtest/gtest.h>
+#include <linux/magic.h>
+#include <sys/vfs.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <csignal>
+#include <cstdlib>
+#include <filesystem>
 #include <thread>
 
 #include "status/page_file.hpp"
@@ -69,6 +73,20 @@ TEST(PageFile, IsReadByOthersAndGoneWithItsOwner) {
   *owner = nullptr;
   EXPECT_FALSE(PageFile::open(file));
   EXPECT_EQ(std::as_const(**reader).page().now.read()->tick, 8u) << "a reader keeps what it has mapped";
+}
+
+TEST(RuntimeFolder, IsInMemoryWhereverTheSessionKeepsItsFiles) {
+  const std::string session = testing::TempDir() + "hapticd-session-" + std::to_string(getpid());
+  std::filesystem::create_directory(session);
+  unsetenv("RUNTIME_DIRECTORY");
+  setenv("XDG_RUNTIME_DIR", session.c_str(), 1);
+  const std::string made = runtimeFolder(true);
+  struct statfs info {};
+  ASSERT_EQ(statfs(made.c_str(), &info), 0) << made;
+  EXPECT_EQ(info.f_type, TMPFS_MAGIC) << made << ": the servo would wait for a disk";
+  EXPECT_EQ(runtimeFolder(false), made) << "others look elsewhere";
+  unsetenv("XDG_RUNTIME_DIR");
+  std::filesystem::remove_all(session);
 }
 
 TEST(PageFile, RefusesWhatIsNoPage) {
