@@ -90,6 +90,7 @@ void Core::tick(double t, double dt, std::span<const Probe> probes) noexcept HSP
   }
   for (const uint32_t i : live_) {
     ModelState& model = models_[i];
+    model.overran = false;
     if (model.moves) model.before = model.frame;
     if (model.glide.active() || !model.path.empty()) {
       if (model.glide.active())
@@ -184,7 +185,6 @@ void Core::fillProbe(const ModelState& model, const Probe& probe, uint32_t index
 
 void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT {
   ModelState& model = models_[index];
-  model.overran = false;
   if (model.guard.quarantined() && model.guard.gain(false, dt) == 0) return clearContacts(index);
   for (uint32_t i = 0; i < probe_count_; ++i) {
     fillProbe(model, probes[i], i, t);
