@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace hapticd::wire_arm {
 namespace {
@@ -249,14 +250,19 @@ void Link::lose(Trouble trouble) noexcept {
   publish();
 }
 
+/// At once when it was lost, then ten times a second: a device that opens and fails again and again must not keep a
+/// thread above the servo's from ever sleeping.
 void Link::lookForIt() noexcept {
+  while (monotonicNow() < tried_at_ + kSearchPause && !stop_) pause(10 * kMillisecond);
+  if (stop_) return;
+  tried_at_ = monotonicNow();
   try {
     auto found = bringUp();
     open_ = static_cast<bool>(found);
     if (open_) {
       due_ = monotonicNow();
       refusal_.clear();
-      settings_.log(HSP_LOG_INFO, found->product + " " + found->serial + " is back; its force ramps in again");
+      back_ = found->product + " " + found->serial + " is back; its force ramps in again";
     } else if (found.error() != refusal_) {
       refusal_ = found.error();
       settings_.log(HSP_LOG_DEBUG, "still missing: " + refusal_);
@@ -264,8 +270,6 @@ void Link::lookForIt() noexcept {
   } catch (const std::exception& e) {
     open_ = false;  // out of memory at worst: the next search may do better
   }
-  for (Nanoseconds slept = 0; !open_ && slept < kSearchPause && !stop_; slept += 10 * kMillisecond)
-    pause(10 * kMillisecond);
 }
 
 void Link::tell() noexcept {
@@ -274,7 +278,7 @@ void Link::tell() noexcept {
   told_ = now;
   try {
     if (now == Trouble::kNone)
-      settings_.log(HSP_LOG_INFO, "healthy");
+      settings_.log(HSP_LOG_INFO, std::exchange(back_, "healthy"));
     else
       settings_.log(HSP_LOG_WARNING, std::string(describe(now)) +
                                          "\n  its force is off until it is well again\n  fix: "

@@ -100,7 +100,9 @@ class Link {
   JointArray pose_{}, offset_{};
   bool open_ = false, answered_ = false;
   Trouble told_ = Trouble::kNone;
-  std::string refusal_;  ///< why the device could not be opened again
+  std::string refusal_;           ///< why the device could not be opened again
+  std::string back_ = "healthy";  ///< what to say once it is well
+  Nanoseconds tried_at_ = 0;      ///< to open it again
   Nanoseconds due_ = 0, period_ = 0, sent_at_ = 0;
   uint64_t sent_wish_ = 0;
   std::array<uint8_t, codec::kMaxReportBytes + 1> in_{}, out_{};

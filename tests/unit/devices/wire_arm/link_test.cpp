@@ -166,9 +166,10 @@ TEST_F(PacedLinkTest, EachReportEndsTheWaitAndItsAnswerGoesOutBeforeTheNext) {
     link->write(wish);
   }
   link->waitForNews(monotonicNow() + kPeriod);  // lets the last one out
-  EXPECT_GT(fresh, kRounds * 9 / 10);
-  EXPECT_GT(board.prompt, 9 * board.late) << board.late << " answers went out a report late";
-  EXPECT_GT(board.prompt, kRounds * 3 / 4);
+  // A machine that stands still for ten milliseconds is forgiven; without the wait all of them are late.
+  EXPECT_GT(fresh, kRounds / 2);
+  EXPECT_GT(board.prompt, 2 * board.late) << board.late << " answers went out a report late";
+  EXPECT_GT(board.prompt, kRounds / 2);
 }
 
 TEST_F(PacedLinkTest, ACutEndsThePushOfAServoThatIsStuckAndHoldsUntilItIsEnded) {
@@ -205,6 +206,11 @@ TEST_F(LinkTest, AStalledEndpointIsNamedAndReopened) {
   ASSERT_TRUE(link->start());
   board.stalled = true;
   ASSERT_TRUE(pushUntil(*link, [](const Sample& s) { return s.trouble == Trouble::kStalled; }));
+  const Nanoseconds begun = monotonicNow();
+  const int opened = board.opened;
+  ASSERT_TRUE(pushUntil(*link, [&](const Sample&) { return board.opened > opened + 3; }));
+  EXPECT_GT(monotonicNow() - begun, 200'000'000u) << "opened again and again without a pause";
+  EXPECT_EQ(words().find("is back"), std::string::npos) << "it is there, but not well";
   board.stalled = false;
   ASSERT_TRUE(pushUntil(*link, [](const Sample& s) { return s.trouble == Trouble::kNone; }));
 }
