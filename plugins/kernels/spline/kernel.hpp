@@ -30,6 +30,15 @@ using NetKernel = void (*)(const NetWindow& net, double u, double v, double* out
 /// `cell`: the local origin, then size_u x size_v coefficients of s^i t^j, i-major.
 using TableKernel = void (*)(const Quad* cell, int size_u, int size_v, double s, double t, double* out) noexcept;
 
+/// Parameters of one polynomial, and what evaluates it, for those who stay there for long.
+struct TableCell {
+  double lo[2], end[2];  ///< parameters strictly between lie in it
+  double origin[2];      ///< where the coefficients are expanded
+  const Quad* coefficients;
+  TableKernel kernel;  ///< of second order; null if there is no table
+  int size[2];
+};
+
 /// Cells of these sizes (degree + 1) have unrolled kernels; smaller degrees are padded to them with zeros.
 inline constexpr int kTableShapes = 8;
 inline constexpr int kTableSizes[kTableShapes][2] = {{2, 2}, {2, 3}, {3, 2}, {3, 3}, {4, 2}, {2, 4}, {4, 4}, {6, 6}};

@@ -1,5 +1,7 @@
 #include "kernels/spline/surface.hpp"
 
+#include <algorithm>
+
 #include "kernels/spline/net.hpp"
 
 namespace hapticd::spline {
@@ -34,6 +36,20 @@ NetWindow Surface::netWindow(const Cell& cu, const Cell& cv) const noexcept {
   const int stride = axes_[1].count();
   const Quad* first = net_.data() + (cu.knot - axes_[0].degree()) * stride + (cv.knot - axes_[1].degree());
   return {axes_[0].window(cu), axes_[1].window(cv), first, stride};
+}
+
+TableCell Surface::cellOf(const SurfacePoint& at) const noexcept {
+  TableCell cell{{}, {}, {}, nullptr, nullptr, {table_.size_u, table_.size_v}};
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const Cell& along = axes_[axis].cell(at.span[axis]);
+    cell.lo[axis] = along.lo;
+    cell.end[axis] = std::min(along.end, axes_[axis].breaks().back());
+    cell.origin[axis] = along.origin;
+  }
+  if (form() == Form::kNet || scale_ != 1) return cell;
+  cell.coefficients = tableCell(at);
+  cell.kernel = table_kernel_[1];
+  return cell;
 }
 
 void Surface::rescale(int order, SurfacePoint& out) const noexcept {

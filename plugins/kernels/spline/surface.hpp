@@ -52,6 +52,9 @@ class Surface {
   /// Source: Piegl & Tiller, The NURBS Book, A2.3 and A4.4 (with the mixed derivative), about a local origin.
   void evaluate2(double u, double v, SurfacePoint& out) const noexcept { evaluate<2>(u, v, out); }
 
+  /// [any] The cell that holds an evaluated point.
+  TableCell cellOf(const SurfacePoint& at) const noexcept;
+
   /// [any] Parameter range [lo, hi] along axis 0 (u) or 1 (v).
   std::array<double, 2> domain(int axis) const noexcept { return {breaks(axis).front(), breaks(axis).back()}; }
   /// [any] The distinct knots of the domain, ascending: boundaries of the spans, smooth in between.

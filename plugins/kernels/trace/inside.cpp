@@ -13,24 +13,11 @@ using Eigen::Vector3d;
 /// [m] Nearer to an edge than this, the direction from the foot to the probe is rounding; the force there is nothing.
 constexpr double kTouching = 1e-7;
 
-/// Here, not in another function's return value: what was just written in pieces is slow to read as a whole.
-inline void setSurfaceNormal(const Patch& piece, const LocalFoot& foot, Vector3d& normal) noexcept {
-  constexpr double kVanishing = 1e-9;  // sine of the angle of the tangents, or their ratio: a pole or a cusp
-  const Vector3d n = foot.Su.cross(foot.Sv);
-  const double length = n.norm();
-  if (foot.regular || length > kVanishing * (foot.Su.squaredNorm() + foot.Sv.squaredNorm())) [[likely]] {
-    normal = n * (piece.sign / length);
-  } else {
-    normal = piece.normalAt(foot.uv);
-  }
-}
-
 }  // namespace
 
 Vector3d Tracer::surfaceNormal(int track) const noexcept {
-  Vector3d normal;
-  setSurfaceNormal(model_.patch(tracks_[track].patch), tracks_[track].foot, normal);
-  return normal;
+  const LocalFoot& foot = tracks_[track].foot;
+  return foot.regular ? foot.normal : model_.patch(tracks_[track].patch).normalAt(foot.uv);
 }
 
 /// Pseudonormal of the edge or corner that holds the foot: a probe in its direction is outside (Baerentzen & Aanaes).
@@ -58,23 +45,35 @@ Vector3d Tracer::edgeNormal(int track) const noexcept {
   return sum.squaredNorm() > 0 ? Vector3d(sum.normalized()) : n;
 }
 
-Foot Tracer::describe(int track, const Vector3d& p) const noexcept {
+Foot Tracer::describe(int track, const Vector3d& p, int evaluations) const noexcept {
   const Patch& piece = model_.patch(tracks_[track].patch);
   const LocalFoot& local = tracks_[track].foot;
   Foot foot;
   foot.point = local.S;
+  foot.normal = local.normal;
+  foot.depth = foot.behind = -local.height;
+  foot.distance = local.distance;
   foot.u = local.uv[0];
   foot.v = local.uv[1];
-  foot.surface = piece.source;
   foot.residual = local.residual;
+  foot.surface = piece.source;
+  foot.evaluations = evaluations;
   foot.status = local.converged ? TraceStatus::kOk : TraceStatus::kDegraded;
   foot.on_edge = local.sides != 0;
-  foot.distance = local.distance;
+  if (local.sides != 0 || !local.regular) [[unlikely]]
+    decideSide(track, p, foot);
+  return foot;
+}
+
+/// The normal and the depth of a foot where the tangents do not tell them.
+void Tracer::decideSide(int track, const Vector3d& p, Foot& foot) const noexcept {
+  const Patch& piece = model_.patch(tracks_[track].patch);
+  const LocalFoot& local = tracks_[track].foot;
   const Vector3d r = p - local.S;
   if (local.sides == 0) {
-    setSurfaceNormal(piece, local, foot.normal);
+    foot.normal = surfaceNormal(track);
     foot.depth = foot.behind = -r.dot(foot.normal);
-    return foot;
+    return;
   }
   bool open = false;
   for (int side = 0; side < kSides; ++side)
@@ -85,11 +84,10 @@ Foot Tracer::describe(int track, const Vector3d& p) const noexcept {
     // The solid behind an open surface ends in a bevel of 45 degrees: the force fades out as the probe slides off.
     foot.aside = (r + foot.behind * foot.normal).norm();
     foot.depth = foot.behind > foot.aside ? foot.behind - foot.aside : -foot.distance;
-    return foot;
+    return;
   }
   foot.depth = foot.behind = foot.behind > 0 ? foot.distance : -foot.distance;
   if (foot.distance > kTouching) foot.normal = r * (-1 / foot.depth);
-  return foot;
 }
 
 }  // namespace hapticd::trace

@@ -14,15 +14,11 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// 1 + depth * curvature of the distance function must exceed this for a pure Newton step: below it the probe is near
 /// a centre of curvature and the step would be noise.
 constexpr double kMinCurvature = 1e-3;
 /// Tangents shorter than this share of the longer one (or this close to parallel) span no plane: a pole or a cusp.
 constexpr double kFlatTangent = 1e-12;
-
-/// Of coordinates, in the difference of two points.
-constexpr double kRounding = 8 * kEpsilon;
 
 /// Quadratic model of f = |S - p|^2 / 2 about an evaluated point.
 struct QuadraticModel {
@@ -189,24 +185,34 @@ Step stepFrom(const Patch& patch, const Array2d& uv, const spline::SurfacePoint&
   return step;
 }
 
-/// S and tangents at uv + d by Taylor expansion about the evaluated point, for a step too small to be worth evaluating.
-void moveTo(LocalFoot& foot, const Patch& patch, const Iterate& at, const Step& step) noexcept {
+/// What the probe sees of a foot with these tangents.
+void look(LocalFoot& foot, const Patch& patch, const Vector3d& p, const Vector3d& Su, const Vector3d& Sv) noexcept {
+  constexpr double kVanishing = 1e-9;  // sine of the angle of the tangents, or their ratio: a pole or a cusp
+  const Vector3d n = Su.cross(Sv), r = p - foot.S;
+  const double length = n.norm();
+  foot.regular = length > kVanishing * (Su.squaredNorm() + Sv.squaredNorm());
+  foot.normal = n * (patch.sign / length);
+  foot.height = r.dot(foot.normal);
+  foot.distance = r.norm();
+}
+
+/// The foot at uv + d by Taylor expansion about the evaluated point, for a step too small to be worth evaluating.
+void moveTo(LocalFoot& foot, const Patch& patch, const Vector3d& p, const Iterate& at, const Step& step) noexcept {
   const spline::SurfacePoint& E = at.E;
   const double du = step.d[0], dv = step.d[1];
-  foot.Su = E.Su + du * E.Suu + dv * E.Suv;
-  foot.Sv = E.Sv + du * E.Suv + dv * E.Svv;
-  foot.S = E.S + 0.5 * (du * (E.Su + foot.Su) + dv * (E.Sv + foot.Sv));
+  const Vector3d Su = E.Su + du * E.Suu + dv * E.Suv, Sv = E.Sv + du * E.Suv + dv * E.Svv;
+  foot.S = E.S + 0.5 * (du * (E.Su + Su) + dv * (E.Sv + Sv));
   foot.uv = (at.uv + step.d.array()).max(patch.lo).min(patch.hi);
   for (int side = 0; side < kSides; ++side)
     if (step.sides & bit(side)) foot.uv[Patch::axisOf(side)] = side % 2 == 0 ? patch.lo[side / 2] : patch.hi[side / 2];
   foot.sides = step.sides;
+  look(foot, patch, p, Su, Sv);
 }
 
 void evaluate(const Patch& patch, const Array2d& uv, Iterate& at) noexcept {
   at.uv = uv.max(patch.lo).min(patch.hi);
   patch.surface.evaluate2(at.uv[0], at.uv[1], at.E);
-  at.valid = true;
-  at.has_forms = false;
+  at.known = Iterate::Known::kPoint;
 }
 
 SideMask sidesAt(const Patch& patch, const Array2d& uv) noexcept {
@@ -218,50 +224,56 @@ SideMask sidesAt(const Patch& patch, const Array2d& uv) noexcept {
   return sides;
 }
 
-static_assert(offsetof(LocalFoot, Sv) == offsetof(LocalFoot, S) + 2 * spline::kOutStride * sizeof(double));
-static_assert(offsetof(LocalFoot, distance) >= offsetof(LocalFoot, S) + 3 * spline::kOutStride * sizeof(double));
+constexpr std::size_t kStride = spline::kOutStride * sizeof(double);
+static_assert(offsetof(LocalFoot, S) == offsetof(LocalFoot, uv) + kStride);
+static_assert(offsetof(LocalFoot, normal) == offsetof(LocalFoot, uv) + 2 * kStride);
+static_assert(offsetof(LocalFoot, distance) == offsetof(LocalFoot, uv) + 3 * kStride);
 static_assert(offsetof(LocalFoot, residual) == offsetof(LocalFoot, distance) + sizeof(double));
+static_assert(offsetof(LocalFoot, height) == offsetof(LocalFoot, distance) + 2 * sizeof(double));
 
-void evaluateInto(const void* patch, double u, double v, double* point) noexcept {
-  auto* E = static_cast<spline::SurfacePoint*>(static_cast<void*>(point));
-  static_cast<const Patch*>(patch)->surface.evaluate2(u, v, *E);
+bool evaluateInside(QuickState& state, double u, double v, double* point) noexcept {
+  const auto& patch = *static_cast<const Patch*>(state.patch);
+  if (!(u > patch.lo[0] && u < patch.hi[0] && v > patch.lo[1] && v < patch.hi[1])) return false;
+  auto& E = *static_cast<spline::SurfacePoint*>(static_cast<void*>(point));
+  patch.surface.evaluate2(u, v, E);
+  state.cell = patch.surface.cellOf(E);
+  return true;
 }
 
-/// The common tick. False: `at` is at least as near as before, but the steps below have to find the foot.
-bool quickly(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
-             LocalFoot& foot) noexcept {
+void prepare(const Patch& patch, Iterate& at) noexcept {
   static const QuickKernels& kernels = quickKernels(spline::Instructions::kFastest);
-  constexpr int kAttempts = 3;
-  const QuickTask task{&patch, evaluateInto, p.data(), patch.lo.data(), patch.hi.data(), tolerance * tolerance};
-  for (int i = 0; i < kAttempts && foot.evaluations + 2 <= max_evaluations; ++i) {
-    if (!at.has_forms) kernels.forms(at.E.S.data(), at.forms);
-    at.has_forms = true;
-    const QuickPoint point{at.uv.data(), at.E.S.data(), &at.forms};
-    switch (kernels.foot(task, point, {foot.uv.data(), foot.S.data(), &foot.distance})) {
-      case QuickResult::kFoot:
-        ++foot.evaluations;
-        [[fallthrough]];
-      case QuickResult::kSameFoot:
-        foot.sides = 0;
-        return foot.converged = foot.regular = true;
-      case QuickResult::kNearer:
-        ++foot.evaluations;
-        continue;
-      case QuickResult::kFarther:
-        evaluate(patch, at.uv, at);  // as it was: cheaper than a copy in every tick
-        foot.evaluations += 2;
-        [[fallthrough]];
-      case QuickResult::kNoStep:
-        return false;
-    }
-  }
-  return false;
+  kernels.forms(at.E.S.data(), at.state);
+  at.state.calm2 = 0;
+  at.state.sign = patch.sign;
+  at.state.cell = patch.surface.cellOf(at.E);
+  at.state.evaluate = evaluateInside;
+  at.state.patch = &patch;
+  at.state.step = kernels.step;
+  at.known = Iterate::Known::kAll;
 }
 
-/// The safeguarded iteration, from any point. Kept apart from the common tick, which needs neither its code nor its
-/// stack in the caches.
-[[gnu::noinline]] void descend(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance,
-                               int max_evaluations, LocalFoot& foot) noexcept {
+}  // namespace
+
+void startNewton(const Patch& patch, Iterate& at, LocalFoot& foot) noexcept {
+  if (at.known == Iterate::Known::kParameters) {
+    evaluate(patch, at.uv, at);
+    ++foot.evaluations;
+  }
+  prepare(patch, at);
+}
+
+bool mayStepAgain(const Patch& patch, QuickResult result, Iterate& at, LocalFoot& foot) noexcept {
+  if (result == QuickResult::kNearer) ++foot.evaluations;
+  if (result == QuickResult::kFarther) {
+    evaluate(patch, at.uv, at);  // as it was: cheaper than a copy in every tick
+    foot.evaluations += 2;
+  }
+  return result == QuickResult::kNearer;
+}
+
+void descend(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
+             LocalFoot& foot) noexcept {
+  foot.converged = false;
   Vector3d r = at.E.S - p;
   double f = 0.5 * r.squaredNorm();
   const double rounding = kRounding * (p.norm() + at.E.S.norm());
@@ -311,34 +323,17 @@ bool quickly(const Patch& patch, const Vector3d& p, Iterate& at, double toleranc
     last_length = shrink * length;
   }
   if (foot.converged) {
-    moveTo(foot, patch, at, step);
+    moveTo(foot, patch, p, at, step);
   } else {
-    moveTo(foot, patch, at, Step{{0, 0}, sidesAt(patch, at.uv)});
+    moveTo(foot, patch, p, at, Step{{0, 0}, sidesAt(patch, at.uv)});
   }
   foot.residual = foot.converged ? std::min(length, enough) : length;
-  foot.distance = (foot.S - p).norm();
-}
-
-}  // namespace
-
-void newtonFoot(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
-                LocalFoot& foot) noexcept {
-  foot.evaluations = 0;
-  foot.converged = foot.regular = false;
-  if (!at.valid) {
-    evaluate(patch, at.uv, at);
-    foot.evaluations = 1;
-  }
-  if (p.cwiseAbs().maxCoeff() * kRounding <= tolerance && quickly(patch, p, at, tolerance, max_evaluations, foot))
-    return;
-  descend(patch, p, at, tolerance, max_evaluations, foot);
 }
 
 void directFoot(const Patch& patch, const Vector3d& p, Iterate& at, int steps, int max_evaluations,
                 LocalFoot& foot) noexcept {
   foot.evaluations = 0;
-  foot.regular = false;
-  if (!at.valid) {
+  if (at.known == Iterate::Known::kParameters) {
     evaluate(patch, at.uv, at);
     ++foot.evaluations;
   }
@@ -357,9 +352,7 @@ void directFoot(const Patch& patch, const Vector3d& p, Iterate& at, int steps, i
   }
   foot.uv = at.uv;
   foot.S = at.E.S;
-  foot.Su = at.E.Su;
-  foot.Sv = at.E.Sv;
-  foot.distance = (foot.S - p).norm();
+  look(foot, patch, p, at.E.Su, at.E.Sv);
   foot.sides = sidesAt(patch, at.uv);
   foot.converged = true;
 }

@@ -1,6 +1,7 @@
 // Included after spline/kernel_common.inl, and under its rules, by one translation unit an instruction set.
-// No branch, no root and one division stand between a probe and the parameters to evaluate at; all tests of safety run
-// beside that chain, on squares. Dot products with Su, Sv, Suu, Suv come four at once.
+// No root and one division stand between a probe and the parameters to evaluate at, and no branch that the processor
+// does not foresee; all tests of safety run beside that chain, on squares. Dot products with Su, Sv, Suu, Suv come four
+// at once.
 namespace {
 
 typedef double V2 __attribute__((vector_size(16)));
@@ -33,11 +34,23 @@ inline V2 swapped(V2 a) {
 }
 
 struct Forms {
-  V4 x, y, z;  // of Su, Sv, Suu, Suv
-  V2 G1;       // G11, G12
-  double G22;  // not-a-number where the tangents span no plane: then no test passes
+  V4 x, y, z;     // of Su, Sv, Suu, Suv
+  V2 G1;          // G11, G12
+  double G22;     // not-a-number where the tangents span no plane: then no test passes
+  double shrink;  // 1 / |Su x Sv|
   V2 bend[3];
 };
+
+/// The inner product of a with b, and of a with c.
+inline V2 dots(V4 a, V4 b, V4 c) {
+  const V4 ab = a * b, ac = a * c;
+  const V4 even = __builtin_shufflevector(ab, ac, 0, 4, 2, 6), odd = __builtin_shufflevector(ab, ac, 1, 5, 3, 7);
+  return low(even) + low(odd) + high(even);
+}
+inline V4 cross(V4 a, V4 b) {
+  const V4 zxy = a * __builtin_shufflevector(b, b, 1, 2, 0, 3) - b * __builtin_shufflevector(a, a, 1, 2, 0, 3);
+  return __builtin_shufflevector(zxy, zxy, 1, 2, 0, 3);
+}
 
 /// First and second fundamental quantities of an evaluated point.
 inline Forms makeForms(const double* E) {
@@ -54,7 +67,9 @@ inline Forms makeForms(const double* E) {
   const V2 vv = both(E[kSvv]) * low(F.x) + both(E[kSvv + 1]) * low(F.y) + both(E[kSvv + 2]) * low(F.z);
   F.G1 = low(along_u);
   F.G22 = along_v[1];
-  const bool regular = F.G1[0] * F.G22 - F.G1[1] * F.G1[1] > kShear2 * F.G1[0] * F.G22;
+  const double area2 = F.G1[0] * F.G22 - F.G1[1] * F.G1[1];
+  F.shrink = 1 / __builtin_sqrt(area2);  // takes long, and is needed last
+  const bool regular = area2 > kShear2 * F.G1[0] * F.G22;
   if (!regular) [[unlikely]]
     F.G22 = __builtin_nan("");
   // The second-order part of (S(d) - p) . (Su(d), Sv(d)) on the quadratic surface about this point:
@@ -66,63 +81,75 @@ inline Forms makeForms(const double* E) {
   return F;
 }
 
-inline void keep(const Forms& F, QuickForms& out) {
+inline void keep(const Forms& F, QuickState& out) {
   store(out.tangents[0], F.x);
   store(out.tangents[1], F.y);
   store(out.tangents[2], F.z);
   store2(out.G, F.G1);
   out.G[2] = F.G22;
+  out.shrink = F.shrink;
   for (int i = 0; i < 3; ++i) store2(out.bend[i], F.bend[i]);
 }
 
-inline Forms kept(const QuickForms& in) {
+inline Forms kept(const QuickState& in) {
   return {get(in.tangents[0]),
           get(in.tangents[1]),
           get(in.tangents[2]),
           get2(in.G),
           in.G[2],
+          in.shrink,
           {get2(in.bend[0]), get2(in.bend[1]), get2(in.bend[2])}};
 }
 
 struct Step {
-  V2 d;              // in the parameters
+  V2 d;   // in the parameters
+  V2 H1;  // Hessian H11, H12
+  double H22;
+  double inverse;    // 1 / its determinant
   double distance2;  // from the point to the probe
-  double length2;    // of the step in space, unbent
-  double bend2;      // of its bend
+  double length2;    // of the step in space
   bool good;         // the quadratic model is convex and to be trusted so far; if not, the rest may be anything
 };
 
-/// Newton's step on |S - p|^2. Bent by what the second derivatives say of the gradient at its end, it converges with
-/// third order where the probe is near; the inverse of the Hessian serves twice.
-template <bool kBent>
+/// H^-1 g, of a Hessian and 1 / its determinant.
+inline V2 solve(V2 H1, double H22, double inverse, V2 g) {
+  return (g * V2{H22, H1[0]} - swapped(g) * both(H1[1])) * both(inverse);
+}
+
+inline double lengthSquared(const Forms& F, V2 d) {
+  const V2 dd = d * d;
+  return F.G1[0] * dd[0] + F.G22 * dd[1] + 2 * F.G1[1] * (d[0] * d[1]);
+}
+
+/// Newton's step on |S - p|^2.
 inline Step stepFrom(const double* E, const Forms& F, const double* p) {
   constexpr double kCurvature = 0.05;  // least 1 + depth * curvature: nearer to a centre of curvature, others decide
-  constexpr double kBend2 = 0.0625;    // greatest share of the bend in the step, squared
   const V4 x = splat(E[0]) - splat(p[0]), y = splat(E[1]) - splat(p[1]), z = splat(E[2]) - splat(p[2]);
   const V4 along = x * F.x + y * F.y + z * F.z;
-  const V2 g = low(along);
-  const V2 H1 = F.G1 + high(along);
-  const double H22 = F.G22 + (x[0] * E[kSvv] + y[0] * E[kSvv + 1] + z[0] * E[kSvv + 2]);
-  const V2 inverse = both(1 / (H1[0] * H22 - H1[1] * H1[1]));
-  const V2 diagonal = {H22, H1[0]}, across = both(H1[1]);
   Step step;
-  step.d = (swapped(g) * across - g * diagonal) * inverse;
-  const V2 dd = step.d * step.d;
-  const double d12 = step.d[0] * step.d[1], G12 = F.G1[1];
+  step.H1 = F.G1 + high(along);
+  step.H22 = F.G22 + (x[0] * E[kSvv] + y[0] * E[kSvv + 1] + z[0] * E[kSvv + 2]);
+  step.inverse = 1 / (step.H1[0] * step.H22 - step.H1[1] * step.H1[1]);
+  step.d = -solve(step.H1, step.H22, step.inverse, low(along));
   step.distance2 = x[0] * x[0] + y[0] * y[0] + z[0] * z[0];
-  step.length2 = F.G1[0] * dd[0] + F.G22 * dd[1] + 2 * G12 * d12;
-  const V2 K1 = H1 - both(kCurvature) * F.G1;
-  const double K22 = H22 - kCurvature * F.G22;
+  step.length2 = lengthSquared(F, step.d);
+  const V2 K1 = step.H1 - both(kCurvature) * F.G1;
+  const double K22 = step.H22 - kCurvature * F.G22;
   step.good = (K1[0] > 0) & (K1[0] * K22 > K1[1] * K1[1]);
-  if constexpr (kBent) {
-    const V2 k = F.bend[0] * both(dd[0]) + F.bend[2] * both(dd[1]) + F.bend[1] * both(d12);
-    const V2 bend = (swapped(k) * across - k * diagonal) * inverse;
-    step.bend2 = F.G1[0] * bend[0] * bend[0] + 2 * G12 * bend[0] * bend[1] + F.G22 * bend[1] * bend[1];
-    step.d += bend;
-    // The next foot is no farther from the probe than this one, so it is at most twice the distance away.
-    step.good &= (step.bend2 <= kBend2 * step.length2) & (step.length2 <= 4 * step.distance2);
-  }
   return step;
+}
+
+/// Bends a step by what the second derivatives say of the gradient at its end: then it converges with third order
+/// where the probe is near. Returns the square of the bend's length.
+inline double bendStep(const Forms& F, Step& step) {
+  constexpr double kBend2 = 0.0625;  // greatest share of the bend in the step, squared
+  const V2 dd = step.d * step.d;
+  const V2 k = F.bend[0] * both(dd[0]) + F.bend[2] * both(dd[1]) + F.bend[1] * both(step.d[0] * step.d[1]);
+  const V2 bend = -solve(step.H1, step.H22, step.inverse, k);
+  const double bend2 = lengthSquared(F, bend);
+  step.d += bend;
+  step.good &= bend2 <= kBend2 * step.length2;
+  return bend2;
 }
 
 /// Whether both components are true.
@@ -130,55 +157,85 @@ inline bool all(decltype(V2{} < V2{}) mask) {
   return (mask[0] & mask[1]) != 0;
 }
 
-inline bool inside(V2 uv, const QuickTask& task) {
-  return all((uv > get2(task.lo)) & (uv < get2(task.hi)));
+inline bool inside(V2 uv, const spline::TableCell& cell) {
+  return all((uv > get2(cell.lo)) & (uv < get2(cell.end)));
+}
+
+/// 1 / |n|, from 1 / |n| a little away.
+inline double shrinkTo(V4 n, double near) {
+  constexpr double kLittle = 1e-4;  // the series below leaves less than the cube
+  const double n2 = dots(n, n, n)[0], e = 1 - n2 * (near * near);
+  if (!(e * e < kLittle * kLittle)) [[unlikely]]
+    return 1 / __builtin_sqrt(n2);
+  return near + near * e * (0.5 + 0.375 * e);
 }
 
 /// The foot at uv + d by Taylor expansion about the point.
-inline void finish(const double* E, const double* p, V2 d, V2 uv, double residual2, const QuickFoot& foot) {
+inline void finish(const double* E, const double* p, const QuickState& state, double shrink, V2 d, V2 uv,
+                   double residual2, double* foot) {
   const V4 du = splat(d[0]), dv = splat(d[1]), half = splat(0.5);
   const V4 Su = get(E + kSu), Sv = get(E + kSv), Suv = get(E + kSuv);
   const V4 Su_there = Su + du * get(E + kSuu) + dv * Suv, Sv_there = Sv + du * Suv + dv * get(E + kSvv);
   const V4 S = get(E) + du * half * (Su + Su_there) + dv * half * (Sv + Sv_there);
-  store2(foot.uv, uv);
-  store(foot.S, S);
-  store(foot.S + kSu, Su_there);
-  store(foot.S + kSv, Sv_there);
-  const double x = S[0] - p[0], y = S[1] - p[1], z = S[2] - p[2];
-  foot.distance[0] = __builtin_sqrt(x * x + y * y + z * z);
-  foot.distance[1] = __builtin_sqrt(residual2);
+  const V4 n = cross(Su_there, Sv_there), r = V4{p[0], p[1], p[2], 0} - S;
+  const V2 of_r = dots(r, r, n);
+  const double to_unit = state.sign * shrinkTo(n, shrink);
+  store2(foot, uv);
+  store(foot + kOutStride, S);
+  store(foot + 2 * kOutStride, n * splat(to_unit));
+  double* lengths = foot + 3 * kOutStride;
+  lengths[0] = __builtin_sqrt(of_r[0]);
+  lengths[1] = __builtin_sqrt(residual2);
+  lengths[2] = of_r[1] * to_unit;
 }
 
-QuickResult quickFoot(const QuickTask& task, const QuickPoint& at, const QuickFoot& foot) noexcept {
-  double* E = at.E;
-  const Step step = stepFrom<true>(E, kept(*at.forms), task.p);
-  const V2 uv = get2(at.uv) + step.d;
-  if (!(step.good & inside(uv, task))) return QuickResult::kNoStep;
-  if (step.length2 <= task.tolerance2) {
-    finish(E, task.p, step.d, uv, step.length2, foot);
+QuickResult quickStep(const double* p, double tolerance2, double* uv, double* E, QuickState& state,
+                      double* foot) noexcept {
+  const Forms before = kept(state);
+  Step step = stepFrom(E, before, p);
+  // To bend takes as long as the step itself, so a branch leaves it out while the last ticks did without.
+  const bool bent = !(step.length2 <= state.calm2);
+  const double bend2 = bent ? bendStep(before, step) : 0;
+  // The next foot is no farther from the probe than this one, so it is at most twice the distance away.
+  step.good &= step.length2 <= 4 * step.distance2;
+  const V2 target = get2(uv) + step.d;
+  if (!step.good) [[unlikely]]
+    return QuickResult::kNoStep;
+  const spline::TableCell& cell = state.cell;
+  const bool here = inside(target, cell);
+  if (here & (step.length2 <= tolerance2)) [[unlikely]] {
+    finish(E, p, state, state.shrink, step.d, target, step.length2, foot);
     return QuickResult::kSameFoot;
   }
-  task.evaluate(task.patch, uv[0], uv[1], E);
+  if (here && cell.kernel != nullptr) [[likely]] {
+    cell.kernel(cell.coefficients, cell.size[0], cell.size[1], target[0] - cell.origin[0], target[1] - cell.origin[1],
+                E);
+  } else if (!state.evaluate(state, target[0], target[1], E)) {
+    return QuickResult::kNoStep;
+  }
   const Forms F = makeForms(E);
-  const Step next = stepFrom<false>(E, F, task.p);
-  if (!(next.distance2 <= step.distance2)) return QuickResult::kFarther;
-  keep(F, *at.forms);
-  store2(at.uv, uv);
-  const V2 there = uv + next.d;
+  const Step next = stepFrom(E, F, p);
+  if (!(next.distance2 <= step.distance2)) [[unlikely]]
+    return QuickResult::kFarther;
+  keep(F, state);
+  store2(uv, target);
+  const V2 there = target + next.d;
   // Newton squares the error. After this step, about length * (length / last length)^2 is left of what grows with the
   // distance, and last bend * (length / last length)^2 of the rest. A tenth of the tolerance may be.
-  const double now = next.length2, last = step.length2, enough = task.tolerance2;
+  const double now = next.length2, last = step.length2, enough = tolerance2;
+  const double missed = bent ? bend2 : now;
+  state.calm2 = 100 * missed * missed * missed <= enough * last * last ? 4 * last : 0;
   const bool converged =
-      (now <= enough) | ((now < 0.01 * last) & (100 * (now + step.bend2) * now * now <= enough * last * last));
-  if (!(converged & next.good & inside(there, task))) return QuickResult::kNearer;
-  finish(E, task.p, next.d, there, now < enough ? now : enough, foot);
+      (now <= enough) | ((now < 0.01 * last) & (100 * (now + bend2) * now * now <= enough * last * last));
+  if (!(converged & next.good & inside(there, cell))) return QuickResult::kNearer;
+  finish(E, p, state, F.shrink, next.d, there, now < enough ? now : enough, foot);
   return QuickResult::kFoot;
 }
 
-void formsOf(const double* E, QuickForms& forms) noexcept {
+void formsOf(const double* E, QuickState& forms) noexcept {
   keep(makeForms(E), forms);
 }
 
-constexpr QuickKernels kQuickKernels{formsOf, quickFoot};
+constexpr QuickKernels kQuickKernels{formsOf, quickStep};
 
 }  // namespace

@@ -64,15 +64,46 @@ bool Tracer::active(int surface) const noexcept {
   return false;
 }
 
+/// Finds the foot of this tick.
+inline void Tracer::locate(int track, const Vector3d& p, const TraceOptions& options) noexcept {
+  Track& t = tracks_[track];
+  if (options.method == Method::kDirect) {
+    const int steps = track == nearest_ ? options.iterations : 1;  // the others only have to show how near they are
+    directFoot(model_.patch(t.patch), p, t.at, steps, budget_, t.foot);
+  } else {
+    newtonFoot(model_.patch(t.patch), p, t.at, std::max(options.tolerance, 0.0), budget_, t.foot);
+  }
+  budget_ -= t.foot.evaluations;
+}
+
+/// Notes a foot that was located. Returns the track that holds it then: a rival may join the patch's first foot.
+inline int Tracer::note(int track) noexcept {
+  tracks_.refined(track);
+  return tracks_[tracks_[track].patch].rival >= 0 ? tracks_.merge(track) : track;
+}
+
+int Tracer::refine(int track, const Vector3d& p, const TraceOptions& options) noexcept {
+  if (tracks_[track].tick == tracks_.tick()) return track;
+  locate(track, p, options);
+  return note(track);
+}
+
 Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
-  if (!(p.array().abs() <= kFarthest).all()) return nothing(TraceStatus::kInvalid);  // also true for not-a-number
+  if (!(p.lpNorm<1>() <= kFarthest)) return nothing(TraceStatus::kInvalid);  // also true for not-a-number
+  const int budget = std::max(options.max_evaluations, 1);
+  budget_ = budget;
+  if (nearest_ >= 0) [[likely]]
+    locate(nearest_, p, options);  // takes long and waits for nothing: the processor does the rest meanwhile
   if (has_last_) tracks_.gone((p - last_p_).norm());
   last_p_ = p;
   has_last_ = true;
-  if (tracks_.active().empty()) return nothing(TraceStatus::kIdle);
   tracks_.nextTick();
-  const int budget = std::max(options.max_evaluations, 1);
-  budget_ = budget;
+  if (nearest_ >= 0) [[likely]] {
+    nearest_ = note(nearest_);
+    parts_[static_cast<std::size_t>(tracks_[nearest_].part)].nearest = nearest_;
+    if (tracks_[nearest_].foot.sides == 0 && model_.partCount() == 1 && tracks_.isNearest(nearest_)) [[likely]]
+      return describe(nearest_, p, budget - budget_);
+  }
   nearest_ = nearestOf(-1, nearest_, p, options);
   if (nearest_ < 0) return nothing(TraceStatus::kIdle);
   parts_[static_cast<std::size_t>(tracks_[nearest_].part)].nearest = nearest_;
@@ -81,7 +112,7 @@ Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
 
 /// What the tick found. On its own, so that the foot is made where the caller wants it.
 Foot Tracer::answer(const Vector3d& p, const TraceOptions& options, int budget) noexcept {
-  Foot foot = describe(nearest_, p);
+  Foot foot = describe(nearest_, p, 0);
   if (options.unite && model_.partCount() > 1) uniteParts(p, options, foot);
   foot.evaluations = budget - budget_;
   return foot;
@@ -116,7 +147,7 @@ int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions
     best = std::min(best, tracks_[index].foot.distance);
     if (index != nearest && tracks_.isRival(index) && isHopeless(tracks_[index], best)) tracks_.drop(index);
     // A contact that is held is left only for what is nearer by so much.
-    if (last && options.hold > 0 && describe(index, p).depth > 0) best -= options.hold;
+    if (last && options.hold > 0 && describe(index, p, 0).depth > 0) best -= options.hold;
   }
   if (nearest < 0) return start;
   return nearest == crossed ? nearest : cross(nearest, p, options);
@@ -127,26 +158,12 @@ bool Tracer::isHopeless(const Track& rival, double best) const noexcept {
   return rival.foot.distance > best + Model::kSoon || model_.patch(rival.patch).goesOn(rival.foot.sides);
 }
 
-/// Brings a foot up to date. Returns the track that holds it then: a rival may join the patch's first foot.
-int Tracer::refine(int track, const Vector3d& p, const TraceOptions& options) noexcept {
-  Track& t = tracks_[track];
-  if (t.tick == tracks_.tick()) return track;
-  if (options.method == Method::kDirect) {
-    const int steps = track == nearest_ ? options.iterations : 1;  // the others only have to show how near they are
-    directFoot(model_.patch(t.patch), p, t.at, steps, budget_, t.foot);
-  } else {
-    newtonFoot(model_.patch(t.patch), p, t.at, std::max(options.tolerance, 0.0), budget_, t.foot);
-  }
-  budget_ -= t.foot.evaluations;
-  tracks_.refined(track);
-  return tracks_[t.patch].rival >= 0 ? tracks_.merge(track) : track;
-}
-
 /// Replaces a foot by the one found from (u, v) on its patch if that is nearer.
 bool Tracer::tryFrom(int track, const Array2d& uv, const Vector3d& p, double tolerance) noexcept {
   if (budget_ <= 0) return false;
   Track& t = tracks_[track];
-  Iterate other{uv, {}, false};
+  Iterate other;
+  other.uv = uv;
   const LocalFoot foot = newtonFoot(model_.patch(t.patch), p, other, tolerance, budget_);
   budget_ -= foot.evaluations;
   if (!(foot.distance < t.foot.distance)) return false;

@@ -79,6 +79,8 @@ class Tracer {
   };
 
   int nearestOf(int part, int start, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
+  void locate(int track, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
+  int note(int track) noexcept;
   int refine(int track, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   bool tryFrom(int track, const Eigen::Array2d& uv, const Eigen::Vector3d& p, double tolerance) noexcept;
   int cross(int track, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
@@ -89,7 +91,8 @@ class Tracer {
   bool isHopeless(const Track& rival, double best) const noexcept;
 
   Foot answer(const Eigen::Vector3d& p, const TraceOptions& options, int budget) noexcept;
-  Foot describe(int track, const Eigen::Vector3d& p) const noexcept;
+  Foot describe(int track, const Eigen::Vector3d& p, int evaluations) const noexcept;
+  void decideSide(int track, const Eigen::Vector3d& p, Foot& foot) const noexcept;
   Eigen::Vector3d surfaceNormal(int track) const noexcept;
   Eigen::Vector3d edgeNormal(int track) const noexcept;
   void uniteParts(const Eigen::Vector3d& p, const TraceOptions& options, Foot& foot) noexcept;

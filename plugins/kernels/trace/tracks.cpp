@@ -76,7 +76,7 @@ void Tracks::noteSearch() noexcept {
 void Tracks::set(int index, const Array2d& uv, double bound) noexcept {
   Track& t = (*this)[index];
   t.at.uv = uv;
-  t.at.valid = false;
+  t.at.known = Iterate::Known::kParameters;
   t.touched = tick_;
   key_[static_cast<std::size_t>(t.slot)] = bound;
 }
@@ -88,7 +88,7 @@ bool Tracks::follows(int patch, const Array2d& uv, double bound) noexcept {
     Track& t = (*this)[i];
     if (!((uv - t.at.uv).abs() < kSameRecord * range).all()) continue;
     t.touched = tick_;
-    if (!t.at.valid) set(i, uv, bound);
+    if (t.at.known == Iterate::Known::kParameters) set(i, uv, bound);
     return true;
   }
   return false;
@@ -113,7 +113,8 @@ Track* Tracks::newRival(int patch) noexcept {
   Track& first = (*this)[patch];
   rival.patch = patch;
   rival.tick = 0;
-  rival.at.valid = rival.asked = false;
+  rival.at.known = Iterate::Known::kParameters;
+  rival.asked = false;
   rival.part = first.part;
   rival.rival = first.rival;
   first.rival = index;
@@ -139,7 +140,8 @@ void Tracks::drop(int index) noexcept {
   key_.pop_back();
   t.slot = t.rival = -1;
   t.tick = 0;
-  t.at.valid = t.asked = false;
+  t.at.known = Iterate::Known::kParameters;
+  t.asked = false;
 }
 
 int Tracks::merge(int index) noexcept {

@@ -8,7 +8,7 @@
 
 namespace hapticd::trace {
 
-/// One foot that is followed, or will be from a record of (u, v) as soon as it could be the nearest (at.valid: false).
+/// One foot that is followed, or will be from a record of (u, v) as soon as it could be the nearest.
 struct Track {
   Iterate at;
   LocalFoot foot;
@@ -81,6 +81,16 @@ class Tracks {
       found = active_[slot];
     }
     return found;
+  }
+
+  /// [rt] Whether no other foot could be nearer than this one, refined in this tick.
+  bool isNearest(int index) const noexcept {
+    if (key_.size() == 1) return true;
+    const Track& t = (*this)[index];
+    const double lowest = t.foot.distance + way_;
+    for (std::size_t slot = 0; slot < key_.size(); ++slot)
+      if (key_[slot] < lowest && static_cast<int>(slot) != t.slot) return false;
+    return true;
   }
 
  private:

@@ -53,7 +53,7 @@ bool Tracer::refreshPart(int part, const Vector3d& p, const TraceOptions& option
     known.nearest = -1;
   if (known.nearest < 0 || known.nearest != nearest_) known.nearest = nearestOf(part, known.nearest, p, options);
   if (known.nearest < 0 || tracks_[known.nearest].tick != tracks_.tick()) return false;
-  foot = describe(known.nearest, p);
+  foot = describe(known.nearest, p, 0);
   if (known.nearest == nearest_ || tracks_.mostPromising(foot.distance, part) < 0) {
     known.known = true;
     known.depth = behindPlane(foot);

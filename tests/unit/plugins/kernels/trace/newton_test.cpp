@@ -138,31 +138,19 @@ TEST(Newton, HugeAndMeaninglessProbesLeaveAPointOfThePatch) {
   EXPECT_TRUE(foot.S.allFinite());
 }
 
-/// One call of a quick kernel from `uv`; what it writes, in one array.
+/// One call of a quick kernel from `start`.
 struct Quick {
   QuickResult result = QuickResult::kNoStep;
-  alignas(32) std::array<double, 24> point{};
-  alignas(32) std::array<double, 16> foot{};
-  std::array<double, 2> distance{};
+  LocalFoot foot;
 };
 Quick runQuick(spline::Instructions instructions, const Patch& patch, const Array2d& start, const Vector3d& p) {
   const QuickKernels& kernels = quickKernels(instructions);
-  const QuickEvaluate evaluate = [](const void* piece, double u, double v, double* out) noexcept {
-    spline::SurfacePoint E;
-    static_cast<const Patch*>(piece)->surface.evaluate2(u, v, E);
-    for (const Vector3d* part : {&E.S, &E.Su, &E.Sv, &E.Suu, &E.Suv, &E.Svv}) {
-      out = std::copy_n(part->data(), 3, out);
-      *out++ = 0;
-    }
-  };
+  Iterate at;
+  at.uv = start;
   Quick quick;
-  Array2d uv = start;
-  QuickForms forms;
-  evaluate(&patch, uv[0], uv[1], quick.point.data());
-  kernels.forms(quick.point.data(), forms);
-  const QuickTask task{&patch, evaluate, p.data(), patch.lo.data(), patch.hi.data(), 1e-18};
-  quick.result = kernels.foot(task, {uv.data(), quick.point.data(), &forms},
-                              {&quick.foot[12], quick.foot.data(), quick.distance.data()});
+  startNewton(patch, at, quick.foot);
+  kernels.forms(at.E.S.data(), at.state);
+  quick.result = kernels.step(p.data(), 1e-18, at.uv.data(), at.E.S.data(), at.state, quick.foot.uv.data());
   return quick;
 }
 
@@ -181,14 +169,47 @@ TEST(Newton, EveryInstructionSetFindsTheSameFoot) {
       ASSERT_EQ(fast.result, plain.result);
       if (fast.result != QuickResult::kFoot) continue;
       ++found;
-      for (std::size_t k = 0; k < 14; ++k)
-        if (k % 4 != 3) {
-          EXPECT_NEAR(fast.foot[k], plain.foot[k], 1e-13);
-        }
-      EXPECT_NEAR(fast.distance[0], plain.distance[0], 1e-15);
+      EXPECT_LT((fast.foot.uv - plain.foot.uv).abs().maxCoeff(), 1e-13);
+      EXPECT_LT((fast.foot.S - plain.foot.S).norm(), 1e-13);
+      EXPECT_LT((fast.foot.normal - plain.foot.normal).norm(), 1e-13);
+      EXPECT_NEAR(fast.foot.distance, plain.foot.distance, 1e-15);
+      EXPECT_NEAR(fast.foot.height, plain.foot.height, 1e-15);
     }
   }
   EXPECT_GT(found, 1000);
+}
+
+TEST(Newton, TheNormalIsThatOfTheFootAndTheHeightIsMeasuredAlongIt) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> off(-0.02, 0.02);
+  for (int model = 0; model < 10; ++model) {
+    const Model one({randomPatch(random, 8, model % 2 == 1)});
+    const Patch& patch = one.patch(0);
+    for (int i = 0; i < 200; ++i) {
+      const Pair pair = anyPair(patch, random);
+      Iterate at;
+      at.uv = (pair.uv + Array2d(off(random), off(random))).max(patch.lo).min(patch.hi);
+      const LocalFoot foot = newtonFoot(patch, pair.probe, at, 1e-9, kMostEvaluations);
+      if (foot.sides != 0) continue;
+      ASSERT_TRUE(foot.regular);
+      EXPECT_LT((foot.normal - patch.normalAt(foot.uv)).norm(), 1e-7) << "as 1 nm on a radius of 10 mm";
+      EXPECT_NEAR(foot.normal.norm(), 1, 1e-12);
+      EXPECT_NEAR(foot.height, (pair.probe - foot.S).dot(foot.normal), 1e-15);
+    }
+  }
+}
+
+TEST(Newton, AnIterateThatIsSetAnewStartsFromItsParameters) {
+  std::mt19937 random(9);
+  const Model one({randomPatch(random)});
+  const Patch& patch = one.patch(0);
+  const Pair here = anyPair(patch, random), there = anyPair(patch, random);
+  Iterate at;
+  at.uv = here.uv;
+  newtonFoot(patch, here.probe, at, 1e-9, kMostEvaluations);
+  at.uv = there.uv;
+  at.known = Iterate::Known::kParameters;
+  EXPECT_LT((newtonFoot(patch, there.probe, at, 1e-9, kMostEvaluations).S - there.foot).norm(), 1e-9);
 }
 
 TEST(Newton, TheCommonTickIsNotTriedWhereTangentsSpanNoPlaneOrTheProbeIsAtACentre) {
