@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/clock.hpp"
 #include "cli/command.hpp"
 #include "control/client.hpp"
 #include "status/page_file.hpp"
@@ -22,7 +23,7 @@ struct Options {
   std::vector<double> position, orientation;
   std::optional<double> seconds;
   double value = 0, tolerance = 0;
-  bool consent = false;
+  bool consent = false, follow = false;
 };
 
 /// Writes the triangles of an answer.
@@ -40,15 +41,50 @@ int saveObj(const Json& json, const std::string& file) {
   return kWorked;
 }
 
+std::string socketOf(const Options& options) {
+  return status::runtimeFolder(false) + "/" + options.name + ".sock";
+}
+
+std::string lineOf(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 int send(const Options& options, const std::string& line) {
-  const std::string socket = status::runtimeFolder(false) + "/" + options.name + ".sock";
-  auto answer = control::ask(socket, line);
+  auto answer = control::ask(socketOf(options), line);
   if (!answer) return fail(kFailed, answer.error());
   const Json json = Json::parse(*answer, nullptr, false);
   if (!json.is_object()) return fail(kFailed, "the answer cannot be read: " + *answer);
   if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
   if (!options.obj.empty()) return saveObj(json, options.obj);
   std::printf("%s\n", json.dump(2).c_str());
+  return kWorked;
+}
+
+/// Prints the triangles, and then each frame of vertices when it comes, a line of JSON each: until nobody reads them
+/// or the daemon ends.
+int follow(const Options& options) {
+  constexpr Nanoseconds kPause = 4'000'000;  // a quarter of what a frame lasts
+  auto client = control::Client::connect(socketOf(options));
+  if (!client) return fail(kFailed, client.error());
+  RealClock clock(0);
+  uint64_t seen = 0;
+  for (const char* word : {"vertices", "geometry"}) {  // the first says whether there are any
+    const auto answer = client->ask(lineOf({{"do", word}, {"model", options.model}}));
+    const Json json = answer ? Json::parse(*answer, nullptr, false) : Json();
+    if (!answer) return fail(kFailed, answer.error());
+    if (!json.is_object()) return fail(kFailed, "the answer cannot be read: " + *answer);
+    if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
+    if (word == std::string("geometry")) std::printf("%s\n", answer->c_str());
+  }
+  while (std::fflush(stdout) == 0) {
+    const auto answer = client->ask(lineOf({{"do", "vertices"}, {"model", options.model}, {"after", seen}}));
+    if (!answer) break;  // the daemon has ended
+    const Json json = Json::parse(*answer, nullptr, false);
+    if (!json.is_object() || !json.value("ok", false)) break;  // or the model has left
+    if (json.contains("xyz")) std::printf("%s\n", answer->c_str());
+    seen = json.value("frame", seen);
+    clock.waitUntil(clock.now() + kPause);
+  }
   return kWorked;
 }
 
@@ -60,7 +96,7 @@ CLI::App* addRequest(CLI::App& parent, const char* word, const char* doc, const 
   command->callback([options, &exit_code, build, word] {
     Json json = {{"do", word}};
     build(json);
-    exit_code = send(*options, json.dump(-1, ' ', false, Json::error_handler_t::replace));
+    exit_code = options->follow ? follow(*options) : send(*options, lineOf(json));
   });
   return command;
 }
@@ -76,6 +112,11 @@ void addGeometryRequest(CLI::App& ctl, const std::shared_ptr<Options>& options, 
   geometry->add_option("--obj", options->obj, "write an OBJ file, in the model's frame, instead of printing JSON");
   geometry->add_option("--tolerance", options->tolerance, "chord error in m; 0: 5/1000 of the model's size")
       ->check(within(0, 1e9));  // the daemon knows what it draws
+  geometry
+      ->add_flag("--follow", options->follow,
+                 "print the vertices as the body's steps write them, about 60 times a second, a line of JSON each")
+      ->excludes("--obj")
+      ->excludes("--tolerance");
 }
 
 std::string absolute(const std::string& file) {

@@ -41,30 +41,43 @@ bool connectTo(const std::string& file) {
   return fd >= 0;
 }
 
-Result<std::string> ask(const std::string& file, const std::string& line, double seconds) {
+Result<Client> Client::connect(const std::string& file) {
   const int fd = connected(file);
   if (fd < 0)
     return Error{"no daemon answers at " + file + ": " + std::strerror(errno) +
                  "\n  fix: start one with hapticd run, or name it with --name; its group may talk to it, no one else"};
+  return Client(file, fd);
+}
+
+Client::~Client() {
+  if (fd_ >= 0) close(fd_);
+}
+
+Result<std::string> Client::ask(const std::string& line, double seconds) {
   const std::string out = line + "\n";
   size_t sent = 0;
   while (sent < out.size()) {
-    const ssize_t now = send(fd, out.data() + sent, out.size() - sent, MSG_NOSIGNAL);
+    const ssize_t now = send(fd_, out.data() + sent, out.size() - sent, MSG_NOSIGNAL);
     if (now <= 0) break;
     sent += static_cast<size_t>(now);
   }
   std::string answer;
   char buffer[4096];
-  pollfd polled{fd, POLLIN, 0};
+  pollfd polled{fd_, POLLIN, 0};
   while (answer.find('\n') == std::string::npos && poll(&polled, 1, static_cast<int>(seconds * 1e3)) == 1) {
-    const ssize_t got = recv(fd, buffer, sizeof buffer, 0);
+    const ssize_t got = recv(fd_, buffer, sizeof buffer, 0);
     if (got <= 0) break;
     answer.append(buffer, static_cast<size_t>(got));
   }
-  close(fd);
   const size_t end = answer.find('\n');
-  if (end == std::string::npos) return Error{"the daemon at " + file + " did not answer"};
+  if (end == std::string::npos) return Error{"the daemon at " + file_ + " did not answer"};
   return answer.substr(0, end);
+}
+
+Result<std::string> ask(const std::string& file, const std::string& line, double seconds) {
+  auto client = Client::connect(file);
+  if (!client) return Error{client.error()};
+  return client->ask(line, seconds);
 }
 
 }  // namespace hapticd::control

@@ -16,6 +16,7 @@ constexpr int kMaxDepth = 8;
 constexpr size_t kMaxText = 4096;
 constexpr double kMaxPlace = 10;         ///< [m] no arm reaches farther
 constexpr double kFinestDrawing = 1e-5;  ///< [m] no screen shows less
+constexpr double kMostFrames = 1e15;     ///< that are counted exactly
 
 /// What a request may and must say. Keys in the order: what it needs, then what it may have.
 struct Form {
@@ -24,8 +25,8 @@ struct Form {
   std::set<std::string> needs, may;
 };
 
-const std::array<Form, 14>& forms() {
-  static const std::array<Form, 14> all = {{{"status", Kind::kStatus, {}, {}},
+const std::array<Form, 15>& forms() {
+  static const std::array<Form, 15> all = {{{"status", Kind::kStatus, {}, {}},
                                             {"list", Kind::kList, {}, {}},
                                             {"enable", Kind::kEnable, {"model"}, {}},
                                             {"disable", Kind::kDisable, {"model"}, {}},
@@ -38,6 +39,7 @@ const std::array<Form, 14>& forms() {
                                             {"clear", Kind::kClear, {}, {"device"}},
                                             {"dump", Kind::kDump, {}, {}},
                                             {"geometry", Kind::kGeometry, {"model"}, {"tolerance"}},
+                                            {"vertices", Kind::kVertices, {"model"}, {"after"}},
                                             {"stop", Kind::kStop, {}, {}}}};
   return all;
 }
@@ -154,6 +156,7 @@ Result<Request> parseRequest(std::string_view line) {
   take.text("file", request.file);
   take.number("value", -1e300, 1e300, request.value);
   take.number("tolerance", kFinestDrawing, 1, request.tolerance);
+  take.number("after", 0, kMostFrames, request.after);
   take.flag("consent", request.consent);
   take.numbers("position", kMaxPlace, request.position);
   readOrientation(take, request);

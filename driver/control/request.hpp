@@ -26,12 +26,14 @@ struct Request {
     kClear,
     kDump,
     kGeometry,
+    kVertices,
     kStop
   };
   Kind kind = Kind::kStatus;
   std::string model, device, parameter, file;     ///< as the kind needs them
   double value = 0;                               ///< kSet
   double tolerance = 0;                           ///< [m] kGeometry: chord error; 0: as the daemon chooses
+  double after = 0;                               ///< kVertices: number of the frame that is known
   bool consent = false;                           ///< kSet: the operator agrees to change what is felt
   std::array<double, 3> position{};               ///< [m] kMove, world frame
   std::array<double, 4> orientation{1, 0, 0, 0};  ///< kMove: unit quaternion w,x,y,z

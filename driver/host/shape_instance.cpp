@@ -16,11 +16,16 @@ const Extension* extensionOf(const hsp_class& shape_class, hsp_shape* shape, con
   return found != nullptr && found->struct_size >= needed ? found : nullptr;
 }
 
+constexpr uint32_t kMostVertices = 1'000'000;  ///< of a drawing; three times 12 MB are kept for them
+
 /// Claims are bounds that the host works with: one that is no number would switch its checks off.
 std::string wrongIn(const hsp_report& report) {
   for (const double claim : {report.max_stiffness, report.max_force, report.size_m})
     if (!std::isfinite(claim) || claim < 0)
       return "its report claims " + std::to_string(claim) + " as a stiffness, force or size; expected 0 or more";
+  if (report.viz_vertices > kMostVertices)
+    return "its report claims " + std::to_string(report.viz_vertices) + " vertices to draw; expected at most " +
+           std::to_string(kMostVertices);
   return "";
 }
 
@@ -88,6 +93,7 @@ Result<void> ShapeInstance::activate(const hsp_activation& activation) {
   surfaces_ = extensionOf<hsp_ext_surfaces>(*class_, shape_, HSP_EXT_SURFACES, sizeof(hsp_ext_surfaces));
   geometry_ = extensionOf<hsp_ext_geometry>(*class_, shape_, HSP_EXT_GEOMETRY, sizeof(hsp_ext_geometry));
   energy_ = extensionOf<hsp_ext_energy>(*class_, shape_, HSP_EXT_ENERGY, sizeof(hsp_ext_energy));
+  if (report_.viz_vertices > 0) contour_ = std::make_unique<Contour>(report_.viz_vertices);
   return {};
 }
 
@@ -97,6 +103,7 @@ void ShapeInstance::deactivate() {
   surfaces_ = nullptr;
   geometry_ = nullptr;
   energy_ = nullptr;
+  contour_.reset();
   active_ = false;
 }
 

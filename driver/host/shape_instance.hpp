@@ -5,6 +5,7 @@
 
 #include "base/result.hpp"
 #include "hapticd/shape.h"
+#include "host/contour.hpp"
 #include "host/library.hpp"
 #include "host/services.hpp"
 #include "scene/scene.hpp"
@@ -22,8 +23,16 @@ class ShapeInstance {
   Result<void> activate(const hsp_activation& activation);  ///< [main]
   void deactivate();                                        ///< [main]
 
-  hsp_status step(const hsp_step& step) noexcept HSP_RT { return class_->step(shape_, &step); }  ///< [rt]
-  void reset() noexcept HSP_RT { class_->reset(shape_); }                                        ///< [rt]
+  /// [rt] Adds to `step` where vertices are to be written, if somebody looks.
+  hsp_status step(hsp_step& step) noexcept HSP_RT {
+    if (contour_ == nullptr) return class_->step(shape_, &step);
+    step.viz_xyz = contour_->offer(step.dt_s);
+    step.viz_capacity = contour_->vertices();
+    const hsp_status status = class_->step(shape_, &step);
+    contour_->close(status >= 0);
+    return status;
+  }
+  void reset() noexcept HSP_RT { class_->reset(shape_); }  ///< [rt]
 
   const std::string& name() const { return name_; }
   const hsp_class& description() const { return *class_; }
@@ -33,6 +42,7 @@ class ShapeInstance {
   const hsp_ext_surfaces* surfaces() const { return surfaces_; }  ///< nullptr: the shape traces itself
   const hsp_ext_geometry* geometry() const { return geometry_; }
   const hsp_ext_energy* energy() const { return energy_; }
+  Contour* contour() const { return contour_.get(); }  ///< nullptr: its steps write no vertices
   hsp_shape* handle() const { return shape_; }
   bool active() const { return active_; }
 
@@ -47,6 +57,7 @@ class ShapeInstance {
   const hsp_ext_surfaces* surfaces_ = nullptr;
   const hsp_ext_geometry* geometry_ = nullptr;
   const hsp_ext_energy* energy_ = nullptr;
+  std::unique_ptr<Contour> contour_;
   double damping_ = 0;
   bool active_ = false;
 };

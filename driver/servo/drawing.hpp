@@ -12,4 +12,9 @@ namespace hapticd::servo {
 /// where the model has no triangles, or more than one answer may hold.
 Result<std::string> drawingOf(const host::ShapeInstance& shape, double tolerance);
 
+/// [main] The newest vertices that the steps of an active model have written, one line of JSON: frame, counted from 1,
+/// and xyz [m], in the model's frame and the order of drawingOf() at tolerance 0; without xyz where that frame is not
+/// newer than `after`. More are written for a second after each call. Fails where the model's steps write none.
+Result<std::string> verticesOf(const host::ShapeInstance& shape, double after);
+
 }  // namespace hapticd::servo

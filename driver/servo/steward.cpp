@@ -120,6 +120,11 @@ Result<std::string> Steward::obey(const Request& request) {
       if (!place) return Error{place.error()};
       return drawingOf(*runner_.world().shapes()[*place], request.tolerance);
     }
+    case Request::Kind::kVertices: {
+      const auto place = placeOf(request.model);
+      if (!place) return Error{place.error()};
+      return verticesOf(*runner_.world().shapes()[*place], request.after);
+    }
     case Request::Kind::kStop:
       runner_.stop();
       return good;

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A soft body of a running daemon is drawn as it is pressed: `hapticd ctl geometry`.
+"""A soft body of a running daemon is drawn as it is pressed: `hapticd ctl geometry`, once and followed.
 
 Usage: draw_a_body.py HAPTICD CONFIG     prints a line a case; exit 1 when one is off.
 """
@@ -28,11 +28,39 @@ with tempfile.TemporaryDirectory() as folder:
                               text=True, timeout=30)
         return done.returncode, done.stdout, done.stderr
 
+    def seconds():
+        return json.loads(ctl("status")[1])["seconds"]
+
+    def followed():
+        """Frames come 60 times a second of the servo's time, with the vertices of the triangles, and move."""
+        viewer = subprocess.Popen([HAPTICD, "ctl", "--name", "drawn", "geometry", "plate", "--follow"],
+                                  env=environment, stdout=subprocess.PIPE, text=True)
+        try:
+            drawn = json.loads(viewer.stdout.readline())
+            first = json.loads(viewer.stdout.readline())
+            begun, frames = seconds(), [first]
+            while frames[-1]["frame"] < first["frame"] + 180:
+                frames.append(json.loads(viewer.stdout.readline()))
+            took = seconds() - begun
+        finally:
+            viewer.kill()
+            viewer.wait()
+        count = len(first["xyz"])
+        check("every frame has the vertices of the triangles", count == len(drawn["xyz"]) > 300 and
+              all(len(frame["xyz"]) == count for frame in frames), count)
+        check("frames are numbered", all(a["frame"] < b["frame"] for a, b in zip(frames, frames[1:])))
+        rate = (frames[-1]["frame"] - first["frame"]) / took
+        check("they are made 60 times a second", 50 < rate < 66, rate)
+        moved = [max(abs(a - b) for a, b in zip(first["xyz"], frame["xyz"])) for frame in frames]
+        check("they show the body move", max(moved) > 1e-3, max(moved))
+        steps = [max(abs(a - b) for a, b in zip(one["xyz"], two["xyz"])) for one, two in zip(frames, frames[1:])]
+        check("little by little", max(steps) < 0.5 * max(moved), (max(steps), max(moved)))
+
     scene = os.path.join(folder, "pressed.yaml")  # the front of the plate is at z = 30 mm
     with open(scene, "w", encoding="utf-8") as out:
         out.write(f"hapticd: 1\nservo: {{rate: 1000}}\nhand: {{script: press, radius: 0.033, rise: 0.01, rate: 0.5}}\n"
                   f"models:\n  - name: plate\n    plugin: mat_deformable\n    pose: {{position: [0, 0, 0.02]}}\n"
-                  f"    parameters: {{geometry: {os.path.join(CONFIG, 'models', 'soft-plate.yaml')}}}\n")
+                  f"    parameters: {{geometry: {os.path.join(CONFIG, 'models', 'soft-plate.yaml')}, display_tolerance: 0.001}}\n")
     run = subprocess.Popen([HAPTICD, "run", scene, "--for", "100", "--name", "drawn"],
                            env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
@@ -60,8 +88,11 @@ with tempfile.TemporaryDirectory() as folder:
         lines = open(file, encoding="utf-8").read().splitlines() if code == 0 else []
         check("an OBJ file holds the same triangles", sum(line[0] == "v" for line in lines) == len(seen["xyz"]) // 3 and
               [int(w) - 1 for line in lines if line[0] == "f" for w in line.split()[1:]] == seen["triangles"], err)
+        followed()
         check("a rigid model is added", ctl("add", os.path.join(CONFIG, "scenes", "teapot.yaml"))[0] == 0)
         check("it is drawn as well", len(json.loads(ctl("geometry", "teapot")[1] or "{}").get("triangles", [])) > 1000)
+        code, out, err = ctl("geometry", "teapot", "--follow")
+        check("following what does not deform is refused with its cure", code == 1 and "display_tolerance" in err, err)
         for arguments, why in ((("geometry", "nobody"), "no model"), (("geometry", "plate", "--tolerance", "2"), "from 1e-05"),
                                (("geometry", "teapot", "--tolerance", "0.00001"), "coarser")):
             code, out, err = ctl(*arguments)

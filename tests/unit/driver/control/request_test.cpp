@@ -11,7 +11,8 @@ TEST(Request, TakesWhatTheManualSays) {
         R"({"do":"enable","model":"a"})", R"({"do":"disable","model":"a"})", R"({"do":"remove","model":"a"})",
         R"({"do":"add","file":"/a.yaml"})", R"({"do":"add","file":"/a.yaml","model":"b"})", R"({"do":"hold"})",
         R"({"do":"clear","device":"arm"})", R"({"do":"geometry","model":"a"})",
-        R"({"do":"geometry","model":"a","tolerance":0.001})"})
+        R"({"do":"geometry","model":"a","tolerance":0.001})", R"({"do":"vertices","model":"a"})",
+        R"({"do":"vertices","model":"a","after":3})"})
     EXPECT_TRUE(parseRequest(line)) << line;
   const auto set = parseRequest(R"({"do":"set","model":"a","parameter":"k","value":600,"consent":true})");
   ASSERT_TRUE(set);
@@ -47,6 +48,8 @@ TEST(Request, SaysWhatIsWrongAndWhatWasExpected) {
       {R"({"do":"add","file":"a.yaml"})", "absolute path"},
       {R"({"do":"geometry"})", "\"model\" is missing"},
       {R"({"do":"geometry","model":"a","tolerance":0})", "\"tolerance\": expected a number"},
+      {R"({"do":"vertices"})", "\"model\" is missing"},
+      {R"({"do":"vertices","model":"a","after":-1})", "\"after\": expected a number"},
       {R"({"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":1}}}}}}}}}})", "JSON object"}};
   for (const auto& [line, part] : wrong) {
     const auto request = parseRequest(line);
