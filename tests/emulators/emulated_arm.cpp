@@ -89,6 +89,8 @@ struct EmulatedArm::Inside {
   Drive drive;
   Vector3d zero = Vector3d::Zero();  ///< rad where the counters stood at power-on
   Fault fault = Fault::kNone;
+  StepMeter meter{0, 0};
+  std::vector<uint8_t> last_report;
   double time = 0, hand_time = 0, heard = -1;
   bool still = false;
   uint64_t commands = 0, reports = 0;
@@ -121,9 +123,10 @@ struct EmulatedArm::Inside {
     zero = drives.incremental ? Vector3d(q) : Vector3d::Constant(drives.offset);
   }
 
-  Counts counts() const {
+  Counts counts() {
     Counts out{};
-    const kinematics::JointVector q = plant->position();
+    const double step = meter.report(monotonicNow());
+    const kinematics::JointVector q = plant->position() + kinematics::JointVector::Constant(3, step);
     for (int i = 0; i < 3; ++i)
       out[static_cast<size_t>(i)] = static_cast<int32_t>(std::lround((q[i] - zero[i]) * drives.counts[i]));
     return out;
@@ -220,6 +223,8 @@ std::vector<uint8_t> EmulatedArm::report() {
   Counts counts = in.counts();
   if (in.fault == Fault::kJump) counts[1] += 20000;
   std::vector<uint8_t> bytes = in.firmware->report(counts, in.fault);
+  if (in.fault == Fault::kStale) return in.last_report;
+  in.last_report = bytes;
   if (in.fault == Fault::kShort) bytes.resize(bytes.size() / 2);
   if (in.fault == Fault::kCorrupt) bytes[8] ^= 0x10;
   return bytes;
@@ -229,6 +234,7 @@ void EmulatedArm::command(std::span<const uint8_t> bytes) {
   Inside& in = *inside_;
   const std::optional<Currents> current = in.firmware->command(bytes);
   if (!current) return;
+  in.meter.command(monotonicNow(), *current);
   in.setCurrents(*current);
   in.heard = in.time;
   ++in.commands;
@@ -236,6 +242,13 @@ void EmulatedArm::command(std::span<const uint8_t> bytes) {
 
 void EmulatedArm::spoil(Fault fault) {
   inside_->fault = fault;
+}
+void EmulatedArm::measureLatency() {
+  const bool delta = inside_->about.bus == Bus::kFtdi;  // short levers, and units of another size
+  inside_->meter = delta ? StepMeter(0.01, 60) : StepMeter(0.004, 60);
+}
+const StepMeter& EmulatedArm::meter() const {
+  return inside_->meter;
 }
 void EmulatedArm::holdStill(bool still) {
   inside_->still = still;

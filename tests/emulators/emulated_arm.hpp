@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "emulators/firmware.hpp"
+#include "emulators/step_meter.hpp"
 #include "parameters.hpp"
 
 namespace hapticd::emulator {
@@ -46,6 +47,9 @@ class EmulatedArm {
   /// Bytes of a command; wrong ones are ignored, as a firmware does.
   void command(std::span<const uint8_t> bytes);
   void spoil(Fault fault);
+  /// Encoders that step, to measure how long answers take; see StepMeter.
+  void measureLatency();
+  const StepMeter& meter() const;
   /// While still, the hand stays where its script begins.
   void holdStill(bool still);
 

@@ -13,8 +13,9 @@ namespace hapticd::emulator {
 using Counts = std::array<int32_t, 3>;
 using Currents = std::array<int16_t, 3>;  ///< mA, or the Falcon's units
 
-/// What an emulator can be told to do wrong.
-enum class Fault { kNone, kSilent, kShort, kCorrupt, kFirmware, kHardware, kJump, kHalfRate };
+/// What an emulator can be told to do wrong. Stale: the last report again and again. Stalled: the endpoint in
+/// is halted until the host clears it, after this has ended.
+enum class Fault { kNone, kSilent, kShort, kCorrupt, kFirmware, kHardware, kJump, kHalfRate, kStale, kStalled };
 
 class Firmware {
  public:

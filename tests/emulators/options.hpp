@@ -1,5 +1,6 @@
 /// What every program that plugs in an emulated arm understands, and the signals that lead it:
-/// SIGUSR1 unplugs the arm (and plugs it in again after --replug-after), SIGUSR2 lets the hand begin.
+/// SIGUSR1 unplugs the arm (and plugs it in again after --replug-after), SIGUSR2 lets the hand begin, SIGHUP has a
+/// fault read from the file of --faults, SIGTERM ends the program.
 #pragma once
 #include <csignal>
 #include <cstdio>
@@ -14,17 +15,21 @@ struct Options {
   std::string kind, serial = "0001";
   double replug_after = -1;  ///< [s]; < 0: it stays away
   bool hold = false;         ///< the hand waits for SIGUSR2
+  bool latency = false;      ///< the encoders step, and how long answers take is told at the end
+  std::string faults;        ///< file of a fault's name, read at SIGHUP; empty: none
   simulated::Parameters hand;
 };
 
-inline volatile std::sig_atomic_t g_unplug = 0, g_begin = 0;
+inline volatile std::sig_atomic_t g_unplug = 0, g_begin = 0, g_order = 0, g_end = 0;
 
 /// Exits with a usage text when the arguments are wrong.
 inline Options readOptions(int argc, char** argv) {
   Options o;
   const auto usage = [&] {
     std::fprintf(stderr,
-                 "usage: %s KIND [--serial S] [--replug-after S] [--hand-stiffness N/m] [--hold 1]\n  kinds:", argv[0]);
+                 "usage: %s KIND [--serial S] [--replug-after S] [--hand-stiffness N/m] [--hand-rise M]\n"
+                 "       [--hold 1] [--latency 1] [--faults FILE]\n  kinds:",
+                 argv[0]);
     for (const std::string& kind : emulatedKinds()) std::fprintf(stderr, " %s", kind.c_str());
     std::fprintf(stderr, "\n");
     std::exit(2);
@@ -40,6 +45,12 @@ inline Options readOptions(int argc, char** argv) {
       o.replug_after = std::atof(argv[i + 1]);
     else if (name == "--hand-stiffness")
       o.hand.hand_stiffness = std::atof(argv[i + 1]);
+    else if (name == "--hand-rise")
+      o.hand.rise = std::atof(argv[i + 1]);
+    else if (name == "--latency")
+      o.latency = std::atoi(argv[i + 1]) != 0;
+    else if (name == "--faults")
+      o.faults = argv[i + 1];
     else if (name == "--hold")
       o.hold = std::atoi(argv[i + 1]) != 0;
     else
@@ -47,6 +58,11 @@ inline Options readOptions(int argc, char** argv) {
   }
   std::signal(SIGUSR1, [](int) { g_unplug = 1; });
   std::signal(SIGUSR2, [](int) { g_begin = 1; });
+  std::signal(SIGHUP, [](int) { g_order = 1; });
+  std::signal(SIGTERM, [](int) {
+    g_end = 1;
+    g_unplug = 1;
+  });
   return o;
 }
 

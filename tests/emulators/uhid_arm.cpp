@@ -79,12 +79,15 @@ int main(int argc, char** argv) {
     UsbArm arm(options.kind, options.hand, options.serial);
     if (!create(fd, arm.about(), options.serial)) return std::perror("UHID_CREATE2"), 1;
     g_unplug = 0;
+    if (options.latency) arm.arm().measureLatency();
     tellTip(arm.arm());
     serve(fd, arm, options.hold);
     uhid_event event{};
     event.type = UHID_DESTROY;
     tell(fd, event);
     std::printf("%llu commands\n", static_cast<unsigned long long>(arm.arm().commands()));
-    if (options.replug_after >= 0) usleep(static_cast<useconds_t>(options.replug_after * 1e6));
-  } while (options.replug_after >= 0);
+    arm.arm().meter().tell();
+    std::fflush(stdout);
+    if (options.replug_after >= 0 && g_end == 0) usleep(static_cast<useconds_t>(options.replug_after * 1e6));
+  } while (options.replug_after >= 0 && g_end == 0);
 }

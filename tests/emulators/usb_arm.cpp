@@ -116,10 +116,12 @@ int UsbArm::control(const uint8_t* setup, Bytes& data) {
       return give({0, 0}, length, data);
     case 0x8008:  // GET_CONFIGURATION
       return give({1}, length, data);
+    case 0x0201:  // CLEAR_FEATURE of an endpoint: the only cure of a halt
+      halted_ = stalls_;
+      return 0;
     case 0x0009:  // SET_CONFIGURATION, SET_INTERFACE, CLEAR_FEATURE
     case 0x010b:
     case 0x0001:
-    case 0x0201:
       return 0;
     case 0x210a:  // HID: SET_IDLE, SET_PROTOCOL
     case 0x210b:
@@ -156,6 +158,12 @@ bool UsbArm::in(Bytes& packet) {
   packet = std::move(packets_.front());
   packets_.pop_front();
   return true;
+}
+
+void UsbArm::spoil(Fault fault) {
+  stalls_ = fault == Fault::kStalled;
+  halted_ = halted_ || stalls_;
+  arm_.spoil(fault);
 }
 
 void UsbArm::advance(double seconds) {

@@ -29,6 +29,9 @@ class UsbArm {
   /// The next packet for the host; false: none yet.
   bool in(Bytes& packet);
   void advance(double seconds);
+  void spoil(Fault fault);
+  /// The endpoint in has no transfers but those that end with -EPIPE.
+  bool halted() const { return halted_; }
 
   Bytes deviceDescriptor() const;
   Bytes configuration() const;
@@ -47,6 +50,7 @@ class UsbArm {
   std::string serial_;
   std::deque<Bytes> packets_;
   double since_report_ = 0;
+  bool stalls_ = false, halted_ = false;
 };
 
 }  // namespace hapticd::emulator

@@ -11,7 +11,9 @@
 
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
+#include "emulators/fault_orders.hpp"
 #include "emulators/options.hpp"
 #include "emulators/usb_arm.hpp"
 
@@ -51,7 +53,8 @@ bool readAll(int fd, void* to, size_t size) {
 /// One plugging-in.
 class Plug {
  public:
-  Plug(int fd, UsbArm& arm) : fd_(fd), arm_(arm) {}
+  Plug(int fd, UsbArm& arm, const Options& options)
+      : fd_(fd), arm_(arm), hold_(options.hold), orders_(options.faults) {}
 
   /// Until the host goes away or the arm is unplugged.
   void serve() {
@@ -66,13 +69,13 @@ class Plug {
       if ((on[1].revents & POLLIN) != 0 && read(timer, &ticks, sizeof ticks) == static_cast<ssize_t>(sizeof ticks)) {
         arm_.arm().holdStill(hold_ && g_begin == 0);
         arm_.advance(1e-3 * static_cast<double>(ticks));
+        orders_.follow(arm_, 1e-3 * static_cast<double>(ticks), std::exchange(g_order, 0) != 0);
         there = feed();
       }
       if ((on[0].revents & (POLLIN | POLLHUP)) != 0) there = take() && feed();
     }
     close(timer);
   }
-  void hold(bool on) { hold_ = on; }
 
  private:
   struct Waiting {
@@ -115,11 +118,11 @@ class Plug {
 
   bool feed() {
     Bytes packet;
-    while (!waiting_.empty() && arm_.in(packet)) {
+    while (!waiting_.empty() && (arm_.halted() || arm_.in(packet))) {
       const Waiting next = waiting_.front();
       waiting_.pop_front();
       if (packet.size() > next.length) packet.resize(next.length);
-      if (!answer(next.number, 0, packet, 0)) return false;
+      if (!answer(next.number, arm_.halted() ? -EPIPE : 0, arm_.halted() ? Bytes() : packet, 0)) return false;
     }
     return true;
   }
@@ -139,7 +142,8 @@ class Plug {
   int fd_;
   UsbArm& arm_;
   std::deque<Waiting> waiting_;
-  bool hold_ = false;
+  bool hold_;
+  FaultOrders orders_;
 };
 
 int freePort() {
@@ -175,15 +179,15 @@ void run(const Options& options) {
     const int fd = plugIn();
     g_unplug = 0;
     tellTip(arm.arm());
-    Plug plug(fd, arm);
-    plug.hold(options.hold);
-    plug.serve();
+    if (options.latency) arm.arm().measureLatency();
+    Plug(fd, arm, options).serve();
     close(fd);
     std::printf("%llu commands, motors %s\n", static_cast<unsigned long long>(arm.arm().commands()),
                 arm.arm().pushed() ? "on" : "off");
+    arm.arm().meter().tell();
     std::fflush(stdout);
-    if (options.replug_after >= 0) usleep(static_cast<useconds_t>(options.replug_after * 1e6));
-  } while (options.replug_after >= 0);
+    if (options.replug_after >= 0 && g_end == 0) usleep(static_cast<useconds_t>(options.replug_after * 1e6));
+  } while (options.replug_after >= 0 && g_end == 0);
 }
 
 }  // namespace
