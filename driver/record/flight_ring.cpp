@@ -93,7 +93,8 @@ Result<std::unique_ptr<FlightRing>> FlightRing::create(const std::vector<StreamS
     table.description_address = skeleton.descriptions[i];
     table.description_bytes = skeleton.description_bytes[i];
     putText(skeleton.tables[i], table.bytes());
-    ring->streams_.push_back({&header->streams[i], ring->memory_ + places[i].rows_address, row_bytes, rows[i], 0, 0});
+    ring->streams_.push_back({&header->streams[i], ring->memory_ + places[i].rows_address, row_bytes, rows[i], 0, 0,
+                              std::vector<uint64_t>(row_bytes / sizeof(uint64_t))});
   }
   return ring;
 }
@@ -111,10 +112,13 @@ uint64_t FlightRing::copy(size_t stream, uint64_t first, uint64_t count, std::by
   const uint64_t whole = std::min(count, end - first);
   for (uint64_t done = 0; done < whole;) {
     const uint64_t at = (first + done) % s.capacity, run = std::min(whole - done, s.capacity - at);
-    std::memcpy(rows + done * s.row_bytes, s.rows + at * s.row_bytes, run * s.row_bytes);
+    auto* from = reinterpret_cast<uint64_t*>(s.rows + at * s.row_bytes);
+    for (uint64_t i = 0; i < run * s.filled.size(); ++i) {
+      const uint64_t word = std::atomic_ref<uint64_t>(from[i]).load(std::memory_order_acquire);
+      std::memcpy(rows + done * s.row_bytes + i * sizeof word, &word, sizeof word);
+    }
     done += run;
   }
-  std::atomic_thread_fence(std::memory_order_acquire);
   return overwritten(first, written(stream)) ? 0 : whole;
 }
 

@@ -1,5 +1,5 @@
-/// The black box: the newest rows of every stream in memory, written by the servo thread with plain stores and read by
-/// any other thread or process. Kept in a mapped file, it outlives the process: what a crash leaves is itself a
+/// The black box: the newest rows of every stream in memory, written by the servo thread without a lock and read by any
+/// other thread or process. Kept in a mapped file, it outlives the process: what a crash leaves is itself a
 /// recording that needs no more writing.
 #pragma once
 #include <atomic>
@@ -25,12 +25,19 @@ class FlightRing {
 
   /// [rt] The row to fill next. Only one thread writes a stream.
   std::byte* next(size_t stream) noexcept HSP_RT {
-    Stream& s = streams_[stream];
-    return s.rows + s.position * s.row_bytes;
+    return reinterpret_cast<std::byte*>(streams_[stream].filled.data());
+  }
+  /// [rt] Where that row will lie, to be fetched into the cache before it is written.
+  const std::byte* place(size_t stream) const noexcept HSP_RT {
+    return streams_[stream].rows + streams_[stream].position * streams_[stream].row_bytes;
   }
   /// [rt] The row is whole: readers may have it.
   void commit(size_t stream) noexcept HSP_RT {
     Stream& s = streams_[stream];
+    // Release on each word: a reader that sees one of them sees the count before it too, and knows whose place it took.
+    std::byte* row = s.rows + s.position * s.row_bytes;
+    for (size_t i = 0; i < s.filled.size(); ++i)
+      std::atomic_ref<uint64_t>(reinterpret_cast<uint64_t*>(row)[i]).store(s.filled[i], std::memory_order_release);
     s.position = s.position + 1 == s.capacity ? 0 : s.position + 1;
     std::atomic_ref<uint64_t>(s.header->rows).store(++s.written, std::memory_order_release);
   }
@@ -63,6 +70,7 @@ class FlightRing {
     std::byte* rows = nullptr;
     uint32_t row_bytes = 0;
     uint64_t capacity = 0, position = 0, written = 0;
+    std::vector<uint64_t> filled;  ///< the row that is being written
   };
   FlightRing() = default;
   std::vector<StreamSpec> specs_;

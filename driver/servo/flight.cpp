@@ -214,7 +214,7 @@ void Flight::begin(Nanoseconds now, const std::vector<std::unique_ptr<Arm>>& arm
   // The rows of this tick were last touched seconds ago: fetched while the tick works, they cost it nothing.
   constexpr uint32_t kCacheLine = 64;
   for (const FlightStream stream : {kTicks, kContacts}) {
-    const std::byte* row = ring_->next(stream);
+    const std::byte* row = ring_->place(stream);
     for (uint32_t at = 0; at < ring_->rowBytes(stream); at += kCacheLine) __builtin_prefetch(row + at, 1);
   }
   for (size_t i = 0; i < arms.size(); ++i) faults_before_[i] = static_cast<uint32_t>(arms[i]->limiter().fault());
