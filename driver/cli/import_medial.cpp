@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -21,6 +22,7 @@ using Eigen::Vector3d;
 namespace fs = std::filesystem;
 
 constexpr double kToleranceShare = 0.01;  ///< of the body's size
+constexpr double kLarge = 1.0;            ///< [m] no hand reaches round a larger body
 constexpr double kChordShare = 0.002;     ///< of a NURBS model's size: chord error of its triangles
 constexpr std::size_t kMostFileBytes = std::size_t{1} << 30;
 
@@ -75,7 +77,9 @@ Result<Triangles> readSurface(const MedialImport& options) {
   if (endsWith(options.file, ".yaml") || endsWith(options.file, ".yml") || endsWith(options.file, ".json")) {
     const auto shape = activated("nurbs_rigid", options.file);
     if (!shape) return Error{shape.error()};
-    return tessellated(**shape, kChordShare);
+    constexpr double kOfTolerance = 0.25;  // the triangles are not to be what keeps the body from it
+    const double wanted = options.tolerance > 0 ? kOfTolerance * options.tolerance / (*shape)->report().size_m : 1;
+    return tessellated(**shape, std::min(kChordShare, wanted));
   }
   scene::Problems problems;
   const auto text = scene::readFile(options.file, kMostFileBytes, problems);
@@ -141,16 +145,25 @@ Result<Deviation> deviationFrom(host::ShapeInstance& body, const std::vector<Vec
 }
 
 /// Measures the file that was written both ways and tells of it.
-int report(const MedialImport& options, const MedialAxis& axis, const SurfaceSamples& samples) {
+int report(const MedialImport& options, const MedialOptions& settings, const MedialAxis& axis,
+           const SurfaceSamples& samples) {
+  std::fprintf(stderr, "measuring the body that was written\n");
   const auto body = activated("mat_deformable", options.out);
   if (!body) return fail(kFailed, body.error());
   const auto there = deviationFrom(**body, samples.points);
   if (!there) return fail(kFailed, there.error());
-  const auto drawn = tessellated(**body, kChordShare);
+  // Creases are rounded by a cell: finer ones than the tolerance tell no more, and cost its square.
+  const double chord = 0.5 * settings.tolerance / (*body)->report().size_m;
+  const auto drawn = tessellated(**body, std::clamp(chord, kChordShare, kToleranceShare));
   if (!drawn) return fail(kFailed, drawn.error());
   const NearestPoints nearest(samples.points);
-  double back = 0;
-  for (const Vector3d& p : drawn->points) back = std::fmax(back, (samples.points[nearest.nearest(p)] - p).norm());
+  double back = 0, beyond = 0;  // to the nearest sample, and to the plane there
+  for (const Vector3d& p : drawn->points) {
+    const uint32_t i = nearest.nearest(p);
+    const Vector3d off = samples.points[i] - p;
+    back = std::fmax(back, off.norm());
+    beyond = std::fmax(beyond, std::fabs(samples.normals[i].dot(off)));
+  }
   std::printf("%s: %zu spheres, %zu edges, %zu triangles, %d part%s; %.2f %% of the surface covered\n",
               options.out.c_str(), axis.spheres.size(), axis.edges.size(), axis.triangles.size(), axis.parts,
               axis.parts == 1 ? "" : "s", 100 * axis.covered);
@@ -158,7 +171,23 @@ int report(const MedialImport& options, const MedialAxis& axis, const SurfaceSam
       "the surface is at most %.3f mm from the body (Hausdorff distance, one-sided; mean %.3f mm); the body at "
       "most %.3f mm from points of the surface, which are %.3f mm apart\n",
       1e3 * there->most, 1e3 * there->mean, 1e3 * back, 1e3 * samples.spacing);
+  const double reached = std::fmax(there->most, beyond);
+  if (reached > settings.tolerance)
+    std::fprintf(stderr, "warning: %.3g mm asked, %.3g mm reached: %s\n", 1e3 * settings.tolerance, 1e3 * reached,
+                 static_cast<int>(axis.spheres.size()) >= settings.most_spheres
+                     ? "more --spheres may help"
+                     : "more --samples may help, or a smaller --angle where the surface has edges");
   return kWorked;
+}
+
+/// A file in millimetres that is read as metres makes a house of a hand.
+void tellSize(const Eigen::AlignedBox3d& box, const std::string& file) {
+  const Vector3d size = box.sizes();
+  std::printf("%s: %.4g x %.4g x %.4g m\n", file.c_str(), size.x(), size.y(), size.z());
+  std::fflush(stdout);
+  if (size.maxCoeff() > kLarge)
+    std::fprintf(stderr, "warning: %s: %.3g m is more than an arm reaches\n  fix: --scale 0.001 for millimetres\n",
+                 file.c_str(), size.maxCoeff());
 }
 
 }  // namespace
@@ -170,6 +199,7 @@ int importMedial(const MedialImport& options) {
   if (!mesh) return fail(kBadInput, mesh.error());
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : mesh->points) box.extend(p);
+  tellSize(box, options.file);
   MedialOptions settings;
   settings.tolerance = options.tolerance > 0 ? options.tolerance : kToleranceShare * box.diagonal().norm();
   settings.most_spheres = options.most_spheres;
@@ -184,7 +214,7 @@ int importMedial(const MedialImport& options) {
   if (!out)
     return fail(kFailed, options.out + ": cannot be written, expected a file in a folder that you may write to");
   out.close();
-  return report(options, *axis, samples);
+  return report(options, settings, *axis, samples);
 }
 
 }  // namespace hapticd::cli

@@ -18,8 +18,15 @@ constexpr int kMostShrinks = 50;
 constexpr double kShrunk = 1e-9;               ///< relative change of a radius at which a ball is done
 constexpr std::size_t kMostCandidates = 6000;  ///< balls that may be kept
 constexpr std::size_t kMostCovered = 12000;    ///< samples that are to be covered
+constexpr std::size_t kTold = 10000;           ///< balls or candidates between two messages
 constexpr int kChecks = 8;                     ///< spheres looked at along an edge
 constexpr double kFlatCosine = 0.94;  ///< of 20 degrees: triangles that meet flatter stand for a smooth surface
+
+using Progress = std::function<void(const std::string&)>;
+
+std::string share(std::size_t done, std::size_t all) {
+  return "  " + std::to_string(100 * done / all) + " %";
+}
 
 struct Ball {
   Vector3d center;
@@ -33,11 +40,12 @@ Ball shrink(const SurfaceSamples& samples, const NearestPoints& nearest, uint32_
   const NearestPoints::Beyond opposite{p, -n, std::sin(least_angle / 2)};
   Ball ball{p - start * n, start};
   for (int k = 0; k < kMostShrinks; ++k) {
-    const uint32_t j = nearest.nearest(ball.center, &opposite);
+    // What is not inside the ball is not asked for: on a flat face thousands of points are nearly as near.
+    const uint32_t j = nearest.nearest(ball.center, &opposite, ball.radius * (1 - kShrunk));
     if (j == UINT32_MAX) break;
     const Vector3d between = p - samples.points[j];
     const double along = n.dot(between);
-    if ((samples.points[j] - ball.center).norm() >= ball.radius * (1 - kShrunk) || !(along > 0)) break;
+    if (!(along > 0)) break;
     const double radius = between.squaredNorm() / (2 * along);
     const bool done = radius > ball.radius * (1 - kShrunk);
     ball = {p - radius * n, radius};
@@ -103,13 +111,14 @@ bool standsOut(const Vector3d& center, double radius, const SurfaceSamples& samp
   return samples.normals[i].dot(out) > 0 || out.norm() < radius - tolerance - samples.spacing;
 }
 
-std::vector<Ball> innerBalls(const SurfaceSamples& samples, const NearestPoints& nearest,
-                             const MedialOptions& options) {
+std::vector<Ball> innerBalls(const SurfaceSamples& samples, const NearestPoints& nearest, const MedialOptions& options,
+                             const Progress& progress) {
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : samples.points) box.extend(p);
   const double size = box.diagonal().norm(), least_angle = options.least_angle * M_PI / 180;
   std::vector<Ball> balls;
   for (uint32_t i = 0; i < samples.points.size(); ++i) {
+    if (i % kTold == kTold - 1) progress(share(i, samples.points.size()));
     const Ball ball = shrink(samples, nearest, i, size, least_angle);
     if (ball.radius < size / 2 && box.contains(ball.center) &&
         !standsOut(ball.center, ball.radius, samples, nearest, options.tolerance / 2))
@@ -280,8 +289,10 @@ Result<MedialAxis> medialAxis(const SurfaceSamples& samples, const MedialOptions
   if (samples.points.empty()) return Error{"no surface to speak of: all triangles are without area"};
   progress(std::to_string(samples.points.size()) + " points on the surface: shrinking a ball inside at each");
   const NearestPoints nearest(samples.points);
-  const std::vector<Ball> balls = innerBalls(samples, nearest, options);
-  if (balls.empty()) return Error{"no ball fits inside; are the triangles turned outward?"};
+  const std::vector<Ball> balls = innerBalls(samples, nearest, options, progress);
+  if (balls.empty())
+    return Error{"no ball inside touches the surface at places " + std::to_string(std::lround(options.least_angle)) +
+                 " degrees apart\n  fix: a smaller --angle (60 without it), or more --samples where walls are thin"};
   progress(std::to_string(balls.size()) + " balls on the medial axis: covering the surface with the fewest");
   MedialAxis axis;
   const std::vector<Ball> kept =

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 namespace hapticd::cli {
@@ -32,9 +31,9 @@ void NearestPoints::build(std::size_t first, std::size_t last) {
   build(middle + 1, last);
 }
 
-uint32_t NearestPoints::nearest(const Vector3d& p, const Beyond* only) const {
+uint32_t NearestPoints::nearest(const Vector3d& p, const Beyond* only, double limit) const {
   uint32_t best = UINT32_MAX;
-  double best2 = std::numeric_limits<double>::infinity();
+  double best2 = limit * limit;
   look(0, order_.size(), p, only, best, best2);
   return best;
 }

@@ -1,6 +1,7 @@
 /// Nearest of many points: a k-d tree over a fixed set.
 #pragma once
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -14,8 +15,8 @@ class NearestPoints {
     Eigen::Vector3d from, inward;
     double sine;
   };
-  /// [main] Index of the point nearest to p; UINT32_MAX if there is none.
-  uint32_t nearest(const Eigen::Vector3d& p, const Beyond* only = nullptr) const;
+  /// [main] Index of the point nearest to p; UINT32_MAX if there is none, or none nearer than `limit`.
+  uint32_t nearest(const Eigen::Vector3d& p, const Beyond* only = nullptr, double limit = HUGE_VAL) const;
 
  private:
   void build(std::size_t first, std::size_t last);

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Known shapes are recovered from their triangles: torus, capsule, branching body, box; bad input is refused.
+"""Known shapes are recovered from their triangles: torus, capsule, ellipsoid, cube, branching body, box; what cannot be
+reached or is of odd size is warned of; bad input is refused.
 
 Usage: import_medial.py HAPTICD CONFIG     prints a line a case; exit 1 when one is off.
 """
@@ -210,6 +211,49 @@ def cubes(axis, n, spacing):
     return obj(points, faces)
 
 
+def ellipsoid(a, b, c, n=60, m=60):
+    def at(i, j):
+        t = math.pi * (i + 1) / (n + 1)
+        if j is None:
+            return (0, 0, -c if i == 0 else c)
+        f = 2 * math.pi * j / m
+        return (a * math.sin(t) * math.cos(f), b * math.sin(t) * math.sin(f), -c * math.cos(t))
+    return obj(*turned(n, m, at, False))
+
+
+def recoverEllipsoid(folder):
+    """Its axis is a sheet. A tolerance below what the samples can tell is warned of, with what was reached."""
+    mesh = save(os.path.join(folder, "ellipsoid.obj"), ellipsoid(.03, .02, .012))
+    out = os.path.join(folder, "ellipsoid.ma")
+    code, text = hapticd("import", "--medial", mesh, "--tolerance", "0.0005", out)
+    check("an ellipsoid is imported", code == 0, text)
+    if code == 0:
+        count, parts, there, back = told(text)
+        check("it is within the tolerance, without a warning", parts == 1 and there <= 5e-4 and "warning" not in text, text)
+    code, text = hapticd("import", "--medial", mesh, "--tolerance", "0.00001", out)
+    check("more than can be reached is warned of with both figures", code == 0 and
+          "warning: 0.01 mm asked, 0." in text and "mm reached" in text, text)
+
+
+def recoverCube(folder):
+    mesh = save(os.path.join(folder, "cube.obj"), box(.06, .06, .06))
+    out = os.path.join(folder, "cube.ma")
+    code, text = hapticd("import", "--medial", mesh, "--tolerance", "0.001", out)
+    check("a cube is imported", code == 0, text)
+    if code == 0:
+        count, parts, there, back = told(text)
+        check("it is one body, off by 3 mm at its corners at most", parts == 1 and there <= 3e-3, text)
+        check("and its size is told", "0.06 x 0.06 x 0.06 m" in text and "arm reaches" not in text, text)
+    code, text = hapticd("import", "--medial", save(os.path.join(folder, "house.obj"), box(60, 60, 60)), out)
+    check("60 m are warned of with the cure", code == 0 and "than an arm reaches" in text and "--scale 0.001" in text, text)
+    scene = save(os.path.join(folder, "house.yaml"), "hapticd: 1\nmodels:\n  - {name: body, plugin: mat_deformable, "
+                 "parameters: {geometry: cube.ma}}\n")
+    code, text = hapticd("explain", scene)
+    check("and when it is loaded", code == 0 and "expected metres" in text, text)
+    code, text = hapticd("import", "--medial", mesh, "--angle", "180", out)
+    check("too wide an angle is named", code == 1 and "a smaller --angle" in text, text)
+
+
 def recoverNurbs(folder):
     out = os.path.join(folder, "nurbs.ma")
     code, text = hapticd("import", "--medial", os.path.join(CONFIG, "models", "torus.yaml"), "--tolerance", "0.001", out)
@@ -217,6 +261,10 @@ def recoverNurbs(folder):
     if code == 0:
         count, parts, there, back = told(text)
         check("it is within the tolerance", parts == 1 and there <= 1e-3, text)
+    code, text = hapticd("import", "--medial", os.path.join(CONFIG, "models", "torus.yaml"), "--tolerance", "0.0001", out)
+    check("a torus within 0.1 mm is one", code == 0 and told(text)[1] == 1 and told(text)[2] <= 1e-4, text)
+    code, text = hapticd("import", "--medial", os.path.join(CONFIG, "models", "goblet.yaml"), "--tolerance", "0.002", out)
+    check("a NURBS goblet is imported, or refused with what is wrong", code == 0 or "expected" in text, text)
 
 
 def recoverBox(folder):
@@ -259,6 +307,6 @@ def refuse(folder):
 
 
 with tempfile.TemporaryDirectory() as work:
-    for case in (recoverTorus, recoverCapsule, recoverBranches, recoverNurbs, recoverBox, refuse):
+    for case in (recoverTorus, recoverCapsule, recoverEllipsoid, recoverCube, recoverBranches, recoverNurbs, recoverBox, refuse):
         case(work)
 sys.exit(1 if failures else 0)
