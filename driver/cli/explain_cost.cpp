@@ -21,9 +21,8 @@
 namespace hapticd::cli {
 namespace {
 
-void quiet(int level, const std::string& who, const std::string& text) {
-  if (level >= HSP_LOG_ERROR) logToTerminal(level, who, text);
-}
+/// Every set-up here gives its error back as well, and the same models are set up again and again.
+void quiet(int, const std::string&, const std::string&) {}
 
 std::string where(const scene::Place& place, const std::string& key) {
   return place.line > 0 ? fmt::format("{}:{} {}", place.file, place.line, key) : place.file + " " + key;
@@ -176,7 +175,11 @@ class Costs {
     const scene::Model& model = scene_.models[index];
     const std::string key = fmt::format("models[{}]", index), name = "model " + model.name;
     add(name, where(model.place, key), model.plugin, measured_.step_ns[index], shape.report().locked_bytes);
-    addAsked(index, shape, HSP_R_MOVES, ": integrator", "moves by itself", "it is static: nothing is integrated");
+    if ((shape.description().flags & HSP_C_DEFORMS) != 0)
+      add(name + ": deformation", where(model.place, key + ".plugin"),
+          "yields and settles in its own step; what is at rest is left alone", 0, 0);
+    else
+      addAsked(index, shape, HSP_R_MOVES, ": integrator", "moves by itself", "it is static: nothing is integrated");
     addAsked(index, shape, HSP_R_VELOCITY, ": velocity", "damps, drags or rubs", "it does not damp");
     const bool moves = model.kinematic || (shape.report().flags & HSP_R_MOVES) != 0;
     const bool placed = moves || !model.pose.position.isZero(0) || !model.pose.orientation.vec().isZero(0);
