@@ -38,7 +38,7 @@ Cold cold(const medial::test::Sheet& sheet, const Skeleton& skeleton) {
     result.evaluations += double(foot.evaluations) / kQueries;
   }
   double sum = 0;
-  result.ns = 1e9 * medianTime(11, 200, [&](int i) {
+  result.ns = 1e9 * leastTime(11, 200, [&](int i) {
                 sum += skeleton.search(queries[static_cast<std::size_t>(i) % queries.size()], {}).depth;
               });
   return result;
@@ -67,7 +67,7 @@ Warm warm(const Skeleton& skeleton) {
     result.mean += foot.evaluations / 1e4;
   }
   foot = skeleton.search(path[0], {});
-  result.ns = 1e9 * medianTime(11, 900, [&](int i) {
+  result.ns = 1e9 * leastTime(11, 900, [&](int i) {
                 foot = skeleton.nearest(path[static_cast<std::size_t>(i) % path.size()], foot.u, foot.v, {});
               });
   return result;
