@@ -1,7 +1,6 @@
 /// `hapticd run`: the daemon itself, in the foreground.
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -88,14 +87,6 @@ record::LimitReport limitsOf(const std::string& device, const servo::Limiter& li
   return report;
 }
 
-/// Two arms of one file have one name: each gets a number then.
-std::string nameOfArm(const std::vector<scene::Device>& devices, size_t index) {
-  const std::string& name = devices[index].name;
-  const auto same =
-      std::count_if(devices.begin(), devices.end(), [&](const auto& other) { return other.name == name; });
-  return same > 1 ? name + " (device " + std::to_string(index + 1) + ")" : name;
-}
-
 /// What the first arm, whose forces the black box keeps, was asked for over the last seconds against what it sustains.
 void warnOfHeat(const servo::Runner& runner, double rate) {
   constexpr double kHeatSeconds = 5;  // less does not heat a winding
@@ -128,7 +119,7 @@ int conclude(const Options& options, servo::Runner& runner, const std::vector<st
       }
   report.resident_bytes = runner.residentBytes();
   for (size_t i = 0; i < runner.arms().size(); ++i)
-    report.limits.push_back(limitsOf(nameOfArm(runner.scene().devices, i), runner.arms()[i]->limiter()));
+    report.limits.push_back(limitsOf(runner.scene().devices[i].name, runner.arms()[i]->limiter()));
   std::fputs(record::summary(report).c_str(), stdout);
   warnOfHeat(runner, report.rate_hz);
   if (const record::Recorder* recorder = runner.recorder())

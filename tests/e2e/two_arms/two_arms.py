@@ -5,7 +5,6 @@ Usage: two_arms.py HAPTICD SOURCE_DIR
 """
 import json
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
@@ -16,7 +15,6 @@ IN, AWAY = "hand: {radius: 0.046}", "hand: {radius: 0.07}"
 
 def run(folder, right, left):
     text = (SOURCE / "config/scenes/two-arms.yaml").read_text().replace("../", f"{SOURCE}/config/")
-    text = re.sub(r"\n +name: \w+ hand", "", text)  # both have the name of their file
     first, second, end = text.split(IN)
     scene, report = folder / "scene.yaml", folder / "report.json"
     scene.write_text(first + right + second + left + end)
@@ -25,7 +23,7 @@ def run(folder, right, left):
     assert done.returncode == 0, done.stdout + done.stderr
     result = json.loads(report.read_text())
     assert not result["faults"], result["faults"]
-    assert len(result["limits"]) == 2, result["limits"]  # a row an arm, though both have one name
+    assert len(result["limits"]) == 2, result["limits"]  # a row an arm
     model = result["models"]["sphere"]
     return model["contact_ticks"], model["force_n"]["max"]
 
