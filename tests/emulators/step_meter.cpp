@@ -8,8 +8,9 @@ namespace hapticd::emulator {
 
 double StepMeter::report(Nanoseconds now) {
   if (angle_ == 0) return 0;
-  if (reports_++ % kReportsAStep == 0) stepped_at_ = now;
-  return reports_ / kReportsAStep % 2 == 0 ? 0 : angle_;
+  const uint64_t report = reports_++;
+  if (report % kReportsAStep == 0) stepped_at_ = now;
+  return report / kReportsAStep % 2 == 0 ? 0 : angle_;
 }
 
 void StepMeter::command(Nanoseconds now, const Currents& current) {
