@@ -58,6 +58,7 @@ class Search {
       if (auto tried = attempt(planned_[i]); !tried) return Error{tried.error()};
     if (combinations() > kFewTogether)
       if (auto done = descend(); !done) return Error{done.error()};
+    if (auto again = measureFirstAgain(); !again) return Error{again.error()};
     Tuning tuning;
     tuning.candidates = std::move(candidates_);
     tuning.complete = going_;
@@ -106,6 +107,16 @@ class Search {
     progress.seconds_left =
         std::min(each * static_cast<double>(progress.expected - progress.done), options_.seconds - spent);
     going_ = spent < options_.seconds && (!options_.go_on || options_.go_on(progress));
+    return {};
+  }
+
+  /// The first setting is the scene's own, which every other is held against; a machine that was busy or had its
+  /// processor slow at the start would make all the others look cheaper.
+  Result<void> measureFirstAgain() {
+    Candidate& first = candidates_[0];
+    auto run = measure(applied(scene_, knobs_, first.choice), motion_, kPasses, options_.log);
+    if (!run) return Error{run.error()};
+    if (run->cost.p50_ns < first.cost.p50_ns) first.cost = run->cost;
     return {};
   }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The settings of a shipped scene lie on its front of speed and accuracy: no other is clearly cheaper and no less exact.
-Clearly: by a quarter, in each of two measurements, so that a busy machine does not decide.
+Clearly: by a quarter, in each of three measurements, so that a busy machine does not decide.
 Usage: default_on_the_front.py HAPTICD SCENE"""
 import json
 import subprocess
@@ -36,8 +36,9 @@ def better():
     return found
 
 
-first = better()
-if first:
-    second = better()
-    both = {setting: how for setting, how in second.items() if setting in first}
-    assert not both, "the default is not on the front; cheaper and no less exact:\n" + "\n".join(f"  {s}: {h}" for s, h in both.items())
+beats = better()
+for _ in range(2):
+    if beats:
+        again = better()
+        beats = {setting: how for setting, how in again.items() if setting in beats}
+assert not beats, "the default is not on the front; cheaper and no less exact:\n" + "\n".join(f"  {s}: {h}" for s, h in beats.items())
