@@ -69,17 +69,18 @@ TEST(Volume, IsKeptUnderSeveralContactsAtOnce) {
     ASSERT_EQ(body.activate(3), HSP_OK);
     const double before = volumeOf(body);
     const std::vector<Vector3d> places{{.001, .001, 0}, {.02, .01, 0}, {-.02, -.01, 0}};
-    std::vector<double> top;
-    for (uint32_t i = 0; i < 3; ++i) body.search(places[i] + Vector3d(0, 0, .04), i);
-    const auto at = [&](double z) {
-      std::vector<Vector3d> all = places;
-      for (Vector3d& p : all) p.z() = z;
-      return all;
-    };
-    for (const hsp_contact& rest : body.step(at(.04))) top.push_back(rest.point[2]);
+    std::vector<Vector3d> probes = places;
+    for (uint32_t i = 0; i < 3; ++i) {
+      probes[i].z() = .04;
+      body.search(probes[i], i);
+    }
+    for (int k = 0; k < 100; ++k) {  // down by the distance to the surface, until they lie on it
+      const auto apart = body.step(probes);
+      for (std::size_t i = 0; i < 3; ++i) probes[i].z() += std::min(0.0, apart[i].depth_m);
+    }
+    const std::vector<Vector3d> top = probes;
     for (int k = 0; k < 400; ++k) {
-      std::vector<Vector3d> probes = places;
-      for (std::size_t i = 0; i < 3; ++i) probes[i].z() = top[i] - .005 * std::min(1.0, k / 100.0);
+      for (std::size_t i = 0; i < 3; ++i) probes[i].z() = top[i].z() - .005 * std::min(1.0, k / 100.0);
       for (const hsp_contact& contact : body.step(probes)) ASSERT_TRUE(k < 10 || contact.depth_m > 0);
     }
     changes[keep ? 1 : 0] = std::fabs(volumeOf(body) / before - 1);
