@@ -81,7 +81,7 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
                     : model.kinematic ? "follows " + std::to_string(model.path.size()) + " points of a path"
                                       : "none: no integrator, its pose is fixed");
     if ((shape.description().flags & HSP_C_DEFORMS) != 0)
-      say("deformation", "asleep until it is touched; then only control points in motion are integrated");
+      say("  deformation", "asleep until it is touched; then only control points in motion are integrated");
     const bool identity = model.pose.position.isZero(0) && model.pose.orientation.vec().isZero(0);
     const bool still = (report.flags & HSP_R_MOVES) == 0 && !model.kinematic;
     say("  transform", identity && still ? "none: the model stands at the world's origin"
