@@ -24,8 +24,9 @@ def scene(folder):
     text = (CONFIG / "devices/sarcos.yaml").read_text().replace("/dev/bus/vme/m0", str(folder / "window"))
     (folder / "sarcos.yaml").write_text(text)
     file = folder / "scene.yaml"
-    file.write_text(f"hapticd: 1\nservo: {{rate: 1500}}\ndevice: sarcos.yaml\nmodels:\n  - name: cylinder\n    plugin: "
-                    f"nurbs_rigid\n    parameters: {{geometry: {CONFIG}/models/cylinder.yaml, stiffness: 6000}}\n")
+    file.write_text(f"hapticd: 1\nservo: {{rate: 1500}}\ndevice: {{file: sarcos.yaml, mount: {{position: [0, 0, 0]}}}}\n"
+                    f"models:\n  - name: cylinder\n    plugin: nurbs_rigid\n"
+                    f"    parameters: {{geometry: {CONFIG}/models/cylinder.yaml, stiffness: 6000}}\n")
     return file
 
 

@@ -30,7 +30,8 @@ def scene(folder, arm, admittance):
     file.write_text(f"""hapticd: 1
 servo: {{rate: 1500}}
 devices:
-  - file: {arm}{extra}
+  - file: {arm}
+    mount: {{position: [0, 0, 0]}}   # of both arms: their tips are alike{extra}
 models:
   - name: cylinder
     plugin: nurbs_rigid
