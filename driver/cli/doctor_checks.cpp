@@ -32,6 +32,10 @@ Finding ok(std::string name, std::string state) {
   return {std::move(name), Verdict::kOk, std::move(state), "", ""};
 }
 
+/// From a checkout, as the packages do it.
+constexpr const char* kInstallLimits =
+    "sudo install -m 644 config/systemd/70-hapticd.limits /etc/security/limits.d/70-hapticd.conf";
+
 /// Real-time rights are found out by asking for them, never by reading what should be.
 Finding checkScheduler() {
   std::error_code code;
@@ -70,7 +74,7 @@ Finding checkMemory() {
   if (!code) return ok("memory", "can be locked");
   return {"memory", Verdict::kFail, "mlockall: " + code.message() + "; " + os::realTimeRights(),
           "page faults of up to milliseconds inside a tick",
-          "raise memlock to 524288 for the group haptic in /etc/security/limits.d/70-hapticd.conf"};
+          std::string(kInstallLimits) + ", then log in again: it raises memlock to 524288 KiB for the group haptic"};
 }
 
 Finding checkThrottling() {
@@ -107,23 +111,23 @@ Finding checkGroup() {
           root ? "run hapticd doctor as that user" : "sudo usermod -aG haptic $USER, then log in again"};
 }
 
-/// A limit as `ulimit` shows it; unlimited is the largest number.
+/// Limits as `ulimit` and limits.d have them: memory in KiB; unlimited is the largest number.
 Finding checkLimits() {
   rlimit priority{}, memory{};
   getrlimit(RLIMIT_RTPRIO, &priority);
   getrlimit(RLIMIT_MEMLOCK, &memory);
-  const auto words = [](rlim_t value) {
-    return value == RLIM_INFINITY ? std::string("unlimited") : std::to_string(value);
+  const auto words = [](rlim_t value, rlim_t unit, const char* name) {
+    return value == RLIM_INFINITY ? std::string("unlimited") : std::to_string(value / unit) + name;
   };
-  const std::string state = "RLIMIT_RTPRIO " + words(priority.rlim_cur) + ", RLIMIT_MEMLOCK " + words(memory.rlim_cur);
+  const std::string state =
+      "rtprio " + words(priority.rlim_cur, 1, "") + ", memlock " + words(memory.rlim_cur, 1024, " KiB");
   constexpr rlim_t kMemory = 512u << 20;
   if (priority.rlim_cur >= static_cast<rlim_t>(os::kServoPriority) && memory.rlim_cur >= kMemory)
     return ok("limits", state);
   return {"limits", geteuid() == 0 ? Verdict::kWarn : Verdict::kFail,
           state + "; expected rtprio 80 and memlock 524288 KiB",
           "the servo thread or its memory is refused what it asks for",
-          "install /etc/security/limits.d/70-hapticd.conf (@haptic - rtprio 80, @haptic - memlock 524288), then log in "
-          "again"};
+          std::string(kInstallLimits) + ", then log in again"};
 }
 
 /// The rules must sort before 73-seat-late, or a person at the seat gets no access.

@@ -10,6 +10,7 @@
 #include "base/os.hpp"
 #include "cli/command.hpp"
 #include "cli/explain_cost.hpp"
+#include "scene/reader.hpp"
 #include "servo/lockstep.hpp"
 #include "servo/world.hpp"
 
@@ -103,7 +104,7 @@ void explainServo(const scene::Scene& scene, const servo::World& world) {
   say("budget of a tick", deadline);
   say("velocity estimator", world.needsVelocity()
                                 ? scene.servo.velocity.estimator + " (" +
-                                      std::to_string(scene.servo.velocity.parameter) + "): a model uses velocity"
+                                      scene::numberText(scene.servo.velocity.parameter) + "): a model uses velocity"
                                 : "none: nothing in the scene uses velocity");
 }
 

@@ -1,5 +1,7 @@
 /// `hapticd import`: converts Bezier patches into a model file, and closed surfaces into soft bodies.
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 
@@ -18,6 +20,13 @@ struct Options {
   MedialImport body;
 };
 
+/// The commonest mistake: triangles given where patches are read.
+std::string medialHint(const std::string& file) {
+  std::string kind = std::filesystem::path(file).extension().string();
+  for (char& c : kind) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return kind == ".obj" || kind == ".stl" ? "\n  fix: an OBJ or STL needs --medial, which makes a soft body of it" : "";
+}
+
 int import(const Options& options) {
   if (options.medial) {
     MedialImport body = options.body;
@@ -31,7 +40,7 @@ int import(const Options& options) {
   printProblems(problems, stderr);
   if (!text) return kBadInput;
   auto model = parseBpt(*text, options.file);
-  if (!model) return fail(kBadInput, model.error());
+  if (!model) return fail(kBadInput, model.error() + medialHint(options.file));
   Placement placement = options.placement;
   placement.up = options.up[0];
   placeModel(*model, placement);

@@ -294,6 +294,22 @@ TEST_F(Commands, ImportSaysWhereAPatchFileIsWrong) {
   }
 }
 
+TEST_F(Commands, ImportSaysThatTrianglesNeedAnotherWay) {
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", out = " " + (dir_ / "x.yaml").string();
+  for (const char* name : {"egg.obj", "egg.STL"})
+    EXPECT_TRUE(has(run("import " + put(name, triangle) + out).text, "an OBJ or STL needs --medial"));
+  EXPECT_FALSE(has(run("import " + put("egg.bpt", triangle) + out).text, "--medial"));
+}
+
+TEST_F(Commands, ExplainNamesTheVelocityEstimatorAsTheSceneDoes) {
+  const std::string scene = put("scene.yaml",
+                                "hapticd: 1\nservo: {velocity: {estimator: window, parameter: 3}}\nmodels:\n"
+                                "  - {name: ball, plugin: nurbs_rigid, parameters: {geometry: " HAPTICD_SOURCE_DIR
+                                "/config/models/sphere.yaml, damping: 5}}\n");
+  const Outcome outcome = run("explain " + scene, kShipped);
+  EXPECT_TRUE(has(outcome.text, "window (3): a model uses velocity")) << outcome.text;
+}
+
 TEST_F(Commands, DaemonFileIsCheckedBeforeAnythingRuns) {
   const std::string daemon = put("daemon.yaml", "hapticd-daemon: 1\nservo: {priority: 200}\n");
   const Outcome outcome = run("--config " + daemon + " plugin list");
