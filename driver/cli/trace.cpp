@@ -41,11 +41,11 @@ Result<std::vector<uint32_t>> chosenModels(const scene::Scene& scene, const std:
 /// Runs the core over the path, a tick a row.
 Result<void> traceRows(const scene::Scene& scene, servo::World& world, const std::vector<PathRow>& rows,
                        TraceWriter& writer) {
-  std::optional<servo::VelocityEstimator> velocity;
+  std::optional<servo::ProbeVelocity> velocity;
   if (world.needsVelocity()) {
     auto estimator = servo::makeEstimator(scene.servo.velocity, scene.servo.rate);
     if (!estimator) return Error{estimator.error()};
-    velocity = *estimator;
+    velocity.emplace(*estimator);
   }
   servo::Lockstep lockstep(world);
   servo::Probe probe;
@@ -57,7 +57,7 @@ Result<void> traceRows(const scene::Scene& scene, servo::World& world, const std
       probe.orientation = rows[i].orientation.normalized();
       if (velocity) probe.velocity = velocity->update(probe.position, dt);
     } else if (velocity) {
-      velocity->reset();  // a gap in the samples: differences across it mean nothing
+      velocity->reset();
     }
     world.core().publish(t, {&probe, 1});
     lockstep.before(t);

@@ -54,7 +54,7 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   if (options.needs_velocity || described.limits.velocity > 0 || described.limits.power > 0) {
     auto estimator = makeEstimator(servo.velocity, options.rate, arm->info().resolution_m);
     if (!estimator) return Error{estimator.error()};
-    arm->velocity_ = *estimator;
+    arm->velocity_.emplace(*estimator);
   }
   return arm;
 }
@@ -92,11 +92,15 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
   taken_.store(false);
   limiter_.watchButtons(read_status_ < 0 ? 0 : sample_.buttons);
   probe_.valid = judge(read_status_, now) && locate();
-  if (!probe_.valid) return probe_;
+  if (!probe_.valid) {
+    if (velocity_) velocity_->reset();
+    return probe_;
+  }
   if (admittance_) takeVirtualProbe();
   if (velocity_) {
     probe_.velocity = velocity_->update(probe_.position, dt);
     limiter_.watchVelocity(probe_.velocity);
+    if (velocity_->speed() > kMaxProbeSpeed) limiter_.watchSpeed(velocity_->speed());
   }
   return probe_;
 }

@@ -106,7 +106,7 @@ class Arm {
   Eigen::Quaterniond q_world_device_;
   Eigen::Vector3d origin_world_;
   Eigen::Vector3d gravity_device_ = Eigen::Vector3d::Zero();
-  std::optional<VelocityEstimator> velocity_;
+  std::optional<ProbeVelocity> velocity_;
   std::optional<passivity::PassivityController> passivity_;
   std::optional<Admittance> admittance_;
   Limiter limiter_;

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "servo/probe_velocity.hpp"
+
 namespace hapticd::servo {
 
 namespace {
-
-constexpr double kMaxProbeSpeed = 20;  ///< [m/s] twice what a hand can do; beyond it the sample is a jump
 
 hsp_pose startPose(const scene::Model& model) {
   hsp_pose pose{};

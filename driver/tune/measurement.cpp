@@ -37,11 +37,11 @@ Result<Cost> pass(const scene::Scene& scene, const Motion& motion, VelocityFrom 
                   const host::Services::Log& log) {
   auto world = servo::World::build(scene, {.rate = 1 / motion.period}, log);
   if (!world) return Error{world.error()};
-  std::optional<servo::VelocityEstimator> estimator;
+  std::optional<servo::ProbeVelocity> estimator;
   if ((*world)->needsVelocity() && from == VelocityFrom::kEstimator) {
     auto made = servo::makeEstimator(scene.servo.velocity, 1 / motion.period);
     if (!made) return Error{made.error()};
-    estimator = *made;
+    estimator.emplace(*made);
   }
   servo::Lockstep lockstep(**world);
   servo::Core& core = (*world)->core();
