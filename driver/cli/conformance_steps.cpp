@@ -87,7 +87,9 @@ std::string forceContinuous(const Recipe& recipe, uint64_t) {
     hsp_probe in{};
     Eigen::Map<Vector3d>(in.velocity) = (p - last) / kConformanceDt;
     last = p;
-    jumps += claim.judge(made.subject->report(), in, answer.contacts[0], p, made.subject->damping(), kConformanceDt) < 1 ? 1 : 0;
+    jumps += claim.judge(made.subject->report(), in, answer.contacts[0], p, made.subject->damping(), kConformanceDt) < 1
+                 ? 1
+                 : 0;
     return std::string(jumps >= 3 ? "the force jumped beyond the claimed stiffness three times" : "");
   });
 }
@@ -101,6 +103,19 @@ std::string normalUnit(const Recipe& recipe, uint64_t) {
     const bool traced = (c.flags & HSP_OUT_TRACED) != 0;
     return traced && std::abs(norm - 1) > 1e-6 ? "a normal of length " + text(norm) : std::string();
   });
+}
+
+/// The sign that hurts: by the whole way, since a detent may pull for some of it.
+std::string forceOutward(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  double along_normal = 0;
+  along(*made.subject, [&](const Answer& answer, const Vector3d&) {
+    const hsp_contact& c = answer.contacts[0];
+    if ((c.flags & HSP_OUT_CONTACT) != 0 && c.depth_m > 0) along_normal += Vector3d(c.force).dot(Vector3d(c.normal));
+    return std::string();
+  });
+  return along_normal >= 0 ? "" : "forces in contact point against the outward normal: they pull the hand in";
 }
 
 std::string energyNonIncreasing(const Recipe& recipe, uint64_t) {
@@ -139,6 +154,7 @@ std::vector<ConformanceTest> stepTests() {
       {"finite-outputs", "every answer is finite, whatever the probe does", &finiteOutputs},
       {"force-continuous", "forces follow the claimed stiffness", &forceContinuous},
       {"normal-unit-length", "normals are unit vectors", &normalUnit},
+      {"force-outward", "forces in contact push out of the shape", &forceOutward},
       {"energy-non-increasing", "a closed path gives no energy", &energyNonIncreasing},
   };
 }

@@ -33,7 +33,7 @@ shipped = sorted(glob.glob(os.path.join(SHIPPED, "*.so")))
 check("plugins ship", len(shipped) >= 4, shipped)
 for file in shipped:
     code, tests, failed, err = examined(file)
-    check(f"{os.path.basename(file)} passes", len(tests) >= 24 and not failed, (code, failed, err[-300:]))
+    check(f"{os.path.basename(file)} passes", len(tests) >= 25 and not failed, (code, failed, err[-300:]))
 
 for name, test in (("bad_crash", "descriptor-complete"), ("bad_no_symbol", "descriptor-complete"),
                    ("bad_magic", "descriptor-complete"), ("bad_no_step", "descriptor-complete")):
@@ -41,6 +41,7 @@ for name, test in (("bad_crash", "descriptor-complete"), ("bad_no_symbol", "desc
     check(f"{name} fails by {test}", code == 1 and any(t == test for _, t in failed), (code, failed, err[-300:]))
 
 code, tests, failed, err = examined(SHAPES)
-for shape, test in (("allocating", "no-allocation-in-step"), ("rude", "no-lock-in-step"), ("misbehaving", "finite-outputs")):
+for shape, test in (("allocating", "no-allocation-in-step"), ("rude", "no-lock-in-step"), ("misbehaving", "finite-outputs"),
+                    ("pulling", "force-outward")):
     check(f"{shape} fails by {test}", code == 1 and (shape, test) in failed, (code, sorted(failed), err[-300:]))
 sys.exit(1 if failures else 0)

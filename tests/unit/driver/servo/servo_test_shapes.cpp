@@ -39,6 +39,27 @@ struct Wall : hapticd::Shape {
   }
 };
 
+/// A wall with the wrong sign.
+struct Pulling : hapticd::Shape {
+  double stiffness;
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.pulling", "pulling", "1.0.0", "MIT",
+                                            "Pulls the hand in."};
+  static constexpr auto fields() {
+    return std::array{Fields<Pulling>::real("stiffness", &Pulling::stiffness, "N/m", 0, 1e6, 1000, "Stiffness.")};
+  }
+  void activate(const hsp_activation&, hsp_report& report) { report.max_stiffness = stiffness; }
+  hsp_status touch(const hsp_probe& in, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
+    out.flags = HSP_OUT_TRACED;
+    out.depth_m = -in.position[1];
+    out.point[0] = in.position[0], out.point[2] = in.position[2];
+    out.normal[1] = 1;
+    if (out.depth_m <= 0 || (in.flags & HSP_IN_INVALID) != 0) return HSP_OK;
+    out.flags |= HSP_OUT_CONTACT;
+    out.force[1] = -stiffness * out.depth_m;
+    return HSP_OK;
+  }
+};
+
 /// Pushes with 1 N along y until tick `after`, then answers as `how` says for `times` ticks.
 struct Misbehaving : hapticd::Shape {
   int how, after, times;
@@ -180,4 +201,4 @@ struct Throwing : hapticd::Shape {
 
 }  // namespace
 
-HAPTICD_SHAPES(Wall, Misbehaving, Sliding, Allocating, Throwing, Deadly, Turning, Rude)
+HAPTICD_SHAPES(Wall, Pulling, Misbehaving, Sliding, Allocating, Throwing, Deadly, Turning, Rude)
