@@ -2,6 +2,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -265,6 +268,42 @@ TEST_F(Commands, KinematicsWarnsOfJointsBeyondTheArmsLimits) {
   EXPECT_EQ(outside.exit_code, 0) << outside.text;
   EXPECT_TRUE(has(outside.text, "in 1 of 2 rows the tip is where the arm's joint limits do not let it"))
       << outside.text;
+}
+
+/// The number in a column of the one row of a CSV text.
+double columnOf(const std::string& csv, const std::string& name) {
+  std::istringstream names(csv.substr(0, csv.find('\n'))), row(csv.substr(csv.find('\n') + 1));
+  std::string column, value;
+  while (std::getline(names, column, ',') && std::getline(row, value, ','))
+    if (column == name) return std::stod(value);
+  return std::nan("");
+}
+
+TEST_F(Commands, EveryArmThatShipsRestsBeforeTheShapesOfAScene) {
+  const std::vector<std::array<std::string, 2>> at_rest = {
+      {"woodenhaptics", "0,1.5707963267948966,1.5707963267948966"},
+      {"polhem", "0,1.5707963267948966,1.5707963267948966"},
+      {"premium15", "0,0,0"},
+      {"premium15-bulk", "0,0,0"},
+      {"falcon", "0.55,0.55,0.55"},
+      {"sarcos", "-1.5707963267948966,2.2,0,-1.2,0,0,0,0,0.35,0"},
+  };
+  for (const auto& [name, joints] : at_rest) {
+    const std::string arm = HAPTICD_SOURCE_DIR "/config/devices/" + name + ".yaml";
+    const std::string names = std::string("q1,q2,q3") + (name == "sarcos" ? ",q4,q5,q6,q7,q8,q9,q10" : "");
+    const std::string tip = (dir_ / "tip.csv").string();
+    run("device kinematics " + arm + " --joints " + put("q.csv", names + "\n" + joints + "\n") + " -o " + tip,
+        kShipped);
+    const std::string info = run("device info " + arm, kShipped).text, csv = get("tip.csv");
+    std::array<double, 3> mount{};
+    const size_t at = info.find("position [");
+    ASSERT_TRUE(at != std::string::npos &&
+                std::sscanf(info.c_str() + at, "position [%lf, %lf, %lf]", &mount[0], &mount[1], &mount[2]) == 3)
+        << info;
+    EXPECT_NEAR(mount[0] + columnOf(csv, "x"), 0, 0.01) << name;
+    EXPECT_NEAR(mount[1] + columnOf(csv, "y"), 0, 0.01) << name;
+    EXPECT_NEAR(mount[2] + columnOf(csv, "z"), 0.07, 0.025) << name << ": 5 cm of the small Falcon to 9 cm";
+  }
 }
 
 TEST_F(Commands, ImportScalesCentresAndKeepsTheCredit) {
