@@ -122,8 +122,11 @@ class SimulatedArm : public Device, public Parameters {
   static void cut(hdv_device* device) noexcept HSP_RT { self(device).cut_.store(true); }
   static uint64_t nextSample(hdv_device* device, uint64_t until_ns) noexcept {
     const SimulatedArm& arm = self(device);
-    const uint64_t period = arm.sequence_ == 0 ? 0 : static_cast<uint64_t>(std::llround(1e9 / arm.rate));
-    return std::min(until_ns, arm.now_ns_ + period);
+    if (arm.sequence_ == 0) return std::min(until_ns, arm.now_ns_);
+    const auto period = static_cast<uint64_t>(std::llround(1e9 / arm.rate));
+    const uint64_t samples =
+        (arm.now_ns_ - arm.start_ns_) / period + 1;  // since the start: a late read delays no other
+    return std::min(until_ns, arm.start_ns_ + samples * period);
   }
   static constexpr hdv_ext_pace kPace = {sizeof(hdv_ext_pace), 0, &nextSample};
   static constexpr hdv_ext_cut kCut = {sizeof(hdv_ext_cut), 0, &cut};

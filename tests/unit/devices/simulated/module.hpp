@@ -10,6 +10,7 @@
 
 #include "guide.h"
 #include "hapticd/device.h"
+#include "hapticd/device_pace.h"
 
 namespace hapticd::simulated {
 
@@ -56,6 +57,10 @@ class Module {
     now_ns += ns;
     EXPECT_EQ(class_->read(device_, now_ns, &sample), HSP_OK);
     return sample;
+  }
+  /// When the next sample is due, as a loop that waits for it asks.
+  uint64_t nextSample(uint64_t until_ns) {
+    return static_cast<const hdv_ext_pace*>(class_->extension(device_, HDV_EXT_PACE))->wait(device_, until_ns);
   }
   void write(uint32_t mode, const Eigen::VectorXd& torque) {
     hdv_command command{};

@@ -41,6 +41,23 @@ TEST(Simulated, ChangesByLessThanTwoCountsWhenTheStepIsHalved) {
   EXPECT_LT(worst, 2 * 2 * M_PI / (4096 * 11.2));
 }
 
+// A loop that wakes a little late each time would otherwise run slower by that much.
+TEST(Simulated, HasASampleEachPeriodHoweverLateTheLastWasRead) {
+  Module arm;
+  ASSERT_EQ(arm.start(), HSP_OK) << arm.said;
+  const uint64_t start = arm.now_ns;
+  arm.read(0);
+  for (uint64_t k = 1; k < 100; ++k) {
+    const uint64_t due = arm.nextSample(UINT64_MAX);
+    EXPECT_EQ(due, start + k * kMillisecond);
+    arm.read(due - arm.now_ns + k * 5000);
+  }
+  arm.read(2 * kMillisecond + kMillisecond / 2);  // two are lost; the next is on time
+  EXPECT_EQ((arm.nextSample(UINT64_MAX) - start) % kMillisecond, 0u);
+  EXPECT_LE(arm.nextSample(UINT64_MAX), arm.now_ns + kMillisecond);
+  EXPECT_EQ(arm.nextSample(arm.now_ns + 7), arm.now_ns + 7);
+}
+
 TEST(Simulated, ReportsWholeEncoderCounts) {
   Module arm;
   strokeOf(arm, 300);
