@@ -12,6 +12,7 @@
 #include "cli/trace_writer.hpp"
 #include "servo/lockstep.hpp"
 #include "servo/probe_velocity.hpp"
+#include "servo/silenced.hpp"
 #include "servo/world.hpp"
 
 namespace hapticd::cli {
@@ -80,7 +81,10 @@ int trace(const Options& options) {
   auto writer = TraceWriter::open(options.out, *scene, *models);
   if (!writer) return fail(kBadInput, writer.error());
   if (auto done = traceRows(*scene, **world, *rows, **writer); !done) return fail(kFailed, done.error());
-  return kWorked;
+  int code = kWorked;
+  for (const servo::ModelState& model : (*world)->core().models())
+    if (const std::string why = servo::whySilenced(model); !why.empty()) code = fail(kFailed, why);
+  return code;
 }
 
 }  // namespace
@@ -96,7 +100,9 @@ void addTrace(CLI::App& app, int& exit_code) {
   command->add_option("--out", options->out, "result (CSV): a row a tick and model; - for standard output")->required();
   command->add_option("--models", options->models, "only these models, comma-separated");
   command->footer(
-      "Status column: 0 good, 1 good but coarser than asked, -6 the surface or the sample was lost (no force).\n"
+      "Status column: 0 good, 1 good but coarser than asked, -2 the model was silenced, -6 the surface or the sample "
+      "was\n"
+      "lost (no force).\n"
       "Forces are those of the models as the hand would feel them without limits: limits belong to a device, and a "
       "trace\n"
       "has none.\n"

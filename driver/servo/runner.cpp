@@ -9,6 +9,7 @@
 #include "servo/about.hpp"
 #include "servo/paced_clock.hpp"
 #include "servo/servo_watch.hpp"
+#include "servo/silenced.hpp"
 #include "sim/proximity_thread.hpp"
 #include "watch/crash.hpp"
 #include "watch/notify.hpp"
@@ -66,31 +67,6 @@ class RecordedClock final : public Clock {
   VirtualClock clock_;
   RealClock pause_{0};
 };
-
-/// Why a model was silenced; "" if it was not.
-std::string describe(const ModelState& model) {
-  if (model.shape == nullptr) return "";
-  const std::string who = "model " + model.shape->name() + ": its plugin ";
-  switch (model.guard.trouble()) {
-    case Trouble::kNone:
-    case Trouble::kLost:
-      return "";
-    case Trouble::kNotFinite:
-      return who + "answered a force, pose or foot that is not a number; it was silenced";
-    case Trouble::kBadStatus:
-      return who + "answered status " + std::to_string(model.failed_status) +
-             ", which a step may not answer; it was silenced";
-    case Trouble::kOverrun:
-      return who +
-             "took longer than all shapes may take in a tick, again and again; it was silenced; measure it with: "
-             "hapticd plugin check FILE.so";
-    case Trouble::kJump:
-      return who +
-             "answered forces that jumped beyond the stiffness it claims; it was silenced; look at it with: "
-             "hapticd plugin check FILE.so";
-  }
-  return "";
-}
 
 std::string readyMessage(const Loop& loop) {
   return "READY=1\nSTATUS=the servo ticks; " + std::to_string(loop.lateDryCycles()) + " of " +
@@ -158,8 +134,8 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
 Result<void> Runner::openBlackBox(const LoopSettings& settings) {
   const auto models = world_->core().models();
   const auto moving = std::count_if(models.begin(), models.end(), [](const ModelState& m) { return m.moves; });
-  const auto streams = flightStreams(scene_, arms_, options_.rate, Telemetry::kBlackBoxSeconds,
-                                     static_cast<size_t>(moving));
+  const auto streams =
+      flightStreams(scene_, arms_, options_.rate, Telemetry::kBlackBoxSeconds, static_cast<size_t>(moving));
   const RunFacts facts{options_.rate, settings.period_ns, settings.ticks, options_.virtual_time};
   auto ring = record::FlightRing::create(streams, aboutRun(scene_, *world_, arms_, facts, streams), options_.black_box);
   if (!ring) return Error{ring.error()};
@@ -309,7 +285,7 @@ std::vector<std::string> Runner::faults() const {
   for (size_t i = 0; i < arms_.size(); ++i)
     if (std::string text = faultOf(i); !text.empty()) faults.push_back(std::move(text));
   for (const ModelState& model : world_->core().models())
-    if (std::string text = describe(model); !text.empty()) faults.push_back(std::move(text));
+    if (std::string text = whySilenced(model); !text.empty()) faults.push_back(std::move(text));
   return faults;
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`hapticd trace` against closed forms: spheres, a plane and a box, standing, turned, and moving on a path.
 
-Usage: trace_truth.py HAPTICD     prints a line a case; exit 1 when one is off.
+Usage: trace_truth.py HAPTICD TEST_PLUGINS     prints a line a case; exit 1 when one is off.
 Each case writes a scene, a model and a probe path, runs the program as a user would, and compares every row.
 """
 import csv
@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 
-HAPTICD = sys.argv[1]
+HAPTICD, TEST_PLUGINS = sys.argv[1:3]
 failures = 0
 
 
@@ -65,6 +65,20 @@ def trace(surfaces, rows, parameters=None, model_keys=None, servo=None):
         result = [{k: (v if k == "model" else float(v)) for k, v in row.items()} for row in csv.DictReader(open(join("out.csv")))]
         assert len(result) == len(rows), f"{len(result)} rows for {len(rows)} samples"
         return result
+
+
+def says_why_a_model_is_silenced():
+    """The plugin answers what is no number; a trace that went on without a word would be taken for good."""
+    global failures
+    with tempfile.TemporaryDirectory() as folder:
+        join = lambda name: os.path.join(folder, name)
+        open(join("scene.yaml"), "w").write("hapticd: 1\nmodels:\n  - {name: bad, plugin: misbehaving}\n")
+        open(join("probe.csv"), "w").write("t,x,y,z\n" + "".join(f"{i * 1e-3},0,0.01,0\n" for i in range(100)))
+        done = subprocess.run([HAPTICD, "trace", join("scene.yaml"), "--probe", join("probe.csv"), "--out", join("out.csv")],
+                              capture_output=True, text=True, env=dict(os.environ, HAPTICD_PLUGIN_PATH=TEST_PLUGINS))
+    good = done.returncode == 1 and "model bad" in done.stderr and "silenced" in done.stderr
+    failures += not good
+    print("ok    " if good else f"FAILED {done.returncode} {done.stderr}", "a silenced model is told")
 
 
 def vec(row, prefix):
@@ -161,6 +175,7 @@ def main():
     result = trace(box(h), rows)
     errors = [abs(outside(s[1:]) + r["depth"]) for s, r in zip(rows, result) if outside(s[1:]) > 1e-6]
     report("round the outside of a box, over its edges", worst_of(errors), 1e-6)
+    says_why_a_model_is_silenced()
     sys.exit(1 if failures else 0)
 
 
