@@ -11,6 +11,7 @@ using Eigen::Vector3d;
 
 constexpr int kChecksPerInterval = 2;  ///< of the monotonicity check, each way
 constexpr double kSameValue = 1e-300;
+constexpr double kSideways = 2;  ///< over this is the cosine to a sheet's normal from which a direction is on its side
 
 /// Samples of a curve stand for both rows of its surface.
 ScalarField fieldOf(const Skeleton& skeleton, std::vector<double> samples, const SkeletonGrid& grid, const char* what) {
@@ -61,7 +62,7 @@ Body::Neighbours Body::neighboursOf(const SkeletonFoot& foot, const Vector3d& no
   Neighbours neighbours;
   if (!(options_.shear_offset > 0)) return neighbours;
   const double here = stiffness_.evaluate(foot.u, foot.v).f;
-  const double side = normal.dot(foot.across) < 0 ? -1 : 1;
+  const double side = std::clamp(kSideways * normal.dot(foot.across), -1.0, 1.0);  // no jump round the rim
   spline::SurfacePoint s;
   for (std::size_t axis = skeleton_.curve() ? 1 : 0; axis < 2; ++axis) {
     const auto& range = skeleton_.parameters()[axis];

@@ -1,4 +1,4 @@
-/// The three searches for the foot on a skeleton: warm Newton, cold Newton, nested bisection.
+/// Two searches for the foot on a skeleton: warm Newton, and nested bisection.
 #include <algorithm>
 #include <cmath>
 
@@ -11,13 +11,11 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kSamplesPerInterval = 3;  ///< of a cold search, each way
-constexpr int kFiner = 4;               ///< times as many, where spheres are inside others
-constexpr int kColdStarts = 8;          ///< samples that Newton starts from in a cold search
-constexpr int kColdEvaluations = 60;
 constexpr double kSteepest = 0.99;        ///< slope of the radius beyond which spheres are nested
 constexpr double kLeastCurvature = 0.05;  ///< of a Hessian over that of the metric: below it a step would go too far
-constexpr double kOnSkeleton = 1e-9;      ///< [m] a query nearer than this is on the skeleton: d has no direction
+constexpr double kOnSkeleton = 1e-9;      ///< [m] a query on the rim nearer than this is on it: d has no direction
+constexpr double kNearSkeleton = 1e-6;    ///< [m] a query nearer than this sees what is left of the search in d
+constexpr double kRemainders = 10;        ///< likewise, in Newton steps that were left
 constexpr double kSingular = 1e-14;       ///< share of the trace that keeps a collapsed direction solvable
 
 using Box = std::array<std::array<double, 2>, 2>;
@@ -35,7 +33,7 @@ struct State {
 class Search {
  public:
   Search(const Skeleton& skeleton, const Vector3d& p, Envelope envelope)
-      : skeleton_(skeleton), p_(p), exact_(envelope == Envelope::kExact) {
+      : skeleton_(skeleton), p_(p), exact_(envelope == Envelope::kExact && !skeleton.radius().constant()) {
     for (std::size_t a = 0; a < 2; ++a) box_[a] = {skeleton.parameters()[a].front(), skeleton.parameters()[a].back()};
   }
 
@@ -50,6 +48,17 @@ class Search {
 
   Vector2d inside(const Vector2d& x) const noexcept {
     return {std::clamp(x[0], box_[0][0], box_[0][1]), std::clamp(x[1], box_[1][0], box_[1][1])};
+  }
+
+  /// x, or the boundary where that is within `share` of the range.
+  Vector2d toRim(Vector2d x, double share) const noexcept {
+    for (std::size_t a = skeleton_.curve() ? 1 : 0; a < 2; ++a) {
+      double& at = x[static_cast<Eigen::Index>(a)];
+      const double width = share * (box_[a][1] - box_[a][0]);
+      if (at - box_[a][0] <= width) at = box_[a][0];
+      if (box_[a][1] - at <= width) at = box_[a][1];
+    }
+    return x;
   }
 
   /// The step from x to the foot, to second order, that ends in the box.
@@ -75,12 +84,14 @@ class Search {
  private:
   Matrix2d hessian(const State& q, double height, bool flat, const std::array<bool, 2>& held) const noexcept;
   double planeHeight(const State& q, const Matrix2d& metric) const noexcept;
+  Vector3d radiusGradient(const State& q) const noexcept;
+  Vector3d ownNormal(const State& q, const Vector3d& across, const Vector3d& gradient) const noexcept;
   Vector2d solve(const Matrix2d& h, const Vector2d& g, const std::array<bool, 2>& held,
                  const Vector2d& x) const noexcept;
 
   const Skeleton& skeleton_;
   const Vector3d& p_;
-  bool exact_;
+  bool exact_;  ///< the radius counts: equal ones leave the least |d|, which is smooth on the skeleton itself
   Box box_;
   int evaluations_ = 0;
 };
@@ -181,8 +192,38 @@ Vector2d Search::step(const State& q, const Vector2d& x) const noexcept {
   };
   const Vector2d move = moveFor(q.distance, false);
   const double length = (q.s.Su * move[0] + q.s.Sv * move[1]).norm();
-  if (!exact_ || skeleton_.radius().constant() || rim || 2 * length < q.distance) return move;
+  if (!exact_ || rim || 2 * length < q.distance) return move;
   return moveFor(planeHeight(q, metricOf(q)), true);  // |d| has its kink within reach of the step
+}
+
+/// How the radius grows along the skeleton, at most kSteepest long.
+Vector3d Search::radiusGradient(const State& q) const noexcept {
+  if (!exact_) return Vector3d::Zero();
+  Vector3d gradient = Vector3d::Zero();
+  const Matrix2d metric = metricOf(q);
+  if (const double area2 = metric.determinant(); !skeleton_.curve() && area2 > 0) {
+    gradient = ((metric(1, 1) * q.r.fu - metric(0, 1) * q.r.fv) * q.s.Su +
+                (metric(0, 0) * q.r.fv - metric(0, 1) * q.r.fu) * q.s.Sv) /
+               area2;
+  } else if (metric(1, 1) > 0) {
+    gradient = q.r.fv / metric(1, 1) * q.s.Sv;
+  }
+  const double steep = gradient.norm();
+  return steep > kSteepest ? Vector3d(kSteepest / steep * gradient) : gradient;
+}
+
+/// The direction of d at a foot within the skeleton, on the side of d, from the condition of the foot alone.
+Vector3d Search::ownNormal(const State& q, const Vector3d& across, const Vector3d& gradient) const noexcept {
+  Vector3d side = Vector3d::Zero();
+  if (!skeleton_.curve() && !across.isZero(0)) {
+    side = q.d.dot(across) < 0 ? Vector3d(-across) : across;
+  } else if (const double length2 = q.s.Sv.squaredNorm(); length2 > 0) {
+    side = q.d - q.d.dot(q.s.Sv) / length2 * q.s.Sv;
+    side = side.norm() > kOnSkeleton ? side.normalized() : q.s.Sv.unitOrthogonal();
+  } else {
+    return Vector3d::UnitX();
+  }
+  return std::sqrt(1 - gradient.squaredNorm()) * side - gradient;
 }
 
 void Search::finish(const State& q, const Vector2d& x, SkeletonFoot& foot) const noexcept {
@@ -200,13 +241,10 @@ void Search::finish(const State& q, const Vector2d& x, SkeletonFoot& foot) const
   const Vector3d cross = q.s.Su.cross(q.s.Sv);
   const double area = cross.norm();
   if (area > 0) foot.across = cross / area;
-  if (q.distance > kOnSkeleton || (q.distance > 0 && foot.rim)) {
-    foot.normal = q.d / q.distance;
-  } else if (area > 0) {
-    foot.normal = foot.across;
-  } else if (q.s.Sv.squaredNorm() > 0) {
-    foot.normal = q.s.Sv.unitOrthogonal();
-  }
+  const Vector3d gradient = radiusGradient(q);
+  foot.slope = gradient.norm();
+  const double near = foot.rim ? kOnSkeleton : std::max(kNearSkeleton, kRemainders * foot.residual);
+  foot.normal = q.distance > near ? Vector3d(q.d / q.distance) : ownNormal(q, foot.across, gradient);
 }
 
 }  // namespace
@@ -241,106 +279,6 @@ SkeletonFoot Skeleton::nearest(const Vector3d& p, double u, double v, const Newt
   return foot;
 }
 
-namespace {
-
-/// A sample of the skeleton from which a cold search may start.
-struct Start {
-  double value = HUGE_VAL, u = 0, v = 0;
-  int row = -2, column = -2;
-
-  bool besides(const Start& other) const noexcept {
-    return std::abs(row - other.row) <= 1 && std::abs(column - other.column) <= 1;
-  }
-};
-using Starts = std::array<Start, kColdStarts>;
-
-/// Keeps the best samples, best first, and of neighbours the better one: a wide valley must not take all places, where
-/// the deepest is a narrow one.
-void offer(Start start, Starts& starts) noexcept {
-  std::size_t place = 0;
-  while (place < starts.size() && starts[place].value <= start.value) {
-    if (starts[place].besides(start)) return;
-    ++place;
-  }
-  const Start better = start;
-  for (; place < starts.size(); ++place) {
-    std::swap(start, starts[place]);
-    if (start.besides(better)) return;  // a worse neighbour makes room
-  }
-}
-
-double sampleAt(const std::vector<double>& t, int i, int per_interval) noexcept {
-  const auto cell = static_cast<std::size_t>(i / per_interval);
-  if (cell + 1 >= t.size()) return t.back();
-  return t[cell] + (t[cell + 1] - t[cell]) * (i % per_interval) / per_interval;
-}
-
-/// Samples of a whole skeleton for one query, `per_interval` to an interval of its parameters each way.
-class Samples {
- public:
-  Samples(const Skeleton& skeleton, const Vector3d& p, Envelope envelope, int per_interval)
-      : skeleton_(skeleton), p_(p), exact_(envelope == Envelope::kExact), per_interval_(per_interval) {
-    for (std::size_t a = skeleton.curve() ? 1 : 0; a < 2; ++a)
-      last_[a] = per_interval * (static_cast<int>(skeleton.parameters()[a].size()) - 1);
-  }
-
-  void look(int i, int j, Starts& starts) const noexcept {
-    if (i < 0 || j < 0 || i > last_[0] || j > last_[1]) return;
-    const double u = sampleAt(skeleton_.parameters()[0], i, per_interval_);
-    const double v = sampleAt(skeleton_.parameters()[1], j, per_interval_);
-    spline::SurfacePoint s;
-    skeleton_.surface().evaluate1(u, v, s);
-    offer({(p_ - s.S).norm() - (exact_ ? skeleton_.radius().evaluate(u, v).f : 0), u, v, i, j}, starts);
-  }
-  Starts best() const noexcept {
-    Starts starts;
-    for (int i = 0; i <= last_[0]; ++i)
-      for (int j = 0; j <= last_[1]; ++j) look(i, j, starts);
-    return starts;
-  }
-
- private:
-  const Skeleton& skeleton_;
-  const Vector3d& p_;
-  bool exact_;
-  int per_interval_;
-  std::array<int, 2> last_{0, 0};
-};
-
-/// Where spheres are inside others, several valleys may lie between two samples: finer ones about each start.
-Starts coldStarts(const Skeleton& skeleton, const Vector3d& p, Envelope envelope) noexcept {
-  const Starts starts = Samples(skeleton, p, envelope, kSamplesPerInterval).best();
-  if (!skeleton.nested()) return starts;
-  const Samples fine(skeleton, p, envelope, kFiner * kSamplesPerInterval);
-  Starts finer;
-  for (const Start& start : starts) {
-    if (start.value == HUGE_VAL) break;
-    for (int i = -kFiner; i <= kFiner; ++i)
-      for (int j = -kFiner; j <= kFiner; ++j) fine.look(kFiner * start.row + i, kFiner * start.column + j, finer);
-  }
-  return finer;
-}
-
-}  // namespace
-
-SkeletonFoot Skeleton::search(const Vector3d& p, const NewtonOptions& options) const noexcept {
-  NewtonOptions cold = options;
-  cold.max_evaluations = kColdEvaluations;
-  SkeletonFoot best;
-  double least = HUGE_VAL;
-  int evaluations = 0;
-  for (const Start& start : coldStarts(*this, p, options.envelope)) {
-    if (start.value == HUGE_VAL) break;
-    const SkeletonFoot foot = nearest(p, start.u, start.v, cold);
-    evaluations += foot.evaluations;
-    const double value = options.envelope == Envelope::kExact ? -foot.depth : (p - foot.center).norm();
-    if (value < least) best = foot;
-    least = std::min(least, value);
-  }
-  best.evaluations = evaluations;
-  return best;
-}
-
 SkeletonFoot Skeleton::bisect(const Vector3d& p, Envelope envelope, int halvings) const noexcept {
   SkeletonFoot foot;
   if (!p.allFinite()) return foot;
@@ -363,11 +301,12 @@ SkeletonFoot Skeleton::bisect(const Vector3d& p, Envelope envelope, int halvings
   } else {
     halve(0, rows);
   }
-  search.finish(q, x, foot);
-  foot.converged = true;
   foot.residual = (q.s.Su.norm() * (search.box()[0][1] - search.box()[0][0]) +
                    q.s.Sv.norm() * (search.box()[1][1] - search.box()[1][0])) *
                   std::ldexp(1.0, -halvings);
+  search.follow(search.toRim(x, std::ldexp(1.0, -halvings)) - x, x, q);  // halving never ends on it
+  search.finish(q, x, foot);
+  foot.converged = true;
   return foot;
 }
 

@@ -26,6 +26,7 @@ struct SkeletonFoot {
   double depth = 0;                                   ///< [m] radius less the distance to the centre; > 0 inside
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< outward unit direction
   Eigen::Vector3d across = Eigen::Vector3d::Zero();   ///< unit Su x Sv; zero where the skeleton has no plane
+  double slope = 0;                                   ///< metres of radius a metre of skeleton, if the radius counts
   double residual = 0;                                ///< [m] length of the Newton step that was left
   int evaluations = 0;
   uint32_t element = 0;  ///< of a medial mesh: the cone or slab that holds the foot

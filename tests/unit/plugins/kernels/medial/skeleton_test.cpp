@@ -96,6 +96,34 @@ TEST(Skeleton, WarmSearchRefusesWhatIsNoNumber) {
   EXPECT_FALSE(skeleton.nearest({0, 0, 0}, NAN, .5, {}).converged);
 }
 
+TEST(Skeleton, NearTheSkeletonTheNormalIsTheOneThatTheConditionOfTheFootGives) {
+  for (const bool varying : {false, true}) {
+    for (const Sheet& sheet : test::sheets()) {
+      const Skeleton skeleton = test::build(sheet, varying);
+      if (sheet.curve || skeleton.nested()) continue;
+      for (const double height : {0., 1e-12, 1e-10, -1e-9, 3e-9, -1e-8, 1e-7, -9e-7}) {
+        spline::SurfacePoint s;
+        skeleton.surface().evaluate1(.62, .41, s);
+        const Vector3d across = s.Su.cross(s.Sv).normalized();
+        SkeletonFoot foot;
+        foot.u = .621, foot.v = .4;
+        for (int tick = 0; tick < 6; ++tick) {
+          foot = skeleton.nearest(s.S + height * across, foot.u, foot.v, {});
+          skeleton.surface().evaluate1(foot.u, foot.v, s);
+          const auto radius = skeleton.radius().evaluate2(foot.u, foot.v);
+          EXPECT_NEAR(foot.normal.norm(), 1, 1e-12);
+          EXPECT_LT(std::fabs(foot.normal.dot(s.Su) + radius.fu), 1e-5 * s.Su.norm()) << sheet.name << " " << height;
+          EXPECT_LT(std::fabs(foot.normal.dot(s.Sv) + radius.fv), 1e-5 * s.Sv.norm()) << sheet.name << " " << height;
+          skeleton.surface().evaluate1(.62, .41, s);
+        }
+        if (std::fabs(height) > 1e-10) {
+          EXPECT_EQ(foot.normal.dot(across) > 0, height > 0) << sheet.name << " " << height;
+        }
+      }
+    }
+  }
+}
+
 TEST(Skeleton, BothFormsOfTheSplineGiveTheSameFoot) {
   Random random;
   for (const Sheet& sheet : test::sheets()) {
