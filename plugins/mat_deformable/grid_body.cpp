@@ -49,18 +49,7 @@ class GridBody final : public SoftBody {
   }
 
   Felt felt(const Vector3d& p, const Vector3d& moved, Track& track) const noexcept override {
-    if (body_.skeleton().curve()) return feltTurning(p, moved, track);
-    const SkeletonFoot& foot = track.foot;
-    const double cosine = foot.normal.dot(foot.across);
-    const int side = cosine < 0 ? -1 : 1;
-    if (!(foot.depth > 0)) {
-      track.side = 0;
-    } else if (track.side == 0 || foot.rim || foot.across.isZero(0)) {
-      track.side = side;  // round the rim it is free to go
-    } else if (side != track.side) {
-      return {foot.normal - 2 * cosine * foot.across, 2 * foot.radius - foot.depth};
-    }
-    return {foot.normal, foot.depth};
+    return body_.skeleton().curve() ? feltTurning(p, moved, track) : feltOnSheet(moved, track);
   }
 
   medial::BodyForce press(const Vector3d& p, const SkeletonFoot& foot, const Felt& felt,

@@ -199,9 +199,10 @@ hsp_status MatDeformable::touch(const hsp_probe& probe, const hsp_step& step, ui
   track.known = true;
   track.last = p;
   const SkeletonFoot& foot = track.foot;
-  Eigen::Map<Vector3d>(contact.point) = foot.center + foot.radius * foot.normal;
-  Eigen::Map<Vector3d>(contact.normal) = foot.normal;
-  contact.depth_m = foot.depth;
+  const Felt surface = body_->felt(p, moved, track);
+  Eigen::Map<Vector3d>(contact.point) = foot.center + foot.radius * surface.normal;
+  Eigen::Map<Vector3d>(contact.normal) = surface.normal;
+  contact.depth_m = surface.depth;
   contact.feature = foot.element;
   contact.param[0] = foot.u;
   contact.param[1] = foot.v;
@@ -209,7 +210,6 @@ hsp_status MatDeformable::touch(const hsp_probe& probe, const hsp_step& step, ui
   contact.iterations = static_cast<uint32_t>(foot.evaluations);
   contact.flags = HSP_OUT_TRACED;
   if (foot.rim) contact.flags |= HSP_OUT_EDGE;
-  const Felt surface = body_->felt(p, moved, track);
   if (surface.depth > 0) {
     contact.flags |= HSP_OUT_CONTACT;
     push(probe, surface, track, contact);

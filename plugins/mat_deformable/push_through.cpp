@@ -8,8 +8,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDeepest = 1.0 / 3;  ///< of the radius left under a stroke whose direction is still followed at once
-constexpr double kOpposite = 1e-9;    ///< directions nearer to opposite than this have no plane to turn in
+constexpr double kDeepest = 1.0 / 3;    ///< of the radius left under a stroke whose direction is still followed at once
+constexpr double kOpposite = 1e-9;      ///< directions nearer to opposite than this have no plane to turn in
+constexpr double kSideways = 0.5;       ///< a direction less across a sheet than this is on neither side of it
+constexpr double kSettled = 1 - 1e-14;  ///< cosine of directions that are the same
+constexpr double kLeastMirror = 0.1;  ///< cosine of the outward direction and its mirror image that still is a measure
 
 /// `from` turned toward `to` by at most `angle`.
 Vector3d turned(const Vector3d& from, const Vector3d& to, double angle) noexcept {
@@ -20,6 +23,22 @@ Vector3d turned(const Vector3d& from, const Vector3d& to, double angle) noexcept
   const double length = aside.norm();
   if (!(length > kOpposite)) return from;
   return std::cos(angle) * from + std::sin(angle) / length * aside;
+}
+
+/// A stroke round the foot turns the direction by its length over this [m], its distance from the middle; one that is
+/// beyond the middle, more slowly.
+double armOf(const medial::SkeletonFoot& foot, const Vector3d& pushed) noexcept {
+  return pushed.dot(foot.normal) < 0 ? foot.radius : std::max(foot.radius - foot.depth, kDeepest * foot.radius);
+}
+
+double asideOf(const Vector3d& moved, const Vector3d& pushed) noexcept {
+  return (moved - moved.dot(pushed) * pushed).norm();
+}
+
+/// Turns the direction of the track toward `wanted`, for a probe that moved by `way` [m].
+void turn(const Vector3d& wanted, double way, Track& track) noexcept {
+  const double arm = armOf(track.foot, track.pushed);
+  track.pushed = turned(track.pushed, wanted, arm > 0 ? way / arm : M_PI).normalized();
 }
 
 }  // namespace
@@ -34,12 +53,11 @@ Felt feltTurning(const Vector3d& p, const Vector3d& moved, Track& track) noexcep
   Vector3d wanted = foot.normal;
   if (!entered && !foot.rim && wanted.dot(track.pushed) < 0)  // on the other side of a sheet
     wanted -= 2 * wanted.dot(foot.across) * foot.across;
-  const double aside = (moved - moved.dot(track.pushed) * track.pushed).norm();
-  // A stroke round the foot turns by its length over its distance from the middle; one that is beyond it, more slowly.
-  const double arm =
-      track.pushed.dot(foot.normal) < 0 ? foot.radius : std::max(foot.radius - foot.depth, kDeepest * foot.radius);
-  const double angle = arm > 0 ? aside / arm : M_PI;
-  track.pushed = entered ? wanted : turned(track.pushed, wanted, angle).normalized();
+  if (entered) {
+    track.pushed = wanted;
+  } else {
+    turn(wanted, asideOf(moved, track.pushed), track);
+  }
   const double through = -track.pushed.dot(foot.normal);
   if (!(through > 0)) return {track.pushed, foot.depth};
   // Along the direction from p to the sphere about the foot.
@@ -47,6 +65,40 @@ Felt feltTurning(const Vector3d& p, const Vector3d& moved, Track& track) noexcep
   const double along = d.dot(track.pushed);
   const double way = std::sqrt(std::max(0.0, along * along + foot.radius * foot.radius - d.squaredNorm())) - along;
   return {track.pushed, foot.depth + through * std::max(0.0, way - foot.depth)};
+}
+
+Felt feltOnSheet(const Vector3d& moved, Track& track) noexcept HSP_RT {
+  const medial::SkeletonFoot& foot = track.foot;
+  if (!(foot.depth > 0)) {
+    track.side = 0;
+    track.pushed.setZero();
+    return {foot.normal, foot.depth};
+  }
+  const bool entered = track.pushed.isZero(0), rim = foot.rim || foot.across.isZero(0);
+  const double cosine = foot.normal.dot(foot.across), lean = track.pushed.dot(foot.across);
+  if (entered || (rim && std::fabs(lean) < kSideways)) {
+    track.side = 0;
+  } else if (rim) {
+    track.side = lean < 0 ? -1 : 1;
+  }
+  Vector3d wanted = foot.normal;
+  if (!rim) {
+    if (track.side == 0) track.side = cosine < 0 ? -1 : 1;
+    if (track.side * cosine < 0) wanted -= 2 * cosine * foot.across;
+  }
+  if (entered || (!rim && track.settled)) {
+    track.pushed = wanted;
+    track.settled = !rim;
+  } else {
+    turn(wanted, rim ? asideOf(moved, track.pushed) : moved.norm(), track);
+    track.settled = !rim && track.pushed.dot(wanted) > kSettled;
+  }
+  double through = track.side * cosine < 0 ? 1 : 0;  // beyond the middle
+  if (!track.settled) {
+    const double mirror = std::max(kLeastMirror, 1 - 2 * foot.slope * foot.slope);
+    through = std::clamp(-track.pushed.dot(foot.normal) / mirror, 0.0, 1.0);
+  }
+  return {track.pushed, foot.depth + 2 * through * (foot.radius - foot.depth)};
 }
 
 }  // namespace hapticd

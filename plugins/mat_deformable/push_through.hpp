@@ -1,4 +1,4 @@
-/// What a probe feels that was pushed through the middle of a tube or a branching body.
+/// What a probe feels that was pushed through the middle of a tube, a sheet or a branching body.
 #pragma once
 #include "soft_body.hpp"
 
@@ -9,5 +9,10 @@ namespace hapticd {
 /// the middle is measured along that direction to the sphere of the foot. Across a sheet, the direction does not turn
 /// at all, but at its rim.
 Felt feltTurning(const Eigen::Vector3d& p, const Eigen::Vector3d& moved, Track& track) noexcept HSP_RT;
+
+/// [rt] The same on a sheet from a grid. Within it, the direction is that of the foot on the side that the probe came
+/// from; round the rim it turns by a bounded angle for each metre that the probe moves aside, and when it comes back
+/// from there, for each metre that the probe moves. A probe that does not move feels a constant force, wherever it is.
+Felt feltOnSheet(const Eigen::Vector3d& moved, Track& track) noexcept HSP_RT;
 
 }  // namespace hapticd

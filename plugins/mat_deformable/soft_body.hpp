@@ -29,7 +29,8 @@ struct Track {
   Eigen::Vector3d pushed{0, 0, 0};  ///< direction in which the surface pushed; zero: it did not
   std::array<double, 2> offer{};    ///< parameters of what the search of the simulation side found last
   bool active = false, known = false, offered = false;
-  int side = 0;  ///< of a sheet on which it entered; 0: it has not
+  int side = 0;          ///< of a sheet that it came from; 0: of neither
+  bool settled = false;  ///< within a sheet: `pushed` has turned to the direction of the foot
   contact::Friction friction;
 };
 
