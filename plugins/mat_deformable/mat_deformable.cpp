@@ -79,6 +79,8 @@ void MatDeformable::describe() const {
   if (host() == nullptr || host()->log == nullptr) return;
   const Description description = body_->describe(geometry_);
   host()->log(host(), description.warning ? HSP_LOG_WARNING : HSP_LOG_INFO, description.text.c_str());
+  if (!(body_->greatestRadius() > 0))
+    host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": all radii are 0: nothing will be felt").c_str());
   const double size = body_->bounds().sizes().maxCoeff();
   if (!(size > kLarge)) return;
   char text[128];

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <string_view>
 
 #include "ma_file.hpp"
 #include "traced_shape/document.hpp"
@@ -13,6 +15,10 @@ namespace {
 
 using Json = nlohmann::json;
 constexpr std::size_t kMostPoints = 1'000'000;
+constexpr double kMost = 1e6;        ///< N/m and kg, like the parameters
+constexpr double kLeastMass = 1e-9;  ///< [kg] lighter points are a slip of the hand; 0 is a body that creeps
+constexpr double kClaimMargin = 10;  ///< a host lets a shape damp so many times what its parameters say
+constexpr double kLeastDamping = 5;  ///< [N s/m] so little passes as stiffness
 
 Path below(Path path, const char* key) {
   path.push_back({key, 0});
@@ -26,7 +32,8 @@ Path below(Path path, std::size_t index) {
 /// Reads the tree of one file; every wrong value becomes a problem and reading goes on.
 class Reader {
  public:
-  explicit Reader(Problems& problems) : problems_(problems) {}
+  Reader(Problems& problems, const Material& material)
+      : problems_(problems), most_damping_(std::max(kLeastDamping, kClaimMargin * material.damping)) {}
 
   void read(const Json& root, MedialFile& file) {
     if (!root.is_object()) return problems_.add({}, "expected a mapping with format and medial");
@@ -68,7 +75,7 @@ class Reader {
       medial::Sphere sphere;
       for (std::size_t k = 0; k < 3; ++k)
         sphere.center[static_cast<Eigen::Index>(k)] = finite(vertices[i][k], below(below(place, i), k));
-      sphere.radius = value(vertices[i][3], below(below(place, i), 3));
+      sphere.radius = value(vertices[i][3], below(below(place, i), 3), "radius");
       data.mesh.vertices.push_back(sphere);
     }
     readCorners(medial, below(at, "edges"), "edges", vertices.size(), data.mesh.edges);
@@ -108,13 +115,13 @@ class Reader {
       if (required) problems_.add(at, "missing, expected a number, or one for each vertex");
       return {};
     }
-    if (json->is_number()) return {value(*json, at)};
+    if (json->is_number()) return {value(*json, at, key)};
     std::vector<double> all;
     if (!json->is_array() || json->size() != total) {
       problems_.add(at, "expected a number, or " + std::to_string(total) + " of them, one a vertex");
       return all;
     }
-    for (std::size_t i = 0; i < total && !problems_.full(); ++i) all.push_back(value((*json)[i], below(at, i)));
+    for (std::size_t i = 0; i < total && !problems_.full(); ++i) all.push_back(value((*json)[i], below(at, i), key));
     return all;
   }
 
@@ -168,7 +175,7 @@ class Reader {
       if (required) problems_.add(at, "missing, expected a number for each point, in rows like points");
       return {};
     }
-    if (json->is_number()) return std::vector<double>(total, value(*json, at));
+    if (json->is_number()) return std::vector<double>(total, value(*json, at, key));
     std::vector<double> all;
     if (!json->is_array() || json->size() != rows) {
       problems_.add(at, "expected " + std::to_string(rows) + " rows, like points");
@@ -177,14 +184,28 @@ class Reader {
     for (std::size_t i = 0; i < rows && !problems_.full(); ++i) {
       if (!isRow((*json)[i], below(at, i), grid)) continue;
       for (std::size_t j = 0; j < (*json)[i].size() && !problems_.full(); ++j)
-        all.push_back(value((*json)[i][j], below(below(at, i), j)));
+        all.push_back(value((*json)[i][j], below(below(at, i), j), key));
     }
     return all;
   }
 
-  double value(const Json& json, const Path& at) {
+  double value(const Json& json, const Path& at, std::string_view key) {
     const double number = json.is_number() ? json.get<double>() : NAN;
-    if (!(number >= 0) || !std::isfinite(number)) problems_.add(at, "expected a finite number of at least 0");
+    if (!(number >= 0) || !std::isfinite(number)) {
+      problems_.add(at, "expected a finite number of at least 0");
+    } else if (key == "stiffness" && number > kMost) {
+      problems_.add(at, "expected at most 1e6 N/m");
+    } else if (key == "mass" && (number > kMost || (number > 0 && number < kLeastMass))) {
+      problems_.add(at, "expected 0, or 1e-9 to 1e6 kg");
+    } else if (key == "damping" && number > most_damping_) {
+      char text[192];
+      std::snprintf(
+          text, sizeof text,
+          "expected at most %g N s/m: a host may silence a body that damps more than ten times what its parameter "
+          "damping says; set that parameter to %g in the scene",
+          most_damping_, std::min(number, kMost));
+      problems_.add(at, number > kMost ? "expected at most 1e6 N s/m" : text);
+    }
     return number;
   }
 
@@ -198,6 +219,7 @@ class Reader {
   }
 
   Problems& problems_;
+  double most_damping_;  ///< [N s/m]
 };
 
 }  // namespace
@@ -213,7 +235,7 @@ MedialFile parseMedialFile(const std::string& text, const std::string& name, con
   } else {
     const Json root = parseDocument(text, name);
     Problems problems(name, text);
-    Reader(problems).read(root, file);
+    Reader(problems, material).read(root, file);
     problems.throwIfAny();
   }
   const auto some = [](const std::vector<double>& values) {

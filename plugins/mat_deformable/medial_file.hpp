@@ -14,7 +14,8 @@ struct MedialFile {
   bool swings = false, damps = false;  ///< some point has mass, some has damping
 };
 
-/// Material of all vertices where the file has none.
+/// Material of all vertices where the file has none. The file may damp ten times as much at most, or 5 N s/m: the host
+/// takes the parameter for what a body claims.
 struct Material {
   double stiffness = 0, damping = 0, mass = 0;  ///< [N/m], [N s/m], [kg]
 };

@@ -228,5 +228,15 @@ TEST(MatDeformable, RefusesAModelWithoutAMedialAxis) {
   EXPECT_EQ(body.activate(), HSP_E_ARG);
 }
 
+TEST(MatDeformable, WarnsOfABodyThatNobodyCanFeel) {
+  const TemporaryFile file("flat.yaml",
+                           "format: hapticd-model/1\nmedial:\n  points: [[[0, 0, 0], [0.1, 0, 0]], [[0, 0.1, 0], [0.1, "
+                           "0.1, 0]]]\n  radius: 0\n  stiffness: 200\n");
+  Plugin body(file.path());
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(body.activate(), HSP_OK);
+  EXPECT_NE(testing::internal::GetCapturedStdout().find("all radii are 0"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace hapticd::test
