@@ -3,6 +3,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <charconv>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 
@@ -130,6 +131,9 @@ void Problems::throwIfAny() const {
 }
 
 std::string readModelText(const std::string& path) {
+  std::error_code unknown;
+  if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown))  // a pipe would wait
+    throw ModelFileError(path + ":1:1: not a regular file of at most 1 GiB, expected a model file");
   std::ifstream in(path, std::ios::binary | std::ios::ate);
   if (!in) throw ModelFileError(path + ":1:1: cannot be read, expected a model file (format hapticd-model/1)");
   const std::streamoff size = in.tellg();

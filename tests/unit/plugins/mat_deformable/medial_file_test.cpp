@@ -1,6 +1,7 @@
 #include "mat_deformable/medial_file.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -68,6 +69,38 @@ TEST(MedialFile, SaysWhereAndWhatIsWrong) {
   EXPECT_NE(complaintOf(std::string(kHead) + "  points: [[[0, 0], [1, 1, 1]]]\n").find("[x, y, z]"), std::string::npos);
   EXPECT_NE(complaintOf(std::string(kHead) + "  points: 7\n").find("points"), std::string::npos);
   EXPECT_NE(complaintOf("[").find("not YAML"), std::string::npos);
+}
+
+TEST(MedialFile, MaterialHasTheBoundsOfTheParameters) {
+  const std::string good = std::string(kHead) + kPoints + "  radius: 0.01\n";
+  EXPECT_NE(complaintOf(good + "  stiffness: 1e9\n").find(":5:14: medial.stiffness: expected at most 1e6 N/m"),
+            std::string::npos);
+  EXPECT_NE(complaintOf(good + "  stiffness: 1\n  mass: 1e-300\n").find(":6:9: medial.mass: expected 0, or 1e-9"),
+            std::string::npos);
+  EXPECT_NE(complaintOf(good + "  stiffness: 1\n  mass: [[0, 0], [0, 1e7]]\n").find("medial.mass[1][1]"),
+            std::string::npos);
+  EXPECT_EQ(complaintOf(good + "  stiffness: 1e6\n  mass: 1e-9\n"), "");
+}
+
+TEST(MedialFile, DampsNoMoreThanTheHostIsTold) {
+  const File file(std::string(kHead) + kPoints + "  radius: 0.01\n  stiffness: 200\n  damping: 1000\n");
+  try {
+    readMedialFile(file.path(), {300, .5, .01});
+    FAIL() << "accepted";
+  } catch (const ModelFileError& e) {
+    EXPECT_NE(std::string(e.what()).find(":6:12: medial.damping: expected at most 5 N s/m"), std::string::npos)
+        << e.what();
+    EXPECT_NE(std::string(e.what()).find("to 1000 in the scene"), std::string::npos) << e.what();
+  }
+  EXPECT_TRUE(readMedialFile(file.path(), {300, 100, .01}).damps);
+}
+
+TEST(MedialFile, APipeIsRefusedAtOnce) {
+  const std::filesystem::path pipe =
+      std::filesystem::temp_directory_path() / ("pipe-" + std::to_string(::getpid()) + ".yaml");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(readMedialFile(pipe, {}), ModelFileError);
+  std::filesystem::remove(pipe);
 }
 
 }  // namespace
