@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/not_real_time.hpp"
+
 namespace hapticd::servo {
 
 namespace {
@@ -82,6 +84,7 @@ class Replay::Player final : public Clock {
   Nanoseconds now() noexcept HSP_RT override { return now_; }
 
   Nanoseconds waitUntil(Nanoseconds deadline) noexcept HSP_RT override {
+    const NotRealTime between_ticks;
     compare();
     if (tick_ >= end_) {
       replay_.loop_->stop();
