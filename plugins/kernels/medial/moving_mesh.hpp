@@ -12,6 +12,8 @@ using Displacements = std::vector<Eigen::Vector4f>;
 
 class MovingMesh {
  public:
+  virtual ~MovingMesh() = default;  ///< its owners do not know which mesh they own
+
   std::size_t vertexCount() const noexcept { return vertices_.size(); }
   /// Three vertices a triangle, counter-clockwise seen from outside.
   const std::vector<uint32_t>& indices() const noexcept { return indices_; }
