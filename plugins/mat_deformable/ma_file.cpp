@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "mat_deformable/medial_file.hpp"
 #include "traced_shape/model_file.hpp"
 
 namespace hapticd {
@@ -75,8 +76,9 @@ class MaReader {
     if (kind == "v") {
       medial::Sphere s;
       const bool good = words.number(s.center.x()) && words.number(s.center.y()) && words.number(s.center.z()) &&
-                        words.number(s.radius) && s.center.allFinite() && std::isfinite(s.radius) && s.radius >= 0;
-      if (!good) problem("expected v x y z r: finite numbers in m, and a radius of at least 0");
+                        words.number(s.radius) && s.center.allFinite() &&
+                        s.center.cwiseAbs().maxCoeff() <= kFarthestPoint && s.radius >= 0 && s.radius <= kFarthestPoint;
+      if (!good) problem("expected v x y z r: numbers within 1e6 m, and a radius of at least 0");
       data_.vertices.push_back(s);
     } else if (kind == "e") {
       readCorners(words, data_.edges, "e i j");

@@ -127,7 +127,7 @@ class Reader {
 
   double finite(const Json& json, const Path& at) {
     const double number = json.is_number() ? json.get<double>() : NAN;
-    if (!std::isfinite(number)) problems_.add(at, "expected a finite number");
+    if (!(std::abs(number) <= kFarthestPoint)) problems_.add(at, "expected a number within 1e6 m");
     return number;
   }
 
@@ -193,6 +193,8 @@ class Reader {
     const double number = json.is_number() ? json.get<double>() : NAN;
     if (!(number >= 0) || !std::isfinite(number)) {
       problems_.add(at, "expected a finite number of at least 0");
+    } else if (key == "radius" && number > kFarthestPoint) {
+      problems_.add(at, "expected at most 1e6 m");
     } else if (key == "stiffness" && number > kMost) {
       problems_.add(at, "expected at most 1e6 N/m");
     } else if (key == "mass" && (number > kMost || (number > 0 && number < kLeastMass))) {

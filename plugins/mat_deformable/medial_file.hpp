@@ -7,6 +7,8 @@
 
 namespace hapticd {
 
+inline constexpr double kFarthestPoint = 1e6;  ///< [m] of points and radii: squares of larger ones leave no digits
+
 /// What a file says of a body: a grid or a mesh.
 struct MedialFile {
   std::optional<medial::BodyData> grid;

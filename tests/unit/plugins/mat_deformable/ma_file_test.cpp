@@ -36,6 +36,7 @@ TEST(MaFile, SaysWhichLineIsWrongAndWhatWasExpected) {
   EXPECT_NE(complaintOf("0 0 0\n").find("body.ma:1: no vertices"), std::string::npos);
   EXPECT_NE(complaintOf("1 0 0\nv 0 0 0 -1\n").find("body.ma:2: expected v x y z r"), std::string::npos);
   EXPECT_NE(complaintOf("1 0 0\nv 0 0 nan 1\n").find("body.ma:2: "), std::string::npos);
+  EXPECT_NE(complaintOf("1 0 0\nv 1e308 0 0 1\n").find("body.ma:2: expected v x y z r"), std::string::npos);
   EXPECT_NE(complaintOf("2 1 0\nv 0 0 0 1\nv 1 0 0 1\ne 0 2\n")
                 .find("body.ma:4: expected e i j: different vertices "
                       "from 0 to 1"),
