@@ -16,11 +16,10 @@ namespace hapticd::servo {
 
 struct LoopSettings {
   Nanoseconds period_ns = 1'000'000;
-  uint64_t ticks = 0;     ///< length of the run in periods; 0: until stopped
-  bool lockstep = false;  ///< search in step with the ticks (virtual time) instead of from a thread of its own
-  bool paced = false;     ///< the clock follows an arm's samples: a tick is when it says, not when the deadline was
-  uint64_t dry_cycles =
-      0;  ///< before the first tick: wake-ups and device traffic with motors off, to judge the machine
+  uint64_t ticks = 0;       ///< length of the run in periods; 0: until stopped
+  bool lockstep = false;    ///< search in step with the ticks (virtual time) instead of from a thread of its own
+  bool paced = false;       ///< the clock follows an arm's samples: a tick is when it says, not when the deadline was
+  uint64_t dry_cycles = 0;  ///< before the first tick: wake-ups and traffic with motors off, to judge the machine
 };
 
 /// [main] The arm whose samples drive the loop: the first that can, if the scene wants one to. nullptr: the clock does.
