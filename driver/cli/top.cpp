@@ -59,6 +59,30 @@ std::string textOf(const char* text, size_t size) {
   return {text, strnlen(text, size)};
 }
 
+/// An hsp_status for a reader; the JSON keeps the number.
+std::string statusText(int32_t status) {
+  switch (status) {
+    case HSP_OK:
+      return "ok";
+    case HSP_DEGRADED:
+      return "degraded";
+    case HSP_E_ARG:
+      return "wrong argument";
+    case HSP_E_STATE:
+      return "wrong state";
+    case HSP_E_NOMEM:
+      return "no memory";
+    case HSP_E_IO:
+      return "not readable";
+    case HSP_E_UNSUPPORTED:
+      return "unsupported";
+    case HSP_E_NUMERIC:
+      return "lost the surface";
+    default:
+      return fmt::format("status {}", status);
+  }
+}
+
 void quantiles(const status::SharedHistogram& histogram, double* to) {
   to[0] = histogram.quantile(0.5), to[1] = histogram.quantile(0.99), to[2] = histogram.max();
 }
@@ -150,13 +174,13 @@ std::string table(const View& view, size_t rows) {
     text += fmt::format("{:<28.28} {:<16.16} {:9.3f} {:8.1f} {:8.1f} {:8.1f} {:12}  {}\n", arm.name, arm.module,
                         arm.force(), 1e3 * arm.now.position[0], 1e3 * arm.now.position[1], 1e3 * arm.now.position[2],
                         arm.now.sequence, arm.fault());
-  text += fmt::format("\n{:<28} {:<16} {:>9} {:>9} {:>8} {:>8} {:>8} {:>5} {:>6}\n", "MODEL", "PLUGIN", "FORCE N",
+  text += fmt::format("\n{:<28} {:<16} {:>9} {:>9} {:>8} {:>8} {:>8} {:>5}  {}\n", "MODEL", "PLUGIN", "FORCE N",
                       "DEPTH mm", "p50 us", "p99 us", "max us", "ITER", "STATUS");
   for (size_t i = 0; i < std::min(rows, view.models.size()); ++i) {
     const ModelLine& m = view.models[i];
     const std::string depth = m.traced ? fmt::format("{:.3f}", m.now.depth * 1e3) : "-";
-    text += fmt::format("{:<28.28} {:<16.16} {:9.3f} {:>9} {:8.2f} {:8.2f} {:8.1f} {:5} {:6}\n", m.name, m.plugin,
-                        m.now.force, depth, m.p50, m.p99, m.max, m.now.iterations, m.now.status);
+    text += fmt::format("{:<28.28} {:<16.16} {:9.3f} {:>9} {:8.2f} {:8.2f} {:8.1f} {:5}  {}\n", m.name, m.plugin,
+                        m.now.force, depth, m.p50, m.p99, m.max, m.now.iterations, statusText(m.now.status));
   }
   if (view.models.size() > rows) text += fmt::format("... and {} more\n", view.models.size() - rows);
   return text;
