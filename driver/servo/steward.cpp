@@ -6,11 +6,11 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "host/nearest.hpp"
+#include "record/dump_folder.hpp"
 #include "servo/drawing.hpp"
 
 namespace hapticd::servo {
@@ -349,18 +349,8 @@ void Steward::sweep() {
 }
 
 Result<std::string> Steward::dump(const std::string& why) {
-  std::error_code error;
-  std::filesystem::create_directories(dump_folder_, error);
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  char stamp[32] = "";
-  std::strftime(stamp, sizeof stamp, "%Y%m%dT%H%M%SZ", &parts);
-  std::string file;
-  for (int i = 0; i < 100; ++i) {
-    file = dump_folder_ + "/blackbox-" + stamp + (i == 0 ? "" : "-" + std::to_string(i)) + ".h5";
-    if (!std::filesystem::exists(file, error)) break;
-  }
+  const std::string file =
+      record::nextDump(dump_folder_, std::chrono::system_clock::to_time_t(std::chrono::system_clock::now()));
   if (auto done = runner_.telemetry().flight()->ring().dump(file); !done) return Error{done.error()};
   log_(HSP_LOG_INFO, "black box", file + " (" + why + ")");
   return file;
