@@ -200,6 +200,17 @@ void Tracer::crossSeams(int track, const Vector3d& p, const TraceOptions& option
   }
 }
 
+/// Whether a patch that was not refined in this tick had better start from (u, v), where a neighbour's foot `there` has
+/// come to the common side, than from its own foot: that is farther from the probe, and not on the way.
+bool Tracer::isFarther(int patch, const Array2d& uv, const LocalFoot& there, const Vector3d& p) const noexcept {
+  constexpr double kAway = 0.05;  // of the range of the parameters
+  const Track& t = tracks_[patch];
+  if (t.tick == tracks_.tick()) return false;
+  if (t.at.known == Iterate::Known::kParameters)
+    return ((t.at.uv - uv).abs() > kAway * (model_.patch(patch).hi - model_.patch(patch).lo)).any();
+  return (t.at.E.S - p).norm() > there.distance && (t.at.E.S - there.S).norm() > there.distance;
+}
+
 /// The track on which the foot goes on nearer to the probe beyond a side, -1: none.
 int Tracer::crossSide(int track, int side, const Vector3d& p, const TraceOptions& options) noexcept {
   const double tolerance = options.tolerance;
@@ -214,6 +225,7 @@ int Tracer::crossSide(int track, int side, const Vector3d& p, const TraceOptions
   if (edge.patch == patch) return tryFrom(track, there, p, tolerance) ? track : -1;
   const int next = edge.patch;
   tracks_.follow(next, there);
+  if (isFarther(next, there, tracks_[track].foot, p)) tracks_.restart(next, there);
   if (budget_ > 0) refine(next, p, options);
   if (tracks_[next].tick != tracks_.tick()) return -1;
   // The common side belongs to the neighbour too: if its foot is farther away, it sits in another valley.

@@ -63,6 +63,18 @@ void Tracks::follow(int patch, const Array2d& uv) noexcept {
   set(patch, uv, way_);
 }
 
+void Tracks::restart(int patch, const Array2d& uv) noexcept {
+  if (const Track* room = newRival(patch)) {
+    Track& rival = (*this)[static_cast<int>(room - tracks_.data())];
+    const Track& first = (*this)[patch];
+    rival.at = first.at;
+    rival.foot = first.foot;
+    rival.touched = first.touched;
+    key_[static_cast<std::size_t>(rival.slot)] = key_[static_cast<std::size_t>(first.slot)];
+  }
+  set(patch, uv, way_);
+}
+
 /// Notes that this tick brings results of a search. They may come in the middle of a tick and so in two: only what the
 /// search before the last one told is certainly older than where the newest search began.
 void Tracks::noteSearch() noexcept {

@@ -40,6 +40,9 @@ class Tracks {
   void offer(int patch, const Eigen::Array2d& uv, double distance, double best, bool asked) noexcept;
   /// [rt] Follows a patch that was not followed, from (u, v) where a neighbour's foot has come to the common side.
   void follow(int patch, const Eigen::Array2d& uv) noexcept;
+  /// [rt] Goes on with a patch from (u, v), where a neighbour's foot has come to the common side. The foot that the
+  /// patch had becomes a rival if there is room.
+  void restart(int patch, const Eigen::Array2d& uv) noexcept;
   /// [rt] Keeps a foot that another has displaced, if there is room.
   void keepAsRival(int patch, const Iterate& at, const LocalFoot& foot) noexcept;
   /// [rt] Stops following a foot; the first foot of a patch takes its rivals with it.
