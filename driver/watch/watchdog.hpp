@@ -13,8 +13,9 @@ namespace hapticd::watch {
 class Watchdog {
  public:
   static constexpr Nanoseconds kCheckEvery = 1'000'000;
-  static constexpr Nanoseconds kStuckAfter = 3'000'000;        ///< with the check and the cut itself below 5 ms
-  static constexpr Nanoseconds kHungAfter = 500'000'000;       ///< nothing comes back after that
+  static constexpr Nanoseconds kOnTime = 2 * kCheckEvery;  ///< a longer way between two looks: it was held up itself
+  static constexpr Nanoseconds kStuckAfter = 3'000'000;    ///< with the look and the cut itself below 5 ms
+  static constexpr Nanoseconds kHungAfter = 500'000'000;   ///< nothing comes back after that
   static constexpr Nanoseconds kSimulatedPause = 200'000'000;  ///< a busy machine may pause a simulation so long
 
   /// [main] @param hung what ends the process
@@ -25,7 +26,10 @@ class Watchdog {
   std::error_code start(int priority);
   void stop();
 
-  /// [any] One check; the thread does nothing else. True: it cut.
+  /// [any] One look; the thread does nothing else. True: it cut. A look that comes late saw nothing of the time before
+  /// it: the whole machine may have stood still, this thread and the servo alike. Such a time counts as one way between
+  /// two looks, so that the servo gets a moment to end its tick; a servo that is stuck is then cut by the fourth look
+  /// at the latest, which is within 4 ms once the looks are on time.
   bool check(Nanoseconds now) noexcept;
 
   uint64_t cuts() const noexcept { return cuts_.load(); }
@@ -33,10 +37,14 @@ class Watchdog {
  private:
   Watched& servo_;
   std::function<void()> hung_;
+  bool mayBePaused(Nanoseconds stuck) const noexcept;
+
   uint64_t cut_tick_ = UINT64_MAX;  ///< the tick that was cut, once
   uint64_t tick_ = UINT64_MAX;
   Nanoseconds checks_since_cut_ = 0;
   Nanoseconds cpu_at_tick_ = 0;
+  Nanoseconds looked_at_ = 0;  ///< the last time
+  Nanoseconds counted_ = 0;    ///< of the tick going on, as far as it was watched
   std::atomic<uint64_t> cuts_{0};
   std::atomic<bool> stop_{false};
   os::Thread thread_;

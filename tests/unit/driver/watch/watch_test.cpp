@@ -3,6 +3,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -72,6 +73,75 @@ TEST(Watchdog, ABusyMachineIsNoFaultOfASimulationButALoopIs) {
     cut |= watchdog.check(now);
   }
   EXPECT_TRUE(cut);
+}
+
+/// A servo that spins uses its processor, one that sleeps in a plugin does not: with hardware both are cut.
+TEST(Watchdog, CutsAPluginThatSpinsAndOneThatSleeps) {
+  for (const bool spins : {true, false}) {
+    Fake servo;
+    Watchdog watchdog(servo, [] {});
+    Nanoseconds cut_at = 0;
+    for (Nanoseconds now = 100 * kMs; now < 130 * kMs; now += kMs) {
+      if (now == 110 * kMs) servo.begun = now - kMs / 3;
+      if (spins && servo.begun != 0) servo.cpu = now - servo.begun;
+      if (watchdog.check(now)) cut_at = now;
+    }
+    ASSERT_EQ(servo.cuts, 1) << spins;
+    EXPECT_LE(cut_at - servo.begun, 5 * kMs) << spins;
+  }
+}
+
+/// The machine stands still for `stall` in the middle of a tick: watchdog and servo alike, and a virtual machine may
+/// charge the servo with the time. Gives how often the motors were cut when the tick then ends `rest` later.
+int cutsThroughAStall(bool simulated, Nanoseconds stall, Nanoseconds phase, Nanoseconds rest) {
+  Fake servo;
+  servo.harmless = simulated;
+  Watchdog watchdog(servo, [] {});
+  Nanoseconds now = 100 * kMs;
+  for (; now < 110 * kMs; now += kMs) watchdog.check(now);
+  servo.begun = now - kMs + phase;  // between two looks
+  const Nanoseconds back = servo.begun + kMs / 50 + stall;
+  for (now = std::max(now, back); now < back + rest; now += kMs) {
+    servo.cpu = now - servo.begun;
+    watchdog.check(now);
+  }
+  servo.begun = 0;
+  for (; now < back + 50 * kMs; now += kMs) watchdog.check(now);
+  return servo.cuts;
+}
+
+TEST(Watchdog, AMachineThatStoodStillIsNoServoThatIsStuck) {
+  for (const bool simulated : {false, true})
+    for (const Nanoseconds stall : {3 * kMs, 4 * kMs, 10 * kMs, 150 * kMs, 5000 * kMs})
+      for (Nanoseconds phase = 0; phase < kMs; phase += kMs / 10) {
+        EXPECT_EQ(cutsThroughAStall(simulated, stall, phase, kMs), 0) << stall << " " << phase;
+        EXPECT_EQ(cutsThroughAStall(simulated, stall, phase, 6 * kMs), 1) << "stuck after the stall: " << stall;
+      }
+}
+
+TEST(Watchdog, AfterAStallAServoThatIsStuckIsCutWithinFiveMillisecondsOfLooksOnTime) {
+  for (const Nanoseconds jitter : {Nanoseconds{0}, kMs / 10, kMs / 2, kMs}) {
+    Fake servo;
+    Watchdog watchdog(servo, [] {});
+    watchdog.check(100 * kMs);
+    servo.begun = 100 * kMs + kMs / 5;
+    const Nanoseconds back = 120 * kMs;
+    Nanoseconds cut_at = 0;
+    for (Nanoseconds now = back; cut_at == 0 && now < 140 * kMs; now += kMs + jitter)
+      if (watchdog.check(now)) cut_at = now;
+    EXPECT_GT(cut_at, back + kMs) << "no moment to end the tick";
+    EXPECT_LE(cut_at, back + 5 * kMs);
+  }
+}
+
+TEST(Watchdog, ThatIsAlwaysLateStillCutsAtItsFourthLook) {
+  Fake servo;
+  Watchdog watchdog(servo, [] {});
+  watchdog.check(100 * kMs);
+  servo.begun = 101 * kMs;
+  int looks = 0;
+  for (Nanoseconds now = 110 * kMs; servo.cuts == 0 && looks < 20; now += 10 * kMs, ++looks) watchdog.check(now);
+  EXPECT_EQ(looks, 4);
 }
 
 TEST(Watchdog, EndsAServoThatNeverComesBack) {
