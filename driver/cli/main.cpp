@@ -1,9 +1,11 @@
 /// `hapticd`: one program, a subcommand a file.
 #include <exception>
+#include <string_view>
 #include <vector>
 
 #include "cli/command.hpp"
 #include "cli/commands.hpp"  // made by the build: a declaration and a table entry for each subcommand
+#include "host/description.hpp"
 #include "host/nearest.hpp"
 
 namespace {
@@ -26,6 +28,8 @@ std::vector<std::string> commandNames(const CLI::App& app) {
 
 int main(int argc, char** argv) {
   using namespace hapticd::cli;
+  if (argc == 3 && argv[1] == std::string_view(hapticd::host::kDescribeForParent))
+    hapticd::host::describeForParent(argv[2]);
   CLI::App app{"hapticd: a real-time haptic servo daemon. Traces NURBS and medial-axis shapes and pushes back."};
   int exit_code = kWorked;
   app.require_subcommand(1);

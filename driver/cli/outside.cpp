@@ -62,7 +62,10 @@ Outside::Outside(const std::string& name, servo::RunOptions& how) : folder_(stat
 void Outside::serve(servo::Runner& runner, const std::string& device_file) {
   if (folder_.empty()) return;
   runner_ = &runner;
+  // A fork would make every page of the servo's memory one that is copied at the next write: a page fault in a tick.
+  catalog().describeBy([](const auto& file) { return host::describeByProgram("/proc/self/exe", file); });
   const auto load = [device_file](const std::string& file) -> Result<scene::Scene> {
+    catalog().refresh();
     scene::Loaded loaded = scene::load(file, catalog(), {true, device_file});
     if (loaded.scene) return std::move(*loaded.scene);
     std::string text;

@@ -1,9 +1,12 @@
 #include "host/catalog.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <sstream>
 
+#include "host/library.hpp"
 #include "host/nearest.hpp"
 
 namespace hapticd::host {
@@ -27,6 +30,13 @@ std::vector<fs::path> sharedObjects(const fs::path& dir) {
     if (entry->path().extension() == ".so") found.push_back(entry->path());
   std::sort(found.begin(), found.end());
   return found;
+}
+
+std::optional<FileStamp> stampOf(const fs::path& file) {
+  struct stat about {};
+  if (stat(file.c_str(), &about) != 0) return std::nullopt;
+  return FileStamp{static_cast<int64_t>(about.st_dev), static_cast<int64_t>(about.st_ino), about.st_size,
+                   about.st_mtim.tv_sec, about.st_mtim.tv_nsec};
 }
 
 /// A name from a file must not walk out of the directories that are searched.
@@ -87,12 +97,23 @@ const CatalogFile& Catalog::describeOnce(const fs::path& file) {
   if (const auto known = files_.find(file); known != files_.end()) return known->second;
   CatalogFile& entry = files_[file];
   entry.path = file;
-  auto classes = describeInChild(file);
+  // What is loaded is what will be used, whatever the file holds by now; its constructors have run already.
+  const std::shared_ptr<Library> loaded = Library::loaded(file);
+  if (!loaded) entry.stamp = stampOf(file);
+  auto classes = loaded ? describe(file) : describe_(file);
   if (classes)
     entry.classes = *std::move(classes);
   else
     entry.error = classes.error();
   return entry;
+}
+
+void Catalog::refresh() {
+  found_.clear();
+  std::erase_if(files_, [](const auto& entry) {
+    const CatalogFile& file = entry.second;
+    return !file.error.empty() || !file.stamp || file.stamp != stampOf(file.path);
+  });
 }
 
 std::vector<const CatalogFile*> Catalog::files(Kind kind) {

@@ -1,7 +1,10 @@
 /// Finds shape plugins and device modules and knows what they say of themselves. Files are described in child processes
 /// and only when asked for: a scene that names one plugin makes this process load no other.
 #pragma once
+#include <array>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -24,16 +27,30 @@ struct SearchPath {
   void prepend(const std::vector<std::filesystem::path>& dirs);
 };
 
+/// What changes when a file is written or replaced: device, inode, size, time of the last change in s and ns.
+using FileStamp = std::array<int64_t, 5>;
+
 /// A file that looks like a plugin or module and what came of describing it.
 struct CatalogFile {
   std::filesystem::path path;
+  std::optional<FileStamp> stamp;  ///< of the file that was described; nothing: the library that is loaded was
   std::vector<ClassInfo> classes;
   std::string error;  ///< "": none
 };
 
 class Catalog {
  public:
-  explicit Catalog(SearchPath path = SearchPath::standard()) : path_(std::move(path)) {}
+  /// How a file that is not loaded is described.
+  using Describe = std::function<Result<std::vector<ClassInfo>>(const std::filesystem::path&)>;
+
+  explicit Catalog(SearchPath path = SearchPath::standard()) : path_(std::move(path)), describe_(describeInChild) {}
+
+  /// [main] Another way from now on.
+  void describeBy(Describe describe) { describe_ = std::move(describe); }
+
+  /// [main] Forgets files that changed, failed or were loaded when they were described, and where names were found: a
+  /// process that goes on for days calls it before it looks again. Pointers that were handed out end.
+  void refresh();
 
   /// [main] The plugin of that name or id. NAME.so is tried first; only if that fails all files are described.
   /// The message has the reason of a NAME.so that could not be used, the nearest names and the search path.
@@ -59,6 +76,7 @@ class Catalog {
   }
 
   SearchPath path_;
+  Describe describe_;
   std::map<std::filesystem::path, CatalogFile> files_;  // nodes stay where they are: pointers are handed out
   std::map<std::pair<Kind, std::string>, const ClassInfo*> found_;  // a scene of 10,000 models asks for one name often
 };

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <spawn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -17,7 +18,9 @@ namespace hapticd::host {
 namespace {
 
 constexpr size_t kLargestAnswer = 64u << 20;
-constexpr int kThrew = 113;  ///< exit code of a child that an exception ended
+constexpr int kThrew = 113;   ///< exit code of a child that an exception ended
+constexpr int kAnswerFd = 3;  ///< where a program that was started answers: what it loads may print
+constexpr int kFatal[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM};
 
 bool writeAll(int fd, const std::string& bytes) {
   for (size_t done = 0; done < bytes.size();) {
@@ -29,15 +32,10 @@ bool writeAll(int fd, const std::string& bytes) {
   return true;
 }
 
-/// The child: no core file, no output of its own, and never back into the parent's code.
-[[noreturn]] void childMain(const std::function<std::string()>& work, int fd) {
+/// The child's work: no core file, and never back into other code.
+[[noreturn]] void answer(const std::function<std::string()>& work, int fd) {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM}) ::signal(signal, SIG_DFL);
-  if (const int null = open("/dev/null", O_RDWR | O_CLOEXEC); null >= 0) {
-    dup2(null, STDOUT_FILENO);
-    dup2(null, STDERR_FILENO);
-  }
   // An exception out of a constructor comes through dlopen() or ends there, as the compilers of plugin and host will.
   std::set_terminate([] { _exit(kThrew); });
   try {
@@ -46,6 +44,49 @@ bool writeAll(int fd, const std::string& bytes) {
     _exit(kThrew);
   }
 }
+
+/// A fork of this process: the signals as a program finds them, and no output.
+[[noreturn]] void childMain(const std::function<std::string()>& work, int fd) {
+  for (const int signal : kFatal) ::signal(signal, SIG_DFL);
+  if (const int null = open("/dev/null", O_RDWR | O_CLOEXEC); null >= 0) {
+    dup2(null, STDOUT_FILENO);
+    dup2(null, STDERR_FILENO);
+  }
+  answer(work, fd);
+}
+
+/// What posix_spawn is told: default signals, none of them blocked, no output, `answer` as the only other file.
+class Surroundings {
+ public:
+  explicit Surroundings(int answer) {
+    posix_spawn_file_actions_init(&files_);
+    posix_spawn_file_actions_addopen(&files_, STDIN_FILENO, "/dev/null", O_RDWR, 0);
+    posix_spawn_file_actions_adddup2(&files_, STDIN_FILENO, STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&files_, STDIN_FILENO, STDERR_FILENO);
+    posix_spawn_file_actions_adddup2(&files_, answer, kAnswerFd);
+    posix_spawn_file_actions_addclosefrom_np(&files_, kAnswerFd + 1);
+    posix_spawnattr_init(&how_);
+    sigset_t signals;
+    sigemptyset(&signals);
+    posix_spawnattr_setsigmask(&how_, &signals);
+    for (const int signal : kFatal) sigaddset(&signals, signal);
+    posix_spawnattr_setsigdefault(&how_, &signals);
+    posix_spawnattr_setflags(&how_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  }
+  ~Surroundings() {
+    posix_spawn_file_actions_destroy(&files_);
+    posix_spawnattr_destroy(&how_);
+  }
+  Surroundings(const Surroundings&) = delete;
+  Surroundings& operator=(const Surroundings&) = delete;
+  int start(pid_t& child, char* const* arguments) const {
+    return posix_spawn(&child, arguments[0], &files_, &how_, arguments, environ);
+  }
+
+ private:
+  posix_spawn_file_actions_t files_;
+  posix_spawnattr_t how_;
+};
 
 /// Everything the child writes until it closes the pipe; nothing when the time is over first.
 std::optional<std::string> readAll(int fd, int limit_ms) {
@@ -74,33 +115,57 @@ int waitFor(pid_t child) {
   return status;
 }
 
+/// The child's answer, or how it ended. Closes `fd`, the reading end.
+Result<std::string> hear(pid_t child, int fd, int limit_ms) {
+  std::optional<std::string> told = readAll(fd, limit_ms);
+  close(fd);
+  if (!told) kill(child, SIGKILL);  // also ends a child that wrote enough but hangs
+  const int status = waitFor(child);
+  if (!told) return Error{"took longer than " + std::to_string(limit_ms / 1000.0).substr(0, 4) + " s"};
+  if (WIFSIGNALED(status)) return Error{std::string("crashed: ") + strsignal(WTERMSIG(status))};
+  if (WEXITSTATUS(status) == kThrew) return Error{"threw an exception"};
+  if (WEXITSTATUS(status) != 0 || told->empty())
+    return Error{"ended the process with code " + std::to_string(WEXITSTATUS(status))};
+  return *std::move(told);
+}
+
+Error notTried(const char* what, int code) {
+  return Error{std::string("could not be tried: ") + what + ": " + std::strerror(code)};
+}
+
 }  // namespace
 
 Result<std::string> runInChild(const std::function<std::string()>& work, int limit_ms) {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return Error{std::string("could not be tried: pipe: ") + std::strerror(errno)};
+  if (pipe2(ends, O_CLOEXEC) != 0) return notTried("pipe", errno);
   const pid_t child = fork();
-  if (child < 0) {
-    const std::string reason = std::strerror(errno);
-    close(ends[0]);
-    close(ends[1]);
-    return Error{"could not be tried: fork: " + reason};
-  }
+  const int code = errno;
   if (child == 0) {
     close(ends[0]);
     childMain(work, ends[1]);
   }
   close(ends[1]);
-  std::optional<std::string> answer = readAll(ends[0], limit_ms);
+  if (child > 0) return hear(child, ends[0], limit_ms);
   close(ends[0]);
-  if (!answer) kill(child, SIGKILL);  // also ends a child that wrote enough but hangs
-  const int status = waitFor(child);
-  if (!answer) return Error{"took longer than " + std::to_string(limit_ms / 1000.0).substr(0, 4) + " s"};
-  if (WIFSIGNALED(status)) return Error{std::string("crashed: ") + strsignal(WTERMSIG(status))};
-  if (WEXITSTATUS(status) == kThrew) return Error{"threw an exception"};
-  if (WEXITSTATUS(status) != 0 || answer->empty())
-    return Error{"ended the process with code " + std::to_string(WEXITSTATUS(status))};
-  return *std::move(answer);
+  return notTried("fork", code);
+}
+
+Result<std::string> runProgram(std::vector<std::string> arguments, int limit_ms) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return notTried("pipe", errno);
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  pid_t child = 0;
+  const int code = Surroundings(ends[1]).start(child, pointers.data());
+  close(ends[1]);
+  if (code == 0) return hear(child, ends[0], limit_ms);
+  close(ends[0]);
+  return notTried(arguments[0].c_str(), code);
+}
+
+void answerParent(const std::function<std::string()>& work) {
+  answer(work, kAnswerFd);
 }
 
 }  // namespace hapticd::host

@@ -119,6 +119,27 @@ ClassInfo unpackClass(Unpacker& in, const std::filesystem::path& file) {
   return info;
 }
 
+std::string packed(const std::filesystem::path& file) {
+  Packer out;
+  const auto classes = describe(file);
+  out.text(classes ? "" : classes.error());
+  out.number(classes ? static_cast<uint32_t>(classes->size()) : 0u);
+  if (classes)
+    for (const ClassInfo& info : *classes) pack(out, info);
+  return out.take();
+}
+
+Result<std::vector<ClassInfo>> unpacked(const Result<std::string>& told, const std::filesystem::path& file) {
+  if (!told) return Error{file.string() + ": while it was loaded it " + told.error()};
+  Unpacker in(*told);
+  if (const std::string error = in.text(); !error.empty()) return Error{error};
+  std::vector<ClassInfo> classes(std::min(in.count(), kMaxParams));
+  for (ClassInfo& info : classes) info = unpackClass(in, file);
+  if (!in.good())
+    return Error{file.string() + ": its description broke off; its constructors may have ended the process"};
+  return classes;
+}
+
 }  // namespace
 
 int ClassInfo::indexOf(const std::string& param) const {
@@ -153,25 +174,16 @@ Result<std::vector<ClassInfo>> describe(const std::filesystem::path& file) {
 }
 
 Result<std::vector<ClassInfo>> describeInChild(const std::filesystem::path& file) {
-  auto told = runInChild(
-      [&] {
-        Packer out;
-        auto classes = describe(file);
-        out.text(classes ? "" : classes.error());
-        out.number(classes ? static_cast<uint32_t>(classes->size()) : 0u);
-        if (classes)
-          for (const ClassInfo& info : *classes) pack(out, info);
-        return out.take();
-      },
-      kLimitMs);
-  if (!told) return Error{file.string() + ": while it was loaded it " + told.error()};
-  Unpacker in(*told);
-  if (const std::string error = in.text(); !error.empty()) return Error{error};
-  std::vector<ClassInfo> classes(std::min(in.count(), kMaxParams));
-  for (ClassInfo& info : classes) info = unpackClass(in, file);
-  if (!in.good())
-    return Error{file.string() + ": its description broke off; its constructors may have ended the process"};
-  return classes;
+  return unpacked(runInChild([&] { return packed(file); }, kLimitMs), file);
+}
+
+Result<std::vector<ClassInfo>> describeByProgram(const std::filesystem::path& program,
+                                                 const std::filesystem::path& file) {
+  return unpacked(runProgram({program.string(), kDescribeForParent, file.string()}, kLimitMs), file);
+}
+
+void describeForParent(const std::filesystem::path& file) {
+  answerParent([&] { return packed(file); });
 }
 
 }  // namespace hapticd::host

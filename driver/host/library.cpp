@@ -67,6 +67,15 @@ Result<std::shared_ptr<Library>> Library::open(const std::filesystem::path& file
   return loaded;
 }
 
+std::shared_ptr<Library> Library::loaded(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::canonical(file, error);
+  Registry& all = registry();
+  const std::lock_guard lock(all.mutex);
+  const auto found = error ? all.loaded.end() : all.loaded.find(real);
+  return found != all.loaded.end() ? found->second.lock() : nullptr;
+}
+
 Library::~Library() {
   dlclose(handle_);
 }

@@ -13,6 +13,8 @@ class Library {
  public:
   /// [main] Loads `file` (RTLD_NOW | RTLD_LOCAL). The message has the loader's own reason.
   static Result<std::shared_ptr<Library>> open(const std::filesystem::path& file);
+  /// [any] The library of `file` if it is loaded now; nullptr if it is not.
+  static std::shared_ptr<Library> loaded(const std::filesystem::path& file);
   ~Library();
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "hapticd/abi.h"
+#include "host/library.hpp"
 
 namespace hapticd::host {
 namespace {
@@ -108,6 +109,72 @@ TEST(Catalog, ReadsAParameterTableOfASmallerMinorVersion) {
   EXPECT_EQ((*found)->params[1].id, "unused");
   EXPECT_EQ((*found)->params[1].def, 3);
   EXPECT_FALSE((*found)->params[0].def_text.has_value());
+}
+
+/// A folder with a plugin that can be replaced, as an installation or a rebuild does it.
+struct Replaceable {
+  const std::filesystem::path dir =
+      std::filesystem::temp_directory_path() / ("hapticd-replace-" + std::to_string(::getpid()));
+  const std::filesystem::path file = dir / "it.so";
+  Replaceable() { std::filesystem::create_directories(dir); }
+  ~Replaceable() { std::filesystem::remove_all(dir); }
+  void put(const std::filesystem::path& from) const {
+    std::filesystem::copy_file(from, dir / "new", std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::rename(dir / "new", file);
+  }
+};
+
+TEST(Catalog, DescribesAFileAgainOnlyWhenItChanged) {
+  const Replaceable plugin;
+  plugin.put(kGood / "test_shape.so");
+  int described = 0;
+  Catalog catalog(only({plugin.dir}));
+  catalog.describeBy([&described](const auto& file) {
+    ++described;
+    return describeInChild(file);
+  });
+  ASSERT_TRUE(catalog.shape("test_shape"));
+  catalog.refresh();
+  ASSERT_TRUE(catalog.shape("test_shape"));
+  EXPECT_EQ(described, 1) << "the file is the same";
+  plugin.put(kGood / "small_minor.so");
+  EXPECT_TRUE(catalog.shape("test_shape")) << "until it is refreshed";
+  catalog.refresh();
+  EXPECT_FALSE(catalog.shape("test_shape"));
+  EXPECT_TRUE(catalog.shape("small_minor"));
+  EXPECT_EQ(described, 2);
+}
+
+TEST(Catalog, TriesAFileAgainThatFailed) {
+  const Replaceable plugin;
+  plugin.put(kBad / "crash.so");
+  Catalog catalog(only({plugin.dir}));
+  int described = 0;
+  catalog.describeBy([&described](const auto& file) {
+    ++described;
+    return describeInChild(file);
+  });
+  EXPECT_FALSE(catalog.shape("it"));
+  catalog.refresh();
+  EXPECT_FALSE(catalog.shape("it"));
+  EXPECT_EQ(described, 2);
+}
+
+/// The values of a scene are set by the index that a description gives: it must be the one of the code that takes them.
+TEST(Catalog, DescribesWhatIsLoadedWhateverTheFileHoldsByNow) {
+  const Replaceable plugin;
+  plugin.put(kGood / "test_shape.so");
+  Catalog catalog(only({plugin.dir}));
+  catalog.describeBy([](const auto&) -> Result<std::vector<ClassInfo>> { return Error{"nobody should ask"}; });
+  auto loaded = Library::open(plugin.file);
+  ASSERT_TRUE(loaded) << loaded.error();
+  plugin.put(kGood / "small_minor.so");
+  ASSERT_TRUE(catalog.shape("test_shape"));
+  loaded->reset();
+  catalog.describeBy(describeInChild);
+  catalog.refresh();
+  EXPECT_FALSE(catalog.shape("test_shape"));
+  EXPECT_TRUE(catalog.shape("small_minor"));
 }
 
 TEST(SearchPath, PutsTheEnvironmentFirst) {

@@ -6,6 +6,7 @@
 
 #include <stdexcept>
 
+#include "host/description.hpp"
 #include "host/wire.hpp"
 
 namespace hapticd::host {
@@ -38,6 +39,34 @@ TEST(Child, TellsACrashFromAHangFromAnExit) {
   EXPECT_EQ(exits.error(), "ended the process with code 3");
   const auto throws = runInChild([]() -> std::string { throw std::runtime_error("no"); }, 10'000);
   ASSERT_FALSE(throws);
+}
+
+TEST(Program, DescribesAFileAsAForkDoesAndTellsHowABadOneEnds) {
+  const std::filesystem::path modules = TEST_MODULES;
+  const auto plain = describeInChild(modules / "good/test_shape.so");
+  const auto told = describeByProgram(TEST_HAPTICD, modules / "good/test_shape.so");
+  ASSERT_TRUE(told) << told.error();
+  ASSERT_EQ(told->size(), plain->size());
+  EXPECT_EQ(told->front().id, plain->front().id);
+  EXPECT_EQ(told->front().paramIds(), plain->front().paramIds());
+  for (const char* bad : {"crash", "exits", "wrong_major", "no_entry", "broken_table"}) {
+    const std::filesystem::path file = modules / "bad" / (std::string(bad) + ".so");
+    const auto refused = describeByProgram(TEST_HAPTICD, file);
+    ASSERT_FALSE(refused) << bad;
+    EXPECT_EQ(refused.error(), describeInChild(file).error()) << bad;
+  }
+}
+
+TEST(Program, ThatIsNotThereOrAnswersNothingIsAnError) {
+  const auto missing = runProgram({"/nowhere/hapticd", "x"}, 1000);
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error(), "could not be tried: /nowhere/hapticd: No such file or directory");
+  const auto silent = runProgram({"/bin/true"}, 5000);
+  ASSERT_FALSE(silent);
+  EXPECT_EQ(silent.error(), "ended the process with code 0");
+  const auto slow = runProgram({"/bin/sleep", "60"}, 100);
+  ASSERT_FALSE(slow);
+  EXPECT_EQ(slow.error(), "took longer than 0.10 s");
 }
 
 TEST(Wire, GivesBackWhatWasPackedAndNoticesAnEarlyEnd) {
