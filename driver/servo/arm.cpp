@@ -11,6 +11,7 @@ namespace {
 constexpr double kCalmFor = 0.5;      ///< [s] that a device must be well before its force comes back by itself
 constexpr double kCalmTravel = 0.02;  ///< [m] and its tip may move meanwhile, while something pushes on it
 constexpr double kStaleAfter = 0.05;  ///< [s] without a new sample: no force on yesterday's position
+constexpr double kPairWithin = 2e-3;  ///< [s] two samples may come so close together that were measured farther apart
 
 /// As the kinematics extension writes it.
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HDV_MAX_JOINTS>;
@@ -26,7 +27,8 @@ Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& desc
       q_world_device_(described.mount.orientation),
       origin_world_(described.mount.position),
       limiter_(limiter),
-      heat_(described.limits.motors) {}
+      heat_(described.limits.motors),
+      watches_jumps_(described.limits.velocity > 0) {}
 
 Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const scene::Servo& servo,
                                        const ArmOptions& options, const host::Services::Log& log) {
@@ -36,6 +38,7 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   if (auto opened = (*device)->open(); !opened) return Error{opened.error()};
   const Limiter limiter(described.limits, (*device)->info().max_force);
   std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter));
+  arm->watches_jumps_ |= !arm->simulated();
   if (described.admittance) {
     if (const std::string no = Admittance::refusal(arm->info()); !no.empty())
       return Error{"device '" + described.name + "': " + no};
@@ -85,7 +88,8 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
     limiter_.cut(Fault::kStuck, cut_after_.load());
   }
   if (taken_.exchange(true)) {  // the watchdog is writing its zero force
-    probe_.valid = false;
+    probe_.valid = tip_known_ = well_ = false;
+    if (velocity_) velocity_->reset();
     return probe_;
   }
   read_status_ = device_->read(now, sample_);
@@ -93,9 +97,11 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
   limiter_.watchButtons(read_status_ < 0 ? 0 : sample_.buttons);
   probe_.valid = judge(read_status_, now) && locate();
   if (!probe_.valid) {
+    tip_known_ = false;
     if (velocity_) velocity_->reset();
     return probe_;
   }
+  watchJump();
   if (admittance_) takeVirtualProbe();
   if (velocity_) {
     probe_.velocity = velocity_->update(probe_.position, dt);
@@ -116,8 +122,10 @@ bool Arm::judge(hsp_status status, Nanoseconds now) noexcept HSP_RT {
   const bool lacks_zero =
       (device_->info().capabilities & HDV_C_CALIBRATION) != 0 && (sample_.flags & HDV_S_CALIBRATED) == 0;
   if (lacks_zero) limiter_.trip(Fault::kNotCalibrated);
+  fresh_after_ = 0;
   if (sample_.sequence != last_sequence_) {
     last_sequence_ = sample_.sequence;
+    fresh_after_ = static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond;
     fresh_at_ = now;
   } else if (static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond > kStaleAfter) {
     trip(Fault::kStale, static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond);
@@ -161,6 +169,17 @@ bool Arm::locate() noexcept HSP_RT {
   probe_.position = R_world_device_ * p_device + origin_world_;
   probe_.orientation = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
   return true;
+}
+
+/// An encoder that lost its count, or a packet that was misread, must not choose the force: no hand moves a tip so far.
+/// Where there is no force anyway, a device may find its zero or itself anew.
+void Arm::watchJump() noexcept HSP_RT {
+  if (!watches_jumps_ || fresh_after_ <= 0) return;
+  const double speed = (probe_.position - tip_).norm() / std::max(fresh_after_, kPairWithin);
+  const bool felt = limiter_.fault() == Fault::kNone;
+  if (felt && tip_known_ && !(speed <= kMaxProbeSpeed)) limiter_.trip(Fault::kJumped, speed);
+  tip_known_ = felt;
+  tip_ = probe_.position;
 }
 
 std::optional<Eigen::Vector3d> Arm::handForce() const noexcept HSP_RT {

@@ -95,6 +95,7 @@ class Arm {
   void findCut(CutFound when) noexcept HSP_RT;
   void recover(double dt, bool pushes) noexcept HSP_RT;
   bool locate() noexcept HSP_RT;
+  void watchJump() noexcept HSP_RT;
   bool comply(double dt, const Eigen::Vector3d& force) noexcept HSP_RT;
   void takeVirtualProbe() noexcept HSP_RT;
   void scaleToMotors(const std::array<double, HDV_MAX_JOINTS>& gravity, hdv_command& command) noexcept HSP_RT;
@@ -124,6 +125,9 @@ class Arm {
   Eigen::Vector3d calm_at_ = Eigen::Vector3d::Zero();
   uint64_t last_sequence_ = 0;
   Nanoseconds fresh_at_ = 0;
+  double fresh_after_ = 0;  // [s] between the last two new samples; 0: this one is not new
+  bool watches_jumps_, tip_known_ = false;
+  Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();  // of the last good sample, world
   Probe probe_;
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
 };

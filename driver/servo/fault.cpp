@@ -33,6 +33,9 @@ const char* describe(Fault fault) {
       return "a tick did not end and the watchdog cut the motors; look for the cause with: hapticd doctor";
     case Fault::kOverheated:
       return "a motor is hotter than limits.motors allow; let it cool, then start again";
+    case Fault::kJumped:
+      return "the position jumped farther than a hand can move; look at the encoders and their cables, then: hapticd "
+             "device info FILE";
   }
   return "unknown fault";
 }
@@ -40,7 +43,7 @@ const char* describe(Fault fault) {
 std::string faultMessage(const std::string& device, Fault fault, double measured, const char* why) {
   const std::string words = why != nullptr ? why : describe(fault);
   const size_t cure = words.find("; ");
-  const char* unit = fault == Fault::kTooFast                                                    ? "m/s"
+  const char* unit = fault == Fault::kTooFast || fault == Fault::kJumped                         ? "m/s"
                      : fault == Fault::kOverheated                                               ? "degC"
                      : fault == Fault::kStale || fault == Fault::kLate || fault == Fault::kStuck ? "s"
                                                                                                  : nullptr;

@@ -18,12 +18,13 @@ enum class Fault : uint8_t {
   kNotCalibrated,  ///< the device must be calibrated before it may push
   kStopped,        ///< the daemon is stopping
   kStuck,          ///< a tick did not end and the watchdog cut the motors [s]
-  kOverheated      ///< a motor is hotter than it may be, by its model [degC]
+  kOverheated,     ///< a motor is hotter than it may be, by its model [degC]
+  kJumped          ///< two positions are farther apart than a hand can move [m/s]
 };
-constexpr int kFaultCount = 11;
+constexpr int kFaultCount = 12;
 
-/// True if the fault ends by itself once the device is well: unplugged, silent, at fault, not calibrated. What the daemon
-/// or the user did wrong stays until the user clears it.
+/// True if the fault ends by itself once the device is well: unplugged, silent, at fault, not calibrated. What the
+/// daemon or the user did wrong stays until the user clears it.
 bool endsByItself(Fault fault) noexcept;
 
 /// Words for a fault: what failed, and the command or act that cures it.

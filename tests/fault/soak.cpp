@@ -1,6 +1,8 @@
-/// Millions of virtual ticks with random faults: `soak TICKS [SEED]`. A device that is lost, stale, faulty or sends
-/// NaN, late ticks, plugins that fail, readers of the status page that are killed. Exit 1 when a fault does not end in
-/// zero force within 20 ms, when a fault raises a force, when anything sent is not finite, or when memory grows.
+/// Millions of virtual ticks with random faults: `soak TICKS [SEED]`. A device that is lost, stale, faulty, jumps or
+/// sends NaN, late ticks, plugins that fail, readers of the status page that are killed. Exit 1 when a fault does not
+/// end in zero force within 20 ms, when a fault raises a force, when anything sent is not finite, when memory grows, or
+/// when a kind of fault has not come about.
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -17,10 +19,14 @@ namespace hapticd::servo {
 namespace {
 
 constexpr double kMaxForce = 8.5;  ///< [N] of the gantry
+constexpr Fault kInjected[] = {Fault::kDeviceLost,  Fault::kNotFinite, Fault::kStale,
+                               Fault::kDeviceFault, Fault::kJumped,    Fault::kLate};
 
 struct Check {
   uint64_t faults = 0, bad = 0, zeroed = 0;
   double force = 0, since = -1;
+  Fault last = Fault::kNone;
+  std::array<uint64_t, kFaultCount> kinds{};  ///< how often each came about
 
   void fail(const char* what, double t) {
     if (bad++ < 10) std::printf("t = %.4f s: %s\n", t, what);
@@ -30,6 +36,8 @@ struct Check {
     const double now = arm.force().norm();
     if (!std::isfinite(now) || now > kMaxForce * (1 + 1e-9)) fail("a force that is no force or too large", t);
     const Fault fault = arm.limiter().fault();
+    if (fault != last) ++kinds[static_cast<size_t>(fault)];
+    last = fault;
     if (fault == Fault::kNone) {
       force = now;
       since = -1;
@@ -50,6 +58,12 @@ struct Check {
   }
 };
 
+/// How late a tick wakes: mostly not at all, sometimes by up to 7 ms, and now and then for longer than a hand may wait.
+Nanoseconds latenessBy(uint32_t dice) {
+  if (dice % 20'000 == 1) return 150'000'000;
+  return dice % 500 == 0 ? dice % 7'000'000 : 0;
+}
+
 int soak(uint64_t ticks, unsigned seed) {
   constexpr int kModels = 60;
   std::mt19937 random(seed);
@@ -66,9 +80,9 @@ int soak(uint64_t ticks, unsigned seed) {
       memory = os::residentBytes();
       looked = allocationsOfThread() - before;
     }
-    const uint32_t dice = random();
-    late += dice % 500 == 0 ? 1 : 0;
-    return dice % 500 == 0 ? Nanoseconds{dice % 7'000'000} : Nanoseconds{0};
+    const Nanoseconds by = latenessBy(random());
+    late += by > 0 ? 1 : 0;
+    return by;
   };
   std::vector<scene::Model> more;
   for (int i = 0; i < kModels; ++i) {  // plugin errors, spread over the run
@@ -79,7 +93,7 @@ int soak(uint64_t ticks, unsigned seed) {
     model.name += std::to_string(i);
     more.push_back(model);
   }
-  Rig rig(6, lateness, ticks, "wall", {}, more);
+  Rig rig(6, lateness, ticks, "wall", {}, more, {number(4, HSP_BOOL, 1)});
   running = &rig;
   const std::string page = std::filesystem::temp_directory_path() / ("soak-page-" + std::to_string(getpid()));
   auto file = status::PageFile::create(page);
@@ -101,7 +115,13 @@ int soak(uint64_t ticks, unsigned seed) {
       static_cast<unsigned long long>(check.zeroed), static_cast<unsigned long long>(late), silenced, kModels,
       static_cast<unsigned long long>(killed), static_cast<unsigned long long>(report.servo_allocations - looked),
       grown, static_cast<unsigned long long>(check.bad));
-  const bool enough = check.faults > ticks / 10000 && silenced >= kModels / 4 && killed > 0;
+  bool enough = check.faults > ticks / 10000 && silenced >= kModels / 4 && killed > 0;
+  for (const Fault fault : kInjected) {
+    const uint64_t times = check.kinds[static_cast<size_t>(fault)];
+    const std::string words = describe(fault);
+    std::printf("  %llu times: %s\n", static_cast<unsigned long long>(times), words.substr(0, words.find(';')).c_str());
+    enough = enough && times > 0;
+  }
   if (!enough) std::printf("too few faults came about: this was no test\n");
   return check.bad == 0 && enough && report.servo_allocations == looked && grown < 1 ? 0 : 1;
 }

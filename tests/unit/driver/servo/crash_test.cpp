@@ -63,8 +63,12 @@ TEST(HangDeathTest, APluginThatNeverComesBackIsEndedByTheWatchdog) {
   fs::remove_all(dir);
 }
 
-TEST(Watch, AStepThatComesBackLateLeavesTheMotorsOffAndAFault) {
-  Rig rig(0, [](Nanoseconds) { return Nanoseconds{0}; }, 100, "deadly", {number(0, HSP_ENUM, 5)});
+/// A step that spins on and one that sleeps, on an arm that a hand may hold.
+class LateStep : public testing::TestWithParam<int> {};
+
+TEST_P(LateStep, LeavesTheMotorsOffAndAFault) {
+  Rig rig(0, [](Nanoseconds) { return Nanoseconds{0}; }, 100, "deadly", {number(0, HSP_ENUM, GetParam())}, {},
+          {number(4, HSP_BOOL, 1)});
   ServoWatch watched(*rig.loop, *rig.world, rig.arms, *rig.telemetry);
   watch::Watchdog watchdog(watched, [] {});
   ASSERT_FALSE(watchdog.start(81));
@@ -73,13 +77,13 @@ TEST(Watch, AStepThatComesBackLateLeavesTheMotorsOffAndAFault) {
   EXPECT_EQ(watchdog.cuts(), 1u);
   EXPECT_EQ(rig.arms[0]->limiter().fault(), Fault::kStuck);
   EXPECT_EQ(rig.log->mode, static_cast<uint32_t>(HDV_OFF));
-  const auto rows = rig.telemetry->blackBox();
-  for (const BlackBoxRow& row : rows) {
+  for (const BlackBoxRow& row : rig.telemetry->blackBox()) {
     if (row.t > 0.0105) {
       EXPECT_EQ(row.force[1], 0) << row.t;
     }
   }
 }
+INSTANTIATE_TEST_SUITE_P(SpinningAndSleeping, LateStep, testing::Values(5, 7));
 
 TEST(Watch, AForceBeyondTheClaimIsNotFeltAndItsShapeIsSilenced) {
   Rig rig(0, [](Nanoseconds) { return Nanoseconds{0}; }, 300, "deadly", {number(0, HSP_ENUM, 6)});

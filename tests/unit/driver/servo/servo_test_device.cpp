@@ -1,4 +1,5 @@
 /// A gantry of three sliding joints for the tests of the loop: it presses into y < 0, and fails when it is told to.
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -14,27 +15,34 @@ struct Log {
   double force[3];
   uint32_t mode;
   int reads, writes;
+  std::atomic<bool> hold;  ///< the test's: a write stays inside the module as long as it is set
 };
 
 struct Gantry : hapticd::Device {
-  double depth, fail_at, well_at;
+  double depth, fail_at, well_at, speed;
   int failure;
+  bool hardware;
   Log log{};
-  static constexpr const char* kFailures[] = {"none", "lost", "not_finite", "stale", "fault", "uncalibrated", "random"};
+  static constexpr const char* kFailures[] = {"none", "lost", "not_finite", "stale", "fault", "uncalibrated", "random",
+                                              "moves", "jumps", "released"};
   static constexpr hapticd::DeviceInfo kInfo{"org.hapticd.test.gantry", "gantry", "1.0.0", "MIT", "A gantry."};
   static constexpr auto fields() {
     using F = Fields<Gantry>;
     return std::array{F::real("depth", &Gantry::depth, "m", -1, 1, 0.002, "Depth below y = 0."),
                       F::real("fail_at", &Gantry::fail_at, "s", 0, 1e9, 0.05, "When it fails."),
                       F::choice("failure", &Gantry::failure, kFailures, 0, "How it fails."),
-                      F::real("well_at", &Gantry::well_at, "s", 0, 1e9, 1e9, "When it is well again.")};
+                      F::real("well_at", &Gantry::well_at, "s", 0, 1e9, 1e9, "When it is well again."),
+                      F::boolean("hardware", &Gantry::hardware, false, "It says that it is no simulation."),
+                      F::real("speed", &Gantry::speed, "m/s", 0, 100, 0, "Along x, once it fails by moving.")};
   }
 
   void open(hdv_info& info) {
     info.joint_count = 3;
     info.rate_hz = 1000;
     info.max_force = 8.5;
-    info.capabilities = HDV_C_SIMULATED | (failure == 5 ? static_cast<uint32_t>(HDV_C_CALIBRATION) : 0u);
+    info.buttons = 1;
+    info.capabilities = (hardware ? 0u : static_cast<uint32_t>(HDV_C_SIMULATED)) |
+                        (failure == 5 ? static_cast<uint32_t>(HDV_C_CALIBRATION) : 0u);
   }
   void start(const hdv_start& how) { start_ns_ = how.time_ns; }
   hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
@@ -46,6 +54,9 @@ struct Gantry : hapticd::Device {
     if (failed && failure == 1) return HSP_E_IO;
     if (failed && failure == 2) sample.position[0] = std::numeric_limits<double>::quiet_NaN();
     if (failed && failure == 4) sample.flags |= HDV_S_FAULT;
+    if (failed && failure == 7) sample.position[0] = speed * (t - fail_at);
+    if (failed && failure == 8) sample.position[0] = 0.3;
+    sample.buttons = failed && failure == 9 ? 0 : 1;
     if (failure == 6) return failAtRandom(sample);
     if (!failed || failure != 3) ++sample.sequence;
     ++log.reads;
@@ -59,7 +70,7 @@ struct Gantry : hapticd::Device {
     ++log.reads;
     if (bad_left_ == 0 && dice % 1000 == 0) {
       bad_left_ = 1 + static_cast<int>(dice / 1000 % 80);
-      bad_ = static_cast<int>(dice / 80000 % 4);
+      bad_ = static_cast<int>(dice / 80000 % 5);
     }
     if (bad_left_ == 0 || bad_ != 2) ++sample.sequence;
     if (bad_left_ == 0) return HSP_OK;
@@ -67,12 +78,15 @@ struct Gantry : hapticd::Device {
     if (bad_ == 0) return HSP_E_IO;
     if (bad_ == 1) sample.position[0] = std::numeric_limits<double>::quiet_NaN();
     if (bad_ == 3) sample.flags |= HDV_S_FAULT;
+    if (bad_ == 4) sample.position[0] = 0.3;
     return HSP_OK;
   }
   hsp_status write(uint64_t, const hdv_command& command) noexcept HSP_RT {
     std::memcpy(log.force, command.torque, sizeof log.force);
     log.mode = command.mode;
     ++log.writes;
+    while (log.hold.load()) {
+    }
     return HSP_OK;
   }
   const void* extension(const char* name) {

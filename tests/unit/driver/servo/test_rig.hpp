@@ -1,5 +1,6 @@
 /// A loop in virtual time over a gantry and one shape.
 #pragma once
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -14,6 +15,7 @@ struct GantryLog {
   double force[3];
   uint32_t mode;
   int reads, writes;
+  std::atomic<bool> hold;  ///< a write stays inside the module as long as it is set
 };
 
 /// A virtual clock that wakes up late when it is told to.
@@ -38,9 +40,11 @@ class LateClock final : public Clock {
 
 /// A wall, a gantry 2 mm inside it, and a loop.
 struct Rig {
-  explicit Rig(int failure, std::function<Nanoseconds(Nanoseconds)> lateness = [](Nanoseconds) { return 0; },
-               uint64_t ticks = 300, const char* shape = "wall", std::vector<scene::Value> values = {},
-               const std::vector<scene::Model>& more = {}, const std::vector<scene::Value>& device = {})
+  explicit Rig(
+      int failure, std::function<Nanoseconds(Nanoseconds)> lateness = [](Nanoseconds) { return 0; },
+      uint64_t ticks = 300, const char* shape = "wall", std::vector<scene::Value> values = {},
+      const std::vector<scene::Model>& more = {}, const std::vector<scene::Value>& device = {},
+      const std::function<void(scene::Limits&)>& limit = [](scene::Limits&) {})
       : clock(std::move(lateness)) {
     scene.models.push_back(testModel(shape, std::move(values)));
     scene.models.insert(scene.models.end(), more.begin(), more.end());
@@ -51,13 +55,15 @@ struct Rig {
     scene.devices[0].limits.slew = 0;
     scene.devices[0].parameters = {number(2, HSP_ENUM, failure)};
     scene.devices[0].parameters.insert(scene.devices[0].parameters.end(), device.begin(), device.end());
+    limit(scene.devices[0].limits);
     world = testWorld(scene);
-    auto arm = Arm::open(scene.devices[0], scene.servo, {1000, false}, [](int, const std::string&, const std::string&) {});
+    auto arm =
+        Arm::open(scene.devices[0], scene.servo, {1000, false}, [](int, const std::string&, const std::string&) {});
     EXPECT_TRUE(arm) << (arm ? "" : arm.error());
     arms.push_back(std::move(*arm));
     EXPECT_TRUE(arms[0]->start(0, Eigen::Vector3d(0, -9.81, 0)));
     hdv_device* handle = arms[0]->device().handle();
-    log = static_cast<const GantryLog*>(arms[0]->device().description().extension(handle, "test.log"));
+    log = static_cast<GantryLog*>(const_cast<void*>(arms[0]->device().description().extension(handle, "test.log")));
     telemetry = std::make_unique<Telemetry>(scene, 1000);
     settings.ticks = ticks;
     settings.lockstep = true;
@@ -70,7 +76,7 @@ struct Rig {
   std::unique_ptr<Telemetry> telemetry;
   LoopSettings settings;
   std::unique_ptr<Loop> loop;
-  const GantryLog* log = nullptr;
+  GantryLog* log = nullptr;
 };
 
 }  // namespace hapticd::servo
