@@ -9,14 +9,10 @@ import os
 import subprocess
 import sys
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish
+
 HAPTICD, SOURCE, SHIPPED, BROKEN, SHAPES = sys.argv[1:6]
-failures = 0
-
-
-def check(name, holds, detail=""):
-    global failures
-    failures += not holds
-    print(f"{'ok' if holds else 'FAILED':6} {name}{'' if holds else ': ' + str(detail)}", flush=True)
 
 
 def examined(file, *more):
@@ -44,4 +40,4 @@ code, tests, failed, err = examined(SHAPES)
 for shape, test in (("allocating", "no-allocation-in-step"), ("rude", "no-lock-in-step"), ("misbehaving", "finite-outputs"),
                     ("pulling", "force-outward")):
     check(f"{shape} fails by {test}", code == 1 and (shape, test) in failed, (code, sorted(failed), err[-300:]))
-sys.exit(1 if failures else 0)
+finish()

@@ -16,14 +16,10 @@ import time
 import h5py
 import numpy
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish
+
 HAPTICD, SCENES = sys.argv[1], sys.argv[2]
-failures = 0
-
-
-def check(name, good, told=""):
-    global failures
-    failures += not good
-    print("ok  " if good else "FAIL", name, "" if good else told, flush=True)
 
 
 def scene(name):
@@ -196,4 +192,4 @@ with tempfile.TemporaryDirectory() as scratch:
         check("a run that ends in order leaves nothing shown", not [f for f in os.listdir(scratch) if f.startswith("x.")])
     finally:
         it.run.kill()
-sys.exit(1 if failures else 0)
+finish()

@@ -10,14 +10,10 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish
+
 HAPTICD, CONFIG = sys.argv[1], os.path.abspath(sys.argv[2])
-failures = 0
-
-
-def check(name, good, told=""):
-    global failures
-    failures += not good
-    print("ok  " if good else "FAIL", name, "" if good else told, flush=True)
 
 
 with tempfile.TemporaryDirectory() as folder:
@@ -101,4 +97,4 @@ with tempfile.TemporaryDirectory() as folder:
         check("the run ends in order", code == 0 and run.wait(timeout=30) == 0, err)
     finally:
         run.kill()
-sys.exit(1 if failures else 0)
+finish()

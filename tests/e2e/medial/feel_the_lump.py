@@ -10,16 +10,12 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish
+
 HAPTICD, CONFIG = sys.argv[1], os.path.abspath(sys.argv[2])
 SCENE = os.path.join(CONFIG, "scenes", "soft-palpation.yaml")
 LUMP = (0.018, -0.009)
-failures = 0
-
-
-def check(name, good, told=""):
-    global failures
-    failures += not good
-    print("ok  " if good else "FAIL", name, "" if good else told, flush=True)
 
 
 def pressed(folder, x, y):
@@ -46,4 +42,4 @@ with tempfile.TemporaryDirectory() as work:
     grid = [(x, y) for x in (-0.03, -0.01, 0.01, 0.02, 0.03) for y in (-0.02, -0.01, 0, 0.01, 0.02)]
     found = max(grid, key=lambda place: pressed(work, *place))
     check("pressing every 10 mm finds it", math.dist(found, LUMP) < 0.005, found)
-sys.exit(1 if failures else 0)
+finish()

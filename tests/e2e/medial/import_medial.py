@@ -8,23 +8,14 @@ import math
 import os
 import re
 import struct
-import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish, program
+
 HAPTICD, CONFIG = sys.argv[1], sys.argv[2]
-failures = 0
-
-
-def check(name, good, told=""):
-    global failures
-    failures += not good
-    print("ok  " if good else "FAIL", name, "" if good else told, flush=True)
-
-
-def hapticd(*arguments):
-    done = subprocess.run([HAPTICD, *arguments], capture_output=True, text=True, timeout=120)
-    return done.returncode, done.stdout + done.stderr
+hapticd = program(HAPTICD, together=True)
 
 
 def save(name, text):
@@ -309,4 +300,4 @@ def refuse(folder):
 with tempfile.TemporaryDirectory() as work:
     for case in (recoverTorus, recoverCapsule, recoverEllipsoid, recoverCube, recoverBranches, recoverNurbs, recoverBox, refuse):
         case(work)
-sys.exit(1 if failures else 0)
+finish()

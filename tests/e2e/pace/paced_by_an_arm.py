@@ -6,26 +6,17 @@ Usage: paced_by_an_arm.py HAPTICD CONFIG     prints a line a case; exit 1 when o
 """
 import json
 import os
-import subprocess
 import sys
 import tempfile
 
 import h5py
 import numpy as np
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish, program
+
 HAPTICD, CONFIG = sys.argv[1], sys.argv[2]
-failures = 0
-
-
-def check(name, good, told=""):
-    global failures
-    failures += not good
-    print("ok  " if good else "FAIL", name, "" if good else told, flush=True)
-
-
-def hapticd(*arguments):
-    done = subprocess.run([HAPTICD, *arguments], capture_output=True, text=True, timeout=60)
-    return done.returncode, done.stdout + done.stderr
+hapticd = program(HAPTICD, together=True)
 
 
 def write(path, text):
@@ -76,4 +67,4 @@ def main(folder):
 
 with tempfile.TemporaryDirectory() as scratch:
     main(scratch)
-sys.exit(1 if failures else 0)
+finish()

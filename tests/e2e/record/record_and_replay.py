@@ -9,19 +9,11 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish, program
+
 HAPTICD, SCENES = sys.argv[1], sys.argv[2]
-failures = 0
-
-
-def check(name, good, told=""):
-    global failures
-    failures += not good
-    print("ok  " if good else "FAIL", name, "" if good else told, flush=True)
-
-
-def hapticd(*arguments):
-    done = subprocess.run([HAPTICD, *arguments], capture_output=True, text=True, timeout=60)
-    return done.returncode, done.stdout + done.stderr
+hapticd = program(HAPTICD, together=True)
 
 
 def replayIsExact(folder, scene):
@@ -78,4 +70,4 @@ with tempfile.TemporaryDirectory() as scratch:
     status, text = hapticd("replay", teapot, "--set", "teapot.stiffness=900")
     check("a changed stiffness is found", status == 1 and "differ" in text, text)
     killLeavesAReadableFile(scratch, dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch))
-sys.exit(1 if failures else 0)
+finish()

@@ -12,19 +12,14 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish, program
+
 HAPTICD, SOURCE, SHAPES, UNIT = (os.path.abspath(argument) for argument in sys.argv[1:5])
-failures = 0
-
-
-def check(name, holds, detail=""):
-    global failures
-    failures += not holds
-    print(f"{'ok' if holds else 'FAILED':6} {name}{'' if holds else ': ' + str(detail)}", flush=True)
 
 
 def hapticd(environment, *arguments):
-    done = subprocess.run([HAPTICD, *arguments], env=environment, capture_output=True, text=True, timeout=60)
-    return done.returncode, done.stdout, done.stderr
+    return program(HAPTICD, environment)(*arguments)
 
 
 def sceneOf(folder, how):
@@ -129,4 +124,4 @@ with tempfile.TemporaryDirectory() as scratch:
         crash(scratch, surroundings, signal, words)
     service(scratch, surroundings)
     unit(scratch)
-sys.exit(1 if failures else 0)
+finish()

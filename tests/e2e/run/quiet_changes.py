@@ -14,7 +14,7 @@ import tempfile
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, end, program
+from e2e import check, finish, program
 
 HAPTICD, SOURCE, CRASHING = (os.path.abspath(argument) for argument in sys.argv[1:4])
 SCENES = os.path.join(SOURCE, "config", "scenes")
@@ -75,4 +75,4 @@ with tempfile.TemporaryDirectory() as scratch:
     check("the servo thread faulted no page", seen["page_faults"] == 0 or not can_lock, seen["page_faults"])
     check("and allocated nothing", seen["servo_allocations"] == 0, seen["servo_allocations"])
     check("and ticked all the while", seen["ticks"] > 1000, seen["ticks"])
-end()
+finish()

@@ -15,17 +15,13 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish
+
 HAPTICD, SOURCE, WITNESS, SHAPES = sys.argv[1:5]
 SECONDS = 2
 strace = shutil.which("strace")
 can_lock = os.geteuid() == 0 or resource.getrlimit(resource.RLIMIT_MEMLOCK)[0] == resource.RLIM_INFINITY
-failures = 0
-
-
-def check(name, holds, detail=""):
-    global failures
-    failures += not holds
-    print(f"{'ok' if holds else 'FAILED':6} {name}{'' if holds else ': ' + str(detail)}", flush=True)
 
 
 def systemCalls(log):
@@ -107,4 +103,4 @@ if not strace:
     print("skipped: system calls, strace is missing")
 with tempfile.TemporaryDirectory() as scratch:
     planted(scratch)
-sys.exit(1 if failures else 0)
+finish()

@@ -11,15 +11,11 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish
+
 HAPTICD, SOURCE = sys.argv[1], sys.argv[2]
 SCENES = os.path.join(SOURCE, "config", "scenes")
-failures = 0
-
-
-def check(name, holds, detail=""):
-    global failures
-    failures += not holds
-    print(f"{'ok' if holds else 'FAILED':6} {name}{'' if holds else ': ' + str(detail)}")
 
 
 def started(scene, *more):
@@ -87,7 +83,7 @@ def main():
                 out.write(f"  - {{name: m{i}, plugin: nurbs_rigid, pose: {{position: [{i % 100}, {i // 100}, 0]}}, parameters: {{geometry: {model}}}}}\n")
         done = subprocess.run([HAPTICD, "run", scene, "--for", "0.2", "--virtual-time"], capture_output=True, text=True, timeout=120)
         check("a scene of 10,000 models runs, or says why not", done.returncode in (0, 2) and (done.returncode == 0 or done.stderr), (done.returncode, done.stderr[-300:]))
-    sys.exit(1 if failures else 0)
+    finish()
 
 
 main()
