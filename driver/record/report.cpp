@@ -72,6 +72,14 @@ std::string degradedText(const RunReport& report) {
       report.models.size(), 100.0 * static_cast<double>(most) / static_cast<double>(report.ticks));
 }
 
+/// For whoever wonders why nothing was felt.
+std::string untouchedText(const RunReport& report) {
+  const bool touched = std::any_of(report.models.begin(), report.models.end(),
+                                   [](const ModelReport& model) { return model.contact.contactTicks() > 0; });
+  if (touched || report.ticks == 0) return "";
+  return "  contact   none: the tip touched no model\n";
+}
+
 std::string limitText(const LimitReport& device, uint64_t ticks) {
   if (device.any == 0 || ticks == 0) return "";
   std::string text = fmt::format("limits of {}: the force was cut in {:.2g} % of the ticks (", device.device,
@@ -133,6 +141,7 @@ std::string summary(const RunReport& report) {
   text += fmt::format("  process   {:.1f} MB resident, first tick {:.0f} ms after the start\n",
                       static_cast<double>(report.resident_bytes) / 1e6, report.start_ms);
   text += degradedText(report);
+  text += untouchedText(report);
   constexpr size_t kMostModels = 12;
   size_t shown = 0;
   for (const ModelReport& model : report.models)

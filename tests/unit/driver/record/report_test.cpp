@@ -80,6 +80,13 @@ TEST_F(Report, TellsPeopleOfModelsThatAnsweredCoarserWithoutContact) {
   EXPECT_NE(summary(report).find("lowered for 1 of 2 models, in up to 50 % of the ticks"), std::string::npos);
 }
 
+TEST_F(Report, TellsPeopleThatNothingWasTouched) {
+  RunReport report = sample();
+  EXPECT_EQ(summary(report).find("touched no model"), std::string::npos);
+  report.models[0].contact = {};
+  EXPECT_NE(summary(report).find("touched no model"), std::string::npos);
+}
+
 TEST_F(Report, DrawsEveryPeakAndEscapesNames) {
   std::vector<Sample> samples(5000);
   for (size_t i = 0; i < samples.size(); ++i) samples[i].t = static_cast<double>(i) * 1e-3;
