@@ -53,6 +53,13 @@ class Search {
     auto reference = answer(applied(scene_, knobs_, finestOf(knobs_)), motion_, VelocityFrom::kMotion, options_.log);
     if (!reference) return Error{reference.error()};
     reference_ = std::move(*reference);
+    const bool met = std::any_of(reference_.answers.begin(), reference_.answers.end(),
+                                 [](const Answer& answer) { return answer.traced; });
+    if (!met)
+      return Error{
+          "the motion comes near no model, so there is no error to measure\n"
+          "  expected: a tip that touches what the scene is about\n"
+          "  fix: give one with --probe FILE, or one that a hand made with --motion RECORDING"};
     plan();
     for (size_t i = 0; i < planned_.size() && going_; ++i)
       if (auto tried = attempt(planned_[i]); !tried) return Error{tried.error()};

@@ -108,6 +108,11 @@ with tempfile.TemporaryDirectory() as folder:
     told = json.load(open(f"{folder}/stopped.json"))
     assert "stopped early" in out and not told["complete"] and len(told["candidates"]) >= 1, out
 
+    # A motion without contact has no errors: zeros would be taken for perfection.
+    with open(f"{folder}/far.csv", "w") as far:
+        far.write("t,x,y,z\n" + "".join(f"{i * 1e-3:.3f},1,1,1\n" for i in range(1000)))
+    assert "comes near no model" in run("tune", file, "--probe", f"{folder}/far.csv", code=1)
+
     # A goal that nothing reaches: the nearest is chosen, and the exit code says so.
     assert "none of" in run("tune", file, "--motion-seconds", "0.5", "--limit-seconds", "5", "--budget-us", "0.001", code=1)
     open(f"{folder}/empty.yaml", "w").write("hapticd: 1\nmodels: []\n")
