@@ -159,6 +159,43 @@ TEST(Edges, ForceRoundOpenEdgesOfTheTeapotIsContinuous) {
   EXPECT_EQ(circles, 3 * 16);  // rim and lid, the mouth of the spout, and the buried ends of spout and handle
 }
 
+/// Straight over the rims that a probe can reach, on both sides of the sheet: the bevel adds the change aside to the
+/// change in depth, so the force changes by the square root of two of the way, and by no more in a fast tick.
+TEST(Edges, ForceOverOpenEdgesOfTheTeapotChangesByNoMoreThanTheBevelLets) {
+  constexpr double kReach = 2.8e-4;  // [m] beyond, the other side of the spout's lip is as near
+  const double steepest = std::numbers::sqrt2 + 1e-3;
+  const Model model = solid("teapot");
+  int rims = 0;
+  for (int index = 0; index < model.patchCount(); ++index)
+    for (int side = 0; side < kSides; ++side) {
+      const bool buried = index >= 12 && index < 18;  // the handle, and where the spout begins
+      if (buried || model.patch(index).sides[static_cast<std::size_t>(side)].kind != SideKind::kFree) continue;
+      ++rims;
+      for (double fraction : kFractions) {
+        const EdgePoint edge = freeAt(model, index, side, fraction);
+        for (double depth : {-kReach, -1e-4, -1e-5, 1e-5, 1e-4, kReach})
+          for (double step : {4e-6, 3e-4}) {
+            Tracer tracer(model);
+            Vector3d last = Vector3d::Zero();
+            const int ticks = static_cast<int>(2 * kReach / step);
+            for (int tick = 0; tick <= ticks; ++tick) {
+              const double x = (tick - 0.5 * ticks) * step;
+              const Vector3d p = edge.at - depth * edge.n + x * edge.aside;
+              if (tick % kSearchTicks == 0) search(model, p, tracer);
+              const Foot foot = tracer.step(p);
+              const Vector3d force = foot.depth > 0 ? Vector3d(foot.depth * foot.normal) : Vector3d::Zero();
+              if (tick > 0) {
+                ASSERT_LE((force - last).norm(), steepest * step)
+                    << index << ' ' << side << ' ' << fraction << ", at a depth of " << depth << ", aside " << x;
+              }
+              last = force;
+            }
+          }
+      }
+    }
+  EXPECT_EQ(rims, 4 + 2 + 4);  // body, mouth of the spout, lid
+}
+
 /// Farther in than half of a lip's thickness its two sides are equally near somewhere. Only there may the force jump.
 TEST(Edges, ForceJumpsOnlyWhereTheNearestFootOfAPartDoes) {
   constexpr double kWide = 1e-3, kStep = kWide * 2 * std::numbers::pi / kSteps;
