@@ -210,13 +210,12 @@ TEST(HeldTick, LeavesNoSpikeInTheVelocity) {
   ASSERT_TRUE((*arm)->start(0, Eigen::Vector3d(0, -9.81, 0)));
   auto* log = static_cast<GantryLog*>(
       const_cast<void*>((*arm)->device().description().extension((*arm)->device().handle(), "test.log")));
-  const int writes = log->writes;
   for (int i = 0; i < 200; ++i) {
     std::thread watchdog;
     if (i == 100) {
-      log->hold = true;
+      log->hold = 1;
       watchdog = std::thread([&] { (*arm)->cut(0.004); });
-      while (*static_cast<volatile int*>(&log->writes) == writes) std::this_thread::yield();
+      while (log->hold != 2) std::this_thread::yield();
     }
     const Probe& probe = (*arm)->read(static_cast<Nanoseconds>(i) * 1'000'000, i == 0 ? 0 : 1e-3);
     EXPECT_EQ(probe.valid, i != 100);
@@ -227,7 +226,7 @@ TEST(HeldTick, LeavesNoSpikeInTheVelocity) {
       EXPECT_LE(probe.velocity.norm(), kSpeed * (1 + 1e-9)) << i;
     }
     if (!watchdog.joinable()) continue;
-    log->hold = false;
+    log->hold = 0;
     watchdog.join();
   }
   EXPECT_NEAR((*arm)->probe().velocity.x(), kSpeed, 1e-9);

@@ -15,7 +15,7 @@ struct Log {
   double force[3];
   uint32_t mode;
   int reads, writes;
-  std::atomic<bool> hold;  ///< the test's: a write stays inside the module as long as it is set
+  std::atomic<int> hold;  ///< the test's: 1 keeps the next write inside the module, which makes it 2, until it is 0
 };
 
 struct Gantry : hapticd::Device {
@@ -85,8 +85,10 @@ struct Gantry : hapticd::Device {
     std::memcpy(log.force, command.torque, sizeof log.force);
     log.mode = command.mode;
     ++log.writes;
-    while (log.hold.load()) {
-    }
+    int asked = 1;
+    if (log.hold.compare_exchange_strong(asked, 2))
+      while (log.hold.load() == 2) {
+      }
     return HSP_OK;
   }
   const void* extension(const char* name) {

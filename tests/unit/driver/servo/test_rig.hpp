@@ -15,7 +15,7 @@ struct GantryLog {
   double force[3];
   uint32_t mode;
   int reads, writes;
-  std::atomic<bool> hold;  ///< a write stays inside the module as long as it is set
+  std::atomic<int> hold;  ///< 1 keeps the next write inside the module, which makes it 2, until it is 0
 };
 
 /// A virtual clock that wakes up late when it is told to.
