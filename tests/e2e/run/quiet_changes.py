@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""A running daemon is changed in every way that ctl knows: the servo thread faults no page and allocates nothing, and a
-plugin that crashes while it is looked at is an answer and not an end.
+"""A running daemon is changed in every way that ctl knows: the servo thread faults no page, allocates and locks nothing,
+and a plugin that crashes while it is looked at is an answer and not an end.
 
-Usage: quiet_changes.py HAPTICD SOURCE_DIR CRASHING.so     prints a line a check; exit 1 when one fails.
+Usage: quiet_changes.py HAPTICD SOURCE_DIR CRASHING.so WITNESS.so     prints a line a check; exit 1 when one fails.
 """
 import json
 import os
@@ -16,7 +16,7 @@ import time
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 from e2e import check, finish, program
 
-HAPTICD, SOURCE, CRASHING = (os.path.abspath(argument) for argument in sys.argv[1:4])
+HAPTICD, SOURCE, CRASHING, WITNESS = (os.path.abspath(argument) for argument in sys.argv[1:5])
 SCENES = os.path.join(SOURCE, "config", "scenes")
 can_lock = os.geteuid() == 0 or resource.getrlimit(resource.RLIMIT_MEMLOCK)[0] == resource.RLIM_INFINITY
 WARM = 1  # s: the first 200 ticks are not counted
@@ -47,7 +47,7 @@ def changes(ctl, folder):
           code == 1 and "crashed: Segmentation fault" in told and "crash.so" in told, (code, told))
     code, _, told = ctl("add", sceneOf(folder, "nobody"))
     check("one that does not exist too", code == 1 and 'usable shape plugin "nobody"' in told, (code, told))
-    for command in (["disable", "teapot"], ["enable", "teapot"], ["remove", "pendulum"], ["remove", "button"],
+    for command in (["set", "teapot", "stiffness", "600", "--consent"], ["disable", "teapot"], ["enable", "teapot"], ["remove", "pendulum"], ["remove", "button"],
                     ["reload"], ["add", os.path.join(SCENES, "button.yaml")], ["hold"], ["clear"], ["dump"], ["reload", os.path.join(SCENES, "torus.yaml")], ["status"], ["list"]):
         code, _, told = ctl(*command)
         check(" ".join(os.path.basename(word) for word in command), code == 0, told)
@@ -58,11 +58,12 @@ with tempfile.TemporaryDirectory() as scratch:
     shutil.copy(CRASHING, os.path.join(scratch, "plugins"))
     environment = dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch,
                        HAPTICD_PLUGIN_PATH=os.path.join(scratch, "plugins"))
-    report = os.path.join(scratch, "report.json")
+    report, witness = (os.path.join(scratch, name) for name in ("report.json", "witness.json"))
     ask = program(HAPTICD, environment)
     ctl = lambda *arguments: ask("ctl", "--name", "x", *arguments)
     run = subprocess.Popen([HAPTICD, "run", os.path.join(SCENES, "teapot.yaml"), "--for", "120", "--name", "x",
-                            "--report", report], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                            "--report", report], env=dict(environment, LD_PRELOAD=WITNESS, WITNESS=witness),
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
         check("the daemon answers", until(lambda: ctl("status")[0] == 0))
         time.sleep(WARM)
@@ -74,5 +75,7 @@ with tempfile.TemporaryDirectory() as scratch:
     seen = json.load(open(report))
     check("the servo thread faulted no page", seen["page_faults"] == 0 or not can_lock, seen["page_faults"])
     check("and allocated nothing", seen["servo_allocations"] == 0, seen["servo_allocations"])
+    locks = json.load(open(witness))["locks"]
+    check("and locked nothing", locks == 0, locks)
     check("and ticked all the while", seen["ticks"] > 1000, seen["ticks"])
 finish()
