@@ -103,8 +103,10 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
   }
   watchJump();
   if (admittance_) takeVirtualProbe();
-  if (velocity_) {
-    probe_.velocity = velocity_->update(probe_.position, dt);
+  // A device slower than the servo repeats its sample: a difference to itself is no speed, and one taken for a tick's
+  // way would be several times the hand's. A virtual mass moves in every tick.
+  if (velocity_ && (fresh_ || admittance_)) {
+    probe_.velocity = velocity_->update(probe_.position, admittance_ ? dt : fresh_after_);
     limiter_.watchVelocity(probe_.velocity);
     if (velocity_->speed() > kMaxProbeSpeed) limiter_.watchSpeed(velocity_->speed());
   }
@@ -122,8 +124,8 @@ bool Arm::judge(hsp_status status, Nanoseconds now) noexcept HSP_RT {
   const bool lacks_zero =
       (device_->info().capabilities & HDV_C_CALIBRATION) != 0 && (sample_.flags & HDV_S_CALIBRATED) == 0;
   if (lacks_zero) limiter_.trip(Fault::kNotCalibrated);
-  fresh_after_ = 0;
-  if (sample_.sequence != last_sequence_) {
+  fresh_ = sample_.sequence != last_sequence_;
+  if (fresh_) {
     last_sequence_ = sample_.sequence;
     fresh_after_ = static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond;
     fresh_at_ = now;
@@ -174,7 +176,7 @@ bool Arm::locate() noexcept HSP_RT {
 /// An encoder that lost its count, or a packet that was misread, must not choose the force: no hand moves a tip so far.
 /// Where there is no force anyway, a device may find its zero or itself anew.
 void Arm::watchJump() noexcept HSP_RT {
-  if (!watches_jumps_ || fresh_after_ <= 0) return;
+  if (!watches_jumps_ || !fresh_) return;
   const double speed = (probe_.position - tip_).norm() / std::max(fresh_after_, kPairWithin);
   const bool felt = limiter_.fault() == Fault::kNone;
   if (felt && tip_known_ && !(speed <= kMaxProbeSpeed)) limiter_.trip(Fault::kJumped, speed);

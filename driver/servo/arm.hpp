@@ -125,7 +125,8 @@ class Arm {
   Eigen::Vector3d calm_at_ = Eigen::Vector3d::Zero();
   uint64_t last_sequence_ = 0;
   Nanoseconds fresh_at_ = 0;
-  double fresh_after_ = 0;  // [s] between the last two new samples; 0: this one is not new
+  double fresh_after_ = 0;  // [s] between the last two new samples
+  bool fresh_ = false;      // the sample of this tick is new
   bool watches_jumps_, tip_known_ = false;
   Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();  // of the last good sample, world
   Probe probe_;

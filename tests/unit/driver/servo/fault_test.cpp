@@ -232,5 +232,23 @@ TEST(HeldTick, LeavesNoSpikeInTheVelocity) {
   EXPECT_NEAR((*arm)->probe().velocity.x(), kSpeed, 1e-9);
 }
 
+/// Ten ticks to a sample: the hand is as fast as it is, not ten times as fast in one tick and still in nine.
+TEST(SlowDevice, GivesTheVelocityOfTheHand) {
+  constexpr double kSpeed = 1.5;
+  Rig rig(
+      kMoves, [](Nanoseconds) { return Nanoseconds{0}; }, 1000, "wall", {}, {},
+      {number(1, HSP_REAL, 0), number(4, HSP_BOOL, 1), number(5, HSP_REAL, kSpeed), number(6, HSP_INT, 10)},
+      [](scene::Limits& limits) { limits.velocity = 1.6; });
+  Arm& arm = *rig.arms[0];
+  for (int i = 0; i < 1000; ++i) {
+    const Probe& probe = arm.read(static_cast<Nanoseconds>(i) * 100'000, i == 0 ? 0 : 1e-4);
+    ASSERT_TRUE(probe.valid);
+    if (i > 100) {
+      EXPECT_NEAR(probe.velocity.x(), kSpeed, 1e-9) << i;
+    }
+  }
+  EXPECT_EQ(arm.limiter().fault(), Fault::kNone);
+}
+
 }  // namespace
 }  // namespace hapticd::servo

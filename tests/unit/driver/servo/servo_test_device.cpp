@@ -20,7 +20,7 @@ struct Log {
 
 struct Gantry : hapticd::Device {
   double depth, fail_at, well_at, speed;
-  int failure;
+  int failure, every;
   bool hardware;
   Log log{};
   static constexpr const char* kFailures[] = {"none", "lost", "not_finite", "stale", "fault", "uncalibrated", "random",
@@ -33,7 +33,8 @@ struct Gantry : hapticd::Device {
                       F::choice("failure", &Gantry::failure, kFailures, 0, "How it fails."),
                       F::real("well_at", &Gantry::well_at, "s", 0, 1e9, 1e9, "When it is well again."),
                       F::boolean("hardware", &Gantry::hardware, false, "It says that it is no simulation."),
-                      F::real("speed", &Gantry::speed, "m/s", 0, 100, 0, "Along x, once it fails by moving.")};
+                      F::real("speed", &Gantry::speed, "m/s", 0, 100, 0, "Along x, once it fails by moving."),
+                      F::integer("every", &Gantry::every, "", 1, 1000, 1, "Only so many reads have a new sample.")};
   }
 
   void open(hdv_info& info) {
@@ -46,6 +47,10 @@ struct Gantry : hapticd::Device {
   }
   void start(const hdv_start& how) { start_ns_ = how.time_ns; }
   hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
+    if (log.reads % every != 0) {  // the sample is as the last one
+      ++log.reads;
+      return HSP_OK;
+    }
     const double t = static_cast<double>(now_ns - start_ns_) * 1e-9;
     const bool failed = t >= fail_at && t < well_at;
     sample.position[0] = 0;
