@@ -17,6 +17,7 @@ uint64_t allocationsOfThread() noexcept {
 #if defined(__GLIBC__) && !defined(HAPTICD_SANITIZED)
 // The sanitizers bring an allocator of their own, and catch more than these counters do.
 extern "C" {
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): these names are the C library's
 void* __libc_malloc(size_t);
 void* __libc_calloc(size_t, size_t);
 void* __libc_realloc(void*, size_t);
@@ -47,5 +48,6 @@ __attribute__((visibility("default"))) int posix_memalign(void** block, size_t a
   *block = __libc_memalign(alignment, size);
   return *block == nullptr ? ENOMEM : 0;
 }
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 }
 #endif

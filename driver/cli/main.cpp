@@ -26,6 +26,7 @@ std::vector<std::string> commandNames(const CLI::App& app) {
 
 }  // namespace
 
+// NOLINTNEXTLINE(bugprone-exception-escape): a table of commands that is wrong ends the program, and says so
 int main(int argc, char** argv) {
   using namespace hapticd::cli;
   if (argc == 3 && argv[1] == std::string_view(hapticd::host::kDescribeForParent))

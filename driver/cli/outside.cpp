@@ -23,7 +23,7 @@ std::string variable(const char* name) {
 
 /// Where black boxes are kept: $STATE_DIRECTORY (given by systemd), else the user's own state folder.
 std::string stateFolder() {
-  if (const std::string given = variable("STATE_DIRECTORY"); !given.empty()) return given;
+  if (std::string given = variable("STATE_DIRECTORY"); !given.empty()) return given;
   if (const std::string state = variable("XDG_STATE_HOME"); !state.empty()) return state + "/hapticd";
   if (const std::string home = variable("HOME"); !home.empty()) return home + "/.local/state/hapticd";
   return "/tmp/hapticd-" + std::to_string(geteuid());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace hapticd::servo {
 
@@ -26,7 +27,7 @@ Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& desc
       R_world_device_(described.mount.orientation.toRotationMatrix()),
       q_world_device_(described.mount.orientation),
       origin_world_(described.mount.position),
-      limiter_(limiter),
+      limiter_(std::move(limiter)),
       heat_(described.limits.motors),
       watches_jumps_(described.limits.velocity > 0) {}
 
