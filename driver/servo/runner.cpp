@@ -250,7 +250,7 @@ std::vector<std::string> Runner::enterRealTime() const {
 }
 
 void Runner::nameModel(uint32_t place, const std::string& name, const std::string& plugin) {
-  if (!name.empty()) telemetry_->name(place, name, plugin);  // the report tells of those that left too
+  telemetry_->name(place, name, plugin);
   if (telemetry_->statusWriter() != nullptr) telemetry_->statusWriter()->name(place, name, plugin);
 }
 

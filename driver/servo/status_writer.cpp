@@ -31,7 +31,10 @@ StatusWriter::StatusWriter(std::unique_ptr<status::PageFile> file, const scene::
 }
 
 void StatusWriter::name(uint32_t place, const std::string& name, const std::string& plugin) {
-  if (place < status::kMaxModels) file_->page().model[place].name.write(named(name, plugin));
+  if (place >= status::kMaxModels) return;
+  auto& model = file_->page().model[place];
+  model.step_us.clear();  // of the one before
+  model.name.write(named(name, plugin));
 }
 
 void StatusWriter::tick(const status::Now& now, Nanoseconds late, Nanoseconds spent, const Core& core,

@@ -1,6 +1,7 @@
 #include "servo/telemetry.hpp"
 
 #include <cmath>
+#include <map>
 
 namespace hapticd::servo {
 
@@ -22,6 +23,11 @@ void Telemetry::attach(std::unique_ptr<Flight> flight) {
 }
 
 void Telemetry::name(uint32_t place, const std::string& name, const std::string& plugin) {
+  if (!names_[place].empty()) {
+    if (left_.size() == kMostLeft) left_.erase(left_.begin());
+    left_.push_back({names_[place], plugins_[place], models_[place]});
+  }
+  models_[place] = {};
   names_[place] = name;
   plugins_[place] = plugin;
 }
@@ -97,6 +103,13 @@ record::RunReport Telemetry::report(const std::vector<std::string>& faults) cons
   report.servo_allocations = allocations_;
   for (size_t i = 0; i < models_.size(); ++i)
     if (!names_[i].empty()) report.models.push_back({names_[i], plugins_[i], models_[i]});
+  // Names are keys in the report, and a model often takes the place of one of its name.
+  std::map<std::string, int> times;
+  for (record::ModelReport left : left_) {
+    const int before = times[left.name]++;
+    left.name += before == 0 ? " (removed)" : " (removed " + std::to_string(before + 1) + ")";
+    report.models.push_back(std::move(left));
+  }
   report.faults = faults;
   return report;
 }

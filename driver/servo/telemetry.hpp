@@ -32,12 +32,14 @@ struct BlackBoxRow {
 class Telemetry {
  public:
   static constexpr double kBlackBoxSeconds = 10;
+  static constexpr size_t kMostLeft = 64;
 
   /// [main] Allocates and touches everything.
   /// @param places models that there may be; 0: those of the scene
   Telemetry(const scene::Scene& scene, double rate, uint32_t places = 0);
 
-  /// [main] A model takes an empty place; before the servo adopts it.
+  /// [main] A model takes an empty place; before the servo adopts it. What was counted of the one that left stays in
+  /// the report, for the newest `kMostLeft` of them.
   void name(uint32_t place, const std::string& name, const std::string& plugin);
 
   /// [main] Keeps every tick in a black box, with all that came in and went out; the short rows kept until now are not
@@ -88,6 +90,7 @@ class Telemetry {
   void bookModels(double dt, const Core& core, BlackBoxRow& row) noexcept HSP_RT;
 
   std::vector<std::string> names_, plugins_;
+  std::vector<record::ModelReport> left_;  ///< models that are not there any more
   double rate_, simulated_seconds_ = 0;
   record::Histogram lateness_us_, compute_us_;
   std::vector<record::ContactStatistics> models_;

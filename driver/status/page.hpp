@@ -35,6 +35,12 @@ class SharedHistogram {
     return 0;
   }
   double max() const noexcept { return max_.load(std::memory_order_relaxed); }
+  /// [main] Forgets everything, while nobody adds.
+  void clear() noexcept {
+    for (auto& count : counts_) count.store(0, std::memory_order_relaxed);
+    total_.store(0, std::memory_order_relaxed);
+    max_.store(0, std::memory_order_relaxed);
+  }
 
  private:
   static void bump(std::atomic<uint64_t>& count) noexcept HSP_RT {

@@ -30,7 +30,8 @@ class Daemon:
     def __init__(self, folder):
         self.folder = folder
         self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
-        self.run = subprocess.Popen([HAPTICD, "run", scene("teapot"), "--for", "100", "--name", "x", "--record", os.path.join(folder, "recording.h5")], env=self.environment,
+        self.run = subprocess.Popen([HAPTICD, "run", scene("teapot"), "--for", "100", "--name", "x", "--record", os.path.join(folder, "recording.h5"),
+                                     "--report", os.path.join(folder, "report.json")], env=self.environment,
                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def ask(self, *arguments):
@@ -66,6 +67,7 @@ class Daemon:
 def commands(daemon):
     check("top tells of the model", "teapot" in daemon.ask("top", "--once", "--json")[1])
     check("list tells of the model", "teapot" in daemon.models())
+    check("the hand comes to touch it", daemon.until(lambda: json.loads(daemon.ask("top", "--once", "--json")[1])["models"][0]["force_n"] > 0.3))
     daemon.expect(0, "disable", "teapot")
     check("a disabled model is listed so", daemon.until(lambda: not daemon.models()["teapot"]["enabled"]))
     daemon.expect(0, "enable", "teapot")
@@ -162,6 +164,14 @@ def effects(file):
           (place[:1], place[-1:]))
 
 
+def reported(file):
+    """Each model has its own figures, those that left too: the door, which took a place, was never touched."""
+    models = json.load(open(file))["models"]
+    ticks = {name: model["contact_ticks"] for name, model in models.items()}
+    check("models that left are told as such", {"teapot", "teapot (removed)", "door (removed)"} <= set(ticks), ticks)
+    check("a model does not inherit the figures of another", ticks.get("teapot (removed)", 0) > 0 and ticks.get("door (removed)") == 0, ticks)
+
+
 def killedReader(daemon):
     mine, its = pty.openpty()
     reader = subprocess.Popen([HAPTICD, "top", "--name", "x"], env=dict(daemon.environment, TERM="xterm"), stdin=its,
@@ -189,6 +199,7 @@ with tempfile.TemporaryDirectory() as scratch:
         it.expect(0, "stop")
         check("stop ends the run in order", it.run.wait(timeout=30) == 0)
         effects(os.path.join(scratch, "recording.h5"))
+        reported(os.path.join(scratch, "report.json"))
         check("a run that ends in order leaves nothing shown", not [f for f in os.listdir(scratch) if f.startswith("x.")])
     finally:
         it.run.kill()
