@@ -39,9 +39,10 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
                     "mu_d: the same for a sliding probe, at most friction_static"),
             F::real("viscosity", &NurbsRigid::viscosity_, "N s/m", 0, 100, 0, "drag along the surface in contact"),
             F::real("texture.amplitude", &NurbsRigid::texture_amplitude_, "m", 0, 1e-2, 0,
-                    "height of bumps on the surface; 0: smooth", HSP_P_LIVE),
+                    "height of bumps on the surface, in rows along u and v; 0: smooth", HSP_P_LIVE | HSP_P_SAFETY),
             F::real("texture.wavelength", &NurbsRigid::texture_wavelength_, "m", 1e-5, 1, 2e-3,
-                    "length of a bump along u and v; a surface holds a whole number of them", HSP_P_LIVE),
+                    "length of a bump along u and v; a surface holds a whole number of them",
+                    HSP_P_LIVE | HSP_P_SAFETY),
             F::real("pop_through", &NurbsRigid::pop_through_, "N", 0, 1e3, 0,
                     "a shell (sides: both) gives way above this force; 0: never")},
         motionFields<NurbsRigid>());
