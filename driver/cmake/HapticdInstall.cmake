@@ -18,13 +18,15 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PR
 configure_file(${PROJECT_SOURCE_DIR}/config/systemd/hapticd.service.in ${PROJECT_BINARY_DIR}/hapticd.service @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/hapticd.service DESTINATION lib/systemd/system)
 install(FILES ${PROJECT_SOURCE_DIR}/config/systemd/hapticd.sysusers DESTINATION lib/sysusers.d RENAME hapticd.conf)
-# PAM reads one folder only, /etc/security/limits.d, wherever the rest goes; an install into a folder of one's own keeps
-# it there, since nothing of a system may be touched then.
-if(CMAKE_INSTALL_PREFIX MATCHES "^(/usr|/usr/local|/opt/.*)$")
-  set(limits_dir /etc/security/limits.d)
-else()
-  set(limits_dir ${CMAKE_INSTALL_FULL_SYSCONFDIR}/security/limits.d)
-endif()
-install(FILES ${PROJECT_SOURCE_DIR}/config/systemd/70-hapticd.limits DESTINATION ${limits_dir} RENAME 70-hapticd.conf)
+# PAM reads one folder only, /etc/security/limits.d, wherever the rest goes; an install into a folder of one's own keeps it
+# there, since nothing of a system may be touched then. Which it is, --prefix may say as late as at the installation.
+install(CODE [[
+  if(CMAKE_INSTALL_PREFIX MATCHES "^/(usr|usr/local|opt/.*)$")
+    set(limits_dir /etc/security/limits.d)
+  else()
+    set(limits_dir ${CMAKE_INSTALL_PREFIX}/etc/security/limits.d)
+  endif()]])
+install(CODE "file(INSTALL DESTINATION \"\${limits_dir}\" TYPE FILE RENAME 70-hapticd.conf
+                   FILES \"${PROJECT_SOURCE_DIR}/config/systemd/70-hapticd.limits\")")
 file(GLOB udev_rules CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/udev/*.rules)
 install(FILES ${udev_rules} DESTINATION lib/udev/rules.d)
