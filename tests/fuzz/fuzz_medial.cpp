@@ -10,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace hapticd;
   try {
     const MedialFile file = parseMedialFile({reinterpret_cast<const char*>(data), size}, "fuzz.yaml", {});
-    pressABody(file.grid ? *makeSoftBody(*file.grid, {}) : *makeSoftBody(*file.mesh, {}));
+    pressABody(file.grid ? *makeSoftBody(*file.grid, {}) : *makeSoftBody(*file.mesh, {}), size);
   } catch (const ModelFileError&) {
   } catch (const std::invalid_argument&) {  // what the plugin reports of a body that cannot be
   }
