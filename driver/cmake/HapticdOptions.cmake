@@ -35,7 +35,7 @@ target_compile_options(hapticd_options INTERFACE
   # errno and traps are never read from mathematics here; both keep sqrt and fma out of line.
   -fno-math-errno -fno-trapping-math)
 if(HAPTICD_SANITIZE)
-  add_compile_options(-fsanitize=${HAPTICD_SANITIZE} -fno-omit-frame-pointer -g)
+  add_compile_options(-fsanitize=${HAPTICD_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${HAPTICD_SANITIZE})
   add_compile_definitions(HAPTICD_SANITIZED=1)
   if(HAPTICD_SANITIZE STREQUAL "thread")
