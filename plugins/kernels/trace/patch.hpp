@@ -30,6 +30,9 @@ struct PoleFan {
   static constexpr int kRays = 32;
   std::array<double, kRays> along;               ///< parameter along the collapsed side
   std::array<Eigen::Vector3d, kRays> direction;  ///< unit tangent into the patch
+  std::array<double, kRays> speed;               ///< [m] of way there for each unit of the parameter across the side
+  int patch = -1, side = -1;                     ///< of the model: whose pole it is
+  int next = -1;                                 ///< index of another fan around the same point, in a ring
 };
 
 struct Side {

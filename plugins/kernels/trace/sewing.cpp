@@ -88,7 +88,9 @@ void Sewing::findVertices() {
 
 void Sewing::findPoles() {
   constexpr int kPoints = 9;
-  for (Patch& patch : model_.patches_) {
+  std::map<int, int> fan_at;  // by vertex
+  for (int index = 0; index < model_.patchCount(); ++index) {
+    Patch& patch = model_.patches_[static_cast<std::size_t>(index)];
     for (int side = 0; side < kSides; ++side) {
       double extent = 0;
       const Vector3d apex = pointOnSide(patch, side, 0);
@@ -96,8 +98,16 @@ void Sewing::findPoles() {
         extent = std::max(extent, (pointOnSide(patch, side, i / (kPoints - 1.0)) - apex).norm());
       if (extent > tolerance_) continue;
       patch.sides[static_cast<std::size_t>(side)].kind = SideKind::kPole;
-      patch.sides[static_cast<std::size_t>(side)].pole = static_cast<int>(model_.poles_.size());
+      const int pole = static_cast<int>(model_.poles_.size());
+      patch.sides[static_cast<std::size_t>(side)].pole = pole;
       model_.poles_.push_back(fanOf(patch, side));
+      PoleFan& fan = model_.poles_.back();
+      fan.patch = index;
+      fan.side = side;
+      const int vertex = patch.corners[static_cast<std::size_t>(Patch::endsOf(side)[0])];
+      PoleFan& first = model_.poles_[static_cast<std::size_t>(fan_at.emplace(vertex, pole).first->second)];
+      fan.next = first.next >= 0 ? first.next : pole;
+      first.next = pole;
     }
   }
 }

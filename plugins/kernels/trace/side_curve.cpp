@@ -59,6 +59,7 @@ PoleFan fanOf(const Patch& patch, int side) noexcept {
     uv[axis] += inward;
     patch.surface.evaluate1(uv[0], uv[1], E);
     fan.direction[ray] = (E.S - apex.S).normalized();
+    fan.speed[ray] = (E.S - apex.S).norm() / std::abs(inward);
   }
   return fan;
 }

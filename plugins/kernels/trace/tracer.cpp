@@ -195,8 +195,10 @@ void Tracer::crossSeams(int track, const Vector3d& p, const TraceOptions& option
   const Track& t = tracks_[track];
   for (int side = 0; side < kSides; ++side) {
     const Side& edge = model_.patch(t.patch).sides[static_cast<std::size_t>(side)];
-    const bool own = edge.kind == SideKind::kPole || (edge.kind == SideKind::kJoined && edge.patch == t.patch);
-    if (own && (t.foot.sides & bit(side)) && crossSide(track, side, p, options) >= 0) return;
+    if (!(t.foot.sides & bit(side))) continue;
+    const bool seam = edge.kind == SideKind::kJoined && edge.patch == t.patch;
+    if (edge.kind == SideKind::kPole && leavePole(track, side, p, options, false) >= 0) return;
+    if (seam && crossSide(track, side, p, options) >= 0) return;
   }
 }
 
@@ -218,7 +220,7 @@ int Tracer::crossSide(int track, int side, const Vector3d& p, const TraceOptions
   const Patch& piece = model_.patch(patch);
   const Side& edge = piece.sides[static_cast<std::size_t>(side)];
   if (edge.kind == SideKind::kFree) return -1;
-  if (edge.kind == SideKind::kPole) return leavePole(track, side, p, tolerance) ? track : -1;
+  if (edge.kind == SideKind::kPole) return leavePole(track, side, p, options, true);
   const double best = tracks_[track].foot.distance;
   const double fraction = piece.fractionOn(side, tracks_[track].foot.uv);
   const Array2d there = model_.patch(edge.patch).onSide(edge.side, edge.flipped ? 1 - fraction : fraction);
@@ -239,29 +241,45 @@ int Tracer::crossSide(int track, int side, const Vector3d& p, const TraceOptions
   return nearer ? next : -1;
 }
 
-bool Tracer::leavePole(int track, int side, const Vector3d& p, double tolerance) noexcept {
+/// Where a foot on a pole goes on: along the ray that leads nearest to the probe, in its own patch or (`around`) in any
+/// that ends in the same point. Returns the track on which it is nearer to the probe, -1: none.
+int Tracer::leavePole(int track, int side, const Vector3d& p, const TraceOptions& options, bool around) noexcept {
   constexpr double kOutward = 1e-9;  // cosine: rays at right angles to the probe lead no nearer
-  const Track& t = tracks_[track];
-  const Patch& piece = model_.patch(t.patch);
-  const PoleFan& fan = model_.pole(piece.sides[static_cast<std::size_t>(side)].pole);
-  const Vector3d r = p - t.foot.S;
-  int best = 0;
+  constexpr int kMostFans = 16;
+  const int patch = tracks_[track].patch;
+  const double best_distance = tracks_[track].foot.distance;
+  const Vector3d r = p - tracks_[track].foot.S;
+  const int own = model_.patch(patch).sides[static_cast<std::size_t>(side)].pole;
+  int best_fan = own, best = 0;
   double most = -kInfinity;
-  for (int i = 0; i < PoleFan::kRays; ++i) {
-    const double gain = r.dot(fan.direction[static_cast<std::size_t>(i)]);
-    if (!(gain > most)) continue;
-    most = gain;
-    best = i;
+  for (int fan = own, n = 0; n < kMostFans; ++n) {
+    for (int i = 0; i < PoleFan::kRays; ++i) {
+      const double gain = r.dot(model_.pole(fan).direction[static_cast<std::size_t>(i)]);
+      if (!(gain > most)) continue;
+      most = gain;
+      best = i;
+      best_fan = fan;
+    }
+    fan = model_.pole(fan).next;
+    if (!around || fan == own) break;
   }
-  if (!(most > kOutward * r.norm())) return false;
-  const int axis = Patch::axisOf(side);
+  if (!(most > kOutward * r.norm())) return -1;
+  const PoleFan& fan = model_.pole(best_fan);
+  const auto ray = static_cast<std::size_t>(best);
+  const Patch& piece = model_.patch(fan.patch);
+  const int axis = Patch::axisOf(fan.side);
   const double range = piece.hi[axis] - piece.lo[axis];
-  const double speed = (axis == 0 ? t.at.E.Su : t.at.E.Sv).norm();
-  const double inward = std::clamp(most / std::max(speed, 1e-300), 1e-6 * range, 0.25 * range);
+  const double inward = std::clamp(most / std::max(fan.speed[ray], 1e-300), 1e-6 * range, 0.25 * range);
   Array2d uv;
-  uv[axis] = side % 2 == 0 ? piece.lo[axis] + inward : piece.hi[axis] - inward;
-  uv[1 - axis] = fan.along[static_cast<std::size_t>(best)];
-  return tryFrom(track, uv, p, tolerance);
+  uv[axis] = fan.side % 2 == 0 ? piece.lo[axis] + inward : piece.hi[axis] - inward;
+  uv[1 - axis] = fan.along[ray];
+  if (fan.patch == patch) return tryFrom(track, uv, p, options.tolerance) ? track : -1;
+  const int next = fan.patch;
+  tracks_.follow(next, uv);
+  if (budget_ > 0) refine(next, p, options);
+  if (tracks_[next].tick != tracks_.tick()) return -1;
+  if (!(tracks_[next].foot.distance < best_distance)) tryFrom(next, uv, p, options.tolerance);
+  return tracks_[next].foot.distance < best_distance ? next : -1;
 }
 
 }  // namespace hapticd::trace

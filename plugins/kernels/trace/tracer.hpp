@@ -87,7 +87,7 @@ class Tracer {
   void crossSeams(int track, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   int crossSide(int track, int side, const Eigen::Vector3d& p, const TraceOptions& options) noexcept;
   bool isFarther(int patch, const Eigen::Array2d& uv, const LocalFoot& there, const Eigen::Vector3d& p) const noexcept;
-  bool leavePole(int track, int side, const Eigen::Vector3d& p, double tolerance) noexcept;
+  int leavePole(int track, int side, const Eigen::Vector3d& p, const TraceOptions& options, bool around) noexcept;
   void drop(int track) noexcept;
   bool isHopeless(const Track& rival, double best) const noexcept;
 

@@ -130,6 +130,60 @@ TEST(Tracer, ContactOnASmoothPatchIsGoodToANanometreInOneEvaluation) {
   EXPECT_LE(evaluations, 2 * kTicks);
 }
 
+/// Four patches end in the middle of the bottom, and only one of them has been found so far.
+TEST(Tracer, AFootOnAPoleGoesOnIntoAnyPatchAroundIt) {
+  constexpr int kFirst = 28, kPatches = 4;  // of the teapot's bottom
+  const Model model = solid("teapot");
+  const Eigen::Array2d apex = model.patch(kFirst).onSide(0, 0.5);
+  spline::SurfacePoint E;
+  model.patch(kFirst).surface.evaluate1(apex[0], apex[1], E);
+  ASSERT_EQ(model.patch(kFirst).sides[0].kind, SideKind::kPole);
+  for (int start = kFirst; start < kFirst + kPatches; ++start)
+    for (double angle = 0.1; angle < 6; angle += 0.5) {
+      Tracer tracer(model);
+      tracer.activate(start, apex[0], apex[1]);
+      const Vector3d below = E.S - Vector3d(0, 1e-3, 0);
+      EXPECT_LT((tracer.step(below).point - E.S).norm(), 1e-9);
+      const Vector3d p = below + 5e-4 * Vector3d(std::cos(angle), 0, std::sin(angle));
+      const Foot foot = tracer.step(p);
+      Near near;
+      model.nearby(p, 1, &near, 1);
+      EXPECT_NEAR(foot.distance, near.distance, 1e-9) << start << ' ' << angle;
+    }
+}
+
+/// Of surfaces that are far enough apart, ticks evaluate one; the foot is the nearest of all the same.
+TEST(Tracer, SurfacesThatCannotBeTheNearestAreNotEvaluated) {
+  constexpr int kSheets = 4, kTicks = 2000;
+  std::mt19937 random(7);
+  const spline::SurfaceData sheet = randomPatch(random);
+  std::vector<spline::SurfaceData> sheets(kSheets, sheet);
+  std::vector<Model> alone;
+  for (int i = 0; i < kSheets; ++i) {
+    for (auto& point : sheets[static_cast<std::size_t>(i)].points) point.z() += 0.01 * i;
+    alone.push_back(Model({sheets[static_cast<std::size_t>(i)]}));
+  }
+  const Model model(sheets);
+  Tracer tracer(model);
+  int evaluations = 0;
+  for (int tick = 0; tick < kTicks; ++tick) {  // up through the sheets and down again, going round at 0.3 mm a tick
+    const double angle = 0.02 * tick;
+    const Vector3d p(0.05 + 0.015 * std::cos(angle), 0.05 + 0.015 * std::sin(angle),
+                     0.015 - 0.02 * std::cos(2 * std::numbers::pi * tick / kTicks));
+    if (tick == 0) search(model, tracer, p);
+    const Foot foot = tracer.step(p);
+    evaluations += foot.evaluations;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Model& one : alone) {
+      Near near;
+      one.nearby(p, 1, &near, 1);
+      nearest = std::min(nearest, near.distance);
+    }
+    EXPECT_NEAR(foot.distance, nearest, 1e-9) << tick;
+  }
+  EXPECT_LT(evaluations, kTicks * 3 / 2);
+}
+
 TEST(Tracer, BadSamplesLeaveNoTrace) {
   const Model model = solid("torus");
   Tracer with(model), without(model);
