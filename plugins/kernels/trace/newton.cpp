@@ -215,15 +215,6 @@ void evaluate(const Patch& patch, const Array2d& uv, Iterate& at) noexcept {
   at.known = Iterate::Known::kPoint;
 }
 
-SideMask sidesAt(const Patch& patch, const Array2d& uv) noexcept {
-  SideMask sides = 0;
-  for (int axis = 0; axis < 2; ++axis) {
-    if (uv[axis] == patch.lo[axis]) sides |= bit(2 * axis);
-    if (uv[axis] == patch.hi[axis]) sides |= bit(2 * axis + 1);
-  }
-  return sides;
-}
-
 constexpr std::size_t kStride = spline::kOutStride * sizeof(double);
 static_assert(offsetof(LocalFoot, S) == offsetof(LocalFoot, uv) + kStride);
 static_assert(offsetof(LocalFoot, normal) == offsetof(LocalFoot, uv) + 2 * kStride);
@@ -325,7 +316,7 @@ void descend(const Patch& patch, const Vector3d& p, Iterate& at, double toleranc
   if (foot.converged) {
     moveTo(foot, patch, p, at, step);
   } else {
-    moveTo(foot, patch, p, at, Step{{0, 0}, sidesAt(patch, at.uv)});
+    moveTo(foot, patch, p, at, Step{{0, 0}, patch.sidesAt(at.uv)});
   }
   foot.residual = foot.converged ? std::min(length, enough) : length;
 }
@@ -353,7 +344,7 @@ void directFoot(const Patch& patch, const Vector3d& p, Iterate& at, int steps, i
   foot.uv = at.uv;
   foot.S = at.E.S;
   look(foot, patch, p, at.E.Su, at.E.Sv);
-  foot.sides = sidesAt(patch, at.uv);
+  foot.sides = patch.sidesAt(at.uv);
   foot.converged = true;
 }
 
