@@ -46,11 +46,13 @@ int check(const Options& options) {
   for (const std::string& file : options.files) {
     std::optional<scene::Scene> scene;
     scene::Problems found = scene::checkFile(file, catalog(), &scene);
-    std::vector<double> stiffness;
-    if (scene && !options.files_only) found = tryModels(*scene, &stiffness);
+    Trial trial;
+    if (scene && !options.files_only) trial = tryModels(*scene);
+    found.insert(found.end(), trial.problems.begin(), trial.problems.end());
     if (!scene && found.empty()) found = tryDevice(file);
     printProblems(found, stdout);
-    if (scene && found.empty()) printWarnings(unstable(*scene, stiffness), stdout);
+    printWarnings(trial.warnings, stdout);
+    if (scene && found.empty()) printWarnings(unstable(*scene, trial.stiffness), stdout);
     if (found.empty() && !options.quiet) std::printf("%s: ok\n", file.c_str());
     problems += found.size();
     bad_files += found.empty() ? 0 : 1;

@@ -66,8 +66,6 @@ int plot(const Options& options) {
   const record::RecordedStream* ticks = (*recording)->stream("ticks");
   const auto columns = ticks != nullptr ? columnsOf(*ticks, options.arm) : std::nullopt;
   if (!columns) return fail(kBadInput, options.file + ": has no ticks of arm " + std::to_string(options.arm));
-  if (!std::ofstream(out, std::ios::app))
-    return fail(kBadInput, out + ": cannot be written, expected a file in a folder that you may write to");
   std::vector<record::Sample> samples;
   double first = 0, last = 0;
   for (uint64_t row = 0; row < ticks->rows(); ++row) {
@@ -79,6 +77,8 @@ int plot(const Options& options) {
   if (samples.empty() && ticks->rows() > 0)
     return fail(kBadInput, fmt::format("{}: has no tick from --from to --to; it runs from {:g} to {:g} s", options.file,
                                        first, last));
+  if (!std::ofstream(out, std::ios::app))
+    return fail(kBadInput, out + ": cannot be written, expected a file in a folder that you may write to");
   record::RunReport report;
   report.scene = options.file;
   report.ticks = samples.size();

@@ -84,6 +84,9 @@ int makeNew(const Options& options) {
   }
   std::printf("\nbuild it:  cmake -S %s -B %s/build && cmake --build %s/build\n", target.c_str(), target.c_str(),
               target.c_str());
+  std::puts(
+      "           where hapticd is not installed, cmake --install its build folder --prefix FOLDER, and add "
+      "-DCMAKE_PREFIX_PATH=FOLDER");
   std::printf("touch it:  HAPTICD_PLUGIN_PATH=%s/build hapticd run %s/scene.yaml\n", target.c_str(), target.c_str());
   return kWorked;
 }

@@ -25,53 +25,70 @@ hsp_activation activationOf(const scene::Scene& scene, const scene::Model& model
   return activation;
 }
 
-/// Nothing, or what the plugin says against a model.
-std::string objection(const scene::Scene& scene, const scene::Model& model, double& stiffness) {
-  auto shape = host::ShapeInstance::create(model, nullptr);
-  if (!shape) return shape.error();
-  const auto activated = (*shape)->activate(activationOf(scene, model));
-  if (!activated) return activated.error();
-  stiffness = (*shape)->report().max_stiffness;
-  return "";
-}
+/// Texts about models, each with the number of its model, as they travel from the child.
+class Remarks {
+ public:
+  void add(size_t model, const std::string& text) {
+    ++count_;
+    list_.number(static_cast<uint32_t>(model));
+    list_.text(text);
+  }
+  std::string take() {
+    host::Packer all;
+    all.number(count_);
+    return all.take() + list_.take();
+  }
+  static scene::Problems read(host::Unpacker& in, const scene::Scene& scene) {
+    scene::Problems problems;
+    for (uint32_t left = in.count(); left > 0 && in.good(); --left) {
+      const uint32_t index = in.count();
+      const std::string text = in.text();
+      if (index >= scene.models.size()) break;
+      scene::report(problems, scene.models[index].place, "models[" + std::to_string(index) + "]", text);
+    }
+    return problems;
+  }
+
+ private:
+  uint32_t count_ = 0;
+  host::Packer list_;
+};
 
 std::string tryAll(const scene::Scene& scene) {
-  host::Packer out;
-  uint32_t count = 0;
-  host::Packer list, claims;
+  Remarks problems, warnings;
+  host::Packer claims;
   for (size_t i = 0; i < scene.models.size(); ++i) {
     double stiffness = 0;
-    const std::string text = objection(scene, scene.models[i], stiffness);
+    const auto log = [&](int level, const std::string&, const std::string& text) {
+      if (level == HSP_LOG_WARNING) warnings.add(i, text);
+    };
+    if (auto shape = host::ShapeInstance::create(scene.models[i], log); !shape) {
+      problems.add(i, shape.error());
+    } else if (const auto activated = (*shape)->activate(activationOf(scene, scene.models[i])); !activated) {
+      problems.add(i, activated.error());
+    } else {
+      stiffness = (*shape)->report().max_stiffness;
+    }
     claims.number(stiffness);
-    if (text.empty()) continue;
-    ++count;
-    list.number(static_cast<uint32_t>(i));
-    list.text(text);
   }
-  out.number(count);
-  return out.take() + list.take() + claims.take();
+  return problems.take() + warnings.take() + claims.take();
 }
 
 }  // namespace
 
-scene::Problems tryModels(const scene::Scene& scene, std::vector<double>* stiffness) {
-  scene::Problems problems;
-  if (scene.models.empty()) return problems;
+Trial tryModels(const scene::Scene& scene) {
+  Trial trial;
+  if (scene.models.empty()) return trial;
   const auto told = host::runInChild([&] { return tryAll(scene); }, kLimitMs);
   if (!told) {
-    scene::report(problems, scene.file.string(), 1, 1, "models", "setting them up " + told.error());
-    return problems;
+    scene::report(trial.problems, scene.file.string(), 1, 1, "models", "setting them up " + told.error());
+    return trial;
   }
   host::Unpacker in(*told);
-  for (uint32_t left = in.count(); left > 0 && in.good(); --left) {
-    const uint32_t index = in.count();
-    const std::string text = in.text();
-    if (index >= scene.models.size()) break;
-    scene::report(problems, scene.models[index].place, "models[" + std::to_string(index) + "]", text);
-  }
-  if (stiffness != nullptr)
-    for (size_t i = 0; i < scene.models.size() && in.good(); ++i) stiffness->push_back(in.real());
-  return problems;
+  trial.problems = Remarks::read(in, scene);
+  trial.warnings = Remarks::read(in, scene);
+  for (size_t i = 0; i < scene.models.size() && in.good(); ++i) trial.stiffness.push_back(in.real());
+  return trial;
 }
 
 }  // namespace hapticd::cli

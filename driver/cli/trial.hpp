@@ -7,9 +7,14 @@
 
 namespace hapticd::cli {
 
+/// What plugins say of a scene's models.
+struct Trial {
+  scene::Problems problems, warnings;
+  std::vector<double> stiffness;  ///< [N/m] that each model claims, in scene order
+};
+
 /// [main] Creates and activates every model in a child process, one after the other, and collects what the plugins
 /// object to. A crash or a hang becomes a problem too.
-/// @param stiffness where the stiffness [N/m] that each model claims goes, in scene order; nullptr: not wanted
-scene::Problems tryModels(const scene::Scene& scene, std::vector<double>* stiffness = nullptr);
+Trial tryModels(const scene::Scene& scene);
 
 }  // namespace hapticd::cli

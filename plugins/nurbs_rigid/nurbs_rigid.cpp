@@ -22,6 +22,8 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
   if (friction_dynamic_ > friction_static_)
     throw std::invalid_argument("friction_dynamic: " + number(friction_dynamic_) + " is more than friction_static, " +
                                 number(friction_static_) + "; expected at most as much");
+  if (pop_through_ > 0 && sides_ != kBoth && host() != nullptr && host()->log != nullptr)
+    host()->log(host(), HSP_LOG_WARNING, "pop_through has no effect: only a shell gives way; expected sides: both");
   load(activation, report);
   extents_ = extentsOf(model());
   report.max_stiffness = stiffness_;

@@ -118,6 +118,16 @@ TEST_F(Commands, CheckTellsWhatOnlyThePluginKnows) {
   EXPECT_EQ(run("check --files-only " + scene).exit_code, 0);
 }
 
+TEST_F(Commands, CheckPassesOnWhatAPluginWarnsOf) {
+  const std::string scene = put("shell.yaml",
+                                "hapticd: 1\nmodels:\n  - {name: a, plugin: nurbs_rigid, parameters: {pop_through: 2, "
+                                "geometry: " HAPTICD_SOURCE_DIR "/config/models/sphere.yaml}}\n");
+  const Outcome outcome =
+      run("check " + scene, "HAPTICD_PLUGIN_PATH=" HAPTICD_BINARY_DIR "/" HAPTICD_MODULES "/plugins");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_TRUE(has(outcome.text, scene + ":3:5: models[0]: warning: pop_through has no effect")) << outcome.text;
+}
+
 TEST_F(Commands, SchemasAreJsonWithThePluginsParameters) {
   const Outcome scene = run("check --schema scene");
   EXPECT_EQ(scene.exit_code, 0);
