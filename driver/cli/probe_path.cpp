@@ -3,10 +3,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string_view>
+
+#include "base/regular_file.hpp"
 
 namespace hapticd::cli {
 
@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::string_view kHeader3 = "t,x,y,z", kHeader6 = "t,x,y,z,qw,qx,qy,qz";
 constexpr size_t kMostColumns = 8;
+constexpr size_t kMaxBytes = size_t{4} << 30;  ///< ten hours at 1 kHz
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && (text.back() == '\r' || text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
@@ -71,9 +72,9 @@ Result<PathRow> parseRow(const std::string& file, size_t line_number, std::strin
 }  // namespace
 
 Result<std::vector<PathRow>> readProbePath(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return Error{file + ": cannot be read: does it exist, and may you read it?"};
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const auto read = readRegular(file, kMaxBytes);
+  if (!read) return Error{file + ": " + read.error()};
+  const std::string& text = *read;
   std::vector<PathRow> rows;
   size_t columns = 0, line_number = 0;
   for (std::string_view rest = text; !rest.empty();) {

@@ -1,6 +1,5 @@
 #include "record/recording.hpp"
 
-#include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -11,6 +10,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "base/regular_file.hpp"
 #include "record/layout.hpp"
 
 namespace hapticd::record {
@@ -68,15 +68,14 @@ double RecordedStream::number(uint64_t index, const Column& column) const {
 }
 
 Result<std::unique_ptr<Recording>> Recording::open(const std::string& file) {
-  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return Error{file + ": cannot be read: " + std::strerror(errno)};
+  const auto fd = openRegular(file);
+  if (!fd) return Error{file + ": " + fd.error()};
   struct stat info {};
-  const bool regular = fstat(fd, &info) == 0 && S_ISREG(info.st_mode);
-  const auto size = regular ? static_cast<size_t>(info.st_size) : 0;
-  void* memory = size == 0 ? MAP_FAILED : mmap(nullptr, size, PROT_READ, MAP_SHARED, fd, 0);
+  const auto size = fstat(*fd, &info) == 0 ? static_cast<size_t>(info.st_size) : 0;
+  void* memory = size == 0 ? MAP_FAILED : mmap(nullptr, size, PROT_READ, MAP_SHARED, *fd, 0);
   const int error = errno;
-  ::close(fd);
-  if (!regular || size == 0) return Error{file + ": is not a recording, expected a file that --record wrote"};
+  ::close(*fd);
+  if (size == 0) return Error{file + ": is not a recording, expected a file that --record wrote"};
   if (memory == MAP_FAILED) return Error{file + ": cannot be mapped: " + std::strerror(error)};
   std::unique_ptr<Recording> recording(new Recording);
   recording->mapped_ = memory;

@@ -3,12 +3,10 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <sstream>
 #include <unordered_set>
 
+#include "base/regular_file.hpp"
 #include "scene/node.hpp"
 
 namespace hapticd::scene {
@@ -206,24 +204,10 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
 }
 
 std::optional<std::string> readFile(const std::filesystem::path& file, size_t max_bytes, Problems& problems) {
-  const auto refuse = [&](const std::string& what) {
-    report(problems, file.string(), 0, 0, "", what);
-    return std::nullopt;
-  };
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) return refuse("there is no such file");
-  if (std::filesystem::is_directory(status)) return refuse("is a folder, expected a file");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return refuse(std::string("cannot be read: ") + std::strerror(errno));
-  std::string text;  // a pipe or a device tells no size: what counts is how much comes out of it
-  for (char part[16384]; text.size() <= max_bytes && stream;) {
-    stream.read(part, sizeof part);
-    text.append(part, static_cast<size_t>(stream.gcount()));
-  }
-  if (text.size() > max_bytes)
-    return refuse("is larger than " + std::to_string(max_bytes >> 20) + " MiB, the most that is read");
-  return text;
+  auto text = readRegular(file.string(), max_bytes);
+  if (text) return *std::move(text);
+  report(problems, file.string(), 0, 0, "", text.error());
+  return std::nullopt;
 }
 
 std::optional<Node> parseFile(const std::filesystem::path& file, Problems& problems) {

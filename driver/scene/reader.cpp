@@ -1,8 +1,11 @@
 #include "scene/reader.hpp"
 
+#include <sys/stat.h>
+
 #include <charconv>
 #include <cmath>
 
+#include "base/regular_file.hpp"
 #include "host/nearest.hpp"
 #include "scene/table.hpp"
 
@@ -109,10 +112,12 @@ std::optional<std::filesystem::path> Reader::existingFile(const Node& node, cons
   std::error_code error;
   const fs::path written(node.scalar);
   const fs::path full = fs::absolute(file_.parent_path() / written, error).lexically_normal();
-  const auto status = fs::status(full, error);
-  if (fs::is_directory(status)) {
-    problem(node, key, full.string() + " is a folder, expected a file");
-  } else if (!fs::exists(status)) {
+  struct stat info {};
+  if (stat(full.c_str(), &info) == 0) {
+    const std::string other = notAFile(info.st_mode);
+    if (other.empty()) return full;
+    problem(node, key, full.string() + " " + other);
+  } else {
     std::vector<std::string> neighbours;
     for (fs::directory_iterator entry(full.parent_path(), error), end; !error && entry != end; entry.increment(error))
       neighbours.push_back(entry->path().filename().string());
@@ -120,8 +125,6 @@ std::optional<std::filesystem::path> Reader::existingFile(const Node& node, cons
             "there is no file " + full.string() + ", expected the path of a file" +
                 (written.is_absolute() ? "" : ", relative to the file that names it") +
                 host::suggestion(full.filename().string(), neighbours));
-  } else {
-    return full;
   }
   return std::nullopt;
 }

@@ -2,17 +2,18 @@
 
 #include <fmt/format.h>
 #include <sys/utsname.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <ctime>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 
+#include "base/regular_file.hpp"
 #include "record/scene_json.hpp"
+#include "scene/node.hpp"
 
 namespace hapticd::servo {
 
@@ -101,22 +102,20 @@ Json filesJson(const scene::Scene& scene) {
 }
 
 std::string textOf(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+  auto text = readRegular(file.string(), scene::kMaxFileBytes);
+  return text ? *std::move(text) : std::string();
 }
 
 }  // namespace
 
 std::string fingerprint(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return "";
+  const auto fd = openRegular(file);
+  if (!fd) return "";
   uint64_t hash = 0xcbf29ce484222325;
   char buffer[1 << 14];
-  while (in.read(buffer, sizeof buffer), in.gcount() > 0)
-    for (std::streamsize i = 0; i < in.gcount(); ++i)
-      hash = (hash ^ static_cast<unsigned char>(buffer[i])) * 0x100000001b3;
+  for (ssize_t got = 0; (got = read(*fd, buffer, sizeof buffer)) > 0;)
+    for (ssize_t i = 0; i < got; ++i) hash = (hash ^ static_cast<unsigned char>(buffer[i])) * 0x100000001b3;
+  close(*fd);
   return fmt::format("{:016x}", hash);
 }
 

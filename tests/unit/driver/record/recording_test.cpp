@@ -286,7 +286,7 @@ TEST(Recording, RefusesWhatIsNoneAndSaysSo) {
   EXPECT_FALSE(Recording::open(name));
   std::ofstream(name) << "a text";
   EXPECT_NE(Recording::open(name).error().find("not a recording"), std::string::npos);
-  EXPECT_NE(Recording::open("/").error().find("not a recording"), std::string::npos);
+  EXPECT_NE(Recording::open("/").error().find("is a folder, expected a file"), std::string::npos);
 }
 
 TEST(Recording, ReadsTheRowsThatAreThereHoweverManyAreClaimed) {

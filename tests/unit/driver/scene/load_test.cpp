@@ -1,6 +1,7 @@
 #include "scene/load.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -162,6 +163,23 @@ TEST_F(Load, GivesNoSceneWithAnyProblemAndAllProblemsInOrder) {
   EXPECT_EQ(loaded.problems[0].place.line, 2);
   EXPECT_EQ(loaded.problems[1].place.line, 3);
   EXPECT_EQ(loaded.problems[2].place.line, 4);
+}
+
+TEST_F(Load, RefusesAPipeAtOnceWhereverAFileIsNamed) {
+  const std::string pipe = dir_ / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const auto toldOf = [](const Loaded& loaded) {
+    std::string all;
+    for (const Problem& problem : loaded.problems) all += problem.text() + "\n";
+    return all;
+  };
+  EXPECT_NE(toldOf(load(pipe, catalog_, {})).find("is a pipe, expected a file"), std::string::npos);
+  for (const char* rest :
+       {"models: [{name: cup, plugin: test_shape, parameters: {geometry: pipe}}]\n",
+        "models: [{name: cup, plugin: test_shape, motion: kinematic, path: pipe}]\n", "device: pipe\nmodels: []\n"}) {
+    const std::string told = toldOf(load(put("scene.yaml", std::string("hapticd: 1\n") + rest), catalog_, {}));
+    EXPECT_NE(told.find("pipe is a pipe, expected a file"), std::string::npos) << told;
+  }
 }
 
 TEST_F(Load, DescribesOnlyThePluginsThatTheSceneNames) {

@@ -1,0 +1,20 @@
+/// Files that somebody names, opened so that none can wait: a pipe without a writer would hold the thread for ever.
+#pragma once
+#include <sys/types.h>
+
+#include <string>
+
+#include "base/result.hpp"
+
+namespace hapticd {
+
+/// [any] "is a pipe, expected a file" and the like for what else a name may stand for; "" for a regular file.
+std::string notAFile(mode_t mode);
+
+/// [main] Opens a regular file for reading. The error is meant to follow the file's name.
+Result<int> openRegular(const std::string& file);
+
+/// [main] A regular file's bytes, with the same errors. @param max_bytes more is an error
+Result<std::string> readRegular(const std::string& file, size_t max_bytes);
+
+}  // namespace hapticd
