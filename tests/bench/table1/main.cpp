@@ -1,5 +1,4 @@
-/// table1: the evaluation of Thompson et al. 1999 in simulation. Prints the table; with --write, writes
-/// driver/docs/table1.md and its pictures; with --check, exits 1 where a goal is missed.
+/// table1: the evaluation of Thompson et al. 1999 in simulation, see kUsage.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -7,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <string>
 
 #include "page.hpp"
 #include "session.hpp"
@@ -14,6 +14,29 @@
 namespace {
 
 using namespace hapticd::table1;
+
+constexpr const char* kUsage =
+    "Usage: table1 [--seconds S] [--seed N] [--check] [--write]\n\n"
+    "Runs the evaluation of Thompson et al. (1999) again with a simulated hand and prints its table.\n"
+    "  --seconds S  of simulated time a row; without it 60, as the goals need\n"
+    "  --seed N     of the hand's tremor\n"
+    "  --check      exit code 1 where a goal is missed\n"
+    "  --write      overwrite driver/docs/table1.md and its pictures\n\n"
+    "Exit code 2: bad usage.\n"
+    "Example: table1 --check\n";
+
+/// Whether every word is an option of this program or the value of one.
+bool understood(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--seconds" || word == "--seed") {
+      if (++i >= argc) return false;
+    } else if (word != "--check" && word != "--write") {
+      return false;
+    }
+  }
+  return true;
+}
 
 Protocol protocolOf(int argc, char** argv) {
   Protocol protocol;
@@ -84,6 +107,14 @@ int evaluate(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (has(argc, argv, "--help") || has(argc, argv, "-h")) {
+    fmt::print("{}", kUsage);
+    return 0;
+  }
+  if (!understood(argc, argv)) {
+    fmt::print(stderr, "error: not an option, or one without its value\n{}", kUsage);
+    return 2;
+  }
   try {
     return evaluate(argc, argv);
   } catch (const std::exception& e) {

@@ -6,7 +6,13 @@
 
 #include "bench.hpp"
 
+#ifdef HAPTICD_WITH_OCCT
+#include <Standard_Version.hxx>
+#endif
+
 namespace {
+
+using namespace hapticd::bench;
 
 std::string processor() {
   std::ifstream file("/proc/cpuinfo");
@@ -19,11 +25,22 @@ std::string processor() {
 void printHead() {
   std::printf("# What tracing costs\n\nMade by `bench_trace --write` (in the build folder's `bench/`). ");
   std::printf("Compare ratios, not times: they hold for one %s.\n", processor().c_str());
-#ifndef HAPTICD_WITH_OCCT
-  std::printf("Without Open CASCADE: install libocct-modeling-algorithms-dev libocct-modeling-data-dev.\n");
+  std::printf(
+      "\n* **table** keeps the polynomials of every knot span, **net** the control points alone; the parameter\n"
+      "  `evaluation` of a model chooses. **Portable code** is the same without AVX2 and FMA.\n"
+      "* **newton** goes on until the foot is known to the tolerance, 1 nm or 1 fm; **dpt x n** takes n first-order\n"
+      "  steps of Thompson et al. (1999) a tick, whatever they leave. The parameter `method` chooses.\n"
+      "* **Surfaces**: wavy sheets, 0.2 m long, of degree 3 (10 x 10 points) and 5 (12 x 12), a finely ridged one of\n"
+      "  degree 3 (48 x 48), a rational sphere of radius 50 mm and torus of radii 60 and 20 mm.\n");
+#ifdef HAPTICD_WITH_OCCT
+  std::printf("* **OCCT** is Open CASCADE %s.\n", OCC_VERSION_COMPLETE);
+#else
+  std::printf("* Without Open CASCADE: install libocct-modeling-algorithms-dev libocct-modeling-data-dev.\n");
 #endif
-#ifndef HAPTICD_WITH_SISL
-  std::printf("Without SISL: install libsisl-dev.\n");
+#ifdef HAPTICD_WITH_SISL
+  std::printf("* **SISL** tells no version of its own; Debian 12 packages 4.6.0.\n");
+#else
+  std::printf("* Without SISL: install libsisl-dev.\n");
 #endif
 }
 
@@ -32,17 +49,45 @@ struct Part {
   void (*print)();
 };
 
+constexpr Part kParts[] = {{"evaluation", printEvaluations},
+                           {"float", printFloat},
+                           {"tick", printTicks},
+                           {"cold", printCold},
+                           {"many", printMany},
+                           {"scale", printScale}};
+
+void printUsage(std::FILE* to) {
+  std::fprintf(to,
+               "Usage: bench_trace [PART...]\n"
+               "       bench_trace --write\n\n"
+               "Prints what tracing costs on this machine, as Markdown: all parts, or those named of\n ");
+  for (const Part& part : kParts) std::fprintf(to, " %s", part.name);
+  std::fprintf(to,
+               ".\n  --write    all parts, over driver/docs/bench_trace.md\n\n"
+               "Run it on an idle machine; all of it takes minutes. Exit code 2: bad usage.\n"
+               "Example: bench_trace tick\n");
+}
+
+bool isPart(const char* name) {
+  for (const Part& part : kParts)
+    if (std::strcmp(name, part.name) == 0) return true;
+  return false;
+}
+
 }  // namespace
 
-/// Prints all parts, or those named; with --write, all into driver/docs/bench_trace.md.
 int main(int count, char** names) {
-  using namespace hapticd::bench;
-  constexpr Part kParts[] = {{"evaluation", printEvaluations},
-                             {"float", printFloat},
-                             {"tick", printTicks},
-                             {"cold", printCold},
-                             {"many", printMany},
-                             {"scale", printScale}};
+  for (int i = 1; i < count; ++i) {
+    if (std::strcmp(names[i], "--help") == 0 || std::strcmp(names[i], "-h") == 0) {
+      printUsage(stdout);
+      return 0;
+    }
+    if (isPart(names[i]) || (count == 2 && std::strcmp(names[i], "--write") == 0)) continue;
+    const bool writes = std::strcmp(names[i], "--write") == 0;
+    std::fprintf(stderr, writes ? "error: %s takes no parts\n" : "error: there is no part %s\n", names[i]);
+    printUsage(stderr);
+    return 2;
+  }
   if (count == 2 && std::strcmp(names[1], "--write") == 0) {
     count = 1;
     if (std::freopen(HAPTICD_SOURCE_DIR "/driver/docs/bench_trace.md", "w", stdout) == nullptr) {

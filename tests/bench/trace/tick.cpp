@@ -94,7 +94,8 @@ void printTicks() {
   std::printf("%.1f mm a tick, up to %.1f mm from the surface, each true foot known; best of %d interleaved rounds.\n",
               1e3 * kStep, 1e3 * kDepth, kRounds);
   std::printf(
-      "\"waiting\": the next probe waits for this foot. Ratios: to the first row of the surface, and to\n"
+      "**ns**: a tick, the next probe known; **waiting**: the next probe waits for this foot, as in a loop with a\n"
+      "hand. **Error**: from the true foot. Ratios: to the first row of the surface, and to\n"
       "the second, which like OCCT goes on until rounding stops it: a few units in the last place.\n");
   for (const auto& data : surfaces()) {
     const Path path = contactPath(data, kStep, kDepth, kTicks);

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <complex>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -224,8 +223,22 @@ int run(bool write) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  constexpr const char* kUsage =
+      "Usage: velocity [--write]\n\n"
+      "Compares the velocity estimators on steps of an encoder and prints tables.\n"
+      "  --write  overwrite driver/docs/velocity.md and its picture\n\n"
+      "Exit code 2: bad usage.\n";
+  const std::string word = argc > 1 ? argv[1] : "";
+  if (word == "--help" || word == "-h") {
+    fmt::print("{}", kUsage);
+    return 0;
+  }
+  if (argc > 2 || (argc == 2 && word != "--write")) {
+    fmt::print(stderr, "error: {} is not an option\n{}", argv[argc - 1], kUsage);
+    return 2;
+  }
   try {
-    return run(argc > 1 && std::strcmp(argv[1], "--write") == 0);
+    return run(word == "--write");
   } catch (const std::exception& e) {
     fmt::print(stderr, "error: {}\n", e.what());
     return 1;
