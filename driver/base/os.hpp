@@ -90,7 +90,7 @@ int threadId() noexcept;
 /// [any] The thread lost its processor since it last asked: what it did took time of others. A system call.
 bool wasPreempted() noexcept;
 
-/// Installs a handler for SIGSEGV, SIGBUS, SIGFPE, SIGILL and SIGXCPU; nullptr: the system's own again.
+/// Installs a handler for SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT and SIGXCPU; nullptr: the system's own again.
 void onCrashSignals(void (*handler)(int));
 
 /// Gives the calling thread a stack of its own for such handlers, so that they run even when its own is full.
@@ -100,7 +100,7 @@ void prepareSignalStack();
 /// freeze because of a plugin that loops. Lower limits stay.
 std::error_code limitRealTimeRun(uint64_t us);
 
-/// Installs `onStop` for SIGINT and SIGTERM (async-signal-safe: it stores to a flag only) and ignores SIGPIPE.
+/// Installs an async-signal-safe handler for SIGINT, SIGTERM, SIGQUIT and SIGHUP; ignores SIGPIPE, SIGXFSZ: write() tells.
 void onStopSignal(void (*handler)(int));
 
 }  // namespace hapticd::os

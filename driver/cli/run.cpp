@@ -33,18 +33,22 @@ struct Options {
 
 const Nanoseconds program_start = monotonicNow();  ///< when the libraries were loaded
 
-std::atomic<servo::Runner*> running{nullptr};  ///< for the signal handler; set before it is installed
+std::atomic<servo::Runner*> running{nullptr};  ///< for the signal handler
+std::atomic<bool> told_to_stop{false};
 
 void onStop(int) {
+  told_to_stop = true;
   if (servo::Runner* runner = running.load()) runner->stop();
 }
 
-/// Ctrl-C and SIGTERM end this run as long as one lives; a second one, while the first ends it, finds no run any more.
+/// Ctrl-C and SIGTERM end the run in order from the moment it has files to leave: one that is still being set up ends
+/// when it is. Once a run has ended they find none.
 class StopBySignal {
  public:
-  explicit StopBySignal(servo::Runner& runner) {
+  StopBySignal() { os::onStopSignal(onStop); }
+  void stops(servo::Runner& runner) {
     running = &runner;
-    os::onStopSignal(onStop);
+    if (told_to_stop) runner.stop();
   }
   ~StopBySignal() { running = nullptr; }
   StopBySignal(const StopBySignal&) = delete;
@@ -193,11 +197,12 @@ int run(const Options& options) {
   const SetupErrors once;
   auto world = servo::Runner::buildWorld(*scene, how, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
+  StopBySignal stop;
   auto runner = servo::Runner::prepare(*scene, how, std::move(*world), logToTerminal);
   if (!runner) return fail(kFailed, runner.error());
   once.tell();
   warnOfSettings(**runner, how.rate);
-  const StopBySignal stop(**runner);
+  stop.stops(**runner);
   if (outside) outside->serve(**runner, options.device);
 
   const bool terminal = isatty(STDERR_FILENO) != 0;

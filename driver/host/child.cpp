@@ -20,7 +20,7 @@ namespace {
 constexpr size_t kLargestAnswer = 64u << 20;
 constexpr int kThrew = 113;   ///< exit code of a child that an exception ended
 constexpr int kAnswerFd = 3;  ///< where a program that was started answers: what it loads may print
-constexpr int kFatal[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM};
+constexpr int kFatal[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM, SIGQUIT, SIGHUP};
 
 bool writeAll(int fd, const std::string& bytes) {
   for (size_t done = 0; done < bytes.size();) {

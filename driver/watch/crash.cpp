@@ -62,6 +62,8 @@ const char* words(int signal) noexcept {
       return "an arithmetic exception (SIGFPE)";
     case SIGILL:
       return "an instruction that this processor lacks (SIGILL)";
+    case SIGABRT:
+      return "a check of its own that failed (SIGABRT)";
     case SIGXCPU:
       return "a servo thread that never slept (SIGXCPU)";
   }

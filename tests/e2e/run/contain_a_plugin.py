@@ -119,7 +119,7 @@ with tempfile.TemporaryDirectory() as scratch:
     shutil.copy(SHAPES, os.path.join(scratch, "plugins"))
     surroundings = dict(os.environ, HAPTICD_PLUGIN_PATH=os.path.join(scratch, "plugins"), RUNTIME_DIRECTORY=scratch,
                         STATE_DIRECTORY=os.path.join(scratch, "state"))
-    for signal, words in (("segv", ["SIGSEGV"]), ("fpe", ["SIGFPE"]), ("bus", ["SIGBUS"]), ("ill", ["SIGILL"]),
+    for signal, words in (("segv", ["SIGSEGV"]), ("fpe", ["SIGFPE"]), ("bus", ["SIGBUS"]), ("ill", ["SIGILL"]), ("abort", ["SIGABRT"]),
                           ("hang", ["did not come back", "never slept"])):
         crash(scratch, surroundings, signal, words)
     service(scratch, surroundings)

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <limits>
 
 #include "hapticd/shape.hpp"
@@ -164,7 +165,7 @@ struct Rude : hapticd::Shape {
 /// Behaves for ten ticks, and then does what ends or stops a process.
 struct Deadly : hapticd::Shape {
   int how, ticks = 0;
-  static constexpr const char* kHows[] = {"segv", "fpe", "ill", "bus", "hang", "pause", "jump", "sleep"};
+  static constexpr const char* kHows[] = {"segv", "fpe", "ill", "bus", "hang", "pause", "jump", "sleep", "abort"};
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.deadly", "deadly", "1.0.0", "MIT", "Crashes."};
   static constexpr auto fields() {
     return std::array{Fields<Deadly>::choice("how", &Deadly::how, kHows, 0, "What it does.")};
@@ -185,6 +186,7 @@ struct Deadly : hapticd::Shape {
     for (int i = 0; how == 5 && ticks == 10 && i < 100'000'000; ++i) zero = zero + 1;
     if (how == 6 && ticks % 2 == 0) out.force[1] = 500;
     if (how == 7 && ticks == 10) usleep(50'000);
+    if (how == 8) std::abort();
     return HSP_OK;
   }
 };
