@@ -237,7 +237,7 @@ int Tracer::crossSide(int track, int side, const Vector3d& p, const TraceOptions
     if (tryFrom(next, there, p, tolerance) && foot.distance < best + Model::kSoon) tracks_.keepAsRival(next, at, foot);
   }
   const bool nearer = tracks_[next].foot.distance < best;
-  if (!tracks_[next].asked && tracks_[next].foot.distance > kNeighbourReach) drop(next);
+  if (!nearer && !tracks_[next].asked && tracks_[next].foot.distance > kNeighbourReach) drop(next);
   return nearer ? next : -1;
 }
 

@@ -201,6 +201,29 @@ TEST(Tracer, BadSamplesLeaveNoTrace) {
   }
 }
 
+/// A neighbour that nobody asked for and that is far away was let go although the foot had gone on there: the next tick
+/// wrote before the beginning of its tables.
+TEST(Tracer, AFootIsOnASurfaceThatIsFollowedHoweverFarTheProbe) {
+  spline::SurfaceData arch, beyond;
+  arch.degree = {2, 1};
+  arch.knots = {{{0, 0, 0, 1, 1, 1}, {0, 0, 1, 1}}};
+  arch.points = {{0, 0, 0}, {0, 0.1, 0}, {0.05, 0, 0.05}, {0.05, 0.1, 0.05}, {0.1, 0, 0}, {0.1, 0.1, 0}};
+  beyond.degree = {1, 1};
+  beyond.knots = {{{0, 0, 1, 1}, {0, 0, 1, 1}}};
+  beyond.points = {{5.1, 0, 0}, {0.1, 0.1, 2}, {0.2, 0, 0}, {0.2, 0.1, 0}};
+  ModelOptions options;
+  options.edges = {EdgeLink{{0, 1}, {1, 0}, false}};  // the end of u to the beginning of u
+  const Model model({arch, beyond}, options);
+  for (const Vector3d& step : {Vector3d(1e9, 0, 0), Vector3d(1, 0, 1), Vector3d(0, 0, 0.5)}) {
+    Tracer tracer(model);
+    tracer.activate(0, 0.5, 0.5, 0.1);
+    for (int tick = 0; tick < 20; ++tick) {
+      const Foot foot = tracer.step(Vector3d(0.01, -0.02, 0.03) + tick * step);
+      EXPECT_TRUE(tracer.active(foot.surface)) << "tick " << tick << ", step " << step.transpose();
+    }
+  }
+}
+
 TEST(Tracer, StopsWhenNothingIsActiveAndStartsAgain) {
   const Model model = solid("box");
   Tracer tracer(model);
