@@ -87,7 +87,8 @@ std::string forceContinuous(const Recipe& recipe, uint64_t) {
     hsp_probe in{};
     Eigen::Map<Vector3d>(in.velocity) = (p - last) / kConformanceDt;
     last = p;
-    jumps += claim.judge(made.subject->report(), in, answer.contacts[0], p, made.subject->damping(), kConformanceDt) < 1
+    jumps += claim.judge(in, answer.contacts[0], p, made.subject->report().max_stiffness, made.subject->damping(),
+                         kConformanceDt) < 1
                  ? 1
                  : 0;
     return std::string(jumps >= 3 ? "the force jumped beyond the claimed stiffness three times" : "");

@@ -44,10 +44,22 @@ hsp_value toAbi(const scene::Value& value) {
   return given;
 }
 
-bool damps(const hsp_class& shape, uint32_t param) noexcept {
+namespace {
+
+bool isNumberIn(const char* unit, const hsp_class& shape, uint32_t param) noexcept {
   if (param >= shape.param_count) return false;
   const hsp_param& described = *HSP_AT(const hsp_param, shape.params, shape.params[0].struct_size, param);
-  return described.kind == HSP_REAL && described.unit != nullptr && std::strcmp(described.unit, "N s/m") == 0;
+  return described.kind == HSP_REAL && described.unit != nullptr && std::strcmp(described.unit, unit) == 0;
+}
+
+}  // namespace
+
+bool damps(const hsp_class& shape, uint32_t param) noexcept {
+  return isNumberIn("N s/m", shape, param);
+}
+
+bool stiffens(const hsp_class& shape, uint32_t param) noexcept {
+  return isNumberIn("N/m", shape, param);
 }
 
 bool complete(const hsp_class& shape) {

@@ -25,6 +25,8 @@ bool complete(const hdv_class& device);
 
 /// [any] True if the parameter is a damping: a number in N s/m.
 bool damps(const hsp_class& shape, uint32_t param) noexcept;
+/// [any] True if the parameter is a stiffness: a number in N/m.
+bool stiffens(const hsp_class& shape, uint32_t param) noexcept;
 
 /// [main] The class with that name (or id) in an entry; nullptr if there is none.
 template <class Class, class Entry>

@@ -12,9 +12,11 @@ namespace {
 using Map = Eigen::Map<Vector3d>;
 using ConstMap = Eigen::Map<const Vector3d>;
 
+/// Also false for numbers whose squares overflow: a length of them would be none, and a ratio of two such.
 bool finite(const double* values, size_t count) noexcept HSP_RT {
+  constexpr double kLargest = 1e100;
   for (size_t i = 0; i < count; ++i)
-    if (!std::isfinite(values[i])) return false;
+    if (!(std::abs(values[i]) <= kLargest)) return false;
   return true;
 }
 
@@ -59,6 +61,7 @@ ModelState Core::stateOf(host::ShapeInstance& shape, const scene::Model& describ
   if (described.kinematic) model.path = Path(described.path);
   model.moves = moves_itself || described.kinematic;
   model.always = moves_itself || shape.surfaces() == nullptr;
+  model.stiffness = shape.report().max_stiffness;
   model.damping = shape.claimedDamping();
   return model;
 }
@@ -275,8 +278,8 @@ Trouble Core::holdToClaims(ModelState& model, uint32_t index, double dt) noexcep
   for (uint32_t i = 0; i < probe_count_; ++i) {
     const Vector3d p_model =
         moves_itself ? model.frame.pointToModel(last_position_[i]) : Vector3d(ConstMap(inputs_[i].position));
-    const double part = claims_[size_t{index} * probe_count_ + i].judge(model.shape->report(), inputs_[i], outputs_[i],
-                                                                        p_model, model.damping, dt);
+    const double part = claims_[size_t{index} * probe_count_ + i].judge(inputs_[i], outputs_[i], p_model,
+                                                                        model.stiffness, model.damping, dt);
     if (part >= 1) continue;
     Map(outputs_[i].force) *= part;
     Map(outputs_[i].torque) *= part;

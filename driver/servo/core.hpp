@@ -55,6 +55,7 @@ struct ModelState {
   hsp_status status = HSP_OK;
   hsp_status failed_status = HSP_OK;  ///< the first that was no status of a step
   Guard guard;
+  double stiffness = 0;       ///< [N/m] that it claims; 0: nothing
   double damping = 0;         ///< [N s/m] that it claims
   bool overran = false;       ///< its last step was held against it for the time it took
   bool overran_then = false;  ///< it was in the run of which this is a replay

@@ -65,7 +65,7 @@ struct Pulling : hapticd::Shape {
 struct Misbehaving : hapticd::Shape {
   int how, after, times;
   int ticks = 0;
-  static constexpr const char* kHows[] = {"not_finite", "bad_status", "lost", "degraded"};
+  static constexpr const char* kHows[] = {"not_finite", "bad_status", "lost", "degraded", "huge"};
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.misbehaving", "misbehaving", "1.0.0", "MIT",
                                             "Misbehaves."};
   static constexpr auto fields() {
@@ -81,6 +81,7 @@ struct Misbehaving : hapticd::Shape {
     ++ticks;
     if (!bad) return HSP_OK;
     if (how == 0) out.force[0] = std::numeric_limits<double>::quiet_NaN();
+    if (how == 4) out.force[0] = 1e200;
     return how == 1 ? -77 : how == 2 ? HSP_E_NUMERIC : how == 3 ? HSP_DEGRADED : HSP_OK;
   }
 };
