@@ -9,20 +9,32 @@ namespace hapticd::servo {
 
 class Glide {
  public:
-  bool active() const noexcept { return active_; }
+  static constexpr double kMoveSpeed = 0.2;      ///< [m/s] where nobody says how long it takes
+  static constexpr double kShortest = 0.5;       ///< [s] and what it takes at least then
+  static constexpr double kMostSpeed = 1.0;      ///< [m/s] of a moved model: a hand may be behind it
+  static constexpr double kMostTurn = 3.141593;  ///< [rad/s] so that 0.3 m from its origin a surface keeps to that too
+  static constexpr double kPeakOfMean = 1.875;   ///< speed of a path of least jerk
 
-  /// [rt] From `pose` to another, beginning at t [s]. @param to_orientation w,x,y,z, a unit quaternion
+  bool active() const noexcept { return active_; }
+  double seconds() const noexcept { return seconds_; }  ///< that it takes
+
+  /// [rt] From `pose` to another, beginning at t [s]. @param seconds it takes at least; longer where it would be faster
+  /// than kMostSpeed or kMostTurn; 0: about kMoveSpeed @param to_orientation w,x,y,z, a unit quaternion; zeros: as it
+  /// is
   void begin(double t, double seconds, const hsp_pose& pose, const double* to_position,
              const double* to_orientation) noexcept HSP_RT {
     begin_ = t;
-    seconds_ = std::max(seconds, 1e-3);
     from_ = Eigen::Vector3d(pose.position);
     to_ = Eigen::Vector3d(to_position);
     q_from_ = quaternion(pose.orientation);
     q_to_ = quaternion(to_orientation);
+    if (q_to_.squaredNorm() == 0) q_to_ = q_from_;
     if (q_from_.dot(q_to_) < 0) q_to_.coeffs() *= -1;  // the short way round
     const Eigen::AngleAxisd turn(q_to_ * q_from_.conjugate());
     turn_ = turn.angle() * turn.axis();
+    const double distance = (to_ - from_).norm();
+    const double asked = seconds > 0 ? seconds : std::max(kShortest, kPeakOfMean * distance / kMoveSpeed);
+    seconds_ = std::max({asked, kPeakOfMean * distance / kMostSpeed, kPeakOfMean * turn.angle() / kMostTurn});
     active_ = true;
   }
 

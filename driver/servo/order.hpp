@@ -30,8 +30,8 @@ struct Order {
   uint32_t param = 0;   ///< kSet
   uint32_t ticket = 0;  ///< of the request, for the answer
   double value = 0;     ///< kSet; kAccuracy: the level; kCut: 1 found before the tick's read, 0 at its write
-  double seconds = 0;   ///< kMove: how long it takes; kCut: how long the servo was stuck
-  double position[3] = {}, orientation[4] = {1, 0, 0, 0};  ///< kMove: world frame
+  double seconds = 0;  ///< kMove: how long it takes at least, 0: the servo's choice; kCut: how long the servo was stuck
+  double position[3] = {}, orientation[4] = {1, 0, 0, 0};  ///< kMove: world frame; no orientation (zeros): as it is
   ModelState* model = nullptr;                             ///< kAdopt: swapped with the empty place
 };
 

@@ -37,7 +37,7 @@ class Steward {
   Result<void> give(Order order);
   Result<void> able(const std::string& model, bool enabled);
   Result<void> set(const control::Request& request);
-  Result<void> move(const control::Request& request);
+  Result<std::string> move(const control::Request& request);
   Result<void> arms(const std::string& device, Order::Kind kind);
   Result<std::string> add(const control::Request& request);
   Result<void> adopt(const std::vector<scene::Model>& models);

@@ -75,6 +75,112 @@ TEST(Core, KinematicModelFollowsItsPathAndGivesItsVelocity) {
   EXPECT_NEAR(world->core().force(0).y(), 1000 * 0.001 + 10 * 0.1, 1e-9);
 }
 
+Order moveTo(double y, double seconds) {
+  Order order;
+  order.kind = Order::Kind::kMove;
+  order.position[1] = y;
+  order.seconds = seconds;
+  return order;
+}
+
+/// Largest speed of a model between ticks of 1 ms, in m/s and rad/s.
+struct Fastest {
+  explicit Fastest(const ModelState& moved) : model(moved), last(moved.pose) {}
+  void look() {
+    const auto* q = model.pose.orientation;
+    const Eigen::Quaterniond now(q[0], q[1], q[2], q[3]);
+    const Eigen::Quaterniond before(last.orientation[0], last.orientation[1], last.orientation[2], last.orientation[3]);
+    const Vector3d way = Eigen::Map<const Vector3d>(model.pose.position) - Eigen::Map<const Vector3d>(last.position);
+    speed = std::max(speed, way.norm() / 1e-3);
+    turn = std::max(turn, now.angularDistance(before) / 1e-3);
+    last = model.pose;
+  }
+  const ModelState& model;
+  hsp_pose last;
+  double speed = 0, turn = 0;
+};
+
+TEST(Core, AMoveIsNeverFasterThanItMayBeWhereverTheModelIs) {
+  for (const bool on_a_path : {false, true}) {
+    scene::Scene scene;
+    scene.models.push_back(testModel("wall"));
+    scene.models[0].kinematic = true;
+    scene.models[0].path = {{0, {}}};
+    if (on_a_path) scene.models[0].path.push_back({1, {Vector3d(0, -0.9, 0), Eigen::Quaterniond::Identity()}});
+    auto world = testWorld(scene);
+    Core& core = world->core();
+    int i = 0;
+    for (; i < 500; ++i) tickOnce(*world, i, probeAt({0, 1, 0}));
+    Fastest fastest(core.models()[0]);
+    EXPECT_TRUE(core.obey(moveTo(3, 60), i * 1e-3));
+    tickOnce(*world, i++, probeAt({0, 1, 0}));
+    EXPECT_TRUE(core.obey(moveTo(3, 0.05), i * 1e-3)) << "where it is ordered to already, at once";
+    fastest.last = core.models()[0].pose;
+    EXPECT_GT(core.models()[0].glide.seconds(), 5);
+    for (const int end = i + 8000; i < end; ++i) {
+      tickOnce(*world, i, probeAt({0, 1, 0}));
+      fastest.look();
+    }
+    EXPECT_LT(fastest.speed, 1.001) << on_a_path;
+    EXPECT_NEAR(core.models()[0].pose.position[1], 3, 1e-12) << "it gets there all the same";
+  }
+}
+
+TEST(Core, AMoveTurnsNoFasterThanHalfATurnASecond) {
+  scene::Scene scene;
+  scene.models.push_back(testModel("wall"));
+  scene.models[0].kinematic = true;
+  scene.models[0].path = {{0, {}}};
+  auto world = testWorld(scene);
+  tickOnce(*world, 0, probeAt({0, 1, 0}));
+  Fastest fastest(world->core().models()[0]);
+  Order order = moveTo(0, 0.05);
+  order.orientation[0] = 0, order.orientation[1] = 1;
+  EXPECT_TRUE(world->core().obey(order, 1e-3));
+  for (int i = 1; i < 2500; ++i) {
+    tickOnce(*world, i, probeAt({0, 1, 0}));
+    fastest.look();
+  }
+  EXPECT_LT(fastest.turn, M_PI * 1.001);
+  EXPECT_NEAR(std::abs(world->core().models()[0].pose.orientation[1]), 1, 1e-12);
+}
+
+TEST(Core, AMoveWithoutAnOrientationKeepsTheOneThatTheModelHas) {
+  scene::Scene scene;
+  scene.models.push_back(testModel("wall"));
+  scene.models[0].kinematic = true;
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(0.5, Vector3d::UnitX()));
+  scene.models[0].path = {{0, {Vector3d::Zero(), turned}}};
+  auto world = testWorld(scene);
+  tickOnce(*world, 0, probeAt({0, 1, 0}));
+  Order order = moveTo(0.01, 0);
+  order.orientation[0] = 0;
+  EXPECT_TRUE(world->core().obey(order, 1e-3));
+  for (int i = 1; i < 600; ++i) tickOnce(*world, i, probeAt({0, 1, 0}));
+  EXPECT_NEAR(world->core().models()[0].pose.orientation[1], turned.x(), 1e-12);
+  EXPECT_NEAR(world->core().models()[0].pose.position[1], 0.01, 1e-12);
+}
+
+Order setFirstParameter(double value) {
+  Order order;
+  order.kind = Order::Kind::kSet;
+  order.value = value;
+  return order;
+}
+
+TEST(Core, AStiffnessThatWasAskedForIsNoJumpOfThePlugin) {
+  scene::Scene scene;
+  scene.models.push_back(testModel("wall", {number(0, HSP_REAL, 800)}));
+  auto world = testWorld(scene);
+  for (int i = 0; i < 1000; ++i) {  // a hand that trembles, 5 mm deep
+    const double depth = 0.005 + 2e-4 * std::sin(0.3 * i);
+    if (i == 300) world->core().obey(setFirstParameter(30000), i * 1e-3);
+    const Vector3d force = tickOnce(*world, i, probeAt({0, -depth, 0}));
+    EXPECT_NEAR(force.y(), depth * (i < 300 ? 800 : 30000), 1e-9) << i;
+  }
+  EXPECT_EQ(world->core().models()[0].guard.trouble(), Trouble::kNone);
+}
+
 TEST(Core, BadSampleGivesNoForceAndTheNextGoodOneIsFeltAgain) {
   scene::Scene scene;
   scene.models.push_back(testModel("wall"));
@@ -100,9 +206,13 @@ TEST(Core, ADampedWallMayPushAsHardAsItsDampingSays) {
   EXPECT_EQ(world->core().models()[0].guard.trouble(), Trouble::kNone);
 }
 
-TEST(Core, NotANumberSilencesOnlyTheShapeThatAnsweredIt) {
+/// What has no length as a number of the machine is no number either.
+class NoNumber : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(NotANumberAndTooLarge, NoNumber, testing::Values(0, 4));
+
+TEST_P(NoNumber, SilencesOnlyTheShapeThatAnsweredIt) {
   scene::Scene scene;
-  scene.models.push_back(testModel("misbehaving"));
+  scene.models.push_back(testModel("misbehaving", {number(0, HSP_ENUM, GetParam())}));
   scene.models.push_back(testModel("wall"));
   auto world = testWorld(scene);
   double last = 0;
