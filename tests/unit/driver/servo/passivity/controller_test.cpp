@@ -221,7 +221,8 @@ TEST(Controller, SurvivesNonsense) {
   const double nan = std::nan("");
   for (int i = 0; i < 100; ++i) {
     const Vector3d position(i % 7 == 3 ? nan : 1e-5 * i, 0, 0), force(i % 5 == 2 ? nan : 1, 0, 0);
-    EXPECT_TRUE(controller.update(position, force, i % 11 == 5 ? nan : kPeriod, {nan, nan}).allFinite());
+    const Vector3d result = controller.update(position, force, i % 11 == 5 ? nan : kPeriod, {nan, nan});
+    EXPECT_EQ(result.allFinite(), force.allFinite()) << "a fault that the limiter must see, and nothing else";
     controller.applied({i % 13 == 1 ? nan : 1, 0, 0});
   }
   EXPECT_TRUE(std::isfinite(controller.energy()));
