@@ -95,7 +95,8 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
   }
   read_status_ = device_->read(now, sample_);
   taken_.store(false);
-  limiter_.watchButtons(read_status_ < 0 ? 0 : sample_.buttons);
+  const bool sampled = read_status_ >= 0 && (sample_.flags & HDV_S_LOST) == 0;
+  limiter_.watchButtons(sampled ? std::optional(sample_.buttons) : std::nullopt);
   probe_.valid = judge(read_status_, now) && locate();
   if (!probe_.valid) {
     tip_known_ = false;
@@ -165,7 +166,8 @@ bool Arm::locate() noexcept HSP_RT {
   Eigen::Vector3d p_device;
   std::array<double, 4> q{1, 0, 0, 0};
   const hdv_ext_kinematics& kinematics = device_->kinematics();
-  if (kinematics.forward(device_->handle(), sample_.position, p_device.data(), q.data()) < 0 || !p_device.allFinite()) {
+  const bool known = kinematics.forward(device_->handle(), sample_.position, p_device.data(), q.data()) >= 0;
+  if (!known || !p_device.allFinite() || !Eigen::Map<const Eigen::Vector4d>(q.data()).allFinite()) {
     limiter_.trip(Fault::kNotFinite);
     return false;
   }
@@ -223,10 +225,8 @@ bool Arm::comply(double dt, const Eigen::Vector3d& force) noexcept HSP_RT {
   admittance_->step(R_world_device_.transpose() * (force + *hand), tip, dt);
   command_.mode = HDV_POSITION;
   for (uint32_t i = 0; i < device_->info().joint_count; ++i) command_.position[i] = admittance_->joints()[i];
-  std::array<double, HDV_MAX_JOINTS> gravity{};  // the arm adds it to its own loop, which then need not sag to carry it
-  if (device_->kinematics().gravity(device_->handle(), sample_.position, gravity_device_.data(), gravity.data()) ==
-      HSP_OK)
-    std::copy(gravity.begin(), gravity.end(), command_.torque);
+  const auto gravity = gravityTorque();  // the arm adds it to its own loop, which then need not sag to carry it
+  std::copy(gravity.begin(), gravity.end(), command_.torque);
   return true;
 }
 
@@ -252,10 +252,7 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
     const Eigen::Vector3d force_device = R_world_device_.transpose() * force;
     tau.noalias() = J.topRows<3>().transpose() * force_device;  // Thompson et al. 1999, Eq. 9
     if (turns()) tau.noalias() += J.bottomRows<3>().transpose() * (R_world_device_.transpose() * torque);
-    std::array<double, HDV_MAX_JOINTS> gravity{};
-    if (kinematics.gravity(device_->handle(), sample_.position, gravity_device_.data(), gravity.data()) != HSP_OK)
-      gravity.fill(0);
-    scaleToMotors(gravity, command);
+    scaleToMotors(gravityTorque(), command);
   }
   if (!heat_.empty()) heatMotors(dt);
   send(now);
@@ -311,6 +308,16 @@ void Arm::clear() noexcept HSP_RT {
   cut_.store(false);
   cut_known_ = cut_in_write_ = false;
   limiter_.clear();
+}
+
+std::array<double, HDV_MAX_JOINTS> Arm::gravityTorque() noexcept HSP_RT {
+  std::array<double, HDV_MAX_JOINTS> gravity{};
+  const bool known = device_->kinematics().gravity(device_->handle(), sample_.position, gravity_device_.data(),
+                                                   gravity.data()) == HSP_OK;
+  const bool finite = std::all_of(gravity.begin(), gravity.end(), [](double torque) { return std::isfinite(torque); });
+  if (known && finite) return gravity;
+  if (known) limiter_.trip(Fault::kNotFinite);
+  return {};
 }
 
 void Arm::scaleToMotors(const std::array<double, HDV_MAX_JOINTS>& gravity, hdv_command& command) noexcept HSP_RT {

@@ -98,6 +98,8 @@ class Arm {
   void watchJump() noexcept HSP_RT;
   bool comply(double dt, const Eigen::Vector3d& force) noexcept HSP_RT;
   void takeVirtualProbe() noexcept HSP_RT;
+  /// What carries the arm's own weight; zeros where the module does not know, or answers what is no number.
+  std::array<double, HDV_MAX_JOINTS> gravityTorque() noexcept HSP_RT;
   void scaleToMotors(const std::array<double, HDV_MAX_JOINTS>& gravity, hdv_command& command) noexcept HSP_RT;
   void heatMotors(double dt) noexcept HSP_RT;
   void send(Nanoseconds now) noexcept HSP_RT;

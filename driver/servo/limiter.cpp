@@ -103,11 +103,11 @@ void Limiter::limit(Vector3d& force, Vector3d& torque, const Vector3d& position,
   if (pushes && heat_factor_ < 1) count(Limit::kHeat);
   if (max_force_ > 0 && cap(force, max_force_)) count(Limit::kForce);
   if (limits_.torque > 0 && cap(torque, limits_.torque)) count(Limit::kTorque);
-  if (limits_.power > 0) limitPower(force);
   if (limits_.impulse > 0) limitImpulse(force, dt);
   const double window = std::max(dt, kSlewWindow);
   if (limits_.slew > 0 && limitSlew(force, slow_force_, limits_.slew * window)) count(Limit::kSlew);
   if (limits_.torque_slew > 0 && limitSlew(torque, slow_torque_, limits_.torque_slew * window)) count(Limit::kSlew);
+  if (limits_.power > 0) limitPower(force);  // after slew, which may keep a direction that the hand no longer moves in
 }
 
 void Limiter::limitPower(Vector3d& force) noexcept HSP_RT {
@@ -146,9 +146,13 @@ void Limiter::watchVelocity(const Vector3d& velocity) noexcept HSP_RT {
   velocity_ = velocity.allFinite() ? velocity : Vector3d(Vector3d::Zero());
 }
 
-void Limiter::watchButtons(uint32_t buttons) noexcept HSP_RT {
+void Limiter::watchButtons(std::optional<uint32_t> buttons) noexcept HSP_RT {
   if (!limits_.enable.button) return;
-  const bool down = ((buttons >> *limits_.enable.button) & 1u) != 0;
+  if (!buttons) {  // a toggle is as it was: a button that is held through this is not pressed anew
+    if (limits_.enable.mode == scene::EnableMode::kHold) enabled_ = false;
+    return;
+  }
+  const bool down = ((*buttons >> *limits_.enable.button) & 1u) != 0;
   if (limits_.enable.mode == scene::EnableMode::kHold) {
     enabled_ = down;
   } else if (down && !button_was_down_) {

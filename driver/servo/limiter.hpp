@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "hapticd/abi.h"
 #include "scene/scene.hpp"
@@ -41,8 +42,8 @@ class Limiter {
   void watchSpeed(double speed) noexcept HSP_RT;
   /// [rt] Judges the tip's velocity [m/s], in the frame of the forces, and keeps it for the power limit.
   void watchVelocity(const Eigen::Vector3d& velocity) noexcept HSP_RT;
-  /// [rt] The buttons of the newest sample, for the enable switch.
-  void watchButtons(uint32_t buttons) noexcept HSP_RT;
+  /// [rt] The buttons of the newest sample, for the enable switch; nullopt: there is no good one.
+  void watchButtons(std::optional<uint32_t> buttons) noexcept HSP_RT;
   /// [rt] What the motors leave of the force, 0 to 1: it holds from the next tick on.
   void spareMotors(double factor) noexcept HSP_RT { heat_factor_ = factor; }
   /// [rt] The motors' own limit made the force of this tick smaller.

@@ -12,7 +12,20 @@ namespace {
 
 constexpr double kFailsAt = 0.05, kTick = 1e-3;
 
-enum Failure { kNone, kLost, kNotANumber, kSilent, kAtFault, kUncalibrated, kRandom, kMoves, kJumps, kReleased };
+enum Failure {
+  kNone,
+  kLost,
+  kNotANumber,
+  kSilent,
+  kAtFault,
+  kUncalibrated,
+  kRandom,
+  kMoves,
+  kJumps,
+  kReleased,
+  kGravity,
+  kOrientation
+};
 
 /// What is done to the arm, and what must come of it.
 struct Injected {
@@ -45,6 +58,8 @@ const Injected kFaults[] = {
      }},
     {"workspace left", kMoves, Fault::kNone, "", 0.02, 5, 0, Order::Kind::kClear,
      [](scene::Limits& limits) { limits.workspace = 0.05; }},
+    {"not a number for the weight", kGravity, Fault::kNotFinite, "was not a number", 2 * kTick},
+    {"not a number in the orientation", kOrientation, Fault::kNotFinite, "was not a number"},
 };
 
 /// What there is after each tick.
@@ -106,6 +121,7 @@ TEST_P(LoopFault, EndsInZeroForceWithinTwentyMillisecondsNamedAndNeverLarger) {
     before = seen.force;
   }
   EXPECT_TRUE(was_there) << "nothing was pushed: no test";
+  EXPECT_TRUE(loop.rig->log->only_numbers);
 }
 
 TEST_P(LoopFault, SaysWhatHappenedAndWhatWasMeasured) {
@@ -195,6 +211,16 @@ TEST(EnableSwitch, ReleasedAndPressedAgainTheForceRampsIn) {
     }
     last = seen.force;
   }
+}
+
+TEST(EnableSwitch, AButtonHeldThroughALostReadSwitchesNothingOn) {
+  Rig rig(
+      kLost, [](Nanoseconds) { return 0; }, 700, "wall", {}, {}, {number(3, HSP_REAL, 0.06)},
+      [](scene::Limits& limits) {
+        limits.enable = {0, scene::EnableMode::kToggle};
+      });
+  rig.loop->run();
+  EXPECT_FALSE(rig.arms[0]->limiter().enabled());
 }
 
 /// In the tick in which the watchdog writes its zero force there is no sample, and the way to the next one is twice as

@@ -159,6 +159,17 @@ TEST(Limiter, PowerGivenToTheHandIsBoundedAndPowerTakenIsNot) {
   EXPECT_EQ(limiter.clips().ticks[static_cast<size_t>(Limit::kPower)], 1u);
 }
 
+TEST(Limiter, PowerIsBoundedAlsoWhereTheForceMustTurnRound) {
+  scene::Limits limits = generous();
+  limits.power = 0.5;
+  limits.slew = 500;
+  Limiter limiter(limits, 0);
+  limiter.watchVelocity({-1, 0, 0});
+  for (int i = 0; i < 20; ++i) limited(limiter, {8, 0, 0});  // it brakes the hand
+  limiter.watchVelocity({1, 0, 0});                          // which is thrown back
+  for (int i = 0; i < 20; ++i) EXPECT_LE(limited(limiter, {-8, 0, 0}).x(), 0.5 + 1e-12) << i;
+}
+
 TEST(Limiter, ImpulseWithinTheWindowStaysBelowItsLimit) {
   scene::Limits limits = generous();
   limits.impulse = 0.2;
@@ -210,6 +221,25 @@ TEST(Limiter, AToggleMustBePressedAndIsNotFoundPressed) {
   limiter.watchButtons(0);
   limiter.watchButtons(1);
   EXPECT_FALSE(limiter.enabled());
+}
+
+TEST(Limiter, AButtonHeldThroughALostSampleIsNotPressedAnew) {
+  scene::Limits limits = generous();
+  limits.enable = {0, scene::EnableMode::kToggle};
+  Limiter limiter(limits, 8.5);
+  for (const bool on : {false, true}) {
+    EXPECT_EQ(limiter.enabled(), on);
+    limiter.watchButtons(std::nullopt);
+    limiter.watchButtons(1);
+    EXPECT_EQ(limiter.enabled(), on);
+    limiter.watchButtons(0);
+    limiter.watchButtons(1);
+  }
+  limits.enable = {0, scene::EnableMode::kHold};
+  Limiter held(limits, 8.5);
+  held.watchButtons(1);
+  held.watchButtons(std::nullopt);
+  EXPECT_FALSE(held.enabled()) << "nobody knows that it is held";
 }
 
 TEST(Limiter, AnyFaultEndsInZeroForceWithinTwentyMillisecondsAndNeverRaisesIt) {

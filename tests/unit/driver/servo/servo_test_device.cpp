@@ -15,6 +15,7 @@ struct Log {
   double force[3];
   uint32_t mode;
   int reads, writes;
+  bool only_numbers = true;
   std::atomic<int> hold;  ///< the test's: 1 keeps the next write inside the module, which makes it 2, until it is 0
 };
 
@@ -23,8 +24,8 @@ struct Gantry : hapticd::Device {
   int failure, every;
   bool hardware;
   Log log{};
-  static constexpr const char* kFailures[] = {"none", "lost", "not_finite", "stale", "fault", "uncalibrated", "random",
-                                              "moves", "jumps", "released"};
+  static constexpr const char* kFailures[] = {"none",   "lost",  "not_finite", "stale",    "fault",   "uncalibrated",
+                                              "random", "moves", "jumps",      "released", "gravity", "orientation"};
   static constexpr hapticd::DeviceInfo kInfo{"org.hapticd.test.gantry", "gantry", "1.0.0", "MIT", "A gantry."};
   static constexpr auto fields() {
     using F = Fields<Gantry>;
@@ -53,6 +54,8 @@ struct Gantry : hapticd::Device {
     }
     const double t = static_cast<double>(now_ns - start_ns_) * 1e-9;
     const bool failed = t >= fail_at && t < well_at;
+    bad_gravity_ = failed && failure == 10;
+    bad_orientation_ = failed && failure == 11;
     sample.position[0] = 0;
     sample.position[1] = -depth;
     sample.flags = failure == 5 && t < well_at ? 0u : static_cast<uint32_t>(HDV_S_CALIBRATED);
@@ -89,6 +92,7 @@ struct Gantry : hapticd::Device {
   hsp_status write(uint64_t, const hdv_command& command) noexcept HSP_RT {
     std::memcpy(log.force, command.torque, sizeof log.force);
     log.mode = command.mode;
+    for (const double torque : log.force) log.only_numbers &= std::isfinite(torque);
     ++log.writes;
     int asked = 1;
     if (log.hold.compare_exchange_strong(asked, 2))
@@ -101,27 +105,34 @@ struct Gantry : hapticd::Device {
     return std::strcmp(name, HDV_EXT_KINEMATICS) == 0 ? &kKinematics : nullptr;
   }
 
-  static hsp_status forward(const hdv_device*, const double* q, double position[3], double orientation[4]) noexcept HSP_RT {
+  static const Gantry& of(const hdv_device* device) { return *reinterpret_cast<const Gantry*>(device); }
+  static hsp_status forward(const hdv_device* device, const double* q, double position[3],
+                            double orientation[4]) noexcept HSP_RT {
     for (int i = 0; i < 3; ++i) position[i] = q[i];
-    orientation[0] = 1, orientation[1] = orientation[2] = orientation[3] = 0;
+    orientation[0] = of(device).bad_orientation_ ? std::numeric_limits<double>::quiet_NaN() : 1;
+    orientation[1] = orientation[2] = orientation[3] = 0;
     return HSP_OK;
   }
   static hsp_status jacobian(const hdv_device*, const double*, double* J) noexcept HSP_RT {
     for (int i = 0; i < 18; ++i) J[i] = i % 4 == 0 && i < 9 ? 1 : 0;
     return HSP_OK;
   }
-  static hsp_status gravity(const hdv_device*, const double*, const double*, double*) noexcept HSP_RT {
-    return HSP_E_UNSUPPORTED;
+  static hsp_status gravity(const hdv_device* device, const double*, const double*, double* torque) noexcept HSP_RT {
+    if (!of(device).bad_gravity_) return HSP_E_UNSUPPORTED;
+    torque[1] = std::numeric_limits<double>::quiet_NaN();
+    return HSP_OK;
   }
   static hsp_status inverse(const hdv_device*, const double position[3], double* q) noexcept HSP_RT {
     for (int i = 0; i < 3; ++i) q[i] = position[i];
     return HSP_OK;
   }
-  static constexpr hdv_ext_kinematics kKinematics{sizeof(hdv_ext_kinematics), 3, &forward, &jacobian, &gravity, &inverse};
+  static constexpr hdv_ext_kinematics kKinematics{
+      sizeof(hdv_ext_kinematics), 3, &forward, &jacobian, &gravity, &inverse};
 
  private:
   uint64_t start_ns_ = 0, random_ = 1;
   int bad_left_ = 0, bad_ = 0;
+  bool bad_gravity_ = false, bad_orientation_ = false;
 };
 
 }  // namespace

@@ -15,6 +15,7 @@ struct GantryLog {
   double force[3];
   uint32_t mode;
   int reads, writes;
+  bool only_numbers;      ///< no command ever had anything else
   std::atomic<int> hold;  ///< 1 keeps the next write inside the module, which makes it 2, until it is 0
 };
 
