@@ -1,11 +1,13 @@
 #include "watch/crash.hpp"
 
 #include <fcntl.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <csignal>
 #include <cstring>
+#include <iterator>
 
 #include "base/os.hpp"
 #include "watch/quarantine.hpp"
@@ -22,7 +24,7 @@ struct Prepared {
   char dir[kLongestPath] = "";  // "": nothing is written
 };
 Prepared prepared;
-std::atomic<bool> dying{false};
+std::atomic<int> dying{0};  ///< the thread that ends the process
 
 /// A line put together without the C library's buffers.
 class Line {
@@ -48,9 +50,18 @@ class Line {
   }
 
  private:
-  char text_[3 * kLongestPath];
+  char text_[3 * kLongestPath] = "";
   size_t length_ = 0;
 };
+
+/// Of that thread alone.
+struct Death {
+  std::atomic<size_t> step{0};  ///< the next of kSteps
+  bool motors_off = false;
+  const char* reason = "";
+  Line black_box;  ///< its file, once it is written
+};
+Death death;
 
 const char* words(int signal) noexcept {
   switch (signal) {
@@ -74,7 +85,7 @@ void onCrash(int signal) {
   dieOf(words(signal));
 }
 
-void writeBlackBox(const Watched& servo, const char* file) noexcept {
+void saveBlackBox(const Watched& servo, const char* file) noexcept {
   const int fd = open(file, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0640);
   if (fd < 0) return;
   const auto* bytes = static_cast<const char*>(servo.blackBox());
@@ -86,21 +97,38 @@ void writeBlackBox(const Watched& servo, const char* file) noexcept {
   close(fd);
 }
 
-void remember(const char* plugin, const char* reason) noexcept {
+void cutMotors(Watched& servo) noexcept {
+  servo.cut(0);
+  death.motors_off = true;
+}
+
+void writeBlackBox(Watched& servo) noexcept {
+  if (prepared.dir[0] == '\0' || servo.blackBox() == nullptr) return;
+  const char* plugin = servo.plugin();
+  Line file;
+  file.add(prepared.dir).add("/black-box-").addName(plugin != nullptr ? plugin : "hapticd").add(".flight");
+  saveBlackBox(servo, file.text());
+  death.black_box = file;
+}
+
+void remember(Watched& servo) noexcept {
+  const char* plugin = servo.plugin();
+  if (plugin == nullptr || prepared.dir[0] == '\0') return;
   const int fd = open(Line().add(prepared.dir).add("/").add(kQuarantineFile).text(),
                       O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0640);
   if (fd < 0) return;
-  Line().add(plugin).add("\t").add(reason).add("\n").write(fd);
+  Line().add(plugin).add("\t").add(death.reason).add("\n").write(fd);
   close(fd);
 }
 
-void tell(const Watched& servo, const char* reason, const char* black_box) noexcept {
+void tell(Watched& servo) noexcept {
   const char *plugin = servo.plugin(), *model = servo.model();
   Line line;
   line.add("\nerror: ").add(plugin != nullptr ? "plugin '" : "the daemon itself").add(plugin != nullptr ? plugin : "");
   if (plugin != nullptr) line.add("' of model '").add(model != nullptr ? model : "").add("'");
-  line.add(" was ended by ").add(reason).add("\n  the motors were switched off first");
-  if (black_box[0] != '\0') line.add("; the last seconds are in ").add(black_box);
+  line.add(" was ended by ").add(death.reason).add("\n  ");
+  line.add(death.motors_off ? "the motors were switched off first" : "to switch the motors off crashed as well");
+  if (*death.black_box.text() != '\0') line.add("; the last seconds are in ").add(death.black_box.text());
   line.add("\n  ");
   if (plugin != nullptr && prepared.dir[0] != '\0')
     line.add(
@@ -111,6 +139,15 @@ void tell(const Watched& servo, const char* reason, const char* black_box) noexc
   else
     line.add("the run has ended\n  fix: report it with the black box and the output of: hapticd doctor --json\n");
   line.write(STDERR_FILENO);
+}
+
+constexpr void (*kSteps[])(Watched&) noexcept = {&cutMotors, &remember, &writeBlackBox, &tell};
+
+/// For a thread that finds another at it: that one ends the process, unless it is stuck itself.
+[[noreturn]] void awaitEnd() noexcept {
+  constexpr timespec kPatience{5, 0};
+  nanosleep(&kPatience, nullptr);
+  _exit(1);
 }
 
 }  // namespace
@@ -130,20 +167,13 @@ void forgetCrash() {
 
 void dieOf(const char* reason) noexcept {
   Watched* servo = prepared.servo.load();
-  if (servo == nullptr || dying.exchange(true)) {
-    if (servo == nullptr) _exit(1);
-    for (;;) pause();  // another thread is at it already and will end the process
-  }
-  servo->cut(0);
-  const char* plugin = servo->plugin();
-  Line black_box;
-  black_box.add("");
-  if (prepared.dir[0] != '\0' && servo->blackBox() != nullptr) {
-    black_box.add(prepared.dir).add("/black-box-").addName(plugin != nullptr ? plugin : "hapticd").add(".flight");
-    writeBlackBox(*servo, black_box.text());
-  }
-  if (plugin != nullptr && prepared.dir[0] != '\0') remember(plugin, reason);
-  tell(*servo, reason, black_box.text());
+  if (servo == nullptr) _exit(1);
+  int nobody = 0;
+  const int self = os::threadId();
+  if (!dying.compare_exchange_strong(nobody, self) && nobody != self) awaitEnd();
+  // A step that crashes itself (the device's cut, on a heap just torn) brings this thread here again: on with the next.
+  if (nobody == 0) death.reason = reason;
+  for (size_t step = death.step++; step < std::size(kSteps); step = death.step++) kSteps[step](*servo);
   _exit(1);
 }
 

@@ -4,11 +4,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
+#include "watch/crash.hpp"
 #include "watch/notify.hpp"
 #include "watch/quarantine.hpp"
 #include "watch/watchdog.hpp"
@@ -152,6 +155,51 @@ TEST(Watchdog, EndsAServoThatNeverComesBack) {
   for (Nanoseconds now = kMs; now < 2000 * kMs; now += kMs) watchdog.check(now);
   EXPECT_EQ(hung, 1);
 }
+
+#ifndef HAPTICD_SANITIZED  // the sanitizers handle these signals themselves
+
+/// A device whose cut crashes, or never comes back.
+struct BadCut : Fake {
+  bool hangs = false;
+  void cut(double) noexcept override {
+    while (hangs) pause();
+    std::raise(SIGSEGV);
+  }
+  const char* plugin() const noexcept override { return "bad"; }
+};
+
+TEST(CrashDeathTest, OneInsideTheCutOfTheMotorsStillEndsInQuarantine) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const std::filesystem::path dir = std::filesystem::temp_directory_path() / "hapticd-bad-cut";
+  std::filesystem::remove_all(dir);
+  std::filesystem::create_directories(dir);
+  const auto crash = [&] {
+    BadCut servo;
+    guardAgainstCrash(servo, dir);
+    alarm(20);  // s: ends one that hangs by a signal
+    std::raise(SIGFPE);
+  };
+  EXPECT_EXIT(crash(), testing::ExitedWithCode(1), "SIGFPE.*\n.*to switch the motors off crashed as well");
+  ASSERT_EQ(quarantined(dir).size(), 1u);
+  EXPECT_EQ(quarantined(dir)[0].plugin, "bad");
+  std::filesystem::remove_all(dir);
+}
+
+TEST(CrashDeathTest, ACutThatNeverComesBackIsEndedByTheNextThreadThatMissesTheServo) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto crash = [] {
+    BadCut servo;
+    servo.hangs = true;
+    guardAgainstCrash(servo, "");
+    alarm(20);
+    std::thread servo_thread([] { std::raise(SIGFPE); });
+    usleep(100'000);
+    dieOf("a step that did not come back");
+  };
+  EXPECT_EXIT(crash(), testing::ExitedWithCode(1), "");
+}
+
+#endif
 
 TEST(Notify, FeedsTheServiceManagerOnlyWhileTicksMove) {
   const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0);
