@@ -26,7 +26,13 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
     host()->log(host(), HSP_LOG_WARNING, "pop_through has no effect: only a shell gives way; expected sides: both");
   load(activation, report);
   extents_ = extentsOf(model());
-  report.max_stiffness = stiffness_;
+  double slope = 0;
+  for (const Extent& extent : extents_) slope = std::max(slope, slopeOf(extent));
+  if (slope > kSteepest)
+    throw std::invalid_argument("texture.amplitude: bumps of " + number(texture_amplitude_) + " m rise " +
+                                number(slope) + " m a metre at this texture.wavelength; expected " + number(kSteepest) +
+                                " or less, so at most " + number(texture_amplitude_ * kSteepest / slope) + " m");
+  report.max_stiffness = stiffness_ * (1 + slope);
   if (damping_ > 0 || viscosity_ > 0) report.flags |= HSP_R_VELOCITY;
   const bool rubs = friction_static_ > 0 || viscosity_ > 0;
   friction_.assign(rubs ? std::max(activation.max_probes, 1u) : 0, contact::Friction{});
@@ -145,10 +151,10 @@ std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const trace::Model& model)
 /// vanishes on every side of it, so the skin has no step at seams, common edges and poles.
 double NurbsRigid::texture(const trace::Foot& foot) const noexcept HSP_RT {
   const Extent& extent = extents_[static_cast<std::size_t>(foot.surface)];
-  const Eigen::Array2d waves = (extent.length / texture_wavelength_).round().max(1);
+  const double steep = slopeOf(extent) / kSteepest;  // above 1 only where it was set so while it runs
   const Eigen::Array2d phase =
-      2 * std::numbers::pi * waves * (Eigen::Array2d(foot.u, foot.v) - extent.lo) / extent.range;
-  return texture_amplitude_ * std::sin(phase[0]) * std::sin(phase[1]);
+      2 * std::numbers::pi * wavesOf(extent) * (Eigen::Array2d(foot.u, foot.v) - extent.lo) / extent.range;
+  return texture_amplitude_ / std::max(1.0, steep) * std::sin(phase[0]) * std::sin(phase[1]);
 }
 
 const void* NurbsRigid::extension(const char* name) {

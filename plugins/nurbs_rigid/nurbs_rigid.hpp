@@ -1,6 +1,7 @@
 /// A rigid model of NURBS surfaces with the feel of a material: wall, friction, viscosity, texture, pop-through.
 #pragma once
 #include <array>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -54,6 +55,7 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
   const void* extension(const char* name);
 
  private:
+  static constexpr double kSteepest = 4;  ///< rise over way of bumps: with the wall itself, half of what a host bears
   enum Motion { kStatic = 0, kKinematic = 1, kDynamic = 2 };
   static constexpr const char* kMotionNames[] = {"static", "kinematic", "dynamic"};
 
@@ -69,6 +71,14 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
     Eigen::Array2d length;     ///< [m] along u and along v, on average
   };
   static std::vector<Extent> extentsOf(const trace::Model& model);
+  /// Bumps along u and along v of a surface: at least one each.
+  Eigen::Array2d wavesOf(const Extent& extent) const noexcept HSP_RT {
+    return (extent.length / texture_wavelength_).round().max(1);
+  }
+  /// Largest rise over way of the bumps on a surface, of the asked amplitude, where its parameters are even.
+  double slopeOf(const Extent& extent) const noexcept HSP_RT {
+    return texture_amplitude_ * 2 * std::numbers::pi * (wavesOf(extent) / extent.length).maxCoeff();
+  }
   double texture(const trace::Foot& foot) const noexcept HSP_RT;
 
   int motion_ = kStatic;

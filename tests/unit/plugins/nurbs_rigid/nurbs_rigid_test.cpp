@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstring>
+#include <string>
+#include <vector>
 
 #include "hapticd/shape.h"
 
@@ -15,6 +17,11 @@ class Plugin {
   ~Plugin() { kind().destroy(shape_); }
 
   hsp_status set(const char* id, double number) { return put(id, {0, 0, number, nullptr, nullptr}); }
+  /// As a running daemon does: for the next step.
+  void change(const char* id, double number) {
+    for (uint32_t i = 0; i < kind().param_count; ++i)
+      if (std::strcmp(kind().params[i].id, id) == 0) changes_.push_back({i, 0, number});
+  }
   hsp_status set(const char* id, const std::string& text) { return put(id, {0, 0, 0, text.c_str(), nullptr}); }
   hsp_status activate() {
     hsp_activation activation{};
@@ -55,7 +62,10 @@ class Plugin {
     step.in_stride = sizeof probe;
     step.out_stride = sizeof contact;
     step.dt_s = 1e-3;
+    step.changes = changes_.data();
+    step.change_count = static_cast<uint32_t>(changes_.size());
     status = kind().step(shape_, &step);
+    changes_.clear();
     return contact;
   }
 
@@ -73,6 +83,7 @@ class Plugin {
     return HSP_E_ARG;
   }
   hsp_shape* shape_;
+  std::vector<hsp_change> changes_;
 };
 
 const std::string kModels = HAPTICD_SOURCE_DIR "/config/models/";
@@ -150,6 +161,26 @@ TEST(NurbsRigid, TextureRunsAlongTheParametersAndVanishesOnSidesAndSeams) {
   EXPECT_NEAR(highest, 1e-4, 2e-6);
   EXPECT_NEAR(lowest, -1e-4, 2e-6);
   EXPECT_NEAR(plugin.at(0, 0, 0.069).force[2], 1, 1e-9);  // where both seams meet
+}
+
+TEST(NurbsRigid, BumpsSteeperThanAHostBearsAreRefusedOrFlattened) {
+  Plugin plugin;
+  plugin.set("geometry", kModels + "torus.yaml");
+  plugin.set("stiffness", 1000);
+  plugin.set("texture.wavelength", 5e-3);
+  plugin.set("texture.amplitude", 5e-3);
+  EXPECT_EQ(plugin.activate(), HSP_E_ARG);
+  plugin.set("texture.amplitude", 1e-3);
+  ASSERT_EQ(plugin.activate(), HSP_OK);
+  EXPECT_NEAR(plugin.report.max_stiffness, 1000 * (1 + 2 * M_PI / 5), 30) << "the bumps are part of the claim";
+  plugin.change("texture.amplitude", 1e-2);
+  double highest = 0;
+  for (int i = 0; i <= 2000; ++i) {  // 9 mm deep, over many bumps
+    const double a = 2 * M_PI * i / 2000, b = 7 * a, r = 0.05 + 0.011 * std::cos(b);
+    const hsp_contact contact = plugin.at(r * std::sin(a), 0.011 * std::sin(b), r * std::cos(a));
+    highest = std::max(highest, std::hypot(contact.force[0], contact.force[1], contact.force[2]) / 1000 - 0.009);
+  }
+  EXPECT_NEAR(highest, 4 * 5e-3 / (2 * M_PI), 2e-4);
 }
 
 TEST(NurbsRigid, AHeldContactKeepsItsFace) {
