@@ -25,7 +25,7 @@ int printSchema(const std::string& format) {
 
 /// What cannot be stable. Only simulated arms are opened: `check` touches no hardware; `run` warns of it as well.
 scene::Problems unstable(const scene::Scene& scene, const std::vector<double>& stiffness) {
-  scene::Problems warnings;
+  scene::Problems warnings = tune::fastPaths(scene);
   std::vector<scene::Device> devices = scene.devices;
   if (const auto file = host::shippedFile(scene::kDefaultDevice); devices.empty() && file)  // as `run` will
     if (auto loaded = scene::loadDevice(*file, catalog()); loaded.device) devices.push_back(*loaded.device);

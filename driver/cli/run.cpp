@@ -160,6 +160,7 @@ void warnOfSettings(servo::Runner& runner, double rate) {
   std::vector<double> stiffness;
   for (const auto& shape : runner.world().shapes())
     if (shape != nullptr) stiffness.push_back(shape->report().max_stiffness);
+  printWarnings(tune::fastPaths(scene), stderr);
   for (size_t i = 0; i < runner.arms().size(); ++i)
     printWarnings(tune::unstableSettings(scene, scene.devices[i], runner.arms()[i]->info(), stiffness), stderr);
 }

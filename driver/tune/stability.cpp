@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "servo/glide.hpp"
 #include "servo/passivity/isolated.hpp"
 
 namespace hapticd::tune {
@@ -84,6 +85,16 @@ void judgeRate(const scene::Scene& scene, const scene::Device& device, const hdv
         rates + " is faster than the samples of " + device.name + own + ": ticks between see no news" + nearest);
 }
 
+/// The largest of some rates, and when it was.
+struct Fastest {
+  double rate = 0, at = 0;
+  void take(double now, double t) {
+    if (now <= rate * (1 + 1e-9)) return;  // of equal ones the first
+    rate = now;
+    at = t;
+  }
+};
+
 }  // namespace
 
 scene::Problems unstableSettings(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
@@ -101,6 +112,31 @@ scene::Problems unstableSettings(const scene::Scene& scene, const scene::Device&
                       " us, so every tick may be late; nearest: " + text(0.8 * period * 1e6) + " us");
   judgeHeat(device, info, problems);
   judgeRate(scene, device, info, problems);
+  return problems;
+}
+
+scene::Problems fastPaths(const scene::Scene& scene) {
+  scene::Problems problems;
+  for (size_t i = 0; i < scene.models.size(); ++i) {
+    const std::vector<scene::PathPoint>& path = scene.models[i].path;
+    Fastest speed, turn;
+    for (size_t k = 1; k < path.size(); ++k) {
+      const scene::PathPoint &from = path[k - 1], &to = path[k];
+      const double time = to.t - from.t;
+      speed.take((to.pose.position - from.pose.position).norm() / time, from.t);
+      turn.take(to.pose.orientation.angularDistance(from.pose.orientation) / time, from.t);
+    }
+    const std::string key = "models[" + std::to_string(i) + "].path";
+    const auto judge = [&](const char* does, const Fastest& fastest, double most, const char* unit) {
+      if (fastest.rate <= most * 1.001) return;
+      scene::report(problems, scene.models[i].place, key,
+                    scene.models[i].name + " " + does + " at up to " + text(fastest.rate) + unit + ", from t = " +
+                        text(fastest.at) + " s on, and a path does not yield to a hand; expected at most " +
+                        text(most) + unit + ", as ctl move goes");
+    };
+    judge("moves", speed, servo::Glide::kMostSpeed, " m/s");
+    judge("turns", turn, servo::Glide::kMostTurn, " rad/s");
+  }
   return problems;
 }
 

@@ -19,6 +19,10 @@ namespace hapticd::tune {
 scene::Problems unstableSettings(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
                                  const std::vector<double>& stiffness);
 
+/// [main] Kinematic paths faster than a person may order a model to move: such a path goes through a hand that is in
+/// its way as fast, and does not yield. Each names the path's model, the fastest piece and the bound.
+scene::Problems fastPaths(const scene::Scene& scene);
+
 /// [main] Whether an arm was asked for more force than it sustains: "", or what a user should know.
 /// @param sustained [N] for any length of time; 0: unknown
 /// @param forces [N] of successive ticks; motors heat with the square of them

@@ -42,6 +42,26 @@ struct Case {
   }
 };
 
+scene::PathPoint pointOf(double t, double x, double angle) {
+  return {t, {Eigen::Vector3d(x, 0, 0), Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()))}};
+}
+
+TEST(FastPaths, AreToldOnceWithTheirPlaceAndTheirFastestPiece) {
+  scene::Scene scene;
+  scene.models.resize(2);
+  scene.models[0].name = "door";
+  scene.models[0].path = {pointOf(0, 0, 0), pointOf(1, 1, 3), pointOf(2, 0, 0)};  // at the bounds
+  EXPECT_TRUE(fastPaths(scene).empty());
+  scene.models[1].name = "ball";
+  scene.models[1].place = {"scene.yaml", 7, 5};
+  scene.models[1].path = {pointOf(0, 0, 0), pointOf(1, 0.1, 0), pointOf(1.1, 0.6, 0), pointOf(1.3, 0.6, 2)};
+  const scene::Problems found = fastPaths(scene);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].text().find("scene.yaml:7:5: models[1].path: ball moves at up to 5 m/s, from t = 1 s on"), 0u)
+      << found[0].text();
+  EXPECT_NE(found[1].text().find("turns at up to 10 rad/s, from t = 1.1 s"), std::string::npos) << found[1].text();
+}
+
 TEST(UnstableSettings, AreNoneWhereTheArmBearsThem) {
   EXPECT_EQ(Case().told(800), "");
 }
