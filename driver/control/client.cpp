@@ -2,6 +2,7 @@
 
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,11 +12,15 @@ namespace hapticd::control {
 
 namespace {
 
+constexpr time_t kSendSeconds = 5;
+
 /// A connected socket, or -1.
 int connected(const std::string& file) {
   sockaddr_un address{};
   if (!socketAddress(file, address)) return -1;
   const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const timeval limit{kSendSeconds, 0};  // also of connect(), which waits for room in the queue of a busy server
+  if (fd >= 0) setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
   if (fd >= 0 && connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return fd;
   const int code = errno;
   if (fd >= 0) close(fd);
@@ -44,7 +49,8 @@ bool connectTo(const std::string& file) {
 Result<Client> Client::connect(const std::string& file) {
   const int fd = connected(file);
   if (fd < 0)
-    return Error{"no daemon answers at " + file + ": " + std::strerror(errno) +
+    return Error{"no daemon answers at " + file + ": " +
+                 (errno == EAGAIN ? "it is busy, and so is its queue" : std::strerror(errno)) +
                  "\n  fix: start one with hapticd run, or name it with --name; its group may talk to it, no one else"};
   return Client(file, fd);
 }
@@ -58,6 +64,7 @@ Result<std::string> Client::ask(const std::string& line, double seconds) {
   size_t sent = 0;
   while (sent < out.size()) {
     const ssize_t now = send(fd_, out.data() + sent, out.size() - sent, MSG_NOSIGNAL);
+    if (now < 0 && errno == EAGAIN) return Error{"the daemon at " + file_ + " takes no request"};
     if (now <= 0) break;
     sent += static_cast<size_t>(now);
   }

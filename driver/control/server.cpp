@@ -20,7 +20,8 @@ namespace hapticd::control {
 namespace {
 
 constexpr int kPollMs = 500;
-constexpr int kReadsATurn = 4;  ///< so that no client keeps the others waiting
+constexpr Nanoseconds kAcceptPause = 500'000'000;  ///< after a failure, as without a free descriptor
+constexpr int kReadsATurn = 4;                     ///< so that no client keeps the others waiting
 
 Error cannot(const std::string& file, const std::string& what) {
   return Error{"cannot serve " + file + ": " + what + "\n  the run can be neither watched nor changed from outside"};
@@ -75,7 +76,7 @@ void Server::stop() {
 void Server::serve() {
   std::vector<pollfd> polled;
   while (!stop_.load(std::memory_order_relaxed)) {
-    polled.assign({{fd_, static_cast<short>(clients_.size() < kMaxClients ? POLLIN : 0), 0}, {wake_[0], POLLIN, 0}});
+    polled.assign({{fd_, static_cast<short>(maySeat(monotonicNow()) ? POLLIN : 0), 0}, {wake_[0], POLLIN, 0}});
     for (const Client& client : clients_) {
       // one that does not read its answers is not asked for more
       const bool reads = client.out.empty() && !client.closing;
@@ -88,6 +89,7 @@ void Server::serve() {
       Client& client = clients_[i];
       const short events = polled[i + 2].revents;
       bool good = (events & (POLLERR | POLLNVAL)) == 0;
+      if (events != 0) client.heard = now;
       if (good && (events & (POLLIN | POLLHUP)) != 0 && client.out.empty()) good = receive(client);
       if (good && !client.out.empty()) good = send(client);
       if (good && patient(client, now) && !(client.closing && client.out.empty())) continue;
@@ -95,15 +97,32 @@ void Server::serve() {
       client.fd = -1;
     }
     std::erase_if(clients_, [](const Client& client) { return client.fd < 0; });
-    if ((polled[0].revents & POLLIN) != 0) accept();
+    if ((polled[0].revents & POLLIN) != 0) accept(now);
   }
 }
 
-void Server::accept() {
+/// There is room for one more, or a client that has been idle for long enough to make room.
+bool Server::maySeat(Nanoseconds now) const {
+  if (now < accept_after_) return false;
+  return clients_.size() < kMaxClients ||
+         std::any_of(clients_.begin(), clients_.end(), [&](const Client& c) { return now - c.heard >= kIdle; });
+}
+
+void Server::accept(Nanoseconds now) {
   const int fd = accept4(fd_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-  if (fd < 0) return;
+  if (fd < 0) {
+    if (errno != EAGAIN && errno != ECONNABORTED && errno != EINTR) accept_after_ = now + kAcceptPause;
+    return;
+  }
+  if (clients_.size() >= kMaxClients) {
+    const auto idle = std::min_element(clients_.begin(), clients_.end(),
+                                       [](const Client& a, const Client& b) { return a.heard < b.heard; });
+    close(idle->fd);
+    clients_.erase(idle);
+  }
   Client& client = clients_.emplace_back();
   client.fd = fd;
+  client.heard = now;
 }
 
 bool Server::receive(Client& client) {
@@ -113,6 +132,7 @@ bool Server::receive(Client& client) {
     if (got < 0 && (errno == EAGAIN || errno == EINTR)) break;
     if (got < 0) return false;
     if (got == 0) {
+      if (!client.in.empty() && client.in.back() != '\n') client.in += '\n';  // as from printf, without one
       client.closing = true;
       break;
     }

@@ -21,6 +21,7 @@ class Server {
 
   static constexpr size_t kMaxClients = 32;
   static constexpr size_t kMaxWaiting = 1 << 20;            ///< [bytes] for a client that does not read
+  static constexpr Nanoseconds kIdle = 2'000'000'000;       ///< then a client may be dropped where another waits
   static constexpr Nanoseconds kPatience = 10'000'000'000;  ///< for the rest of a line, or for room to answer
 
   /// [main] Binds the socket, readable and writable by the owner and by its group. An old socket that nobody serves is
@@ -38,12 +39,14 @@ class Server {
     int fd = -1;
     std::string in, out;
     Nanoseconds since = 0;  ///< half a line, or an answer not yet taken, waits since then; 0: nothing waits
+    Nanoseconds heard = 0;  ///< the last time that anything came or went
     bool closing = false;   ///< once `out` is gone
   };
   Server(std::string file, int fd, int wake_read, int wake_write)
       : file_(std::move(file)), fd_(fd), wake_{wake_read, wake_write} {}
   void serve();
-  void accept();
+  bool maySeat(Nanoseconds now) const;
+  void accept(Nanoseconds now);
   bool receive(Client& client);
   void answerLines(Client& client);
   bool send(Client& client);
@@ -54,6 +57,7 @@ class Server {
   int wake_[2];
   Answer answer_;
   std::vector<Client> clients_;
+  Nanoseconds accept_after_ = 0;  ///< a refusal of the system is not asked for again and again
   std::atomic<bool> stop_{false};
   os::Thread thread_;
 };

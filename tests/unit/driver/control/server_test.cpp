@@ -60,8 +60,36 @@ TEST(Server, AnswersEachLineInOrderHoweverItIsCut) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   shutdown(fd, SHUT_WR);
-  EXPECT_EQ(readAll(fd), "you said one\nyou said two\nyou said \nyou said four\n");
+  EXPECT_EQ(readAll(fd), "you said one\nyou said two\nyou said \nyou said four\nyou said rest\n");
   close(fd);
+}
+
+TEST(Server, DropsIdleClientsWhereAnotherWaits) {
+  Rig rig("idle");
+  std::vector<int> crowd;
+  for (size_t i = 0; i < Server::kMaxClients; ++i) crowd.push_back(connectRaw(rig.file));
+  send(crowd[0], "half a", 6, MSG_NOSIGNAL);
+  const auto asked = ask(rig.file, "hold", 5);
+  ASSERT_TRUE(asked) << asked.error();
+  EXPECT_EQ(*asked, "you said hold");
+  std::this_thread::sleep_for(std::chrono::nanoseconds(Server::kIdle));
+  for (int i = 0; i < 16; ++i) crowd.push_back(connectRaw(rig.file));
+  EXPECT_TRUE(ask(rig.file, "stop", 5));
+  for (const int fd : crowd) close(fd);
+}
+
+TEST(Client, GivesUpWhereNobodyAcceptsItsConnection) {
+  const std::string file = testing::TempDir() + "deaf" + std::to_string(getpid()) + ".sock";
+  sockaddr_un address{};
+  ASSERT_TRUE(socketAddress(file, address));
+  const int deaf = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  ASSERT_EQ(bind(deaf, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  ASSERT_EQ(listen(deaf, 0), 0);
+  const int first = connectRaw(file);
+  EXPECT_FALSE(Client::connect(file));
+  close(first);
+  close(deaf);
+  unlink(file.c_str());
 }
 
 TEST(Server, IsForItsOwnerAndGroupAlone) {
