@@ -13,9 +13,12 @@
 #include <cstring>
 #include <exception>
 #include <optional>
+#include <thread>
 
 namespace hapticd::host {
 namespace {
+
+using Deadline = std::chrono::steady_clock::time_point;
 
 constexpr size_t kLargestAnswer = 64u << 20;
 constexpr int kThrew = 113;   ///< exit code of a child that an exception ended
@@ -89,8 +92,7 @@ class Surroundings {
 };
 
 /// Everything the child writes until it closes the pipe; nothing when the time is over first.
-std::optional<std::string> readAll(int fd, int limit_ms) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(limit_ms);
+std::optional<std::string> readAll(int fd, Deadline end) {
   std::string bytes;
   char buffer[16384];
   while (bytes.size() < kLargestAnswer) {
@@ -108,20 +110,31 @@ std::optional<std::string> readAll(int fd, int limit_ms) {
   return std::nullopt;
 }
 
-int waitFor(pid_t child) {
+/// How the child ended. One that has closed the pipe and lives on after `end` is ended; `in_time` says whether.
+int waitFor(pid_t child, Deadline end, bool& in_time) {
+  constexpr auto kPause = std::chrono::milliseconds(1);
   int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  for (;;) {
+    const pid_t ended = waitpid(child, &status, in_time ? WNOHANG : 0);
+    if (ended == child || (ended < 0 && errno != EINTR)) return status;
+    if (in_time && std::chrono::steady_clock::now() >= end) {
+      in_time = false;
+      kill(child, SIGKILL);
+    } else if (in_time) {
+      std::this_thread::sleep_for(kPause);
+    }
   }
-  return status;
 }
 
 /// The child's answer, or how it ended. Closes `fd`, the reading end.
 Result<std::string> hear(pid_t child, int fd, int limit_ms) {
-  std::optional<std::string> told = readAll(fd, limit_ms);
+  const Deadline end = std::chrono::steady_clock::now() + std::chrono::milliseconds(limit_ms);
+  std::optional<std::string> told = readAll(fd, end);
   close(fd);
-  if (!told) kill(child, SIGKILL);  // also ends a child that wrote enough but hangs
-  const int status = waitFor(child);
-  if (!told) return Error{"took longer than " + std::to_string(limit_ms / 1000.0).substr(0, 4) + " s"};
+  bool in_time = told.has_value();
+  if (!in_time) kill(child, SIGKILL);
+  const int status = waitFor(child, end, in_time);
+  if (!in_time) return Error{"took longer than " + std::to_string(limit_ms / 1000.0).substr(0, 4) + " s"};
   if (WIFSIGNALED(status)) return Error{std::string("crashed: ") + strsignal(WTERMSIG(status))};
   if (WEXITSTATUS(status) == kThrew) return Error{"threw an exception"};
   if (WEXITSTATUS(status) != 0 || told->empty())
@@ -133,11 +146,25 @@ Error notTried(const char* what, int code) {
   return Error{std::string("could not be tried: ") + what + ": " + std::strerror(code)};
 }
 
+/// A pipe at descriptors that the child's own do not overwrite, in a process that was started without 0, 1 or 2 too.
+bool pipeBeyondStandard(int (&ends)[2]) {
+  int low[2];
+  if (pipe2(low, O_CLOEXEC) != 0) return false;
+  for (int i = 0; i < 2; ++i) ends[i] = fcntl(low[i], F_DUPFD_CLOEXEC, kAnswerFd + 1);
+  const int code = errno;
+  for (const int fd : low) close(fd);
+  if (ends[0] >= 0 && ends[1] >= 0) return true;
+  for (const int fd : ends)
+    if (fd >= 0) close(fd);
+  errno = code;
+  return false;
+}
+
 }  // namespace
 
 Result<std::string> runInChild(const std::function<std::string()>& work, int limit_ms) {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return notTried("pipe", errno);
+  if (!pipeBeyondStandard(ends)) return notTried("pipe", errno);
   const pid_t child = fork();
   const int code = errno;
   if (child == 0) {
@@ -152,7 +179,7 @@ Result<std::string> runInChild(const std::function<std::string()>& work, int lim
 
 Result<std::string> runProgram(std::vector<std::string> arguments, int limit_ms) {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return notTried("pipe", errno);
+  if (!pipeBeyondStandard(ends)) return notTried("pipe", errno);
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);

@@ -57,6 +57,24 @@ TEST(Program, DescribesAFileAsAForkDoesAndTellsHowABadOneEnds) {
   }
 }
 
+TEST(Program, ThatClosesItsDescriptorsAndHangsIsEndedInTime) {
+  const auto hangs = runProgram({"/bin/sh", "-c", "exec 3>&-; exec sleep 60"}, 300);
+  ASSERT_FALSE(hangs);
+  EXPECT_EQ(hangs.error(), "took longer than 0.30 s");
+}
+
+TEST(Program, AnswersAParentThatWasStartedWithoutStandardFiles) {
+  const auto told = runInChild(
+      [] {
+        for (int fd = 0; fd < 3; ++fd) close(fd);
+        const auto answer = runProgram({"/bin/sh", "-c", "echo hello >&3"}, 10'000);
+        return answer ? *answer : answer.error();
+      },
+      20'000);
+  ASSERT_TRUE(told) << told.error();
+  EXPECT_EQ(*told, "hello\n");
+}
+
 TEST(Program, ThatIsNotThereOrAnswersNothingIsAnError) {
   const auto missing = runProgram({"/nowhere/hapticd", "x"}, 1000);
   ASSERT_FALSE(missing);
