@@ -16,6 +16,8 @@ namespace hapticd::cli {
 
 namespace {
 
+constexpr int kPartly = 3;  ///< exit code: what was replayed is the same, and not all can be
+
 struct Options {
   std::string file;
   std::vector<std::string> changes;
@@ -91,7 +93,8 @@ int replay(const Options& options) {
   if (!outcome.first) {
     std::printf("%llu ticks of %llu: every bit is the same\n", static_cast<unsigned long long>(outcome.ticks),
                 static_cast<unsigned long long>(outcome.recorded_ticks));
-    return outcome.ticks == outcome.recorded_ticks || !outcome.note.empty() ? kWorked : kFailed;
+    if (outcome.ticks == outcome.recorded_ticks) return kWorked;
+    return outcome.note.empty() ? kFailed : kPartly;
   }
   const servo::Difference& first = *outcome.first;
   std::printf("differs first in tick %llu (t = %.6f s): %s was %.17g, is now %.17g\n",
@@ -109,7 +112,9 @@ void addReplay(CLI::App& app, int& exit_code) {
   command->add_option("file", options->file, "recording that `hapticd run --record` wrote")->required();
   command->add_option("--set", options->changes, "try another parameter: MODEL.PARAMETER=NUMBER; may be repeated");
   command->footer(
-      "Exit codes: 0 every bit is the same, 1 something differs, 2 it cannot be replayed.\n\n"
+      "Exit codes: 0 every bit is the same, 1 something differs, 2 it cannot be replayed, 3 every bit is the same up "
+      "to\n"
+      "where models came or left, from where on it cannot be replayed.\n\n"
       "Example:\n  hapticd run config/scenes/teapot.yaml --for 10 --record run.h5\n  hapticd replay run.h5");
   command->callback([options, &exit_code] { exit_code = replay(*options); });
 }
