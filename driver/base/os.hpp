@@ -100,7 +100,7 @@ void prepareSignalStack();
 /// freeze because of a plugin that loops. Lower limits stay.
 std::error_code limitRealTimeRun(uint64_t us);
 
-/// Installs an async-signal-safe handler for SIGINT, SIGTERM, SIGQUIT and SIGHUP; ignores SIGPIPE, SIGXFSZ: write() tells.
+/// Installs an async-signal-safe handler for SIGINT, SIGTERM, SIGQUIT and SIGHUP, and ignores SIGPIPE and SIGXFSZ.
 void onStopSignal(void (*handler)(int));
 
 }  // namespace hapticd::os

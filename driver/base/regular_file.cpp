@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 
 namespace hapticd {
@@ -13,6 +14,21 @@ namespace {
 
 Error cannotBeRead(int code) {
   return Error{code == ENOENT ? "there is no such file" : std::string("cannot be read: ") + std::strerror(code)};
+}
+
+/// 0, or what failed.
+int writeTo(const std::string& file, const std::string& text) {
+  const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOCTTY, 0666);
+  if (fd < 0) return errno;
+  int code = 0;
+  for (size_t done = 0; done < text.size() && code == 0;) {
+    const ssize_t now = write(fd, text.data() + done, text.size() - done);
+    if (now >= 0)
+      done += static_cast<size_t>(now);
+    else if (errno != EINTR)
+      code = errno;
+  }
+  return close(fd) == 0 || code != 0 ? code : errno;
 }
 
 }  // namespace
@@ -53,6 +69,17 @@ Result<std::string> readRegular(const std::string& file, size_t max_bytes) {
   if (text.size() > max_bytes)
     return Error{"is larger than " + std::to_string(max_bytes >> 20) + " MiB, the most that is read"};
   return text;
+}
+
+Result<void> writeWhole(const std::string& file, const std::string& text) {
+  struct stat info {};
+  const bool special = lstat(file.c_str(), &info) == 0 && !S_ISREG(info.st_mode);
+  const std::string part = special ? file : file + ".part";
+  int code = writeTo(part, text);
+  if (code == 0 && !special && std::rename(part.c_str(), file.c_str()) != 0) code = errno;
+  if (code == 0) return {};
+  if (!special) unlink(part.c_str());
+  return Error{file + ": cannot be written: " + std::strerror(code)};
 }
 
 }  // namespace hapticd

@@ -1,4 +1,4 @@
-/// Files that somebody names, opened so that none can wait: a pipe without a writer would hold the thread for ever.
+/// Files that somebody names. None that is read can wait: a pipe without a writer would hold the thread for ever.
 #pragma once
 #include <sys/types.h>
 
@@ -16,5 +16,9 @@ Result<int> openRegular(const std::string& file);
 
 /// [main] A regular file's bytes, with the same errors. @param max_bytes more is an error
 Result<std::string> readRegular(const std::string& file, size_t max_bytes);
+
+/// [main] Writes a file whole or not at all; into what is none (a device, a pipe, a link) it writes straight. The error
+/// starts with the file's name.
+Result<void> writeWhole(const std::string& file, const std::string& text);
 
 }  // namespace hapticd

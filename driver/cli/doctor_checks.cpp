@@ -216,11 +216,16 @@ Finding checkModules(host::Kind kind) {
 }
 
 Finding checkQuarantine() {
-  const auto dir = watch::stateDir();
+  const auto dir = watch::stateFolder();
   std::string names;
   if (!dir.empty())
     for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir))
       names += (names.empty() ? "" : ", ") + entry.plugin;
+  if (names.empty() && watch::stateDir().empty())
+    return {"quarantine", Verdict::kWarn,
+            dir.empty() ? "no state folder is named" : "the state folder " + dir.string() + " cannot be written",
+            "a plugin that ends a run is not left out of the next",
+            "export HOME, XDG_STATE_HOME or STATE_DIRECTORY, a folder that you may write to"};
   if (names.empty()) return ok("quarantine", "no plugin has crashed");
   return {"quarantine", Verdict::kWarn, names + " ended an earlier run", "its models are left out of every run",
           "hapticd plugin clear NAME, when the plugin is good again"};

@@ -27,7 +27,10 @@ int info(const std::string& name) {
 
 int clear(const std::string& name) {
   const auto dir = watch::stateDir();
-  if (dir.empty()) return fail(kFailed, "no state folder can be written; nothing is in quarantine here");
+  if (dir.empty())
+    return fail(kFailed,
+                "there is no state folder that can be written\n  fix: export HOME, XDG_STATE_HOME or STATE_DIRECTORY "
+                "as the daemon has it");
   auto cleared = watch::clearQuarantine(dir, name);
   if (!cleared) return fail(kFailed, cleared.error());
   if (*cleared) {

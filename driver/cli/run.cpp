@@ -1,13 +1,15 @@
 /// `hapticd run`: the daemon itself, in the foreground.
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "base/clock.hpp"
 #include "base/os.hpp"
@@ -41,12 +43,11 @@ void onStop(int) {
   if (servo::Runner* runner = running.load()) runner->stop();
 }
 
-/// Ctrl-C and SIGTERM end the run in order from the moment it has files to leave: one that is still being set up ends
-/// when it is. Once a run has ended they find none.
+/// Ctrl-C and SIGTERM end this run as long as one lives; a second one, while the first ends it, finds no run any more.
+/// One that came while the run was set up ends it now.
 class StopBySignal {
  public:
-  StopBySignal() { os::onStopSignal(onStop); }
-  void stops(servo::Runner& runner) {
+  explicit StopBySignal(servo::Runner& runner) {
     running = &runner;
     if (told_to_stop) runner.stop();
   }
@@ -55,9 +56,27 @@ class StopBySignal {
   StopBySignal& operator=(const StopBySignal&) = delete;
 };
 
-/// A file that cannot be written must be known before the run, not after.
+/// A file that cannot be written must be known before the run, not after; a run that does not come leaves none.
 bool writable(const std::string& file) {
-  return file.empty() || std::ofstream(file, std::ios::app).good();
+  if (file.empty()) return true;
+  int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const bool made = fd >= 0;
+  if (!made) fd = open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);  // a pipe that nobody reads: no
+  if (made) unlink(file.c_str());
+  return fd >= 0 && close(fd) == 0;
+}
+
+/// Two that would overwrite each other; "" if each has a file of its own. Devices and pipes take any number.
+std::string writtenTwice(const Options& options) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  std::set<fs::path> known{fs::weakly_canonical(options.scene, error)};
+  for (const std::string& file : {options.report, options.picture, options.record}) {
+    const fs::file_status status = fs::status(file, error);
+    if (file.empty() || (fs::exists(status) && !fs::is_regular_file(status))) continue;
+    if (!known.insert(fs::weakly_canonical(file, error)).second) return file;
+  }
+  return "";
 }
 
 void showStatus(const servo::Runner& runner) {
@@ -178,6 +197,9 @@ int run(const Options& options) {
   for (const std::string& file : {options.report, options.picture, options.record})
     if (!writable(file))
       return fail(kBadInput, file + ": cannot be written, expected a file in a folder that you may write to");
+  if (const std::string file = writtenTwice(options); !file.empty())
+    return fail(kBadInput,
+                file + ": named twice, expected a file of its own for the scene, --report, --picture and --record");
   auto scene = loadSceneOrReport(options.scene, options.device);
   if (!scene) return kBadInput;
   if (scene->devices.front().chosen_by_default)
@@ -190,20 +212,30 @@ int run(const Options& options) {
   how.priority = options.priority.value_or(daemonSettings().priority.value_or(os::kServoPriority));
   how.allow_non_rt = options.allow_non_rt;
   how.record = options.record;
-  std::optional<Outside> outside;  // a virtual run is over before anybody looks, unless it was given a name
-  if (!options.virtual_time || !options.name.empty()) outside.emplace(options.name, how);
+  std::unique_ptr<Outside> outside;  // a virtual run is over before anybody looks, unless it was given a name
+  if (!options.virtual_time || !options.name.empty()) {
+    auto opened = Outside::open(options.name, how);
+    if (!opened) return fail(kBadInput, opened.error());
+    outside = std::move(*opened);
+  }
   how.state_dir = watch::stateDir().string();
-  const std::vector<std::string> left_out = leaveOutQuarantined(*scene, how.state_dir);
+  if (how.state_dir.empty())
+    std::fputs(
+        "warning: there is no state folder that can be written: a plugin that ends this run will not be left out of "
+        "the "
+        "next\n  fix: export HOME, XDG_STATE_HOME or STATE_DIRECTORY, a folder that you may write to\n",
+        stderr);
+  const std::vector<std::string> left_out = leaveOutQuarantined(*scene, watch::stateFolder());
   for (const std::string& text : left_out) std::fprintf(stderr, "warning: %s\n", text.c_str());
   const SetupErrors once;
   auto world = servo::Runner::buildWorld(*scene, how, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
-  StopBySignal stop;
+  os::onStopSignal(onStop);  // from here on there are files to leave
   auto runner = servo::Runner::prepare(*scene, how, std::move(*world), logToTerminal);
   if (!runner) return fail(kFailed, runner.error());
   once.tell();
   warnOfSettings(**runner, how.rate);
-  stop.stops(**runner);
+  const StopBySignal stop(**runner);
   if (outside) outside->serve(**runner, options.device);
 
   const bool terminal = isatty(STDERR_FILENO) != 0;

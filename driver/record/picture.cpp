@@ -1,12 +1,10 @@
 #include "record/picture.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <functional>
 
+#include "base/regular_file.hpp"
 #include "record/svg.hpp"
 
 namespace hapticd::record {
@@ -126,11 +124,7 @@ Result<void> drawRun(const RunReport& report, const std::vector<Sample>& samples
     drawHistogram(svg, quantity, range, samples, y);
     y += kRowHeight;
   }
-  std::ofstream out(file);
-  out << svg.finished();
-  out.close();
-  if (!out) return Error{file + ": cannot be written: " + std::strerror(errno)};
-  return {};
+  return writeWhole(file, svg.finished());
 }
 
 }  // namespace hapticd::record

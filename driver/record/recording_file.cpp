@@ -1,6 +1,7 @@
 #include "record/recording_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,9 +14,13 @@ namespace hapticd::record {
 Result<std::unique_ptr<RecordingFile>> RecordingFile::create(const std::string& file,
                                                              const std::vector<StreamSpec>& streams, const About& about,
                                                              uint64_t chunk_bytes) {
-  const int fd = open(file.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const int fd = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (fd < 0) return Error{file + ": cannot be written: " + std::strerror(errno)};
   std::unique_ptr<RecordingFile> recording(new RecordingFile(file, fd));
+  // Held as long as the file is open: two writers would leave a file that nobody can read.
+  if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    return Error{file + ": another run records into it, expected a file of its own"};
+  if (ftruncate(fd, 0) != 0 && errno != EINVAL) return Error{file + ": cannot be written: " + std::strerror(errno)};
   std::vector<uint32_t> chunk_rows;
   for (const StreamSpec& stream : streams) {
     const uint32_t bytes = stream.layout.rowBytes();

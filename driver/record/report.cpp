@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <nlohmann/json.hpp>
+
+#include "base/regular_file.hpp"
 
 namespace hapticd::record {
 
@@ -115,14 +114,7 @@ Result<void> writeJson(const RunReport& report, const std::string& file) {
     for (const auto& [limit, count] : device.ticks) ticks["by_limit"][limit] = count;
   }
   for (const ModelReport& model : report.models) json["models"][model.name] = modelJson(model);
-  const std::string text = json.dump(2) + "\n", part = file + ".part";
-  std::FILE* out = std::fopen(part.c_str(), "w");
-  if (out == nullptr) return Error{file + ": cannot be written: " + std::strerror(errno)};
-  const bool whole = std::fwrite(text.data(), 1, text.size(), out) == text.size();
-  const bool closed = std::fclose(out) == 0;
-  if (!whole || !closed || std::rename(part.c_str(), file.c_str()) != 0)
-    return Error{file + ": cannot be written: " + std::strerror(errno)};
-  return {};
+  return writeWhole(file, json.dump(2) + "\n");
 }
 
 std::string summary(const RunReport& report) {

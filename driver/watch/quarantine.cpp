@@ -10,7 +10,7 @@ namespace hapticd::watch {
 
 namespace fs = std::filesystem;
 
-fs::path stateDir() {
+fs::path stateFolder() {
   const auto variable = [](const char* name) {
     const char* value = std::getenv(name);
     return std::string(value != nullptr ? value : "");
@@ -18,6 +18,11 @@ fs::path stateDir() {
   fs::path dir = variable("STATE_DIRECTORY");
   if (dir.empty() && !variable("XDG_STATE_HOME").empty()) dir = fs::path(variable("XDG_STATE_HOME")) / "hapticd";
   if (dir.empty() && !variable("HOME").empty()) dir = fs::path(variable("HOME")) / ".local/state/hapticd";
+  return dir;
+}
+
+fs::path stateDir() {
+  const fs::path dir = stateFolder();
   std::error_code code;
   fs::create_directories(dir, code);
   return !dir.empty() && access(dir.c_str(), W_OK) == 0 ? dir : fs::path();

@@ -13,7 +13,10 @@ struct QuarantinedPlugin {
 };
 
 /// [main] Folder of what outlives a run: STATE_DIRECTORY (as systemd gives it), XDG_STATE_HOME/hapticd or
-/// ~/.local/state/hapticd. Created if it is missing; empty: there is none that can be written.
+/// ~/.local/state/hapticd; empty where none is named.
+std::filesystem::path stateFolder();
+
+/// [main] The same, created if it is missing; empty: there is none that can be written.
 std::filesystem::path stateDir();
 
 /// [main] The list, oldest first; a plugin stands in it once.

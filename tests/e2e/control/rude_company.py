@@ -3,7 +3,6 @@
 
 Usage: rude_company.py HAPTICD SCENES     prints a line a case; exit 1 when one is off.
 """
-import json
 import os
 import signal
 import socket
@@ -68,7 +67,77 @@ def pipes(folder):
     check("and ends in order", daemon.end()[0] == 0)
 
 
-CASES = [pipes]
+def idle(folder):
+    """As many connections that say nothing as the daemon and its queue take."""
+    daemon = Daemon(folder).ready()
+    crowd = []
+    for _ in range(32 + 16):
+        client = socket.socket(socket.AF_UNIX)
+        client.connect(os.path.join(folder, "x.sock"))
+        crowd.append(client)
+    for command in (["hold"], ["stop"]):
+        code, said = daemon.ctl(*command)
+        check(f"{command[0]} is obeyed among 48 idle clients", code == 0, (code, said))
+    check("and the daemon ends in order", daemon.run.wait(20) == 0)
+    daemon.end()
+
+
+def sameName(folder):
+    first = Daemon(folder).ready()
+    second = Daemon(folder)
+    code, said = second.run.wait(20), second.run.stdout.read()
+    check("a name that is taken is refused", code == 2 and "another daemon runs as x" in said, (code, said))
+    check("and the first one keeps its files", sorted(n for n in os.listdir(folder) if n.startswith("x.")) ==
+          ["x.blackbox.h5", "x.lock", "x.sock", "x.status"], os.listdir(folder))
+    check("and answers", first.ctl("status")[0] == 0)
+    code, said = first.end(signal.SIGKILL)
+    third = Daemon(folder).ready()
+    check("the name of one that was killed is free", third.ctl("status")[0] == 0)
+    code, said = third.end()
+    check("and what it left is kept", code == 0 and "did not end in order" in said and
+          os.path.exists(os.path.join(folder, "blackbox-x-crash-1.h5")), (code, said, os.listdir(folder)))
+    check("at the end nothing is left", not [n for n in os.listdir(folder) if n.startswith("x.")], os.listdir(folder))
+
+
+def unnamedTogether(folder):
+    both = [Daemon(folder, name=""), Daemon(folder, name="")]
+    end = time.monotonic() + 30
+    while time.monotonic() < end and len([n for n in os.listdir(folder) if n.endswith(".sock")]) < 2:
+        time.sleep(0.1)
+    names = sorted(n for n in os.listdir(folder) if n.endswith(".sock"))
+    check("two unnamed daemons started together have a name each", len(names) == 2 and "hapticd.sock" in names, names)
+    told = [daemon.end() for daemon in both]
+    check("and no files of the other", all(code == 0 and "did not end in order" not in said for code, said in told), told)
+
+
+def oneRecording(folder):
+    file = os.path.join(folder, "both.h5")
+    first = Daemon(folder, "--record", file).ready()
+    second = Daemon(folder, "--record", file, name="y")
+    code, said = second.run.wait(20), second.run.stdout.read()
+    check("a recording that another run writes is refused", code == 1 and "another run records into it" in said, (code, said))
+    check("the first run ends in order", first.end()[0] == 0)
+    done = subprocess.run([HAPTICD, "replay", file], capture_output=True, text=True, timeout=60)
+    check("and its recording replays", done.returncode == 0, done)
+
+
+def partly(folder):
+    """A script does not take the beginning of a recording for the whole."""
+    file = os.path.join(folder, "part.h5")
+    daemon = Daemon(folder, "--record", file).ready()
+    other = os.path.join(folder, "other.yaml")
+    with open(other, "w") as out:
+        out.write("hapticd: 1\nmodels:\n  - {name: other, plugin: nurbs_rigid, parameters: {geometry: "
+                  f"{os.path.abspath(SCENES)}/../models/sphere.yaml}}}}\n")
+    told = daemon.ctl("add", other)
+    check("a model is added", told[0] == 0, told)
+    time.sleep(0.5)
+    daemon.end()
+    done = subprocess.run([HAPTICD, "replay", file], capture_output=True, text=True, timeout=60)
+    check("a replay that ends where models came has a code of its own", done.returncode == 3 and "came or left" in done.stderr, done)
+
+
+CASES = [pipes, idle, sameName, unnamedTogether, oneRecording, partly]
 for case in CASES:
     with tempfile.TemporaryDirectory() as scratch:
         case(scratch)
