@@ -99,6 +99,11 @@ def kinematic(daemon):
           daemon.until(lambda: daemon.models().get("door", {}).get("kinematic") is True))
     daemon.expect(0, "move", "door", "--position", "0.1", "0.02", "0", "--seconds", "0.5")
     time.sleep(0.8)  # s: it is there now, and stays
+    for place in ("0.9", "0.1"):  # each at once: neither where it was sent before nor the way back makes it faster
+        answer = daemon.ask("move", "door", "--position", place, "0.02", "0", "--seconds", "0.05")
+        check("a move that is too fast is slowed and says so",
+              answer[0] == 0 and json.loads(answer[1])["seconds"] >= (1.4 if place == "0.9" else 0.05), answer)
+    time.sleep(0.5)  # s
     daemon.expect(1, "move", "door", "--position", "nan", "0", "0")
     daemon.expect(0, "remove", "door")
 
