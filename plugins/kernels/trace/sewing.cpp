@@ -70,6 +70,7 @@ void Sewing::run() {
   joinStated();
   joinByGeometry();
   reportTJunctions();
+  reportDisagreement();
   findShells();
   findVertexNormals();
 }
@@ -155,8 +156,8 @@ void Sewing::joinByGeometry() {
     for (std::size_t i = 0; i < group.size(); ++i) {
       for (std::size_t j = i + 1; j < group.size() && !group[i]->used; ++j) {
         if (group[j]->used) continue;
-        const bool same = runsAlong(*group[i], *group[j], false);
-        if (same || runsAlong(*group[i], *group[j], true)) join(*group[i], *group[j], !same);
+        const bool flipped = runsBack(*group[i], *group[j]);
+        if (runsAlong(*group[i], *group[j], flipped)) join(*group[i], *group[j], flipped);
       }
     }
     for (const SideCurve* curve : group)
@@ -165,6 +166,17 @@ void Sewing::joinByGeometry() {
           model_.warnings_.push_back(describe(curve->patch, curve->side) + " lies on an edge that already joins " +
                                      describe(other->patch, other->side) + " and another; it is left open");
   }
+}
+
+/// Whether the parameters of one edge on two surfaces run against each other: where their samples lie closer together.
+/// The nearest points do not tell, as along a straight side they are found from anywhere.
+bool Sewing::runsBack(const SideCurve& a, const SideCurve& b) {
+  double along = 0, back = 0;
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    along += (a.points[i] - b.points[i]).norm();
+    back += (a.points[i] - b.points[kSamples - 1 - i]).norm();
+  }
+  return back < along;
 }
 
 bool Sewing::runsAlong(const SideCurve& a, const SideCurve& b, bool flipped) const {
@@ -212,6 +224,25 @@ void Sewing::reportTJunctions() {
       if ((pointOnSide(other, open[j]->side, there) - middle).norm() <= tolerance_)
         model_.warnings_.push_back("T-junction: " + describe(open[i]->patch, open[i]->side) + " covers a part of " +
                                    describe(open[j]->patch, open[j]->side) + "; both are left open");
+    }
+}
+
+/// Seen from outside, a surface lies to the left of its boundary: two that agree run along their common edge in
+/// opposite directions.
+void Sewing::reportDisagreement() {
+  constexpr std::array<int, kSides> kCounterClockwise{-1, 1, 1, -1};  // along the parameter of the side, or against it
+  for (int i = 0; i < model_.patchCount(); ++i)
+    for (int s = 0; s < kSides && model_.warnings_.size() < kMaxWarnings; ++s) {
+      const Patch& patch = model_.patch(i);
+      const Side& side = patch.sides[static_cast<std::size_t>(s)];
+      if (side.kind != SideKind::kJoined || std::pair(side.patch, side.side) < std::pair(i, s)) continue;
+      const Patch& other = model_.patch(side.patch);
+      const double one = patch.sign * kCounterClockwise[static_cast<std::size_t>(s)];
+      const double two = other.sign * kCounterClockwise[static_cast<std::size_t>(side.side)] * (side.flipped ? -1 : 1);
+      if (one * two > 0)
+        model_.warnings_.push_back(describe(i, s) + " joins " + describe(side.patch, side.side) +
+                                   ", but the outward normals of the two are on opposite sides; expected "
+                                   "`outward: reversed` on one of them");
     }
 }
 

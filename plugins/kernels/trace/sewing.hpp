@@ -12,7 +12,8 @@ class Sewing {
  public:
   Sewing(Model& model, const ModelOptions& options);
   /// [main] Adjacency that the options state, then the rest by geometry: sides that run within the tolerance of each
-  /// other, in either direction. What cannot be joined (T-junctions, a third surface at an edge) becomes a warning.
+  /// other, in either direction. What cannot be joined (T-junctions, a third surface at an edge) becomes a warning,
+  /// as do joined surfaces of which one is inside out.
   void run();
 
  private:
@@ -29,8 +30,10 @@ class Sewing {
   void joinStated();
   void joinByGeometry();
   void join(SideCurve& a, SideCurve& b, bool flipped);
+  static bool runsBack(const SideCurve& a, const SideCurve& b);
   bool runsAlong(const SideCurve& a, const SideCurve& b, bool flipped) const;
   void reportTJunctions();
+  void reportDisagreement();
   void findShells();
   void findVertexNormals();
   std::string describe(int patch, int side) const;

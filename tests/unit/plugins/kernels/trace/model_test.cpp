@@ -84,6 +84,33 @@ TEST(Model, ReportsATJunction) {
   EXPECT_NE(model.warnings().front().find("T-junction"), std::string::npos);
 }
 
+TEST(Model, WarnsOfNeighboursWithOppositeOutsides) {
+  // The right square's parameters in all eight ways: swapped, and each of them running back.
+  for (int way = 0; way < 8; ++way) {
+    const auto corner = [way](int i, int j) {
+      if (way & 1) i = 1 - i;
+      if (way & 2) j = 1 - j;
+      if (way & 4) std::swap(i, j);
+      return Eigen::Vector3d(1 + i, j, 0);
+    };
+    spline::SurfaceData left, right;
+    left.knots = right.knots = {{{0, 0, 1, 1}, {0, 0, 1, 1}}};
+    left.points = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}};
+    right.points = {corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1)};
+    const Eigen::Vector3d du = corner(1, 0) - corner(0, 0), dv = corner(0, 1) - corner(0, 0);
+    const bool up = du.cross(dv).z() > 0;  // as the left one
+    for (const bool reversed : {false, true}) {
+      right.reversed = reversed;
+      const Model model({left, right});
+      EXPECT_EQ(model.shellCount(), 1);
+      ASSERT_EQ(model.warnings().size(), up == reversed ? 1u : 0u) << "way " << way << ", reversed " << reversed;
+      if (up == reversed) {
+        EXPECT_NE(model.warnings().front().find("opposite sides"), std::string::npos);
+      }
+    }
+  }
+}
+
 TEST(Model, AnEmptyModelIsRefused) {
   EXPECT_THROW(Model({}), std::invalid_argument);
 }
