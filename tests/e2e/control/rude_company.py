@@ -3,6 +3,7 @@
 
 Usage: rude_company.py HAPTICD SCENES     prints a line a case; exit 1 when one is off.
 """
+import atexit
 import os
 import signal
 import socket
@@ -26,6 +27,7 @@ class Daemon:
         self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
         self.run = subprocess.Popen([HAPTICD, "run", SCENE, "--for", "100", *(["--name", name] if name else []), *more],
                                     env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        atexit.register(self.run.kill)
 
     def ctl(self, *arguments, timeout=20):
         try:
@@ -42,8 +44,8 @@ class Daemon:
         return self
 
     def end(self, sig=signal.SIGTERM, timeout=20):
-        """Exit code and what was said; None: it did not end."""
-        if self.run.poll() is None:
+        """Exit code and what was said; None: it did not end. No signal: it ends by itself."""
+        if sig is not None and self.run.poll() is None:
             self.run.send_signal(sig)
         try:
             said = self.run.communicate(timeout=timeout)[0]
@@ -71,21 +73,20 @@ def idle(folder):
     """As many connections that say nothing as the daemon and its queue take."""
     daemon = Daemon(folder).ready()
     crowd = []
-    for _ in range(32 + 16):
+    for _ in range(32 + 16):  # connections, and its queue
         client = socket.socket(socket.AF_UNIX)
         client.connect(os.path.join(folder, "x.sock"))
         crowd.append(client)
     for command in (["hold"], ["stop"]):
         code, said = daemon.ctl(*command)
         check(f"{command[0]} is obeyed among 48 idle clients", code == 0, (code, said))
-    check("and the daemon ends in order", daemon.run.wait(20) == 0)
-    daemon.end()
+    check("and the daemon ends in order", daemon.end(None)[0] == 0)
 
 
 def sameName(folder):
     first = Daemon(folder).ready()
     second = Daemon(folder)
-    code, said = second.run.wait(20), second.run.stdout.read()
+    code, said = second.end(None)
     check("a name that is taken is refused", code == 2 and "another daemon runs as x" in said, (code, said))
     check("and the first one keeps its files", sorted(n for n in os.listdir(folder) if n.startswith("x.")) ==
           ["x.blackbox.h5", "x.lock", "x.sock", "x.status"], os.listdir(folder))
@@ -114,7 +115,7 @@ def oneRecording(folder):
     file = os.path.join(folder, "both.h5")
     first = Daemon(folder, "--record", file).ready()
     second = Daemon(folder, "--record", file, name="y")
-    code, said = second.run.wait(20), second.run.stdout.read()
+    code, said = second.end(None)
     check("a recording that another run writes is refused", code == 1 and "another run records into it" in said, (code, said))
     check("the first run ends in order", first.end()[0] == 0)
     done = subprocess.run([HAPTICD, "replay", file], capture_output=True, text=True, timeout=60)
