@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "scene/node.hpp"
 #include "servo/glide.hpp"
 #include "servo/passivity/isolated.hpp"
 
@@ -85,6 +86,21 @@ void judgeRate(const scene::Scene& scene, const scene::Device& device, const hdv
         rates + " is faster than the samples of " + device.name + own + ": ticks between see no news" + nearest);
 }
 
+/// Where a model's path is named; the model's own place if its file has it no more.
+scene::Place placeOfPath(const scene::Model& model) {
+  scene::Problems unread;
+  const auto root = scene::parseFile(model.place.file, unread);
+  const scene::Node* models = root ? root->find("models") : nullptr;
+  if (models == nullptr) return model.place;
+  for (const scene::Node& node : models->items) {
+    if (node.line != model.place.line || node.column != model.place.column) continue;
+    const scene::Node *path = node.find("path"), *parameters = node.find("parameters");
+    if (path == nullptr && parameters != nullptr) path = parameters->find("path");
+    if (path != nullptr) return {model.place.file, path->line, path->column};
+  }
+  return model.place;
+}
+
 /// The largest of some rates, and when it was.
 struct Fastest {
   double rate = 0, at = 0;
@@ -129,7 +145,7 @@ scene::Problems fastPaths(const scene::Scene& scene) {
     const std::string key = "models[" + std::to_string(i) + "].path";
     const auto judge = [&](const char* does, const Fastest& fastest, double most, const char* unit) {
       if (fastest.rate <= most * 1.001) return;
-      scene::report(problems, scene.models[i].place, key,
+      scene::report(problems, placeOfPath(scene.models[i]), key,
                     scene.models[i].name + " " + does + " at up to " + text(fastest.rate) + unit + ", from t = " +
                         text(fastest.at) + " s on, and a path does not yield to a hand; expected at most " +
                         text(most) + unit + ", as ctl move goes");

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "servo/passivity/isolated.hpp"
 
 namespace hapticd::tune {
@@ -53,11 +55,13 @@ TEST(FastPaths, AreToldOnceWithTheirPlaceAndTheirFastestPiece) {
   scene.models[0].path = {pointOf(0, 0, 0), pointOf(1, 1, 3), pointOf(2, 0, 0)};  // at the bounds
   EXPECT_TRUE(fastPaths(scene).empty());
   scene.models[1].name = "ball";
-  scene.models[1].place = {"scene.yaml", 7, 5};
+  const std::string file = testing::TempDir() + "fast_paths.yaml";
+  std::ofstream(file) << "models:\n  - name: door\n    path: slow.csv\n  - name: ball\n    path: fast.csv\n";
+  scene.models[1].place = {file, 4, 5};
   scene.models[1].path = {pointOf(0, 0, 0), pointOf(1, 0.1, 0), pointOf(1.1, 0.6, 0), pointOf(1.3, 0.6, 2)};
   const scene::Problems found = fastPaths(scene);
   ASSERT_EQ(found.size(), 2u);
-  EXPECT_EQ(found[0].text().find("scene.yaml:7:5: models[1].path: ball moves at up to 5 m/s, from t = 1 s on"), 0u)
+  EXPECT_EQ(found[0].text().find(file + ":5:11: models[1].path: ball moves at up to 5 m/s, from t = 1 s on"), 0u)
       << found[0].text();
   EXPECT_NE(found[1].text().find("turns at up to 10 rad/s, from t = 1.1 s"), std::string::npos) << found[1].text();
 }
