@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -9,6 +10,7 @@
 
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <fstream>
 #include <thread>
 
@@ -76,6 +78,25 @@ TEST(Server, DropsIdleClientsWhereAnotherWaits) {
   for (int i = 0; i < 16; ++i) crowd.push_back(connectRaw(rig.file));
   EXPECT_TRUE(ask(rig.file, "stop", 5));
   for (const int fd : crowd) close(fd);
+}
+
+TEST(Server, RestsWhereItHasNoDescriptorForAConnection) {
+  Rig rig("full");
+  sockaddr_un address{};
+  socketAddress(rig.file, address);
+  const int client = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  const rlimit none{static_cast<rlim_t>(client) + 1, before.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &none);
+  EXPECT_EQ(connect(client, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  const std::clock_t begun = std::clock();
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  const double busy = static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
+  setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_LT(busy, 0.1);  // s of the processor's time; a loop that spins takes what it gets
+  EXPECT_TRUE(ask(rig.file, "again"));
+  close(client);
 }
 
 TEST(Client, GivesUpWhereNobodyAcceptsItsConnection) {
