@@ -147,7 +147,7 @@ void addModelRequests(CLI::App& ctl, const std::shared_ptr<Options>& options, in
   move->add_option("model", options->model, "its name")->required();
   move->add_option("--position", options->position, "x y z in m, world frame")->required()->expected(3);
   move->add_option("--orientation", options->orientation, "w x y z, a unit quaternion")->expected(4);
-  move->add_option("--seconds", options->seconds, "how long it takes; without it at most 0.2 m/s");
+  move->add_option("--seconds", options->seconds, "how long it takes at least; without it at most 0.2 m/s");
 }
 
 void addSceneRequests(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
