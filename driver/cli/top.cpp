@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "host/class_table.hpp"
 #include "servo/limiter.hpp"
 #include "status/page_file.hpp"
 
@@ -57,30 +58,6 @@ struct View {
 
 std::string textOf(const char* text, size_t size) {
   return {text, strnlen(text, size)};
-}
-
-/// An hsp_status for a reader; the JSON keeps the number.
-std::string statusText(int32_t status) {
-  switch (status) {
-    case HSP_OK:
-      return "ok";
-    case HSP_DEGRADED:
-      return "degraded";
-    case HSP_E_ARG:
-      return "wrong argument";
-    case HSP_E_STATE:
-      return "wrong state";
-    case HSP_E_NOMEM:
-      return "no memory";
-    case HSP_E_IO:
-      return "not readable";
-    case HSP_E_UNSUPPORTED:
-      return "unsupported";
-    case HSP_E_NUMERIC:
-      return "lost the surface";
-    default:
-      return fmt::format("status {}", status);
-  }
 }
 
 void quantiles(const status::SharedHistogram& histogram, double* to) {
@@ -180,7 +157,7 @@ std::string table(const View& view, size_t rows) {
     const ModelLine& m = view.models[i];
     const std::string depth = m.traced ? fmt::format("{:.3f}", m.now.depth * 1e3) : "-";
     text += fmt::format("{:<28.28} {:<16.16} {:9.3f} {:>9} {:8.2f} {:8.2f} {:8.1f} {:5}  {}\n", m.name, m.plugin,
-                        m.now.force, depth, m.p50, m.p99, m.max, m.now.iterations, statusText(m.now.status));
+                        m.now.force, depth, m.p50, m.p99, m.max, m.now.iterations, host::statusText(m.now.status));
   }
   if (view.models.size() > rows) text += fmt::format("... and {} more\n", view.models.size() - rows);
   return text;
