@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/brep/box_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hapticd::brep {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+constexpr int kBins = 16;
+constexpr int kTooDeep = 20;  // from there on rows are halved by count, so that the depth stays bounded
+
+double areaOf(const AlignedBox3d& box) {
+  if (box.isEmpty()) return 0;
+  const Vector3d s = box.sizes();
+  return s.x() * s.y() + s.y() * s.z() + s.z() * s.x();
+}
+
+struct Bin {
+  AlignedBox3d box;
+  std::size_t count = 0;
+};
+
+}  // namespace
+
+/// A range of the order, and the box of its elements.
+struct BoxTree::Builder {
+  struct Range {
+    std::size_t first = 0, count = 0;
+    AlignedBox3d box;
+  };
+
+  BoxTree& tree;
+  std::span<const AlignedBox3d> boxes;
+  std::size_t row;
+  float margin;
+
+  Range rangeOf(std::size_t first, std::size_t count) const {
+    Range range{first, count, {}};
+    for (std::size_t i = first; i < first + count; ++i) range.box.extend(boxes[tree.order_[i]]);
+    return range;
+  }
+
+  /// Where the surface area heuristic splits (Wald 2007, "On fast construction of SAH-based bounding volume
+  /// hierarchies"): elements below the returned place go left.
+  std::size_t split(const Range& range, int depth) const {
+    AlignedBox3d centers;
+    for (std::size_t i = range.first; i < range.first + range.count; ++i)
+      centers.extend(boxes[tree.order_[i]].center());
+    Eigen::Index axis = 0;
+    const double extent = centers.sizes().maxCoeff(&axis);
+    const auto begin = tree.order_.begin() + static_cast<std::ptrdiff_t>(range.first);
+    const auto end = begin + static_cast<std::ptrdiff_t>(range.count);
+    const auto center = [&](std::uint32_t i) { return boxes[i].min()[axis] + boxes[i].max()[axis]; };
+    const auto half = [&] {
+      const auto middle = begin + static_cast<std::ptrdiff_t>(range.count / 2);
+      std::nth_element(begin, middle, end, [&](auto a, auto b) { return center(a) < center(b); });
+      return range.first + range.count / 2;
+    };
+    if (depth >= kTooDeep || !(extent > 0)) return half();
+    const double low = 2 * centers.min()[axis], scale = kBins / (2 * extent) * (1 - 1e-9);
+    const auto binOf = [&](std::uint32_t i) {
+      return std::min(kBins - 1, static_cast<int>((center(i) - low) * scale));
+    };
+    std::array<Bin, kBins> bins;
+    for (auto i = begin; i != end; ++i) {
+      Bin& bin = bins[static_cast<std::size_t>(binOf(*i))];
+      bin.box.extend(boxes[*i]);
+      ++bin.count;
+    }
+    const int best = cheapest(bins);
+    if (best < 0) return half();
+    const auto middle = std::partition(begin, end, [&](std::uint32_t i) { return binOf(i) <= best; });
+    return range.first + static_cast<std::size_t>(middle - begin);
+  }
+
+  /// The bin after which to split; -1: all elements are in one.
+  static int cheapest(const std::array<Bin, kBins>& bins) {
+    std::array<double, kBins> right{};
+    AlignedBox3d box;
+    std::size_t count = 0;
+    for (std::size_t i = kBins; i-- > 1;) {
+      box.extend(bins[i].box);
+      count += bins[i].count;
+      right[i] = count == 0 ? -1 : areaOf(box) * static_cast<double>(count);
+    }
+    box.setEmpty();
+    count = 0;
+    int best = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i + 1 < kBins; ++i) {
+      box.extend(bins[i].box);
+      count += bins[i].count;
+      if (count == 0 || right[i + 1] < 0) continue;
+      const double cost = areaOf(box) * static_cast<double>(count) + right[i + 1];
+      if (cost < least) {
+        least = cost;
+        best = static_cast<int>(i);
+      }
+    }
+    return best;
+  }
+
+  /// Up to four ranges: the larger ones are split first.
+  int cut(const Range& whole, int depth, std::array<Range, 4>& ranges) const {
+    int count = 1;
+    ranges[0] = whole;
+    while (count < 4) {
+      int largest = -1;
+      for (int i = 0; i < count; ++i) {
+        const Range& range = ranges[static_cast<std::size_t>(i)];
+        if (range.count > row &&
+            (largest < 0 || areaOf(range.box) > areaOf(ranges[static_cast<std::size_t>(largest)].box)))
+          largest = i;
+      }
+      if (largest < 0) break;
+      const Range range = ranges[static_cast<std::size_t>(largest)];
+      const std::size_t middle = split(range, depth);
+      ranges[static_cast<std::size_t>(largest)] = rangeOf(range.first, middle - range.first);
+      ranges[static_cast<std::size_t>(count++)] = rangeOf(middle, range.first + range.count - middle);
+    }
+    return count;
+  }
+
+  void setBox(BoxNode& node, int place, const AlignedBox3d& box) const {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto low = static_cast<float>(box.min()[axis] - tree.origin_[axis]);
+      const auto high = static_cast<float>(box.max()[axis] - tree.origin_[axis]);
+      node.lo[axis][place] = std::nextafter(low, -kInfinity) - margin;
+      node.hi[axis][place] = std::nextafter(high, kInfinity) + margin;
+    }
+  }
+
+  std::int32_t build(const Range& whole, int depth) {
+    const auto index = static_cast<std::int32_t>(tree.nodes_.size());
+    tree.nodes_.emplace_back();
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    BoxNode node;
+    for (int axis = 0; axis < 3; ++axis) {
+      node.lo[axis] = Float4{kInfinity, kInfinity, kInfinity, kInfinity};
+      node.hi[axis] = -node.lo[axis];
+    }
+    std::array<Range, 4> ranges;
+    const int count = cut(whole, depth, ranges);
+    for (int i = 0; i < count; ++i) {
+      const Range& range = ranges[static_cast<std::size_t>(i)];
+      setBox(node, i, range.box);
+      node.child[static_cast<std::size_t>(i)] =
+          range.count <= row ? ~static_cast<std::int32_t>(8 * range.first + range.count - 1) : build(range, depth + 1);
+    }
+    tree.nodes_[static_cast<std::size_t>(index)] = node;
+    return index;
+  }
+};
+
+void BoxTree::build(std::span<const AlignedBox3d> boxes, int row) {
+  nodes_.clear();
+  order_.resize(boxes.size());
+  bounds_.setEmpty();
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    order_[i] = static_cast<std::uint32_t>(i);
+    bounds_.extend(boxes[i]);
+  }
+  if (boxes.empty()) return;
+  origin_ = bounds_.center();
+  // A probe up to twice the extent away is rounded by less than this; see kBoundShare for those farther away.
+  const auto margin = static_cast<float>(bounds_.diagonal().norm() * std::ldexp(1.0, -21));
+  Builder builder{*this, boxes, static_cast<std::size_t>(std::clamp(row, 1, kMaxRow)), margin};
+  builder.build(builder.rangeOf(0, boxes.size()), 0);
+  nodes_.shrink_to_fit();
+}
+
+}  // namespace hapticd::brep

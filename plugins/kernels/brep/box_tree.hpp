@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+/// A tree of bounding boxes, four to a node, in single precision: where a search for the nearest element need not look.
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hapticd::brep {
+
+/// Four floats that are compared at once.
+using Float4 = float __attribute__((vector_size(16)));
+
+/// Boxes of four children. An empty place has lo = +infinity and hi = -infinity: it is infinitely far from everything.
+struct alignas(64) BoxNode {
+  Float4 lo[3], hi[3];
+  /// A node (0 or more), or ~(8 * first + count - 1): elements first to first + count - 1 of the tree's order.
+  std::array<std::int32_t, 4> child{};
+  std::array<std::int32_t, 4> unused{};
+};
+
+/// Elements that a child of a node stands for.
+struct ElementRow {
+  std::uint32_t first, count;
+};
+
+class BoxTree {
+ public:
+  static constexpr int kMaxRow = 4;     ///< elements in one row
+  static constexpr int kMaxDepth = 60;  ///< nodes on the longest way down
+  static constexpr int kMaxStack = 3 * kMaxDepth + 4;
+
+  /// [main] Arranges elements by their boxes, at most `row` of them together. Afterwards order()[i] is the element at
+  /// place i. All boxes must be finite and not empty.
+  void build(std::span<const Eigen::AlignedBox3d> boxes, int row);
+
+  const std::vector<std::uint32_t>& order() const noexcept { return order_; }
+  /// [main] Frees order().
+  void forgetOrder() noexcept { order_ = {}; }
+  bool empty() const noexcept { return nodes_.empty(); }
+  const BoxNode& node(std::int32_t index) const noexcept { return nodes_[static_cast<std::size_t>(index)]; }
+  /// [any] The middle of all boxes; the nodes hold coordinates relative to it.
+  const Eigen::Vector3d& origin() const noexcept { return origin_; }
+  const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }
+  std::size_t bytes() const noexcept { return nodes_.size() * sizeof(BoxNode) + order_.size() * sizeof order_[0]; }
+
+  static ElementRow rowOf(std::int32_t child) noexcept {
+    const auto code = static_cast<std::uint32_t>(~child);
+    return {code / 8, code % 8 + 1};
+  }
+
+ private:
+  struct Builder;
+
+  std::vector<BoxNode> nodes_;
+  std::vector<std::uint32_t> order_;
+  Eigen::Vector3d origin_{0, 0, 0};
+  Eigen::AlignedBox3d bounds_;
+};
+
+/// A probe as the nodes of one tree see it.
+struct BoxProbe {
+  /// [any] `p` in the frame of the boxes that the tree was built from.
+  BoxProbe(const BoxTree& tree, const Eigen::Vector3d& p) noexcept {
+    const Eigen::Vector3d q = p - tree.origin();
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto x = static_cast<float>(q[axis]);
+      at[axis] = Float4{x, x, x, x};
+    }
+  }
+  Float4 at[3];
+};
+
+/// The bound of a box as a distance that no element in it undercuts: rounding of the probe to single precision moves a
+/// far probe by less than this share of its distance, and that of a near one is in the margin of the boxes.
+inline constexpr float kBoundShare = 1 - 4e-6F;
+
+/// [rt] Lower bounds of the squared distances [m^2] from the probe to the elements in each of four boxes.
+inline Float4 boxDistances(const BoxNode& node, const BoxProbe& probe) noexcept {
+  constexpr Float4 kZero{};
+  Float4 sum{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Float4 below = node.lo[axis] - probe.at[axis], above = probe.at[axis] - node.hi[axis];
+    const Float4 larger = below > above ? below : above;
+    const Float4 beside = larger > kZero ? larger : kZero;
+    sum += beside * beside;
+  }
+  return sum * kBoundShare;
+}
+
+}  // namespace hapticd::brep

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+/// The foot of a held contact: where the probe's way meets a face, and how the foot goes on over edges.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/brep/topology.hpp"
+#include "kernels/brep/tracer.hpp"
+#include "kernels/brep/triangle_foot.hpp"
+#include "kernels/contact/edge_rule.hpp"
+
+namespace hapticd::brep {
+namespace {
+
+using contact::AtEdge;
+using contact::Followed;
+using contact::Foot;
+using contact::Sides;
+using Eigen::Vector3d;
+
+constexpr int kMaxCrossings = 6;       ///< of edges between faces in one tick
+constexpr int kMaxTriangles = 256;     ///< that a foot goes over in one tick
+constexpr double kNearer = 1 - 1e-12;  ///< of a squared distance: less is rounding
+
+bool isEdge(const Hit& hit) noexcept {
+  return hit.element.kind() >= ElementKind::kLine && hit.element.kind() <= ElementKind::kPole;
+}
+
+/// Unit, in the plane of a coedge's face, at right angles to the edge and away from the face.
+Vector3d outOf(const Geometry& geometry, const Coedge& coedge, double t, const Vector3d& normal) noexcept {
+  const Part& part = geometry.part();
+  spline::CurvePoint C;
+  geometry.curve(part.edges[coedge.edge].curve, t, C);
+  const bool against = ((coedge.flags & kReversed) != 0) != ((part.faces[coedge.face].flags & kReversed) != 0);
+  const Vector3d along = against ? Vector3d(-C.C1) : C.C1;
+  return along.cross(normal).stableNormalized();
+}
+
+Hit footOn(const Part& part, std::uint32_t triangle, const Vector3d& p) noexcept {
+  const Triangle& t = part.triangles[triangle];
+  const TriangleFoot foot =
+      triangleFoot(p, vec(part.points[t.corner[0]]), vec(part.points[t.corner[1]]), vec(part.points[t.corner[2]]));
+  Hit hit;
+  hit.d2 = (p - foot.point).squaredNorm();
+  hit.point = foot.point;
+  hit.u = foot.s;
+  hit.v = foot.t;
+  hit.element = Element(ElementKind::kTriangle, triangle);
+  hit.region = static_cast<std::uint8_t>(foot.region);
+  return hit;
+}
+
+void takeNearer(const Hit& hit, Hit& best) noexcept {
+  if (hit.d2 < best.d2) best = hit;
+}
+
+/// Looks at the triangles about a corner, beginning over edge k of `first`. The edge to go on over follows the one that
+/// was come over (`after` 1: turning toward it from the corner's outgoing edge), or goes before it (0).
+void turnAbout(const Part& part, std::uint32_t first, std::uint32_t k, std::uint32_t after, const Vector3d& p,
+               Hit& best) noexcept {
+  constexpr int kMostAround = 64;
+  std::uint32_t at = first;
+  for (int n = 0; n < kMostAround; ++n) {
+    const std::uint32_t code = part.triangles[at].across[k];
+    if (code == kNone || code / 4 == first) return;
+    at = code / 4;
+    k = (code % 4 + (after == 1 ? 1 : 2)) % 3;
+    takeNearer(footOn(part, at, p), best);
+  }
+}
+
+/// Whether the probe has gone over the convex edge k of the held triangle, in front of the next one.
+bool isReleased(const Part& part, std::uint32_t triangle, const Vector3d& foot, std::uint32_t k, double side,
+                const Vector3d& p) noexcept {
+  const Triangle& t = part.triangles[triangle];
+  if (t.across[k] == kNone) return false;
+  const Vector3d here = triangleNormal(part, t);
+  const Vector3d there = side * triangleNormal(part, part.triangles[t.across[k] / 4]);
+  const Vector3d along = vec(part.points[t.corner[(k + 1) % 3]]) - vec(part.points[t.corner[k]]);
+  const contact::EdgeKind kind = contact::edgeKind(side * here, there, along.cross(here).stableNormalized());
+  return contact::atEdge(kind, there, p - foot) == AtEdge::kRelease;
+}
+
+}  // namespace
+
+Followed Tracer::follow(double side, const Vector3d& p, Foot& foot) noexcept {
+  if (held_.place == kNone) return Followed::kLost;
+  const bool mesh = held_.hit.element.kind() == ElementKind::kTriangle;
+  const std::uint32_t face = held_.face;
+  const Followed how = mesh ? followTriangles(side, p) : followFace(side, p);
+  if (how != Followed::kOn) return how;
+  foot = describe(model(), held_.place, held_.hit, held_.face, p);
+  foot.begins = !mesh && held_.face != face && foot.on_edge;
+  return Followed::kOn;
+}
+
+/// The nearest point of the held face, or of a neighbour where that goes on nearer to the probe.
+Followed Tracer::followFace(double side, const Vector3d& p) noexcept {
+  for (int i = 0; i < kMaxCrossings; ++i) {
+    if (held_.hit.element.kind() == ElementKind::kFace) {
+      const Hit hit = search_.refine(held_.place, held_.hit, p);
+      if (std::isfinite(hit.d2)) {
+        held_.hit = hit;
+        return Followed::kOn;
+      }
+    }
+    const Nearest on_face = search_.nearestOf(held_.place, held_.face, p, held_.hit, budget_);
+    if (!on_face.found()) return Followed::kLost;
+    held_.hit = on_face.hit;
+    if (!isEdge(held_.hit)) return Followed::kOn;
+    const std::uint32_t index = held_.hit.element.index();
+    const std::uint32_t edge = held_.hit.element.kind() == ElementKind::kPiece ? model().piece(index).edge : index;
+    const Edge& record = model().part().edges[edge];
+    Held next;
+    next.hit.d2 = held_.hit.d2 * kNearer;
+    const auto region = static_cast<EdgeRegion>(held_.hit.region);
+    const bool pole = held_.hit.element.kind() == ElementKind::kPole;
+    const std::uint32_t vertex = region == EdgeRegion::kLast ? record.last_vertex : record.first_vertex;
+    if ((region == EdgeRegion::kInside && !pole) || vertex == kNone) {
+      if (slideOver(edge, held_.hit.u, side, p, next) == Followed::kReleased) return Followed::kReleased;
+    } else {
+      for (const std::uint32_t e : model().edgesAt(vertex)) {
+        const Edge& other = model().part().edges[e];
+        if (other.curve == kNone) continue;
+        const double t = other.first_vertex == vertex ? other.t0 : other.t1;
+        if (slideOver(e, t, side, p, next) == Followed::kReleased) return Followed::kReleased;
+      }
+    }
+    if (next.place == kNone) return Followed::kOn;
+    held_ = next;
+  }
+  return Followed::kOn;
+}
+
+/// What the faces beyond an edge of the held face say. `next` becomes the foot on the nearest of them, if it is nearer.
+Followed Tracer::slideOver(std::uint32_t edge, double t, double side, const Vector3d& p, Held& next) noexcept {
+  const Part& part = model().part();
+  const Geometry& geometry = model().geometry();
+  const Coedge* own = nullptr;
+  for (std::uint32_t c = part.edges[edge].first_coedge; c != kNone; c = part.coedges[c].next)
+    if (part.coedges[c].face == held_.face) own = &part.coedges[c];
+  if (own == nullptr) return Followed::kOn;  // an edge at the same vertex, but of other faces
+  const Vector3d r = model().placements()[held_.place].toBody(p) - held_.hit.point;
+  const Vector3d here = coedgeNormal(geometry, *own, t);
+  const Vector3d out = outOf(geometry, *own, t, here);
+  for (std::uint32_t c = part.edges[edge].first_coedge; c != kNone; c = part.coedges[c].next) {
+    const Coedge& beyond = part.coedges[c];
+    if (beyond.face == held_.face) continue;
+    const Vector3d there = side * coedgeNormal(geometry, beyond, t);
+    const contact::EdgeKind kind = contact::edgeKind(side * here, there, out);
+    if (contact::atEdge(kind, there, r) == AtEdge::kRelease) return Followed::kReleased;
+    const Nearest found = search_.nearestOf(held_.place, beyond.face, p, held_.hit, budget_);
+    if (found.found() && found.hit.d2 < next.hit.d2) next = {held_.place, beyond.face, found.hit};
+  }
+  return Followed::kOn;
+}
+
+/// Triangle by triangle downhill, until none beside the foot is nearer.
+Followed Tracer::followTriangles(double side, const Vector3d& p_model) noexcept {
+  const Vector3d p = model().placements()[held_.place].toBody(p_model);
+  held_.hit = footOn(model().part(), held_.face, p);
+  for (int n = 0; n < kMaxTriangles; ++n) {
+    const auto region = static_cast<TriangleRegion>(held_.hit.region);
+    if (region == TriangleRegion::kInside) return Followed::kOn;
+    const bool corner = region >= TriangleRegion::kCorner0;
+    const auto k = static_cast<std::uint32_t>(region) -
+                   static_cast<std::uint32_t>(corner ? TriangleRegion::kCorner0 : TriangleRegion::kEdge0);
+    Hit best = held_.hit;
+    best.d2 *= kNearer;
+    if (corner) {
+      turnAbout(model().part(), held_.face, k, 1, p, best);
+      turnAbout(model().part(), held_.face, (k + 2) % 3, 0, p, best);
+    } else if (const std::uint32_t code = model().part().triangles[held_.face].across[k]; code != kNone) {
+      takeNearer(footOn(model().part(), code / 4, p), best);
+    }
+    if (best.element == held_.hit.element)
+      return !corner && isReleased(model().part(), held_.face, held_.hit.point, k, side, p) ? Followed::kReleased
+                                                                                            : Followed::kOn;
+    held_.hit = best;
+    held_.face = best.element.index();
+  }
+  return Followed::kOn;
+}
+
+/// Goes along the way in steps no longer than the distance to the nearest face: so it meets the first face in its way.
+bool Tracer::enter(const Vector3d& from, const Vector3d& p, Sides sides, double& side) noexcept {
+  constexpr int kMostSteps = 64;
+  constexpr double kMet = 1e-8;  // [m]
+  const double length = (p - from).norm();
+  if (!(length > 0)) return false;
+  const Vector3d way = (p - from) / length;
+  double s = 0;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const Vector3d at = from + s * way;
+    const Nearest& found = search_.nearest(at, budget_);
+    if (!found.found()) return false;
+    const Held met = heldAt(found);
+    const Foot foot = describe(model(), met.place, met.hit, met.face, at);
+    const bool last = i + 1 == kMostSteps;
+    if (foot.distance <= kMet || last) {
+      const double from_side = i == 0 && foot.distance <= kMet ? side : (foot.depth > 0 ? -1.0 : 1.0);
+      const bool felt = sides == Sides::kBoth || (sides == Sides::kFront) == (from_side > 0);
+      if (felt && from_side * way.dot(foot.normal) < 0) {
+        side = from_side;
+        held_ = met;
+        return true;
+      }
+    }
+    s += std::max(foot.distance * (1 - 1e-9), kMet);
+    if (s >= length) return false;
+  }
+  return false;
+}
+
+}  // namespace hapticd::brep

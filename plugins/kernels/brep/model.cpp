@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/brep/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "kernels/brep/feet.hpp"
+#include "kernels/brep/part_bounds.hpp"
+#include "kernels/brep/pieces.hpp"
+#include "kernels/brep/placements.hpp"
+#include "kernels/brep/topology.hpp"
+
+namespace hapticd::brep {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+/// Fills a Model.
+class ModelBuilder {
+ public:
+  ModelBuilder(Model& model, const ModelOptions& options) : model_(model), part_(model.part_), options_(options) {}
+
+  void run() {
+    model_.placements_ = placementsOf(part_, options_.instance, model_.feature_count_);
+    model_.geometry_ = std::make_unique<Geometry>(part_, options_.form);
+    classifyEdges(*model_.geometry_, part_.edges);
+    model_.vertex_normals_ = vertexNormals(*model_.geometry_);
+    model_.point_normals_ = pointNormals(part_);
+    listEdgesOfVertices();
+    smoothNormals(part_, model_.smooth_corner_, model_.smooth_normals_);
+    shapeFacesAndEdges();
+    model_.bodies_.resize(part_.bodies.size());
+    for (std::uint32_t b = 0; b < part_.bodies.size(); ++b) plantTree(b);
+    placeBodies();
+    warn();
+  }
+
+ private:
+  static bool isAnalytic(const Surface& s) { return s.kind <= SurfaceKind::kTorus; }
+
+  void shapeFacesAndEdges() {
+    model_.faces_.reserve(part_.faces.size());
+    for (std::uint32_t f = 0; f < part_.faces.size(); ++f) model_.faces_.push_back(faceShape(*model_.geometry_, f));
+    model_.edges_.resize(part_.edges.size());
+    for (std::size_t e = 0; e < part_.edges.size(); ++e) {
+      const Edge& edge = part_.edges[e];
+      if (edge.curve != kNone && part_.curves3[edge.curve].kind <= CurveKind::kCircle)
+        model_.edges_[e] = edgeShape(part_, edge);
+    }
+  }
+
+  void listEdgesOfVertices() {
+    const auto each = [this](const auto& use) {
+      for (std::uint32_t e = 0; e < part_.edges.size(); ++e) {
+        const Edge& edge = part_.edges[e];
+        if (edge.first_vertex != kNone) use(edge.first_vertex, e);
+        if (edge.last_vertex != kNone && edge.last_vertex != edge.first_vertex) use(edge.last_vertex, e);
+      }
+    };
+    std::vector<std::uint32_t>& first = model_.first_edge_at_;
+    first.assign(part_.vertices.size() + 1, 0);
+    each([&](std::uint32_t vertex, std::uint32_t) { ++first[vertex + 1]; });
+    for (std::size_t v = 0; v + 1 < first.size(); ++v) first[v + 1] += first[v];
+    model_.edges_at_.resize(first.back());
+    std::vector<std::uint32_t> place(first.begin(), first.end() - 1);
+    each([&](std::uint32_t vertex, std::uint32_t e) { model_.edges_at_[place[vertex]++] = e; });
+  }
+
+  void add(ElementKind kind, std::size_t index, const AlignedBox3d& box) {
+    if (index > Element::kMostElements) throw std::invalid_argument("more than 536,870,911 elements of one kind");
+    elements_.emplace_back(kind, static_cast<std::uint32_t>(index));
+    boxes_.push_back(box);
+  }
+
+  void addFace(std::uint32_t f) {
+    constexpr std::size_t kMostLeaves = 20'000'000;
+    if (isAnalytic(part_.surfaces[part_.faces[f].surface])) return add(ElementKind::kFace, f, faceBox(model_.face(f)));
+    std::vector<BoxedLeaf> leaves;
+    cutFace(*model_.geometry_, f, model_.face(f), leaves);
+    if (model_.leaves_.size() + leaves.size() > kMostLeaves)
+      throw std::invalid_argument("the faces fall into more than 20,000,000 flat pieces");
+    for (const BoxedLeaf& made : leaves) {
+      add(ElementKind::kLeaf, model_.leaves_.size(), made.box);
+      model_.leaves_.push_back(made.leaf);
+    }
+  }
+
+  void addEdge(std::uint32_t e) {
+    const Edge& edge = part_.edges[e];
+    if (edge.curve == kNone) {
+      if (edge.first_vertex != kNone)
+        add(ElementKind::kPole, e, AlignedBox3d(vec(part_.vertices[edge.first_vertex].point)));
+      return;
+    }
+    const CurveKind kind = part_.curves3[edge.curve].kind;
+    if (kind <= CurveKind::kCircle)
+      return add(kind == CurveKind::kLine ? ElementKind::kLine : ElementKind::kCircle, e,
+                 edgeBox(model_.edge(e), kind == CurveKind::kCircle));
+    std::vector<BoxedPiece> pieces;
+    cutEdge(*model_.geometry_, e, pieces);
+    for (const BoxedPiece& made : pieces) {
+      add(ElementKind::kPiece, model_.pieces_.size(), made.box);
+      model_.pieces_.push_back(made.piece);
+    }
+  }
+
+  void plantTree(std::uint32_t b) {
+    const Body& body = part_.bodies[b];
+    elements_.clear();
+    boxes_.clear();
+    for (std::uint32_t i = 0; i < body.face_count; ++i) addFace(body.first_face + i);
+    for (std::uint32_t i = 0; i < body.edge_count; ++i) addEdge(body.first_edge + i);
+    for (std::uint32_t i = 0; i < body.triangle_count; ++i) {
+      AlignedBox3d box;
+      for (const std::uint32_t corner : part_.triangles[body.first_triangle + i].corner)
+        box.extend(vec(part_.points[corner]));
+      add(ElementKind::kTriangle, body.first_triangle + i, box);
+    }
+    BodyTree& made = model_.bodies_[b];
+    made.tree.build(boxes_, body.kind == BodyKind::kMesh ? BoxTree::kMaxRow : 1);
+    made.elements.reserve(elements_.size());
+    for (const std::uint32_t i : made.tree.order()) made.elements.push_back(elements_[i]);
+    made.tree.forgetOrder();
+  }
+
+  void placeBodies() {
+    std::vector<AlignedBox3d> boxes;
+    for (const Placement& place : model_.placements_) {
+      const AlignedBox3d& box = model_.bodies_[place.body].tree.bounds();
+      AlignedBox3d moved;
+      for (int corner = 0; corner < 8; ++corner)
+        moved.extend(place.rotation * box.corner(static_cast<AlignedBox3d::CornerType>(corner)) + place.position);
+      const Vector3d rounding = Vector3d::Constant(1e-12 + 1e-14 * moved.diagonal().norm());
+      boxes.emplace_back(moved.min() - rounding, moved.max() + rounding);
+      model_.bounds_.extend(boxes.back());
+      model_.open_ = model_.open_ || !place.solid;
+    }
+    if (model_.placements_.size() > 1) model_.placement_tree_.build(boxes, 1);
+  }
+
+  void warn() {
+    int gaps = 0;
+    for (const FaceShape& face : model_.faces_) gaps += face.trim.gaps();
+    if (gaps > 0)
+      model_.warnings_.push_back(std::to_string(gaps) + " gaps in the loops of faces were closed by straight lines");
+  }
+
+  Model& model_;
+  Part& part_;
+  const ModelOptions& options_;
+  std::vector<Element> elements_;  ///< of the body whose tree is being planted
+  std::vector<AlignedBox3d> boxes_;
+};
+
+Model::Model(Part part, const ModelOptions& options) : part_(std::move(part)) {
+  ModelBuilder(*this, options).run();
+}
+
+std::size_t Model::bytes() const noexcept {
+  std::size_t sum = geometry_->bytes() + part_.reals.size() * sizeof(double);
+  const auto add = [&sum](const auto& v) { sum += v.size() * sizeof v[0]; };
+  add(part_.surfaces), add(part_.curves3), add(part_.curves2), add(part_.vertices), add(part_.edges);
+  add(part_.coedges), add(part_.loops), add(part_.faces), add(part_.points), add(part_.triangles);
+  add(faces_), add(edges_), add(leaves_), add(pieces_), add(vertex_normals_), add(point_normals_);
+  add(smooth_corner_), add(smooth_normals_), add(placements_);
+  for (const FaceShape& face : faces_) sum += face.trim.bytes();
+  for (const BodyTree& body : bodies_) sum += body.tree.bytes() + body.elements.size() * sizeof(Element);
+  return sum + placement_tree_.bytes();
+}
+
+std::string Model::featureName(std::uint32_t feature) const {
+  const auto after = std::upper_bound(placements_.begin(), placements_.end(), feature,
+                                      [](std::uint32_t f, const Placement& p) { return f < p.first_feature; });
+  if (after == placements_.begin() || feature >= feature_count_) return "";
+  const Placement& place = *(after - 1);
+  const Body& body = part_.bodies[place.body];
+  const std::uint32_t at = feature - place.first_feature;
+  const bool mesh = body.kind == BodyKind::kMesh;
+  std::string text = instancePath(part_, place.instance) + ": " + (mesh ? "triangle " : "face ") + std::to_string(at);
+  if (!mesh && part_.faces[body.first_face + at].name != kNone)
+    text += " '" + part_.names[part_.faces[body.first_face + at].name] + "'";
+  return text;
+}
+
+}  // namespace hapticd::brep

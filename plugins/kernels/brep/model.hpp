@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+/// A part ready for search: the elements of each body in a tree of boxes, normals of edges and corners, instances.
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "kernels/brep/box_tree.hpp"
+#include "kernels/brep/elements.hpp"
+
+namespace hapticd::brep {
+
+struct ModelOptions {
+  spline::Form form = spline::Form::kTable;  ///< how spline surfaces are stored
+  /// Name of one instance or assembly, or its path "assembly/sub/part"; empty: all of the part. Its pose in the part
+  /// stays.
+  std::string instance;
+};
+
+/// A body where it stands.
+struct Placement {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< body to model
+  Eigen::Vector3d position{0, 0, 0};
+  std::uint32_t body = 0;
+  std::uint32_t instance = 0;       ///< in the part
+  std::uint32_t first_feature = 0;  ///< feature number of the body's first face or triangle
+  bool moved = false;               ///< the pose is not the identity
+  bool solid = false;               ///< bounds a volume: it has an inside
+
+  Eigen::Vector3d toBody(const Eigen::Vector3d& p) const noexcept {
+    return moved ? Eigen::Vector3d(rotation.transpose() * (p - position)) : p;
+  }
+};
+
+/// Normal about a vertex or a point of a mesh.
+struct CornerNormal {
+  Eigen::Vector3f normal{0, 0, 0};  ///< angle-weighted mean of the outward normals (Baerentzen & Aanaes 2005), unit
+  bool open = false;                ///< a free edge ends there
+};
+
+/// The elements of one body.
+struct BodyTree {
+  BoxTree tree;
+  std::vector<Element> elements;  ///< in the order of the tree
+};
+
+/// Built once, then constant: every const function may run in any thread.
+class Model {
+ public:
+  /// [main] @throws std::invalid_argument for the user, if `options.instance` names nothing or the part has no faces.
+  explicit Model(Part part, const ModelOptions& options = {});
+  Model(const Model&) = delete;
+  Model& operator=(const Model&) = delete;
+
+  const Part& part() const noexcept { return part_; }
+  const Geometry& geometry() const noexcept { return *geometry_; }
+  const FaceShape& face(std::uint32_t index) const noexcept { return faces_[index]; }
+  const EdgeShape& edge(std::uint32_t index) const noexcept { return edges_[index]; }
+  const Leaf& leaf(std::uint32_t index) const noexcept { return leaves_[index]; }
+  const CurvePiece& piece(std::uint32_t index) const noexcept { return pieces_[index]; }
+  std::size_t leafCount() const noexcept { return leaves_.size(); }
+  std::size_t pieceCount() const noexcept { return pieces_.size(); }
+  const CornerNormal& vertexNormal(std::uint32_t vertex) const noexcept { return vertex_normals_[vertex]; }
+  const CornerNormal& pointNormal(std::uint32_t point) const noexcept { return point_normals_[point]; }
+  /// [any] Edges that end at a vertex.
+  std::span<const std::uint32_t> edgesAt(std::uint32_t vertex) const noexcept {
+    const std::uint32_t first = first_edge_at_[vertex];
+    return std::span(edges_at_).subspan(first, first_edge_at_[vertex + 1] - first);
+  }
+  /// [any] Normals that are interpolated over a triangle; null: the body has none.
+  const Eigen::Vector3f* smoothNormal(std::uint32_t triangle, int corner) const noexcept {
+    if (smooth_corner_.empty()) return nullptr;
+    const std::uint32_t at = smooth_corner_[3 * std::size_t{triangle} + static_cast<std::size_t>(corner)];
+    return at == kNone ? nullptr : &smooth_normals_[at];
+  }
+
+  const std::vector<Placement>& placements() const noexcept { return placements_; }
+  const BodyTree& body(std::uint32_t index) const noexcept { return bodies_[index]; }
+  /// [any] Boxes of the placements in the model's frame; only if there are several.
+  const BoxTree& placementTree() const noexcept { return placement_tree_; }
+  /// [any] Faces and triangles over all placements.
+  std::uint32_t featureCount() const noexcept { return feature_count_; }
+  /// [main] Instance and face of a feature, in words: "bolt: face 3 'head'".
+  std::string featureName(std::uint32_t feature) const;
+
+  const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }
+  /// [any] Whether any body bounds no volume.
+  bool open() const noexcept { return open_; }
+  const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+  std::size_t bytes() const noexcept;
+
+ private:
+  friend class ModelBuilder;
+
+  Part part_;
+  std::unique_ptr<Geometry> geometry_;
+  std::vector<FaceShape> faces_;
+  std::vector<EdgeShape> edges_;
+  std::vector<Leaf> leaves_;
+  std::vector<CurvePiece> pieces_;
+  std::vector<CornerNormal> vertex_normals_, point_normals_;
+  std::vector<std::uint32_t> first_edge_at_, edges_at_;  ///< by vertex
+  std::vector<std::uint32_t> smooth_corner_;
+  std::vector<Eigen::Vector3f> smooth_normals_;
+  std::vector<BodyTree> bodies_;
+  std::vector<Placement> placements_;
+  BoxTree placement_tree_;
+  Eigen::AlignedBox3d bounds_;
+  std::vector<std::string> warnings_;
+  std::uint32_t feature_count_ = 0;
+  bool open_ = false;
+};
+
+}  // namespace hapticd::brep

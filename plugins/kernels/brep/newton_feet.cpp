@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/brep/newton_feet.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace hapticd::brep {
+namespace {
+
+using Eigen::Array2d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using spline::CurvePoint;
+using spline::SurfacePoint;
+
+constexpr int kMostSteps = 16;
+/// [m] A Newton step as short as this leaves an error of its square times the curvature: nothing.
+constexpr double kShortStep = 1e-8;
+/// The Hessian may fall to this share of the first-order one before the step is no longer Newton's.
+constexpr double kFlattest = 1e-5;
+
+/// The distance function of a leaf about one point.
+struct LeafState {
+  Array2d uv;
+  SurfacePoint E;
+  Vector3d r;  ///< S - p
+  double f;    ///< |r|^2
+};
+
+/// What is asked of a leaf.
+struct LeafTask {
+  const Geometry& geometry;
+  const Leaf& leaf;
+  std::uint32_t surface;  ///< of an offset: its basis, whose feet have the same parameters
+  const Vector3d& p;
+  int evaluations = 0;
+
+  void at(const Array2d& uv, LeafState& state) noexcept {
+    state.uv = uv;
+    geometry.surface(surface, uv[0], uv[1], state.E);
+    state.r = state.E.S - p;
+    state.f = state.r.squaredNorm();
+    ++evaluations;
+  }
+};
+
+/// The step that leads to the foot of the quadratic model, on the sides that hold the point if it presses there.
+Vector2d stepFrom(const LeafTask& task, const LeafState& s) noexcept {
+  const SurfacePoint& E = s.E;
+  const Vector2d g(s.r.dot(E.Su), s.r.dot(E.Sv));
+  const double g00 = E.Su.squaredNorm(), g11 = E.Sv.squaredNorm(), g01 = E.Su.dot(E.Sv);
+  double h00 = g00 + s.r.dot(E.Suu), h11 = g11 + s.r.dot(E.Svv), h01 = g01 + s.r.dot(E.Suv);
+  if (!(h00 > kFlattest * g00)) h00 = g00;
+  if (!(h11 > kFlattest * g11)) h11 = g11;
+  const bool held0 = (s.uv[0] <= task.leaf.lo[0] && g[0] > 0) || (s.uv[0] >= task.leaf.hi[0] && g[0] < 0) || !(g00 > 0);
+  const bool held1 = (s.uv[1] <= task.leaf.lo[1] && g[1] > 0) || (s.uv[1] >= task.leaf.hi[1] && g[1] < 0) || !(g11 > 0);
+  if (held0 || held1) return {held0 ? 0 : -g[0] / h00, held1 ? 0 : -g[1] / h11};
+  double det = h00 * h11 - h01 * h01;
+  if (!(det > kFlattest * h00 * h11)) {  // no minimum there: the first-order step descends
+    h00 = g00 * (1 + 1e-9);
+    h11 = g11 * (1 + 1e-9);
+    h01 = g01;
+    det = h00 * h11 - h01 * h01;
+  }
+  return {(h01 * g[1] - h11 * g[0]) / det, (h01 * g[0] - h00 * g[1]) / det};
+}
+
+/// Newton from s on; the distance never grows. Leaves the last short step to the caller.
+Vector2d descend(LeafTask& task, LeafState& s) noexcept {
+  Vector2d d = stepFrom(task, s);
+  LeafState trial;
+  for (int i = 0; i < kMostSteps; ++i) {
+    Array2d target = (s.uv + d.array()).max(task.leaf.lo).min(task.leaf.hi);
+    d = (target - s.uv).matrix();
+    if ((s.E.Su * d[0] + s.E.Sv * d[1]).squaredNorm() <= kShortStep * kShortStep) break;
+    trial.E.span = s.E.span;
+    task.at(target, trial);
+    for (int halvings = 0; !(trial.f <= s.f) && halvings < 6; ++halvings) {
+      d *= 0.3;
+      task.at(s.uv + d.array(), trial);
+    }
+    if (!(trial.f <= s.f)) return {0, 0};
+    std::swap(s, trial);
+    d = stepFrom(task, s);
+  }
+  return ((s.uv + d.array()).max(task.leaf.lo).min(task.leaf.hi) - s.uv).matrix();
+}
+
+/// Whether the surface ends where the foot presses against its border.
+bool pressesOutward(const Leaf& leaf, const LeafState& s, const Array2d& uv) noexcept {
+  constexpr double kStationary = 1e-9;  // cosine between the way to the probe and the tangent
+  for (int axis = 0; axis < 2; ++axis) {
+    const Vector3d& tangent = axis == 0 ? s.E.Su : s.E.Sv;
+    const double cosine = s.r.dot(tangent), enough = kStationary * std::sqrt(s.f) * tangent.norm();
+    const auto low = 1u << (2 * axis), high = 2u << (2 * axis);
+    if ((leaf.borders & low) != 0 && uv[axis] <= leaf.lo[axis] && cosine > enough) return true;
+    if ((leaf.borders & high) != 0 && uv[axis] >= leaf.hi[axis] && cosine < -enough) return true;
+  }
+  return false;
+}
+
+/// The foot that s and its last step give, if it is nearer than `hit` and inside the trim.
+double take(const LeafTask& task, const FaceShape& face, const LeafState& s, const Vector2d& d, double offset,
+            Hit& hit) noexcept {
+  const Array2d uv = (s.uv + d.array()).max(task.leaf.lo).min(task.leaf.hi);
+  Vector3d point = s.E.S + d[0] * s.E.Su + d[1] * s.E.Sv +
+                   0.5 * (d[0] * d[0] * s.E.Suu + 2 * d[0] * d[1] * s.E.Suv + d[1] * d[1] * s.E.Svv);
+  if (offset != 0) {
+    const Vector3d Su = s.E.Su + d[0] * s.E.Suu + d[1] * s.E.Suv, Sv = s.E.Sv + d[0] * s.E.Suv + d[1] * s.E.Svv;
+    point += offset * Su.cross(Sv).normalized();
+  }
+  const double d2 = (point - task.p).squaredNorm();
+  if (pressesOutward(task.leaf, s, uv) || !face.trim.inside(uv[0], uv[1]))
+    return std::numeric_limits<double>::infinity();
+  if (!(d2 < hit.d2)) return d2;
+  hit.d2 = d2;
+  hit.point = point;
+  hit.u = uv[0];
+  hit.v = uv[1];
+  return d2;
+}
+
+}  // namespace
+
+PieceAnswer leafFoot(const Geometry& geometry, const Leaf& leaf, const FaceShape& face, std::uint32_t surface,
+                     const Vector3d& p, const Array2d& uv, Hit& hit) noexcept {
+  const Surface& shape = geometry.part().surfaces[surface];
+  const bool is_offset = shape.kind == SurfaceKind::kOffset;
+  const double offset = is_offset ? shape.r[0] : 0;
+  LeafTask task{geometry, leaf, is_offset ? shape.basis : surface, p};
+  LeafState s;
+  task.at(uv.max(leaf.lo).min(leaf.hi), s);
+  Vector2d d = descend(task, s);
+  PieceAnswer answer;
+  answer.d2 = take(task, face, s, d, offset, hit);
+  const double side = -face.outward * s.r.dot(s.E.Su.cross(s.E.Sv));
+  const double bend = side > 0 ? leaf.bend_front : leaf.bend_back;
+  answer.alone = (std::sqrt(s.f) + std::abs(offset)) * bend < 1;
+  if (!answer
+           .alone)  // the probe is beyond a centre of curvature: there may be several feet, so look from elsewhere too
+    for (int corner = 0; corner < 4; ++corner) {
+      const Array2d share(corner % 2 == 0 ? 0.1 : 0.9, corner < 2 ? 0.1 : 0.9);
+      task.at(leaf.lo + share * (leaf.hi - leaf.lo), s);
+      d = descend(task, s);
+      answer.d2 = std::min(answer.d2, take(task, face, s, d, offset, hit));
+    }
+  answer.evaluations = task.evaluations;
+  return answer;
+}
+
+namespace {
+
+/// The distance function of a piece of a curve about one point.
+struct CurveState {
+  double t;
+  CurvePoint C;
+  Vector3d r;
+  double f;
+};
+
+struct CurveTask {
+  const Geometry& geometry;
+  const CurvePiece& piece;
+  std::uint32_t curve;
+  const Vector3d& p;
+  int evaluations = 0;
+
+  void at(double t, CurveState& state) noexcept {
+    state.t = t;
+    geometry.curve(curve, t, state.C);
+    state.r = state.C.C - p;
+    state.f = state.r.squaredNorm();
+    ++evaluations;
+  }
+  double stepFrom(const CurveState& s) const noexcept {
+    const double g = s.r.dot(s.C.C1), first = s.C.C1.squaredNorm();
+    double h = first + s.r.dot(s.C.C2);
+    if (!(h > kFlattest * first)) h = first;
+    const double step = h > 0 ? -g / h : 0;
+    return std::clamp(s.t + step, piece.t0, piece.t1) - s.t;
+  }
+  double descend(CurveState& s) noexcept {
+    double d = stepFrom(s);
+    CurveState trial;
+    for (int i = 0; i < kMostSteps; ++i) {
+      if (d * d * s.C.C1.squaredNorm() <= kShortStep * kShortStep) break;
+      trial.C.span = s.C.span;
+      at(s.t + d, trial);
+      for (int halvings = 0; !(trial.f <= s.f) && halvings < 6; ++halvings) {
+        d *= 0.3;
+        at(s.t + d, trial);
+      }
+      if (!(trial.f <= s.f)) return 0;
+      std::swap(s, trial);
+      d = stepFrom(s);
+    }
+    return d;
+  }
+};
+
+double take(const CurveTask& task, const CurveState& s, double d, Hit& hit) noexcept {
+  const Vector3d point = s.C.C + d * s.C.C1 + 0.5 * d * d * s.C.C2;
+  const double d2 = (point - task.p).squaredNorm();
+  if (!(d2 < hit.d2)) return d2;
+  hit.d2 = d2;
+  hit.point = point;
+  hit.u = std::clamp(s.t + d, task.piece.t0, task.piece.t1);
+  const bool first = hit.u <= task.piece.t0 && (task.piece.ends & 1u) != 0;
+  const bool last = hit.u >= task.piece.t1 && (task.piece.ends & 2u) != 0;
+  hit.region = static_cast<std::uint8_t>(first ? EdgeRegion::kFirst : last ? EdgeRegion::kLast : EdgeRegion::kInside);
+  return d2;
+}
+
+}  // namespace
+
+PieceAnswer pieceFoot(const Geometry& geometry, const CurvePiece& piece, const Vector3d& p, double t,
+                      Hit& hit) noexcept {
+  CurveTask task{geometry, piece, geometry.part().edges[piece.edge].curve, p};
+  CurveState s;
+  task.at(std::clamp(t, piece.t0, piece.t1), s);
+  double d = task.descend(s);
+  PieceAnswer answer;
+  answer.d2 = take(task, s, d, hit);
+  answer.alone = std::sqrt(s.f) * piece.bend < 1;
+  if (!answer.alone)
+    for (const double share : {0.02, 0.98}) {
+      task.at(piece.t0 + share * (piece.t1 - piece.t0), s);
+      d = task.descend(s);
+      answer.d2 = std::min(answer.d2, take(task, s, d, hit));
+    }
+  answer.evaluations = task.evaluations;
+  return answer;
+}
+
+}  // namespace hapticd::brep

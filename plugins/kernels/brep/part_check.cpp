@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/brep/part_check.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <initializer_list>
+#include <span>
+
+#include "kernels/brep/spline_check.hpp"
+
+namespace hapticd::brep {
+namespace {
+
+constexpr double kSquare = 1e-9;  // cosine between axes that must be at right angles; lengths that must be 1
+
+constexpr double kMostTurn = 2 * 3.14159265358979 * (1 + 1e-9), kFarthestAngle = 1000;  // [rad]
+
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+double dot(const Vector& a, const Vector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+double norm(const Vector& a) {
+  return std::sqrt(dot(a, a));
+}
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// The record that is being checked, for messages.
+struct Where {
+  const char* kind;
+  std::size_t index;
+  [[noreturn]] void fail(const std::string& why) const {
+    throw PartError(std::string(kind) + " " + std::to_string(index) + ": " + why);
+  }
+  void need(bool good, const char* why) const {
+    if (!good) fail(why);
+  }
+  /// An index below `count`.
+  void index_in(std::uint32_t value, std::size_t count, const char* what) const {
+    if (value >= count)
+      fail(std::string(what) + " " + std::to_string(value) + ", expected less than " + std::to_string(count));
+  }
+  void index_or_none(std::uint32_t value, std::size_t count, const char* what) const {
+    if (value != kNone) index_in(value, count, what);
+  }
+  /// A row of records inside an array.
+  void range_in(std::uint64_t first, std::uint64_t length, std::size_t count, const char* what) const {
+    if (first > count || length > count - first)
+      fail(std::string(what) + " " + std::to_string(first) + " to " + std::to_string(first + length) +
+           ", expected within " + std::to_string(count));
+  }
+  template <std::size_t n>
+  void finite(const std::array<double, n>& values, double most, const char* what) const {
+    for (double value : values)
+      if (!(std::abs(value) <= most))
+        fail(std::string(what) + " is " + number(value) + ", expected a finite number up to " + number(most));
+  }
+  void positive(double value, const char* what) const {
+    if (!(value > 0 && value <= kFarthestPart)) fail(std::string(what) + " is " + number(value) + ", expected above 0");
+  }
+  void tolerance(double value) const {
+    if (!(value >= 0 && value <= kFarthestPart)) fail("tolerance is " + number(value) + ", expected 0 or more");
+  }
+  void flags_in(std::uint32_t flags, std::uint32_t known) const {
+    if ((flags & ~known) != 0) fail("flags " + std::to_string(flags) + ", expected some of " + std::to_string(known));
+  }
+  void ascending(double lo, double hi, const char* what) const {
+    if (!(lo < hi && std::abs(lo) <= kWidestParameter && std::abs(hi) <= kWidestParameter))
+      fail(std::string(what) + " from " + number(lo) + " to " + number(hi) + ", expected finite and ascending");
+  }
+};
+
+class Checker {
+ public:
+  explicit Checker(const Part& part) : part_(part) {}
+  void run() const {
+    header();
+    each("surface", part_.surfaces, &Checker::surface);
+    each("curve3", part_.curves3, &Checker::curve3);
+    each("curve2", part_.curves2, &Checker::curve2);
+    each("vertex", part_.vertices, &Checker::vertex);
+    each("edge", part_.edges, &Checker::edge);
+    each("coedge", part_.coedges, &Checker::coedge);
+    each("loop", part_.loops, &Checker::loop);
+    each("face", part_.faces, &Checker::face);
+    each("body", part_.bodies, &Checker::body);
+    each("instance", part_.instances, &Checker::instance);
+    each("point", part_.points, &Checker::point);
+    each("triangle", part_.triangles, &Checker::triangle);
+    owners();
+  }
+
+ private:
+  template <class Record>
+  void each(const char* kind, const std::vector<Record>& records,
+            void (Checker::*check)(const Where&, const Record&) const) const {
+    if (records.size() >= kNone) throw PartError(std::string(kind) + ": too many, expected less than 4294967295");
+    for (std::size_t i = 0; i < records.size(); ++i) (this->*check)({kind, i}, records[i]);
+  }
+
+  void header() const {
+    if (!(part_.tolerance >= 0 && part_.tolerance <= kFarthestPart))
+      throw PartError("tolerance is " + number(part_.tolerance) + ", expected 0 or more");
+    if (part_.instances.empty()) throw PartError("no instances, expected at least one");
+    for (const Loss& loss : part_.losses)
+      if (!(loss.size >= 0 && std::isfinite(loss.size)))
+        throw PartError("a loss has size " + number(loss.size) + ", expected 0 or more");
+  }
+
+  void name(const Where& at, std::uint32_t index) const { at.index_or_none(index, part_.names.size(), "name"); }
+
+  void surface(const Where& at, const Surface& s) const {
+    at.flags_in(s.flags, kRational | kClosedU | kClosedV);
+    for (const Vector* v : {&s.o, &s.x, &s.y, &s.z}) at.finite(*v, kFarthestPart, "an axis");
+    at.finite(s.r, kFarthestPart, "a radius");
+    for (double period : s.period)
+      at.need(period >= 0 && period <= kWidestParameter, "a period is not 0 or a positive number");
+    switch (s.kind) {
+      case SurfaceKind::kSpline:
+        return splineSurface(at, s);
+      case SurfaceKind::kExtrusion:
+        at.index_in(s.basis, part_.curves3.size(), "basis curve");
+        return at.positive(norm(s.z), "the length of the direction z");
+      case SurfaceKind::kRevolution:
+        at.index_in(s.basis, part_.curves3.size(), "basis curve");
+        return unit(at, s.z, "z");
+      case SurfaceKind::kOffset:
+        return at.index_in(s.basis, std::min<std::size_t>(at.index, part_.surfaces.size()), "basis surface");
+      default:
+        return analytic(at, s);
+    }
+  }
+
+  static void unit(const Where& at, const Vector& axis, const char* what) {
+    if (!(std::abs(norm(axis) - 1) <= kSquare))
+      at.fail(std::string(what) + " is " + number(norm(axis)) + " long, expected 1");
+  }
+
+  static void square(const Where& at, const Vector& a, const Vector& b, double most) {
+    at.need(std::abs(dot(a, b)) <= most * norm(a) * norm(b), "two axes are not at right angles");
+  }
+
+  static void analytic(const Where& at, const Surface& s) {
+    at.need(s.kind <= SurfaceKind::kTorus, "unknown kind, expected 0 to 8");
+    if (s.kind == SurfaceKind::kPlane) {
+      at.positive(norm(s.x), "the length of x");
+      at.positive(norm(s.y), "the length of y");
+      return square(at, s.x, s.y, kSquare);
+    }
+    unit(at, s.x, "x");
+    unit(at, s.y, "y");
+    square(at, s.x, s.y, kSquare);
+    at.positive(norm(s.z), "the length of z");
+    square(at, s.x, s.z, kSquare);
+    square(at, s.y, s.z, kSquare);
+    if (s.kind == SurfaceKind::kSphere || s.kind == SurfaceKind::kTorus) unit(at, s.z, "z");
+    if (s.kind == SurfaceKind::kCone)
+      at.need(s.r[1] != 0, "r1 is 0, expected a slope (a cone without is a cylinder)");
+    else
+      at.positive(s.r[0], "r0");
+    if (s.kind == SurfaceKind::kTorus) at.positive(s.r[1], "r1");
+  }
+
+  void splineSurface(const Where& at, const Surface& s) const {
+    std::uint64_t place = s.data;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const std::uint64_t length = std::uint64_t{s.count[axis]} + s.degree[axis] + 1;
+      at.range_in(place, length, part_.reals.size(), "knots");
+      const std::string wrong = wrongKnots(real(place, length), s.degree[axis], s.count[axis]);
+      if (!wrong.empty()) at.fail(std::string("knots along ") + (axis == 0 ? "u: " : "v: ") + wrong);
+      place += length;
+    }
+    net(at, place, std::uint64_t{s.count[0]} * s.count[1], 3, (s.flags & kRational) != 0, kFarthestPart);
+  }
+
+  std::span<const double> real(std::uint64_t first, std::uint64_t length) const {
+    return std::span(part_.reals).subspan(first, length);
+  }
+
+  /// Points of `dimension` coordinates, then weights.
+  void net(const Where& at, std::uint64_t place, std::uint64_t points, std::uint64_t dimension, bool rational,
+           double farthest) const {
+    if (points > part_.reals.size()) at.fail("more control points than numbers");
+    at.range_in(place, points * (dimension + (rational ? 1 : 0)), part_.reals.size(), "points");
+    for (double value : real(place, points * dimension))
+      at.finite(std::array{value}, farthest, "a coordinate of a control point");
+    if (!rational) return;
+    const std::string wrong = wrongWeights(real(place + points * dimension, points));
+    if (!wrong.empty()) at.fail(wrong);
+  }
+
+  template <class Curve>
+  void curve(const Where& at, const Curve& c, std::uint64_t dimension, double farthest) const {
+    at.need(c.kind <= CurveKind::kSpline, "unknown kind, expected 0 to 3");
+    at.flags_in(c.flags, kRational);
+    for (const auto* v : {&c.o, &c.x, &c.y}) at.finite(*v, farthest, "an axis");
+    if (c.kind != CurveKind::kSpline) return;
+    const std::uint64_t length = std::uint64_t{c.count} + c.degree + 1;
+    at.range_in(c.data, length, part_.reals.size(), "knots");
+    const std::string wrong = wrongKnots(real(c.data, length), c.degree, c.count);
+    if (!wrong.empty()) at.fail("knots: " + wrong);
+    net(at, c.data + length, c.count, dimension, (c.flags & kRational) != 0, farthest);
+  }
+
+  void curve3(const Where& at, const Curve3& c) const {
+    curve(at, c, 3, kFarthestPart);
+    if (c.kind == CurveKind::kLine || c.kind == CurveKind::kSpline)
+      return at.need(c.kind == CurveKind::kSpline || norm(c.x) > 0, "x is 0, expected a direction");
+    at.positive(norm(c.x), "the length of x");
+    at.positive(norm(c.y), "the length of y");
+    square(at, c.x, c.y, kSquare);
+    if (c.kind == CurveKind::kCircle)
+      at.need(std::abs(norm(c.x) - norm(c.y)) <= kSquare * norm(c.x), "x and y of a circle differ in length");
+  }
+
+  void curve2(const Where& at, const Curve2& c) const {
+    curve(at, c, 2, kWidestParameter);
+    if (c.kind == CurveKind::kSpline) return;
+    at.need(c.x[0] != 0 || c.x[1] != 0, "x is 0, expected a direction");
+    if (c.kind != CurveKind::kLine) at.need(c.x[0] * c.y[1] != c.x[1] * c.y[0], "x and y lie on one line");
+  }
+
+  void vertex(const Where& at, const Vertex& v) const {
+    at.finite(v.point, kFarthestPart, "a coordinate");
+    at.tolerance(v.tolerance);
+  }
+
+  void edge(const Where& at, const Edge& e) const {
+    at.need(e.kind <= EdgeKind::kPole, "unknown kind, expected 0 to 7");
+    at.index_or_none(e.first_vertex, part_.vertices.size(), "vertex");
+    at.index_or_none(e.last_vertex, part_.vertices.size(), "vertex");
+    at.finite(std::array{e.angle}, 7, "the angle");
+    at.tolerance(e.tolerance);
+    if (e.kind != EdgeKind::kPole) {
+      at.index_in(e.curve, part_.curves3.size(), "curve");
+      at.ascending(e.t0, e.t1, "parameters");
+      const CurveKind kind = part_.curves3[e.curve].kind;
+      if (kind == CurveKind::kCircle || kind == CurveKind::kEllipse)
+        at.need(e.t1 - e.t0 <= kMostTurn && std::abs(e.t0) <= kFarthestAngle,
+                "more than one turn of its circle or ellipse, or angles beyond 1000");
+    }
+    std::uint32_t coedge = e.first_coedge, met = 0;
+    for (; coedge != kNone && met <= e.coedge_count; ++met) {
+      at.index_in(coedge, part_.coedges.size(), "coedge");
+      if (part_.coedges[coedge].edge != at.index) at.fail("coedge " + std::to_string(coedge) + " is of another edge");
+      coedge = part_.coedges[coedge].next;
+    }
+    if (met != e.coedge_count)
+      at.fail("its list has other than the stated " + std::to_string(e.coedge_count) + " coedges");
+  }
+
+  void coedge(const Where& at, const Coedge& c) const {
+    at.index_in(c.edge, part_.edges.size(), "edge");
+    at.index_in(c.face, part_.faces.size(), "face");
+    at.index_in(c.pcurve, part_.curves2.size(), "pcurve");
+    at.index_or_none(c.next, part_.coedges.size(), "next");
+    at.flags_in(c.flags, kReversed | kSeam | kDegenerate);
+    at.ascending(c.t0, c.t1, "parameters");
+    const Edge& e = part_.edges[c.edge];
+    const bool pole = e.kind == EdgeKind::kPole;
+    at.need(pole == ((c.flags & kDegenerate) != 0), "a coedge is degenerate if and only if its edge is a pole");
+    at.need(pole || (c.t0 == e.t0 && c.t1 == e.t1), "its parameters are not those of its edge");
+  }
+
+  void loop(const Where& at, const Loop& l) const {
+    at.range_in(l.first, l.count, part_.coedges.size(), "coedges");
+    at.need(l.count > 0, "no coedges, expected at least one");
+    const std::uint32_t face = part_.coedges[l.first].face;
+    for (std::uint32_t i = 0; i < l.count; ++i)
+      at.need(part_.coedges[l.first + i].face == face, "its coedges are of different faces");
+  }
+
+  void face(const Where& at, const Face& f) const {
+    at.index_in(f.surface, part_.surfaces.size(), "surface");
+    at.index_in(f.body, part_.bodies.size(), "body");
+    at.range_in(f.first_loop, f.loop_count, part_.loops.size(), "loops");
+    at.flags_in(f.flags, kReversed);
+    name(at, f.name);
+    at.tolerance(f.tolerance);
+    at.ascending(f.lo[0], f.hi[0], "u");
+    at.ascending(f.lo[1], f.hi[1], "v");
+    for (std::uint32_t i = 0; i < f.loop_count; ++i)
+      at.need(part_.coedges[part_.loops[f.first_loop + i].first].face == at.index, "a loop of it is of another face");
+  }
+
+  void body(const Where& at, const Body& b) const {
+    at.need(b.kind <= BodyKind::kMesh, "unknown kind, expected 0 to 3");
+    at.flags_in(b.flags, kClosed);
+    name(at, b.name);
+    at.range_in(b.first_face, b.face_count, part_.faces.size(), "faces");
+    at.range_in(b.first_edge, b.edge_count, part_.edges.size(), "edges");
+    at.range_in(b.first_vertex, b.vertex_count, part_.vertices.size(), "vertices");
+    at.range_in(b.first_point, b.point_count, part_.points.size(), "points");
+    at.range_in(b.first_triangle, b.triangle_count, part_.triangles.size(), "triangles");
+    at.need(b.smooth_angle >= 0 && b.smooth_angle <= 3.2, "smooth_angle is not within 0 and pi");
+    if (b.kind == BodyKind::kMesh) at.need(b.face_count == 0, "a mesh has faces, expected triangles alone");
+    if (b.kind != BodyKind::kMesh) at.need(b.triangle_count == 0, "triangles, expected those of meshes alone");
+    for (std::uint32_t i = 0; i < b.triangle_count; ++i)
+      for (std::uint32_t corner : part_.triangles[b.first_triangle + i].corner)
+        if (corner - b.first_point >= b.point_count)  // unsigned: also false below the first
+          Where{"triangle", b.first_triangle + i}.fail("corner " + std::to_string(corner) + " is not of its body");
+  }
+
+  void instance(const Where& at, const Instance& i) const {
+    at.index_or_none(i.body, part_.bodies.size(), "body");
+    name(at, i.name);
+    if (i.parent != kNone) {
+      at.index_in(i.parent, at.index, "parent");
+      at.need(part_.instances[i.parent].body == kNone, "its parent is a body, expected an assembly");
+    }
+    at.finite(i.pose, kFarthestPart, "a number of the pose");
+    const auto row = [&](std::size_t r) { return Vector{i.pose[4 * r], i.pose[4 * r + 1], i.pose[4 * r + 2]}; };
+    const Vector x = row(0), y = row(1), z = row(2);
+    for (const Vector* v : {&x, &y, &z}) unit(at, *v, "a row of the rotation");
+    square(at, x, y, kSquare);
+    square(at, y, z, kSquare);
+    square(at, z, x, kSquare);
+    at.need(dot(cross(x, y), z) > 0, "the pose mirrors, expected a rotation (a mirrored body is a body of its own)");
+  }
+
+  void point(const Where& at, const Point& p) const { at.finite(p, kFarthestPart, "a coordinate"); }
+
+  void triangle(const Where& at, const Triangle& t) const {
+    for (std::uint32_t corner : t.corner) at.index_in(corner, part_.points.size(), "corner");
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (t.across[k] == kNone) continue;
+      at.index_in(t.across[k] / 4, part_.triangles.size(), "the triangle across an edge");
+      at.need(t.across[k] % 4 < 3, "the edge across is 3, expected 0 to 2");
+      const Triangle& other = part_.triangles[t.across[k] / 4];
+      const std::uint32_t m = t.across[k] % 4;
+      const std::uint32_t a = t.corner[k], b = t.corner[(k + 1) % 3];
+      const std::uint32_t c = other.corner[m], d = other.corner[(m + 1) % 3];
+      at.need((a == c && b == d) || (a == d && b == c), "the edge across has other corners");
+      at.need(other.across[m] != kNone, "the edge across says that it is free");
+    }
+  }
+
+  /// Faces and triangles belong to the one body whose range holds them.
+  void owners() const {
+    std::uint64_t faces = 0, triangles = 0;
+    for (std::size_t b = 0; b < part_.bodies.size(); ++b) {
+      const Body& body = part_.bodies[b];
+      faces += body.face_count;
+      triangles += body.triangle_count;
+      for (std::uint32_t i = 0; i < body.face_count; ++i)
+        if (part_.faces[body.first_face + i].body != b)
+          Where{"body", b}.fail("face " + std::to_string(body.first_face + i) + " is of another body");
+    }
+    if (faces != part_.faces.size()) throw PartError("bodies: they hold other than all faces");
+    if (triangles != part_.triangles.size()) throw PartError("bodies: they hold other than all triangles, once each");
+  }
+
+  const Part& part_;
+};
+
+}  // namespace
+
+void checkPart(const Part& part) {
+  Checker(part).run();
+}
+
+}  // namespace hapticd::brep

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/brep/pieces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "kernels/spline/refinement.hpp"
+#include "kernels/trace/box_tree.hpp"
+
+namespace hapticd::brep {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Array2d;
+using Eigen::Matrix2d;
+using Eigen::Vector3d;
+using spline::CurvePoint;
+using spline::SurfacePoint;
+
+constexpr double kTurn = 0.44;    ///< [rad] of the normals of a leaf, 25 degrees; of the tangents of a curve's piece
+constexpr double kBetween = 1.5;  ///< what is measured at samples may be larger by this between them
+
+/// Principal curvatures at a point, toward Su x Sv positive; false where the tangents vanish.
+bool curvatures(const SurfacePoint& E, double& least, double& most) {
+  const Vector3d N = E.Su.cross(E.Sv);
+  const double E1 = E.Su.squaredNorm(), F1 = E.Su.dot(E.Sv), G1 = E.Sv.squaredNorm(), det = E1 * G1 - F1 * F1;
+  if (!(det > 1e-18 * E1 * G1) || !(N.norm() > 0)) return false;
+  const Vector3d n = N.normalized();
+  const double L = n.dot(E.Suu), M = n.dot(E.Suv), P = n.dot(E.Svv);
+  const double mean = (E1 * P - 2 * F1 * M + G1 * L) / (2 * det), gauss = (L * P - M * M) / det;
+  const double half = std::sqrt(std::max(mean * mean - gauss, 0.0));
+  least = mean - half;
+  most = mean + half;
+  return true;
+}
+
+class FaceCutter {
+ public:
+  FaceCutter(const Geometry& geometry, std::uint32_t face, const FaceShape& shape, std::vector<BoxedLeaf>& leaves)
+      : geometry_(geometry),
+        face_index_(face),
+        face_(geometry.part().faces[face]),
+        surface_(geometry.part().surfaces[face_.surface]),
+        shape_(shape),
+        leaves_(leaves) {}
+
+  void run() {
+    if (surface_.kind == SurfaceKind::kSpline)
+      cutSpline();
+    else
+      cutEvenly();
+  }
+
+ private:
+  /// The nets of the Bezier pieces give boxes that hold them for certain.
+  void cutSpline() {
+    const spline::SurfaceData data = splineOf(geometry_.part(), surface_);
+    trace::BoxTree pieces;
+    pieces.add(data, 0);
+    const Array2d lo(data.domain(0)[0], data.domain(1)[0]), hi(data.domain(0)[1], data.domain(1)[1]);
+    for (int i = 0; i < pieces.leafCount(); ++i) {
+      const trace::Leaf& piece = pieces.leaf(i);
+      add(piece.middle - piece.half, piece.middle + piece.half, lo, hi, piece.box);
+    }
+  }
+
+  /// Rows and columns of one turn each, with boxes from samples: for the few surfaces of other kinds.
+  void cutEvenly() {
+    const Array2d lo = vec(face_.lo).array(), hi = vec(face_.hi).array();
+    const std::array<int, 2> count{turnsAlong(0, lo, hi), turnsAlong(1, lo, hi)};
+    const Array2d step = (hi - lo) / Array2d(count[0], count[1]);
+    for (int i = 0; i < count[0]; ++i)
+      for (int j = 0; j < count[1]; ++j) {
+        const Array2d from = lo + Array2d(i, j) * step, to = lo + Array2d(i + 1, j + 1) * step;
+        add(from, to, lo, hi, sampledBox(from, to));
+      }
+  }
+
+  int turnsAlong(int axis, const Array2d& lo, const Array2d& hi) const {
+    constexpr int kLines = 5, kSamples = 64, kMost = 256;
+    double widest = 0;
+    SurfacePoint E;
+    for (int line = 0; line < kLines; ++line) {
+      Vector3d last = Vector3d::Zero();
+      double turn = 0;
+      for (int i = 0; i <= kSamples; ++i) {
+        Array2d share;
+        share[axis] = static_cast<double>(i) / kSamples;
+        share[1 - axis] = (line + 0.5) / kLines;
+        const Array2d uv = lo + share * (hi - lo);
+        geometry_.surface(face_.surface, uv[0], uv[1], E);
+        const Vector3d n = E.Su.cross(E.Sv).normalized();
+        if (i > 0 && n.allFinite()) turn += std::atan2(n.cross(last).norm(), n.dot(last));
+        if (n.allFinite()) last = n;
+      }
+      widest = std::max(widest, turn);
+    }
+    return std::clamp(static_cast<int>(std::ceil(widest / kTurn)) + 1, 2, kMost);
+  }
+
+  /// A chord over a cell is off by an eighth of its second differences.
+  AlignedBox3d sampledBox(const Array2d& lo, const Array2d& hi) const {
+    constexpr int kSamples = 6;
+    AlignedBox3d box;
+    double sag = 0;
+    SurfacePoint E;
+    const Array2d h = (hi - lo) / kSamples;
+    for (int i = 0; i <= kSamples; ++i)
+      for (int j = 0; j <= kSamples; ++j) {
+        const Array2d uv = lo + Array2d(i, j) * h;
+        geometry_.surface(face_.surface, uv[0], uv[1], E);
+        box.extend(E.S);
+        sag = std::max(sag,
+                       (h[0] * h[0] * E.Suu.norm() + 2 * h[0] * h[1] * E.Suv.norm() + h[1] * h[1] * E.Svv.norm()) / 8);
+      }
+    const double extent = box.diagonal().norm() / kSamples;
+    const Vector3d margin = Vector3d::Constant(kBetween * sag + 0.1 * extent);
+    return {box.min() - margin, box.max() + margin};
+  }
+
+  /// `domain_lo`, `domain_hi`: where the surface ends.
+  void add(Array2d lo, Array2d hi, const Array2d& domain_lo, const Array2d& domain_hi, const AlignedBox3d& box) {
+    const Array2d first = vec(face_.lo).array().max(domain_lo), last = vec(face_.hi).array().min(domain_hi);
+    lo = lo.max(first);
+    hi = hi.min(last);
+    if (!(lo < hi).all() || !shape_.trim.mayTouch(lo, hi)) return;
+    BoxedLeaf made;
+    Leaf& leaf = made.leaf;
+    leaf.lo = lo;
+    leaf.hi = hi;
+    leaf.face = face_index_;
+    for (int axis = 0; axis < 2; ++axis) {
+      if (lo[axis] <= first[axis]) leaf.borders |= 1u << (2 * axis);
+      if (hi[axis] >= last[axis]) leaf.borders |= 2u << (2 * axis);
+    }
+    measureBend(leaf);
+    made.box = box;
+    leaves_.push_back(made);
+  }
+
+  void measureBend(Leaf& leaf) const {
+    constexpr int kSamples = 4;
+    double front = 0, back = 0;
+    SurfacePoint E;
+    for (int i = 0; i <= kSamples; ++i)
+      for (int j = 0; j <= kSamples; ++j) {
+        const Array2d uv = leaf.lo + Array2d(i, j) / kSamples * (leaf.hi - leaf.lo);
+        geometry_.surface(face_.surface, uv[0], uv[1], E);
+        double least = 0, most = 0;
+        if (!curvatures(E, least, most)) continue;
+        front = std::max(front, shape_.outward > 0 ? most : -least);
+        back = std::max(back, shape_.outward > 0 ? -least : most);
+      }
+    leaf.bend_front = kBetween * front;
+    leaf.bend_back = kBetween * back;
+  }
+
+  const Geometry& geometry_;
+  std::uint32_t face_index_;
+  const Face& face_;
+  const Surface& surface_;
+  const FaceShape& shape_;
+  std::vector<BoxedLeaf>& leaves_;
+};
+
+/// The box of an elliptic arc: where it turns along each axis.
+AlignedBox3d arcBox(const Curve3& c, double t0, double t1) {
+  const auto at = [&](double t) { return Vector3d(vec(c.o) + std::cos(t) * vec(c.x) + std::sin(t) * vec(c.y)); };
+  AlignedBox3d box(at(t0));
+  box.extend(at(t1));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double turn = std::atan2(c.y[axis], c.x[axis]);
+    for (double k = std::ceil((t0 - turn) / std::numbers::pi); turn + k * std::numbers::pi <= t1; ++k)
+      box.extend(at(turn + k * std::numbers::pi));
+  }
+  return box;
+}
+
+class EdgeCutter {
+ public:
+  EdgeCutter(const Geometry& geometry, std::uint32_t edge, std::vector<BoxedPiece>& pieces)
+      : geometry_(geometry),
+        edge_index_(edge),
+        edge_(geometry.part().edges[edge]),
+        curve_(geometry.part().curves3[edge_.curve]),
+        pieces_(pieces) {}
+
+  void run() {
+    std::vector<double> stops{edge_.t0, edge_.t1};
+    const bool is_spline = curve_.kind == CurveKind::kSpline;
+    if (is_spline)
+      for (const double knot : geometry_.splineCurve(edge_.curve).breaks())
+        if (knot > edge_.t0 && knot < edge_.t1) stops.push_back(knot);
+    std::sort(stops.begin(), stops.end());
+    for (std::size_t i = 0; i + 1 < stops.size(); ++i) halve(stops[i], stops[i + 1], 0);
+  }
+
+ private:
+  void halve(double t0, double t1, int depth) {
+    constexpr int kSamples = 6, kDeepest = 8;
+    const double end = t1 - 1e-9 * (t1 - t0);  // derivatives at a knot are those of the span to its right
+    CurvePoint C;
+    Vector3d first = Vector3d::Zero();
+    double turn = 0, bend = 0;
+    for (int i = 0; i <= kSamples; ++i) {
+      geometry_.curve(edge_.curve, std::min(t0 + (t1 - t0) * i / kSamples, end), C);
+      const double speed = C.C1.norm();
+      if (!(speed > 0)) continue;
+      if (first.isZero(0)) first = C.C1;
+      turn = std::max(turn, std::atan2(C.C1.cross(first).norm(), C.C1.dot(first)));
+      bend = std::max(bend, C.C1.cross(C.C2).norm() / (speed * speed * speed));
+    }
+    if (turn > kTurn && depth < kDeepest) {
+      halve(t0, 0.5 * (t0 + t1), depth + 1);
+      halve(0.5 * (t0 + t1), t1, depth + 1);
+      return;
+    }
+    add(t0, t1, kBetween * bend);
+  }
+
+  void add(double t0, double t1, double bend) {
+    BoxedPiece made;
+    made.piece = {t0, t1, bend, edge_index_, (t0 <= edge_.t0 ? 1u : 0u) | (t1 >= edge_.t1 ? 2u : 0u)};
+    made.box = curve_.kind == CurveKind::kSpline ? netBox(t0, t1) : arcBox(curve_, t0, t1);
+    pieces_.push_back(made);
+  }
+
+  AlignedBox3d netBox(double t0, double t1) const {
+    const spline::CurveData data = splineOf(geometry_.part(), curve_);
+    const auto domain = data.domain();
+    AlignedBox3d box;
+    for (const Vector3d& point : spline::cut(data, std::max(t0, domain[0]), std::min(t1, domain[1])).points)
+      box.extend(point);
+    return box;
+  }
+
+  const Geometry& geometry_;
+  std::uint32_t edge_index_;
+  const Edge& edge_;
+  const Curve3& curve_;
+  std::vector<BoxedPiece>& pieces_;
+};
+
+}  // namespace
+
+void cutFace(const Geometry& geometry, std::uint32_t face, const FaceShape& shape, std::vector<BoxedLeaf>& leaves) {
+  FaceCutter(geometry, face, shape, leaves).run();
+}
+
+void cutEdge(const Geometry& geometry, std::uint32_t edge, std::vector<BoxedPiece>& pieces) {
+  EdgeCutter(geometry, edge, pieces).run();
+}
+
+}  // namespace hapticd::brep

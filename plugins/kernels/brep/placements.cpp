@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/brep/placements.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace hapticd::brep {
+namespace {
+
+std::string nameOf(const Part& part, std::uint32_t index) {
+  const Instance& instance = part.instances[index];
+  if (instance.name != kNone && !part.names[instance.name].empty()) return part.names[instance.name];
+  if (instance.body != kNone && part.bodies[instance.body].name != kNone)
+    return part.names[part.bodies[instance.body].name];
+  return "#" + std::to_string(index);
+}
+
+/// Whether `wanted` names the instance itself, by its name or its path.
+bool isNamed(const Part& part, std::uint32_t index, const std::string& wanted) {
+  return nameOf(part, index) == wanted || instancePath(part, index) == wanted;
+}
+
+/// Whether `wanted` names it or an assembly around it.
+bool belongs(const Part& part, std::uint32_t index, const std::string& wanted) {
+  if (wanted.empty()) return true;
+  for (; index != kNone; index = part.instances[index].parent)
+    if (isNamed(part, index, wanted)) return true;
+  return false;
+}
+
+[[noreturn]] void failUnknown(const Part& part, const std::string& wanted) {
+  constexpr std::size_t kMost = 12;
+  std::string names;
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < part.instances.size(); ++i, ++count)
+    if (count < kMost) names += (count > 0 ? ", " : "") + instancePath(part, i);
+  if (count > kMost) names += ", ... (" + std::to_string(count) + " in all)";
+  throw std::invalid_argument("instance: there is no '" + wanted + "', expected one of " + names);
+}
+
+Placement placementOf(const Part& part, std::uint32_t index) {
+  const Instance& instance = part.instances[index];
+  Placement place;
+  for (int row = 0; row < 3; ++row) {
+    const auto at = static_cast<std::size_t>(4 * row);
+    place.rotation.row(row) = Eigen::RowVector3d(instance.pose[at], instance.pose[at + 1], instance.pose[at + 2]);
+    place.position[row] = instance.pose[at + 3];
+  }
+  place.moved = !place.rotation.isIdentity(0) || !place.position.isZero(0);
+  place.body = instance.body;
+  place.instance = index;
+  place.solid = (part.bodies[instance.body].flags & kClosed) != 0;
+  return place;
+}
+
+}  // namespace
+
+std::string instancePath(const Part& part, std::uint32_t instance) {
+  std::string path = nameOf(part, instance);
+  for (std::uint32_t i = part.instances[instance].parent; i != kNone; i = part.instances[i].parent)
+    path = nameOf(part, i) + "/" + path;
+  return path;
+}
+
+std::vector<Placement> placementsOf(const Part& part, const std::string& wanted, std::uint32_t& feature_count) {
+  std::vector<Placement> placements;
+  std::uint64_t features = 0;
+  for (std::uint32_t i = 0; i < part.instances.size(); ++i) {
+    if (part.instances[i].body == kNone) continue;
+    const Body& body = part.bodies[part.instances[i].body];
+    const std::uint64_t count = std::uint64_t{body.face_count} + body.triangle_count;
+    if (count > 0 && belongs(part, i, wanted)) {
+      placements.push_back(placementOf(part, i));
+      placements.back().first_feature = static_cast<std::uint32_t>(features);
+    }
+    features += count;  // numbers count over all instances of the file, whichever are traced
+    if (features >= kNone) throw std::invalid_argument("more than 4,294,967,294 faces over all instances");
+  }
+  feature_count = static_cast<std::uint32_t>(features);
+  if (!placements.empty()) return placements;
+  if (wanted.empty()) throw std::invalid_argument("the part has neither faces nor triangles, expected at least one");
+  failUnknown(part, wanted);
+}
+
+}  // namespace hapticd::brep

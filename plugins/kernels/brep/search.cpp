@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/brep/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/brep/feet.hpp"
+#include "kernels/brep/newton_feet.hpp"
+#include "kernels/brep/triangle_foot.hpp"
+
+namespace hapticd::brep {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Of a squared distance: so little beyond the best one, a box or another foot is not counted as farther.
+constexpr double kRounding = 1e-12;
+
+struct AllElements {
+  bool operator()(Element) const noexcept { return true; }
+};
+
+/// Elements of one face: itself, its leaves, its edges.
+struct OfFace {
+  const Model& model;
+  std::uint32_t face;
+
+  bool edgeOf(std::uint32_t edge) const noexcept {
+    const Part& part = model.part();
+    for (std::uint32_t c = part.edges[edge].first_coedge; c != kNone; c = part.coedges[c].next)
+      if (part.coedges[c].face == face) return true;
+    return false;
+  }
+  bool operator()(Element element) const noexcept {
+    switch (element.kind()) {
+      case ElementKind::kFace:
+        return element.index() == face;
+      case ElementKind::kLeaf:
+        return model.leaf(element.index()).face == face;
+      case ElementKind::kPiece:
+        return edgeOf(model.piece(element.index()).edge);
+      case ElementKind::kLine:
+      case ElementKind::kCircle:
+      case ElementKind::kPole:
+        return edgeOf(element.index());
+      default:
+        return false;
+    }
+  }
+};
+
+/// Sorts the four children of a node by their bounds, farthest first. Returns how many are within `limit`; `beyond`
+/// falls to the least bound of the others.
+template <class Entry>
+int sortChildren(const BoxNode& node, const Float4& bounds, double limit, std::array<Entry, 4>& children,
+                 double& beyond) noexcept {
+  int count = 0;
+  for (int i = 0; i < 4; ++i) {
+    const float bound = bounds[i];
+    if (!(static_cast<double>(bound) <= limit)) {
+      beyond = std::min(beyond, static_cast<double>(bound));
+      continue;
+    }
+    if (!(bound < std::numeric_limits<float>::infinity())) continue;  // an empty place
+    int at = count++;
+    for (; at > 0 && children[static_cast<std::size_t>(at - 1)].bound < bound; --at)
+      children[static_cast<std::size_t>(at)] = children[static_cast<std::size_t>(at - 1)];
+    children[static_cast<std::size_t>(at)] = {bound, node.child[static_cast<std::size_t>(i)]};
+  }
+  return count;
+}
+
+}  // namespace
+
+double Nearest::distance() const noexcept {
+  return std::sqrt(hit.d2);
+}
+
+Search::Search(const Model& model) : model_(model) {}
+
+/// A lower bound of the squared distance to an element; `hit` is replaced where the element is nearer.
+double Search::evaluate(Element element, const Vector3d& p, const Hit* start, Hit& hit, bool& alone) const noexcept {
+  const std::uint32_t i = element.index();
+  switch (element.kind()) {
+    case ElementKind::kFace:
+      return faceFoot(model_.face(i), p, hit);
+    case ElementKind::kLine:
+      return lineFoot(model_.edge(i), p, hit);
+    case ElementKind::kCircle:
+      return circleFoot(model_.edge(i), p, hit);
+    case ElementKind::kLeaf: {
+      const Leaf& leaf = model_.leaf(i);
+      const Eigen::Array2d uv = start != nullptr ? Eigen::Array2d(start->u, start->v) : 0.5 * (leaf.lo + leaf.hi);
+      const std::uint32_t surface = model_.part().faces[leaf.face].surface;
+      const PieceAnswer answer = leafFoot(model_.geometry(), leaf, model_.face(leaf.face), surface, p, uv, hit);
+      alone = answer.alone;
+      return answer.d2;
+    }
+    case ElementKind::kPiece: {
+      const CurvePiece& piece = model_.piece(i);
+      const double t = start != nullptr ? start->u : 0.5 * (piece.t0 + piece.t1);
+      const PieceAnswer answer = pieceFoot(model_.geometry(), piece, p, t, hit);
+      alone = answer.alone;
+      return answer.d2;
+    }
+    case ElementKind::kPole: {
+      const Vector3d q = vec(model_.part().vertices[model_.part().edges[i].first_vertex].point);
+      const double d2 = (p - q).squaredNorm();
+      if (!(d2 < hit.d2)) return d2;
+      hit.d2 = d2;
+      hit.point = q;
+      return d2;
+    }
+    case ElementKind::kTriangle: {
+      const Part& part = model_.part();
+      const Triangle& t = part.triangles[i];
+      const TriangleFoot foot =
+          triangleFoot(p, vec(part.points[t.corner[0]]), vec(part.points[t.corner[1]]), vec(part.points[t.corner[2]]));
+      const double d2 = (p - foot.point).squaredNorm();
+      if (!(d2 < hit.d2)) return d2;
+      hit.d2 = d2;
+      hit.point = foot.point;
+      hit.u = foot.s;
+      hit.v = foot.t;
+      hit.region = static_cast<std::uint8_t>(foot.region);
+      return d2;
+    }
+    default:
+      return kInfinity;
+  }
+}
+
+/// Looks at one element, whose box is at least bound2 away.
+void Search::look(std::uint32_t place, Element element, const Vector3d& p, double bound2, Run& run) noexcept {
+  Nearest& best = run.best;
+  const double before = best.hit.d2;
+  bool alone = true;
+  ++best.elements;
+  const double d2 = evaluate(element, p, nullptr, best.hit, alone);
+  if (!alone) run.open2 = std::min(run.open2, bound2);
+  if (best.hit.d2 < before) {
+    run.others2 = std::min(run.others2, before);
+    best.hit.element = element;
+    best.place = place;
+  } else {
+    run.others2 = std::min(run.others2, d2);
+  }
+}
+
+template <class Filter>
+void Search::searchBody(std::uint32_t place, const Vector3d& p, Run& run, const Filter& wanted) noexcept {
+  const BodyTree& body = model_.body(model_.placements()[place].body);
+  if (body.tree.empty()) return;
+  Nearest& best = run.best;
+  const Element first = run.first_place == place ? run.first : Element();  // has been looked at already
+  const BoxProbe probe(body.tree, p);
+  std::array<Entry, BoxTree::kMaxStack> stack;
+  std::array<Entry, 4> children;
+  int depth = 0;
+  stack[static_cast<std::size_t>(depth++)] = {0, 0};
+  while (depth > 0) {
+    const Entry entry = stack[static_cast<std::size_t>(--depth)];
+    const auto bound = static_cast<double>(entry.bound);
+    if (bound > best.hit.d2) {
+      run.others2 = std::min(run.others2, bound);
+      continue;
+    }
+    if (best.nodes >= run.budget.nodes || best.elements >= run.budget.elements) {
+      best.exhausted = true;
+      run.open2 = std::min(run.open2, bound);
+      continue;
+    }
+    if (entry.child < 0) {
+      const ElementRow row = BoxTree::rowOf(entry.child);
+      for (std::uint32_t i = row.first; i < row.first + row.count; ++i)
+        if (const Element element = body.elements[i]; !(element == first) && wanted(element))
+          look(place, element, p, bound, run);
+      continue;
+    }
+    ++best.nodes;
+    const BoxNode& node = body.tree.node(entry.child);
+    const int count = sortChildren(node, boxDistances(node, probe), best.hit.d2, children, run.others2);
+    for (int i = 0; i < count; ++i) stack[static_cast<std::size_t>(depth++)] = children[static_cast<std::size_t>(i)];
+  }
+}
+
+/// The same over the boxes of the placements.
+void Search::searchPlaces(const Vector3d& p, Run& run) noexcept {
+  const BoxTree& tree = model_.placementTree();
+  const BoxProbe probe(tree, p);
+  std::array<Entry, BoxTree::kMaxStack> stack;
+  std::array<Entry, 4> children;
+  int depth = 0;
+  stack[static_cast<std::size_t>(depth++)] = {0, 0};
+  while (depth > 0) {
+    const Entry entry = stack[static_cast<std::size_t>(--depth)];
+    const auto bound = static_cast<double>(entry.bound);
+    if (bound > run.best.hit.d2) {
+      run.others2 = std::min(run.others2, bound);
+      continue;
+    }
+    if (entry.child < 0) {
+      const ElementRow row = BoxTree::rowOf(entry.child);
+      for (std::uint32_t i = row.first; i < row.first + row.count; ++i) {
+        const std::uint32_t place = tree.order()[i];
+        searchBody(place, model_.placements()[place].toBody(p), run, AllElements{});
+      }
+      continue;
+    }
+    ++run.best.nodes;
+    const BoxNode& node = tree.node(entry.child);
+    const int count = sortChildren(node, boxDistances(node, probe), run.best.hit.d2, children, run.others2);
+    for (int i = 0; i < count; ++i) stack[static_cast<std::size_t>(depth++)] = children[static_cast<std::size_t>(i)];
+  }
+}
+
+/// Every distance changes by at most the way of the probe: while the last element is nearer than the others can have
+/// come, it holds the nearest point.
+bool Search::goesOn(const Vector3d& p) noexcept {
+  if (!last_.proved || !last_.found()) return false;
+  const double others = last_.others - (p - last_p_).norm();
+  Hit hit = last_.hit;
+  hit.d2 = kInfinity;
+  bool alone = true;
+  evaluate(last_.hit.element, model_.placements()[last_.place].toBody(p), &last_.hit, hit, alone);
+  if (!alone || !(std::sqrt(hit.d2) * (1 + kRounding) < others)) return false;
+  hit.element = last_.hit.element;
+  last_.hit = hit;
+  last_.others = others;
+  last_.nodes = 0;
+  last_.elements = 1;
+  last_p_ = p;
+  return true;
+}
+
+void Search::finish(Run& run) noexcept {
+  Nearest& best = run.best;
+  // A face whose foot is outside its trim counts by its edges: beside the best of these it may come in at any moment.
+  const ElementKind kind = best.hit.element.kind();
+  const bool is_edge = kind != ElementKind::kFace && kind != ElementKind::kLeaf && kind != ElementKind::kTriangle;
+  best.others = is_edge ? 0 : std::sqrt(std::min(run.others2, run.open2));
+  best.proved = best.found() && !best.exhausted && !(run.open2 < best.hit.d2);
+}
+
+Hit Search::refine(std::uint32_t place, const Hit& last, const Vector3d& p) noexcept {
+  Hit hit = last;
+  hit.d2 = kInfinity;
+  bool alone = true;
+  evaluate(last.element, model_.placements()[place].toBody(p), &last, hit, alone);
+  return hit;
+}
+
+const Nearest& Search::nearest(const Vector3d& p, const SearchBudget& budget) noexcept {
+  if (goesOn(p)) return last_;
+  Run run;
+  run.budget = budget;
+  if (last_.found()) {  // a near start spares most of the search
+    bool alone = true;
+    const Vector3d p_body = model_.placements()[last_.place].toBody(p);
+    evaluate(last_.hit.element, p_body, &last_.hit, run.best.hit, alone);
+    run.best.elements = 1;
+    if (run.best.hit.d2 < kInfinity) {
+      run.best.hit.element = last_.hit.element;
+      run.best.place = last_.place;
+    }
+    if (alone) {
+      run.first = last_.hit.element;
+      run.first_place = last_.place;
+    }
+  }
+  if (model_.placements().size() == 1)
+    searchBody(0, model_.placements()[0].toBody(p), run, AllElements{});
+  else
+    searchPlaces(p, run);
+  finish(run);
+  last_ = run.best;
+  last_p_ = p;
+  return last_;
+}
+
+Nearest Search::nearestOf(std::uint32_t place, std::uint32_t face, const Vector3d& p, const Hit& start,
+                          const SearchBudget& budget) noexcept {
+  Run run;
+  run.budget = budget;
+  const Vector3d p_body = model_.placements()[place].toBody(p);
+  if (start.element.kind() != ElementKind::kNothing) {
+    bool alone = true;
+    evaluate(start.element, p_body, &start, run.best.hit, alone);
+    if (run.best.hit.d2 < kInfinity) {
+      run.best.hit.element = start.element;
+      run.best.place = place;
+    }
+  }
+  if (face == kNone)
+    searchBody(place, p_body, run, AllElements{});
+  else
+    searchBody(place, p_body, run, OfFace{model_, face});
+  finish(run);
+  return run.best;
+}
+
+int Search::around(const Vector3d& p, std::uint32_t* places, int cap) const noexcept {
+  const BoxTree& tree = model_.placementTree();
+  if (tree.empty()) return 0;
+  const BoxProbe probe(tree, p);
+  std::array<Entry, BoxTree::kMaxStack> stack;
+  std::array<Entry, 4> children;
+  double beyond = kInfinity;
+  int depth = 0, found = 0;
+  stack[static_cast<std::size_t>(depth++)] = {0, 0};
+  while (depth > 0 && found < cap) {
+    const Entry entry = stack[static_cast<std::size_t>(--depth)];
+    if (entry.child < 0) {
+      const ElementRow row = BoxTree::rowOf(entry.child);
+      for (std::uint32_t i = row.first; i < row.first + row.count && found < cap; ++i)
+        if (model_.placements()[tree.order()[i]].solid) places[found++] = tree.order()[i];
+      continue;
+    }
+    const BoxNode& node = tree.node(entry.child);
+    const int count = sortChildren(node, boxDistances(node, probe), 0.0, children, beyond);
+    for (int i = 0; i < count; ++i) stack[static_cast<std::size_t>(depth++)] = children[static_cast<std::size_t>(i)];
+  }
+  return found;
+}
+
+}  // namespace hapticd::brep

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+/// The nearest point of a part: one bounded search a tick, and none where the last one still proves the answer.
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "kernels/brep/model.hpp"
+
+namespace hapticd::brep {
+
+/// Bounds of the work of one search.
+struct SearchBudget {
+  int nodes = 2048;    ///< boxes of four
+  int elements = 256;  ///< feet
+};
+
+/// What a search found.
+struct Nearest {
+  Hit hit;                      ///< in the frame of the body
+  std::uint32_t place = kNone;  ///< in placements(); kNone: nothing was found
+  /// [m] No other element is nearer to the probe than this. With `proved`, none but this one is nearer than `hit`.
+  double others = 0;
+  bool proved = false;     ///< hit is the nearest point of all
+  bool exhausted = false;  ///< the budget ran out first
+  int nodes = 0, elements = 0;
+
+  bool found() const noexcept { return place != kNone; }
+  double distance() const noexcept;
+};
+
+/// Finds nearest points for one probe. The Model is shared.
+class Search {
+ public:
+  /// [main] Allocates all that searching needs.
+  explicit Search(const Model& model);
+
+  /// [rt] Nearest point of all placements to p (model frame).
+  const Nearest& nearest(const Eigen::Vector3d& p, const SearchBudget& budget = {}) noexcept;
+  /// [rt] Nearest point of one placement, from `start` on. Elements of other faces than `face` (an index in the part;
+  /// kNone: all) are passed over; edges belong to all their faces.
+  Nearest nearestOf(std::uint32_t place, std::uint32_t face, const Eigen::Vector3d& p, const Hit& start,
+                    const SearchBudget& budget = {}) noexcept;
+  /// [rt] The nearest point of one element from its last one on; d2 stays infinite if it has none.
+  Hit refine(std::uint32_t place, const Hit& last, const Eigen::Vector3d& p) noexcept;
+  /// [rt] Placements that bound a volume and whose boxes hold p; at most `cap` of them.
+  int around(const Eigen::Vector3d& p, std::uint32_t* places, int cap) const noexcept;
+  /// [rt] Forgets the last answer.
+  void reset() noexcept { last_.place = kNone; }
+  const Nearest& last() const noexcept { return last_; }
+  const Model& model() const noexcept { return model_; }
+
+ private:
+  struct Entry {
+    float bound;
+    std::int32_t child;
+  };
+  /// One search under way.
+  struct Run {
+    Nearest best;
+    SearchBudget budget;
+    Element first;                                             ///< was looked at before all others
+    std::uint32_t first_place = kNone;                         ///< where it is
+    double others2 = std::numeric_limits<double>::infinity();  ///< nearest bound of anything but the best
+    double open2 = std::numeric_limits<double>::infinity();    ///< nearest bound of what may hide a nearer foot
+  };
+
+  bool goesOn(const Eigen::Vector3d& p) noexcept;
+  template <class Filter>
+  void searchBody(std::uint32_t place, const Eigen::Vector3d& p, Run& run, const Filter& wanted) noexcept;
+  void searchPlaces(const Eigen::Vector3d& p, Run& run) noexcept;
+  void look(std::uint32_t place, Element element, const Eigen::Vector3d& p, double bound2, Run& run) noexcept;
+  double evaluate(Element element, const Eigen::Vector3d& p, const Hit* start, Hit& hit, bool& alone) const noexcept;
+  static void finish(Run& run) noexcept;
+
+  const Model& model_;
+  Nearest last_;
+  Eigen::Vector3d last_p_{0, 0, 0};
+};
+
+}  // namespace hapticd::brep

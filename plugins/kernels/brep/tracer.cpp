@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/brep/tracer.hpp"
+
+#include <cmath>
+
+namespace hapticd::brep {
+
+using contact::Foot;
+using contact::FootStatus;
+using Eigen::Vector3d;
+
+namespace {
+constexpr double kFarthest = 1e150;  ///< [m] squares of coordinates beyond overflow
+constexpr int kMostAround = 8;       ///< bodies whose boxes hold the probe, looked at in one tick
+}  // namespace
+
+/// What contact::ContactState sees of the part at the probe of this tick.
+class Tracer::Faces {
+ public:
+  Faces(Tracer& tracer, const Vector3d& p) : tracer_(tracer), p_(p) {}
+
+  contact::Followed follow(double side, Foot& foot) noexcept { return tracer_.follow(side, p_, foot); }
+  Foot nearest() noexcept { return tracer_.nearestFelt(p_); }
+  bool enter(const Vector3d& from, contact::Sides sides, double& side) noexcept {
+    return tracer_.enter(from, p_, sides, side);
+  }
+  void holdNearest() noexcept { tracer_.held_ = tracer_.nearest_; }
+  void release() noexcept { tracer_.held_.place = kNone; }
+
+ private:
+  Tracer& tracer_;
+  const Vector3d& p_;
+};
+
+Tracer::Tracer(const Model& model) : search_(model) {}
+
+void Tracer::reset() noexcept {
+  search_.reset();
+  held_.place = kNone;
+  contact_ = {};
+  has_last_ = false;
+}
+
+void Tracer::forgetContact() noexcept {
+  contact_.forget();
+  has_last_ = false;
+}
+
+void Tracer::popThrough() noexcept {
+  held_.place = kNone;
+  contact_.popThrough(last_p_);
+}
+
+Tracer::Held Tracer::heldAt(const Nearest& nearest) const noexcept {
+  return {nearest.place, faceOf(model(), nearest.hit, held_.face), nearest.hit};
+}
+
+/// The nearest foot of all bodies. A probe in front of the nearest one may be inside another, whose surface is farther:
+/// then that holds the foot, the deepest if there are several.
+Foot Tracer::nearestFelt(const Vector3d& p) noexcept {
+  const Nearest& found = search_.nearest(p, budget_);
+  Foot foot;
+  if (!found.found()) {
+    foot.status = FootStatus::kDegraded;
+    return foot;
+  }
+  nearest_ = heldAt(found);
+  foot = describe(model(), nearest_.place, nearest_.hit, nearest_.face, p);
+  bool proved = found.proved;
+  foot.evaluations = found.elements;
+  foot.residual = proved ? 0 : std::max(0.0, foot.distance - found.others);
+  if (model().placements().size() > 1 && !(foot.depth > 0)) {
+    std::array<std::uint32_t, kMostAround> around{};
+    const int count = search_.around(p, around.data(), kMostAround);
+    for (int i = 0; i < count; ++i) {
+      const std::uint32_t place = around[static_cast<std::size_t>(i)];
+      if (place == nearest_.place && !(foot.depth > 0)) continue;
+      const Nearest other = search_.nearestOf(place, kNone, p, Hit{}, budget_);
+      if (!other.found()) continue;
+      const Held held = heldAt(other);
+      const Foot inside = describe(model(), place, held.hit, held.face, p);
+      if (!(inside.depth > std::max(foot.depth, 0.0))) continue;
+      foot = inside;
+      nearest_ = held;
+      proved = other.proved;
+    }
+  }
+  foot.status = proved ? FootStatus::kNearest : FootStatus::kDegraded;
+  return foot;
+}
+
+Foot Tracer::nearest(const Vector3d& p, const SearchBudget& budget) noexcept {
+  budget_ = budget;
+  return nearestFelt(p);
+}
+
+void Tracer::count(const Foot& foot) noexcept {
+  if (foot.status == FootStatus::kNearest) ++counts_.nearest;
+  if (foot.status == FootStatus::kHeld) ++counts_.held;
+  if (foot.status == FootStatus::kDegraded) ++counts_.degraded;
+}
+
+Foot Tracer::step(const Vector3d& p, const contact::ContactRule& rule, const SearchBudget& budget) noexcept {
+  Foot foot;
+  if (!(p.lpNorm<1>() <= kFarthest)) {  // also true for not-a-number
+    foot.status = FootStatus::kInvalid;
+    return foot;
+  }
+  budget_ = budget;
+  Faces faces(*this, p);
+  foot = contact_.step(faces, has_last_ ? last_p_ : p, p, rule);
+  last_p_ = p;
+  has_last_ = true;
+  count(foot);
+  return foot;
+}
+
+}  // namespace hapticd::brep

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/brep/trim.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/brep/trim_grid.hpp"
+
+namespace hapticd::brep {
+namespace {
+
+using Eigen::Array2d;
+
+/// Half-open, so that a way through the joint of two pieces crosses one of them.
+bool spans(double a, double b, double at) noexcept {
+  return (a <= at) != (b <= at);
+}
+
+}  // namespace
+
+/// The other coordinate where a piece crosses the line `axis` = at: Newton on the parameter, kept in a bracket.
+double Trim::crossing(const TrimPiece& piece, int axis, double at) const noexcept {
+  if (piece.kind == TrimPiece::Kind::kCircle) {
+    const Curve2& c = geometry_->part().curves2[piece.curve];
+    const double r2 = c.x[0] * c.x[0] + c.x[1] * c.x[1];
+    const auto i = static_cast<std::size_t>(axis), j = 1 - i;
+    const double d = at - c.o[i], half = std::sqrt(std::max(r2 - d * d, 0.0));
+    const double middle = 0.5 * (piece.a[1 - axis] + piece.b[1 - axis]);  // a quarter lies on one side of the center
+    return middle >= c.o[j] ? c.o[j] + half : c.o[j] - half;
+  }
+  constexpr int kMostSteps = 60;
+  const bool rising = piece.b[axis] > piece.a[axis];
+  double low = piece.t0, high = piece.t1;
+  const double share = (at - piece.a[axis]) / (piece.b[axis] - piece.a[axis]);
+  double t = low + (high - low) * std::clamp(share, 0.0, 1.0);
+  PlanePoint where{};
+  for (int i = 0; i < kMostSteps; ++i) {
+    where = geometry_->planeCurve(piece.curve, t);
+    const double off = where.c[axis] - at;
+    if (off == 0) break;
+    ((off < 0) == rising ? low : high) = t;
+    double next = t - off / where.c1[axis];
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (next <= low || next >= high || std::abs(next - t) <= 1e-16 * std::max(std::abs(low), std::abs(high))) break;
+    t = next;
+  }
+  return std::clamp(where.c[1 - axis], std::min(piece.a[1 - axis], piece.b[1 - axis]),
+                    std::max(piece.a[1 - axis], piece.b[1 - axis]));
+}
+
+/// Whether a piece that crosses the height v does so to the right of u.
+bool Trim::crossesRight(const TrimPiece& piece, double v, double u) const noexcept {
+  if (u < std::min(piece.a[0], piece.b[0])) return true;
+  if (u >= std::max(piece.a[0], piece.b[0])) return false;
+  const double chord = piece.a[0] + (v - piece.a[1]) / (piece.b[1] - piece.a[1]) * (piece.b[0] - piece.a[0]);
+  const bool clear = std::abs(chord - u) > static_cast<double>(piece.off_u);
+  if (piece.kind == TrimPiece::Kind::kLine || clear) return chord > u;
+  return crossing(piece, 1, v) > u;
+}
+
+/// Whether a piece that crosses the line u = const does so above v.
+bool Trim::crossesAbove(const TrimPiece& piece, double u, double v) const noexcept {
+  if (v < std::min(piece.a[1], piece.b[1])) return true;
+  if (v >= std::max(piece.a[1], piece.b[1])) return false;
+  const double chord = piece.a[1] + (u - piece.a[0]) / (piece.b[0] - piece.a[0]) * (piece.b[1] - piece.a[1]);
+  const bool clear = std::abs(chord - v) > static_cast<double>(piece.off_v);
+  if (piece.kind == TrimPiece::Kind::kLine || clear) return chord > v;
+  return crossing(piece, 0, u) > v;
+}
+
+/// The way from the point to the right border of its cell and along it to the reference point, whose side is known.
+bool Trim::insideGrid(double u, double v) const noexcept {
+  const int i = std::min(static_cast<int>((u - lo_[0]) * per_cell_[0]), count_u_ - 1);
+  const int j = std::min(static_cast<int>((v - lo_[1]) * per_cell_[1]), count_v_ - 1);
+  const auto cell = static_cast<std::size_t>(j) * static_cast<std::size_t>(count_u_) + static_cast<std::size_t>(i);
+  bool in = (cells_[cell] & kInsideBit) != 0;
+  const double border = gridBorder(lo_[0], cell_[0], i), height = gridHeight(lo_[1], cell_[1], j);
+  const std::uint32_t end = cells_[cell + 1] & ~kInsideBit;
+  for (std::uint32_t k = cells_[cell] & ~kInsideBit; k < end; ++k) {
+    const TrimPiece& piece = pieces_[of_cell_[k]];
+    if (spans(piece.a[1], piece.b[1], v)) in ^= crossesRight(piece, v, u) != crossesRight(piece, v, border);
+    if (spans(piece.a[0], piece.b[0], border))
+      in ^= crossesAbove(piece, border, v) != crossesAbove(piece, border, height);
+  }
+  return in;
+}
+
+bool Trim::mayTouch(const Array2d& lo, const Array2d& hi) const noexcept {
+  if ((hi < lo_).any() || (lo > hi_).any()) return false;
+  if (cells_.empty()) return true;
+  const Array2d most = Array2d(count_u_ - 1, count_v_ - 1);
+  const Array2d first = ((lo - lo_) * per_cell_).floor().max(0).min(most);
+  const Array2d last = ((hi - lo_) * per_cell_).floor().max(0).min(most);
+  for (int j = static_cast<int>(first[1]); j <= static_cast<int>(last[1]); ++j)
+    for (int i = static_cast<int>(first[0]); i <= static_cast<int>(last[0]); ++i) {
+      const auto cell = static_cast<std::size_t>(j * count_u_ + i);
+      const bool holds_pieces = (cells_[cell] & ~kInsideBit) != (cells_[cell + 1] & ~kInsideBit);
+      if (holds_pieces || (cells_[cell] & kInsideBit) != 0) return true;
+    }
+  return false;
+}
+
+std::size_t Trim::bytes() const noexcept {
+  return pieces_.size() * sizeof(TrimPiece) + (cells_.size() + of_cell_.size()) * sizeof(std::uint32_t);
+}
+
+}  // namespace hapticd::brep

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+/// Nearest points of parts: time, work and memory, on walks over the surface and on cold queries; for meshes beside
+/// other libraries in the same run.
+///   bench_parts FILE.hpart...     without a file: parts made here, and bumpy balls of 100,000 and 1,000,000 triangles
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+#include <random>
+
+#include "kernels/brep/part_file.hpp"
+#include "kernels/brep/tracer.hpp"
+#include "peers.hpp"
+#include "unit/plugins/kernels/brep/sample_solids.hpp"
+
+namespace hapticd::bench {
+namespace {
+
+using brep::Model;
+using brep::Part;
+using Eigen::Vector3d;
+using Clock = std::chrono::steady_clock;
+
+double nanoseconds(Clock::duration d) {
+  return std::chrono::duration<double, std::nano>(d).count();
+}
+
+struct Times {
+  std::vector<double> ns;
+  void print(const char* what, double mean_nodes = -1, double mean_elements = -1) {
+    std::sort(ns.begin(), ns.end());
+    const auto at = [&](double share) {
+      return ns[static_cast<std::size_t>(share * static_cast<double>(ns.size() - 1))];
+    };
+    std::printf("  %-38s p50 %8.0f  p99 %8.0f  p99.9 %8.0f  max %8.0f ns", what, at(0.5), at(0.99), at(0.999), at(1));
+    if (mean_nodes >= 0) std::printf("   %.1f nodes, %.1f elements a tick", mean_nodes, mean_elements);
+    std::printf("\n");
+  }
+};
+
+/// A ball of 50 mm with bumps, closed, of about `triangles`.
+Part bumpyBall(int triangles) {
+  Part part;
+  const int n = static_cast<int>(std::sqrt(triangles / 4.0)), m = 2 * n;
+  const auto at = [&](int i, int j) {
+    if (i == 0) return 0;
+    if (i == n) return 1;
+    return 2 + (i - 1) * m + j % m;
+  };
+  part.points = {{0, 0, 0.05}, {0, 0, -0.05}};
+  for (int i = 1; i < n; ++i)
+    for (int j = 0; j < m; ++j) {
+      const double a = std::numbers::pi * i / n, b = 2 * std::numbers::pi * j / m;
+      const double r = 0.05 + 0.003 * std::sin(5 * a) * std::cos(7 * b) * std::sin(a) * std::sin(a);
+      part.points.push_back({r * std::sin(a) * std::cos(b), r * std::sin(a) * std::sin(b), r * std::cos(a)});
+    }
+  const auto add = [&](int a, int b, int c) {
+    brep::Triangle t;
+    t.corner = {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)};
+    part.triangles.push_back(t);
+  };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < m; ++j) {
+      if (i < n - 1) add(at(i, j), at(i + 1, j), at(i + 1, j + 1));
+      if (i > 0) add(at(i, j), at(i + 1, j + 1), at(i, j + 1));
+    }
+  brep::Body body;
+  body.kind = brep::BodyKind::kMesh;
+  body.flags = brep::kClosed;
+  body.point_count = static_cast<std::uint32_t>(part.points.size());
+  body.triangle_count = static_cast<std::uint32_t>(part.triangles.size());
+  part.bodies.push_back(body);
+  brep::Instance instance;
+  instance.body = 0;
+  part.instances.push_back(instance);
+  return part;
+}
+
+/// Walks of `step` metres a tick over the surface, 1 mm outside to 0.5 mm inside, that begin at random places.
+std::vector<Vector3d> strokes(const Model& model, double step, int count) {
+  brep::Tracer guide(model);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::normal_distribution<double> normal;
+  std::vector<Vector3d> path;
+  const Eigen::AlignedBox3d box = model.bounds();
+  Vector3d p = box.center(), way = Vector3d::UnitX();
+  for (int i = 0; i < count; ++i) {
+    if (i % 1000 == 0) {
+      p = box.min() + Vector3d(share(random), share(random), share(random)).cwiseProduct(box.sizes());
+      way = Vector3d(normal(random), normal(random), normal(random)).normalized();
+    }
+    const contact::Foot foot = guide.nearest(p);
+    const double height = -0.00025 + 0.00075 * std::sin(1e-2 * i);
+    way = (way - way.dot(foot.normal) * foot.normal).stableNormalized();
+    p = foot.point + height * foot.normal + step * way;
+    path.push_back(p);
+  }
+  return path;
+}
+
+void measureWalks(const Model& model, const char* what, const std::vector<Vector3d>& path) {
+  brep::Search search(model);
+  Times times;
+  double nodes = 0, elements = 0, sum = 0;
+  std::size_t unproved = 0;
+  for (int round = 0; round < 2; ++round)  // the first one warms the caches up
+    for (const Vector3d& p : path) {
+      const auto begin = Clock::now();
+      const brep::Nearest& found = search.nearest(p);
+      const auto end = Clock::now();
+      if (round == 0) continue;
+      times.ns.push_back(nanoseconds(end - begin));
+      nodes += found.nodes;
+      elements += found.elements;
+      unproved += !found.proved;
+      sum += found.hit.d2;
+    }
+  const auto count = static_cast<double>(path.size());
+  times.print(what, nodes / count, elements / count);
+  if (unproved > 0) std::printf("      %zu of %zu feet not proved (sum %.3g)\n", unproved, path.size(), sum);
+}
+
+void measureContact(const Model& model, const std::vector<Vector3d>& path) {
+  brep::Tracer tracer(model);
+  Times times;
+  for (const Vector3d& p : path) {
+    const auto begin = Clock::now();
+    tracer.step(p, {});
+    times.ns.push_back(nanoseconds(Clock::now() - begin));
+  }
+  times.print("contact tick, 0.3 m/s");
+  std::printf(
+      "      %llu nearest, %llu held, %llu degraded\n", static_cast<unsigned long long>(tracer.counts().nearest),
+      static_cast<unsigned long long>(tracer.counts().held), static_cast<unsigned long long>(tracer.counts().degraded));
+}
+
+void measurePeers(const Model& model, const std::vector<Vector3d>& path, const std::vector<Vector3d>& cold) {
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  for (const auto& t : model.part().triangles) corners.push_back(t.corner);
+  brep::Search search(model);
+  for (const auto& peer : makePeers(model.part().points, corners)) {
+    Times tracked, from_cold;
+    Vector3d near = path[0], last = path[0];
+    double distance = std::numeric_limits<double>::infinity(), worst = 0;
+    for (const Vector3d& p : path) {
+      const double bound = (distance + (p - last).norm()) * (1 + 1e-5) + 1e-7;
+      const auto begin = Clock::now();
+      distance = peer->distance(p, bound, near);
+      tracked.ns.push_back(nanoseconds(Clock::now() - begin));
+      worst = std::max(worst, std::abs(distance - search.nearest(p).distance()));
+      last = p;
+    }
+    for (const Vector3d& p : cold) {
+      const auto begin = Clock::now();
+      peer->distance(p, std::numeric_limits<double>::infinity(), near);
+      from_cold.ns.push_back(nanoseconds(Clock::now() - begin));
+    }
+    tracked.print((peer->name() + ", tracked").c_str());
+    from_cold.print((peer->name() + ", cold").c_str());
+    std::printf("      differs from ours by at most %.2g m\n", worst);
+  }
+}
+
+void measure(Part part, const char* name) {
+  const std::size_t faces = part.faces.size() + part.triangles.size();
+  const auto begin = Clock::now();
+  const Model model(std::move(part));
+  const double load = nanoseconds(Clock::now() - begin) * 1e-6;
+  std::printf("%s: %zu faces or triangles, built in %.1f ms, %.0f bytes each, %zu leaves, %zu curve pieces\n", name,
+              faces, load, static_cast<double>(model.bytes()) / static_cast<double>(faces), model.leafCount(),
+              model.pieceCount());
+  constexpr int kTicks = 50000;
+  const auto slow = strokes(model, 1e-4, kTicks), middle = strokes(model, 3e-4, kTicks),
+             fast = strokes(model, 1e-3, kTicks);
+  measureWalks(model, "walk, 0.1 m/s", slow);
+  measureWalks(model, "walk, 0.3 m/s", middle);
+  measureWalks(model, "walk, 1 m/s", fast);
+  measureContact(model, middle);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> share(-0.3, 1.3);
+  std::vector<Vector3d> cold(5000);
+  for (Vector3d& p : cold)
+    p = model.bounds().min() +
+        Vector3d(share(random), share(random), share(random)).cwiseProduct(model.bounds().sizes());
+  measureWalks(model, "cold queries", cold);
+  if (model.part().faces.empty()) measurePeers(model, std::vector(middle.begin(), middle.begin() + 10000), cold);
+}
+
+}  // namespace
+}  // namespace hapticd::bench
+
+int main(int count, char** files) {
+  using namespace hapticd;
+  if (count < 2) {
+    bench::measure(brep::samples::bracket(), "bracket");
+    bench::measure(brep::samples::torus(20, 6), "torus");
+    bench::measure(brep::samples::plate(58, 57, 1, 3, 2), "plate with 3306 holes");
+    bench::measure(brep::samples::plate(100, 100, 1, 3, 2), "plate with 10,000 holes");
+    bench::measure(bench::bumpyBall(100000), "bumpy ball");
+    bench::measure(bench::bumpyBall(1000000), "bumpy ball");
+  }
+  for (int i = 1; i < count; ++i) {
+    std::ifstream in(files[i], std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    const auto begin = bench::Clock::now();
+    brep::Part part = brep::readPart(std::as_bytes(std::span(bytes)), files[i]);
+    std::printf("%s: %zu bytes, read in %.1f ms\n", files[i], bytes.size(),
+                bench::nanoseconds(bench::Clock::now() - begin) * 1e-6);
+    bench::measure(std::move(part), files[i]);
+  }
+}

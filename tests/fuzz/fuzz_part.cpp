@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+/// Part files: any bytes through the reader, and parts with spoilt words (which no checksum stands before) through the
+/// checks, the model and some ticks. What passes the checks must give finite answers in bounded time.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <span>
+
+#include "kernels/brep/part_file.hpp"
+#include "kernels/brep/part_sections.hpp"
+#include "kernels/brep/tracer.hpp"
+#include "unit/plugins/kernels/brep/sample_solids.hpp"
+
+namespace {
+
+using namespace hapticd;
+using brep::Part;
+using Eigen::Vector3d;
+
+void need(bool good) {
+  if (!good) std::abort();
+}
+
+const std::vector<Part>& samples() {
+  static const std::vector<Part> parts{
+      brep::samples::cappedCylinder(10, 20), brep::samples::bracket(),    brep::samples::sphere(15),
+      brep::samples::cone(10, 20),           brep::samples::torus(20, 6), brep::samples::plate(3, 2, 1.5, 5, 3)};
+  return parts;
+}
+
+/// Six bytes an edit: section, place, what is written there.
+Part spoilt(std::span<const std::uint8_t> input) {
+  Part part = samples()[input[0] % samples().size()];
+  for (std::size_t at = 1; at + 6 <= input.size(); at += 6) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, input.data() + at + 2, sizeof value);
+    int section = 0;
+    forEachSection(part, [&](const char*, auto& records) {
+      if (section++ != input[at] % 13 || records.empty()) return;
+      const std::size_t words = records.size() * sizeof records[0] / 4;
+      const std::size_t word = input[at + 1] * words / 256 + (input[at] / 13) % (words / 256 + 1);
+      std::memcpy(reinterpret_cast<char*>(records.data()) + 4 * (word % words), &value, sizeof value);
+    });
+  }
+  return part;
+}
+
+void trace(Part part) {
+  const brep::Model model(std::move(part));
+  brep::Tracer tracer(model);
+  const Eigen::AlignedBox3d box = model.bounds();
+  for (int i = 0; i < 40; ++i) {
+    const double share = i / 39.0;
+    const Vector3d p = box.min() + share * box.sizes() + Vector3d(1e-3, -2e-3, 1e-3 * std::sin(i));
+    const contact::Foot foot = tracer.step(p, {});
+    if (!contact::found(foot)) continue;
+    need(foot.point.allFinite() && foot.normal.allFinite() && std::isfinite(foot.depth));
+    need(std::abs(foot.depth) <= foot.distance * (1 + 1e-9) + 1e-12);
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  try {
+    brep::readPart(std::as_bytes(std::span(data, size)), "fuzz");
+  } catch (const brep::PartError&) {
+  }
+  const Part part = spoilt({data, size});
+  try {
+    brep::checkPart(part);
+  } catch (const brep::PartError&) {
+    return 0;
+  }
+  const std::string file = brep::writePart(part);
+  need(brep::writePart(brep::readPart(std::as_bytes(std::span(file)), "fuzz")) == file);
+  try {
+    trace(part);
+  } catch (const std::invalid_argument&) {
+  }
+  return 0;
+}

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/brep/search.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "sample_parts.hpp"
+
+namespace hapticd::brep {
+namespace {
+
+using Eigen::Vector3d;
+
+Vector3d randomIn(std::mt19937& random, const Vector3d& lo, const Vector3d& hi) {
+  std::uniform_real_distribution<double> share(0, 1);
+  return lo + Vector3d(share(random), share(random), share(random)).cwiseProduct(hi - lo);
+}
+
+/// Distance to the surface of a solid cylinder of radius r about z from 0 to h.
+double cylinderDistance(const Vector3d& p, double r, double h) {
+  const double out = std::hypot(p.x(), p.y()) - r, below = -p.z(), above = p.z() - h;
+  const double up = std::max(below, above);
+  if (out <= 0 && up <= 0) return std::min(-out, -up);
+  return std::hypot(std::max(out, 0.0), std::max(up, 0.0));
+}
+
+TEST(Search, FindsTheNearestPointOfACappedCylinder) {
+  const Model model(samples::cappedCylinder(10, 20));
+  Search search(model);
+  std::mt19937 random(1);
+  double worst = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const Vector3d p = randomIn(random, {-0.02, -0.02, -0.01}, {0.02, 0.02, 0.03});
+    const Nearest& found = search.nearest(p);
+    ASSERT_TRUE(found.found() && found.proved);
+    const double truth = cylinderDistance(p, 0.010, 0.020);
+    worst = std::max(worst, std::abs(found.distance() - truth));
+    ASSERT_NEAR(found.distance(), truth, 1e-15) << p.transpose();
+    EXPECT_NEAR((found.hit.point - p).norm(), found.distance(), 1e-15);
+  }
+  std::printf("worst error %.2g m\n", worst);
+}
+
+/// Slow walks go on without a search where the last one still proves the foot: that must change no answer.
+TEST(Search, SkipsChangeNoAnswer) {
+  const Model model(samples::cappedCylinder(10, 20));
+  Search walking(model), cold(model);
+  std::mt19937 random(2);
+  std::normal_distribution<double> step(0, 1e-4);
+  Vector3d p(0.011, 0, 0.005);
+  int skipped = 0;
+  for (int i = 0; i < 200000; ++i) {
+    p += Vector3d(step(random), step(random), step(random));
+    if (p.norm() > 0.04) p *= 0.5;
+    cold.reset();
+    const Nearest& found = walking.nearest(p);
+    skipped += found.nodes == 0;
+    ASSERT_NEAR(found.distance(), cold.nearest(p).distance(), 1e-15);
+  }
+  EXPECT_GT(skipped, 50000);
+}
+
+}  // namespace
+}  // namespace hapticd::brep

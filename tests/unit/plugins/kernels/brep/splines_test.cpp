@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+/// Feet on spline faces, against dense sampling and closed forms.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "kernels/brep/tracer.hpp"
+#include "kernels/trace/model.hpp"
+#include "sample_splines.hpp"
+#include "traced_shape/model_file.hpp"
+
+namespace hapticd::brep {
+namespace {
+
+using Eigen::Vector3d;
+
+const std::string kModels = HAPTICD_SOURCE_DIR "/config/models/";
+
+/// The nearest point of all patches, by Newton from a dense grid on each: slow, and sure.
+double denseDistance(const std::vector<spline::Surface>& surfaces, const Vector3d& p) {
+  constexpr int kGrid = 24;
+  double best = 1e9;
+  spline::SurfacePoint E;
+  for (const spline::Surface& s : surfaces) {
+    const auto us = s.domain(0), vs = s.domain(1);
+    for (int i = 0; i <= kGrid; ++i)
+      for (int j = 0; j <= kGrid; ++j) {
+        s.evaluate1(us[0] + (us[1] - us[0]) * i / kGrid, vs[0] + (vs[1] - vs[0]) * j / kGrid, E);
+        best = std::min(best, (E.S - p).norm());
+      }
+  }
+  return best;
+}
+
+void expectAsNearAsTraceFinds(const std::string& file, double tolerance) {
+  const ModelFile model_file = readModelFile(kModels + file);
+  const trace::Model other(model_file.surfaces);
+  const Model model(samples::sheetOf(model_file.surfaces));
+  std::vector<spline::Surface> surfaces;
+  for (const auto& data : model_file.surfaces) surfaces.emplace_back(data);
+  Tracer tracer(model);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> share(-0.2, 1.2);
+  const Vector3d size = model.bounds().sizes();
+  trace::Found found;
+  int proved = 0, queries = 0;
+  double worse = 0, better = 0;
+  for (; queries < 3000; ++queries) {
+    const Vector3d p = model.bounds().min() + Vector3d(share(random), share(random), share(random)).cwiseProduct(size);
+    const contact::Foot foot = tracer.nearest(p);
+    other.search(p, 1, found);
+    proved += foot.status == contact::FootStatus::kNearest;
+    const double excess = foot.distance - found.nearest[0].distance;
+    worse = std::max(worse, excess);
+    better = std::max(better, -excess);
+    ASSERT_LE(excess, tolerance) << file << " " << p.transpose();
+    ASSERT_LE(foot.distance, denseDistance(surfaces, p) + 1e-12);
+  }
+  std::printf("%s: excess at most %.2g m, nearer by at most %.2g m, %.1f %% proved\n", file.c_str(), worse, better,
+              100.0 * proved / queries);
+  EXPECT_GT(proved, 0.25 * queries);  // many are far inside, beyond centres of curvature
+}
+
+TEST(SplineFeet, OfTheTeapot) {
+  expectAsNearAsTraceFinds("teapot.yaml", 1e-10);
+}
+TEST(SplineFeet, OfTheGoblet) {
+  expectAsNearAsTraceFinds("goblet.yaml", 1e-10);
+}
+TEST(SplineFeet, OfTheTorus) {
+  expectAsNearAsTraceFinds("torus.yaml", 1e-10);
+}
+TEST(SplineFeet, OfTheSphere) {
+  expectAsNearAsTraceFinds("sphere.yaml", 1e-10);
+}
+
+}  // namespace
+}  // namespace hapticd::brep
