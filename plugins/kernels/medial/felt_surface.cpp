@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/medial/felt_surface.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "kernels/medial/unilateral.hpp"
+
+namespace hapticd::medial {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector4d;
+
+constexpr double kAsleep = 1e-7;  ///< [m] amplitude below which no one sees or feels a node move
+constexpr double kNearby = 1e-6;  ///< [m] a probe so near to a surface touches it
+/// The step of an undamped node is a rotation: rounding may turn it into a growing spiral, by at most a few units in
+/// the last place a tick. So much is taken off.
+constexpr double kRoundingLoss = 4e-15;
+constexpr double kSameStep = 1e-9;  ///< relative difference of two dt for which one prepared step serves
+constexpr int kMostSweeps = 64;     ///< of several contacts over each other
+constexpr double kSettled = 1e-15;  ///< [N] change of a force that ends the sweeps, beside a share of it
+constexpr double kSameForce = 1e-13;
+
+bool same(const Tissue& a, const Tissue& b) {
+  return a.stiffness == b.stiffness && a.damping == b.damping && a.mass == b.mass &&
+         a.relaxation_share == b.relaxation_share && a.relaxation_time == b.relaxation_time;
+}
+
+Vector4d inwardOf(const Vector3d& normal) noexcept {
+  Vector4d inward;
+  inward << -normal, -1;
+  return inward;
+}
+
+}  // namespace
+
+FeltSurface::FeltSurface(Nodes& nodes, const std::vector<Tissue>& tissue, std::vector<double> compliance, double ratio,
+                         double dt)
+    : nodes_(&nodes), compliance_(std::move(compliance)), ratio_(ratio) {
+  if (tissue.size() != 1 && tissue.size() != nodes.count())
+    throw std::invalid_argument("felt surface: " + std::to_string(tissue.size()) + " materials, expected 1 or " +
+                                std::to_string(nodes.count()));
+  if (compliance_.size() != nodes.count()) throw std::invalid_argument("felt surface: one compliance a node expected");
+  const double g = nodes.options().split;
+  shares_ << g, g, g, 1 - g;
+  for (const Tissue& t : tissue) share_ = std::max(share_, t.relaxation_share);
+  take(tissue, dt);
+  touched_.assign(nodes.count(), 0);
+}
+
+void FeltSurface::take(const std::vector<Tissue>& tissue, double dt) {
+  std::vector<Tissue> known;
+  std::vector<uint16_t> which;
+  for (const Tissue& t : tissue) {
+    auto found = std::find_if(known.begin(), known.end(), [&t](const Tissue& other) { return same(t, other); });
+    if (found == known.end()) {
+      if (known.size() > UINT16_MAX) throw std::invalid_argument("more than 65536 materials");
+      found = known.insert(known.end(), t);
+      Material& material = materials_.emplace_back();
+      material.element = elementOf(t, ratio_);
+      if (material.element.branch > 0) branch_.assign(nodes_->count(), Vector4d::Zero());
+      if (dt > 0) prepare(material, dt);
+      settle_ = std::max(settle_, medial::settleTime(material.damped, kAsleep));
+    }
+    which.push_back(static_cast<uint16_t>(found - known.begin()));
+  }
+  materials_.shrink_to_fit();
+  if (materials_.size() > 1) which_ = std::move(which);
+}
+
+void FeltSurface::prepare(Material& material, double dt) noexcept {
+  if (std::fabs(dt - material.prepared) <= kSameStep * dt) return;
+  material.prepared = dt;
+  material.damped = dampedForTick(material.element, dt);
+  const SurfaceElement& e = material.damped;
+  material.time_scale2 = e.stiffness > 0 ? e.mass / e.stiffness : 0;
+  ViscoelasticStep s = viscoelasticStep(e, dt);
+  for (double* x : {&s.xx, &s.xv, &s.xy, &s.vx, &s.vv, &s.vy, &s.yx, &s.yv, &s.yy}) *x *= 1 - kRoundingLoss;
+  material.step = s;
+}
+
+/// Held compliance h = sum of weight^2 * compliance / stiffness of the nodes; scale^2 * h is that of the material here.
+void FeltSurface::fit(FeltPlace& place) const noexcept {
+  double h = 0, hu = 0, hv = 0;
+  for (std::size_t i = 0; i < place.count; ++i) {
+    const PlaceNode& part = place.nodes[i];
+    const double stiffness = materialOf(part.node).element.stiffness;
+    if (!(stiffness > 0)) continue;
+    const double soft = part.weight * compliance_[part.node] / stiffness;
+    h += part.weight * soft;
+    hu += part.weight_u * soft;
+    hv += part.weight_v * soft;
+  }
+  place.contact = place.scale = 0;
+  if (!(h > 0) || !(place.stiffness > 0)) return;
+  const double ratio = contactRatio();
+  place.contact = ratio * place.stiffness;
+  place.scale = 1 / std::sqrt(place.stiffness * ratio / (ratio - 1) * h);
+  place.ripple = {-hu / h, -hv / h};
+}
+
+/// [m] by which the contour has given way at a place.
+double FeltSurface::shift(const FeltPlace& place) const noexcept {
+  const Vector4d inward = inwardOf(place.normal);
+  double sum = 0;
+  for (std::size_t i = 0; i < place.count; ++i)
+    sum += place.nodes[i].weight * inward.dot(nodes_->nodes_[place.nodes[i].node].x);
+  return place.scale * sum;
+}
+
+/// [m/N] by how much the contour at `a` gives way within a tick to a force at `b` of 1 N.
+double FeltSurface::give(const FeltPlace& a, const FeltPlace& b, double dt) noexcept {
+  const double along = inwardOf(a.normal).cwiseProduct(shares_).dot(inwardOf(b.normal));
+  double sum = 0;
+  const auto add = [&](uint32_t node, double weights) {
+    Material& material = materialOf(node);
+    prepare(material, dt);
+    sum += weights * compliance_[node] * material.step.xf;
+  };
+  if (&a == &b) {
+    for (std::size_t i = 0; i < a.count; ++i) add(a.nodes[i].node, a.nodes[i].weight * a.nodes[i].weight);
+  } else {
+    for (std::size_t i = 0; i < a.count; ++i)
+      for (std::size_t j = 0; j < b.count; ++j)
+        if (a.nodes[i].node == b.nodes[j].node) add(a.nodes[i].node, a.nodes[i].weight * b.nodes[j].weight);
+  }
+  return a.scale * b.scale * along * sum;
+}
+
+bool FeltSurface::wake(uint32_t node) noexcept {
+  nodes_->wake(node);
+  touched_[node] = tick_;
+  return true;
+}
+
+/// The surface as it is under a press that has been held for long.
+void FeltSurface::hold(FeltContact& contact) noexcept {
+  const FeltPlace& place = contact.place;
+  const double ratio = contactRatio();
+  const double lag = contact.depth * (1 - 1 / ratio) - shift(place);
+  if (!(lag > 0) || !(place.scale > 0)) return;
+  const double force = lag * place.stiffness * ratio / (ratio - 1);
+  const Vector4d push = place.scale * force * shares_.cwiseProduct(inwardOf(place.normal));
+  for (std::size_t i = 0; i < place.count; ++i) {
+    const PlaceNode& part = place.nodes[i];
+    const double stiffness = materialOf(part.node).element.stiffness;
+    if (!(stiffness > 0) || part.weight == 0) continue;
+    wake(part.node);
+    const Vector4d moved = part.weight * compliance_[part.node] / stiffness * push;
+    nodes_->nodes_[part.node].x += moved;
+    if (!branch_.empty()) branch_[part.node] += moved;
+  }
+}
+
+void FeltSurface::swing(double dt) noexcept {
+  for (const uint32_t i : nodes_->awake_) {
+    Nodes::Node& node = nodes_->nodes_[i];
+    Material& material = materialOf(i);
+    prepare(material, dt);
+    const ViscoelasticStep& s = material.step;
+    Vector4d x = s.xx * node.x + s.xv * node.v, v = s.vx * node.x + s.vv * node.v;
+    if (!branch_.empty()) {
+      Vector4d& y = branch_[i];
+      x += s.xy * y;
+      v += s.vy * y;
+      y = s.yx * node.x + s.yv * node.v + s.yy * y;
+    }
+    node.x = x;
+    node.v = v;
+  }
+}
+
+/// The forces of all contacts together: each answers to the surface as the others leave it, until none changes. The
+/// surface yields symmetrically, and each contact less to another than to itself, so this ends.
+void FeltSurface::solve(double dt, std::span<FeltContact> contacts) noexcept {
+  Give gives;
+  std::array<double, kMaxContacts> ahead;
+  const std::size_t count = contacts.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    contacts[i].mean = 0;
+    ahead[i] = contacts[i].depth - shift(contacts[i].place);
+    for (std::size_t j = 0; j <= i; ++j) gives[i][j] = gives[j][i] = give(contacts[i].place, contacts[j].place, dt);
+  }
+  for (int sweep = 0; sweep < (count > 1 ? kMostSweeps : 1); ++sweep) {
+    bool settled = true;
+    for (std::size_t i = 0; i < count; ++i) {
+      FeltContact& contact = contacts[i];
+      double rest = ahead[i];
+      for (std::size_t j = 0; j < count; ++j)
+        if (j != i) rest -= gives[i][j] * contacts[j].mean;
+      const double force = meanContactForce(contact.place.contact, contact.before, rest, gives[i][i]);
+      settled &= std::fabs(force - contact.mean) <= kSettled + kSameForce * force;
+      contact.mean = force;
+      contact.inside = rest - gives[i][i] * force;
+    }
+    if (settled) break;
+  }
+  for (FeltContact& contact : contacts) push(contact);
+}
+
+void FeltSurface::push(const FeltContact& contact) noexcept {
+  const FeltPlace& place = contact.place;
+  if (!(contact.mean > 0)) return;
+  const Vector4d pushed = place.scale * contact.mean * shares_.cwiseProduct(inwardOf(place.normal));
+  for (std::size_t i = 0; i < place.count; ++i) {
+    const PlaceNode& part = place.nodes[i];
+    if (part.weight == 0) continue;
+    const ViscoelasticStep& s = materialOf(part.node).step;
+    wake(part.node);
+    const Vector4d force = part.weight * compliance_[part.node] * pushed;
+    nodes_->nodes_[part.node].x += s.xf * force;
+    nodes_->nodes_[part.node].v += s.vf * force;
+    if (!branch_.empty()) branch_[part.node] += s.yf * force;
+  }
+}
+
+/// Nodes at a place that a probe touches, or nearly does, move on however little: none is set down under a probe.
+void FeltSurface::keepAwake(std::span<const FeltContact> contacts) noexcept {
+  for (const FeltContact& contact : contacts)
+    if (contact.inside > -kNearby)
+      for (std::size_t i = 0; i < contact.place.count; ++i) touched_[contact.place.nodes[i].node] = tick_;
+}
+
+/// Nodes that no contact holds and no one feels move any more. @returns whether one was put to rest
+bool FeltSurface::letSleep() noexcept {
+  bool some = false;
+  std::vector<uint32_t>& awake = nodes_->awake_;
+  for (std::size_t k = 0; k < awake.size();) {
+    const uint32_t i = awake[k];
+    Nodes::Node& node = nodes_->nodes_[i];
+    double amplitude2 = node.x.squaredNorm() + materialOf(i).time_scale2 * node.v.squaredNorm();
+    if (!branch_.empty()) amplitude2 += branch_[i].squaredNorm();
+    if (touched_[i] == tick_ || amplitude2 > kAsleep * kAsleep) {
+      ++k;
+      continue;
+    }
+    node = Nodes::Node{};  // also what is not a number
+    if (!branch_.empty()) branch_[i].setZero();
+    nodes_->is_awake_[i] = 0;
+    awake[k] = awake.back();
+    awake.pop_back();
+    some = true;
+  }
+  return some;
+}
+
+/// The displacement is s(u, v, normal): it changes with the foot and with the direction that the probe is in.
+Vector3d FeltSurface::slopeAt(const FeltPlace& place) const noexcept {
+  const Vector4d inward = inwardOf(place.normal);
+  double s = 0, su = 0, sv = 0;
+  Vector3d moved = Vector3d::Zero();
+  for (std::size_t i = 0; i < place.count; ++i) {
+    const PlaceNode& part = place.nodes[i];
+    const Vector4d& x = nodes_->nodes_[part.node].x;
+    const double along = inward.dot(x);
+    s += part.weight * along;
+    su += part.weight_u * along;
+    sv += part.weight_v * along;
+    moved += part.weight * x.head<3>();
+  }
+  su += place.ripple[0] * s;
+  sv += place.ripple[1] * s;
+  const Vector3d aside = place.turn * (moved - moved.dot(place.normal) * place.normal);
+  su += aside.dot(place.tangent_u);  // the foot follows a part of the way: the normal turns by the rest
+  sv += aside.dot(place.tangent_v);
+  return place.scale * (su * place.toward_u + sv * place.toward_v - aside);
+}
+
+void FeltSurface::advance(double dt, std::span<FeltContact> contacts) noexcept {
+  contacts = contacts.first(std::min(contacts.size(), static_cast<std::size_t>(kMaxContacts)));
+  ++tick_;
+  for (FeltContact& contact : contacts) {
+    fit(contact.place);
+    if (contact.placed) hold(contact);
+    if (!contact.known || contact.placed) contact.before = contact.depth - shift(contact.place);
+  }
+  if (dt > 0) {
+    if (dt >= settle_ && contacts.empty()) return reset();
+    swing(dt);
+    solve(dt, contacts);
+  } else {
+    for (FeltContact& contact : contacts) contact.inside = contact.depth - shift(contact.place);
+  }
+  keepAwake(contacts);
+  const bool changed = letSleep();
+  for (FeltContact& contact : contacts) {
+    if (changed && contact.inside <= -kNearby) contact.inside = contact.depth - shift(contact.place);
+    contact.force = contact.place.contact * std::max(0.0, contact.inside);
+    contact.slope = contact.force > 0 ? slopeAt(contact.place) : Vector3d(Vector3d::Zero());
+  }
+}
+
+void FeltSurface::reset() noexcept {
+  if (!branch_.empty())
+    for (const uint32_t i : nodes_->awake_) branch_[i].setZero();
+  nodes_->clear();
+}
+
+double FeltSurface::energy(std::span<const FeltContact> contacts) const noexcept {
+  double sum = 0;
+  for (const FeltContact& contact : contacts)
+    sum += 0.5 * contact.place.contact * std::pow(std::max(0.0, contact.inside), 2);
+  Vector4d stiff;
+  for (Eigen::Index k = 0; k < 4; ++k) stiff[k] = shares_[k] > 0 ? 1 / shares_[k] : 0;
+  for (const uint32_t i : nodes_->awake_) {
+    const Nodes::Node& node = nodes_->nodes_[i];
+    const SurfaceElement& e = materialOf(i).damped;
+    const auto square = [&stiff](const Vector4d& x) { return x.cwiseProduct(stiff).dot(x); };
+    double twice = e.stiffness * square(node.x) + e.mass * square(node.v);
+    if (!branch_.empty()) twice += e.branch * square(node.x - branch_[i]);
+    if (compliance_[i] > 0) sum += 0.5 * twice / compliance_[i];
+  }
+  return sum;
+}
+
+std::size_t FeltSurface::bytes() const noexcept {
+  return sizeof *this + materials_.capacity() * sizeof(Material) + which_.capacity() * sizeof(uint16_t) +
+         compliance_.capacity() * sizeof(double) + branch_.capacity() * sizeof(Vector4d) +
+         touched_.capacity() * sizeof(uint32_t);
+}
+
+}  // namespace hapticd::medial
