@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: MIT
+"""Programs beside a running hapticd: read what it does every tick, move models, push on arms.
+
+    import hapticd
+
+    with hapticd.connect() as daemon:
+        print(daemon.models["teapot"].parameters["stiffness"].value)
+        rows = daemon.rows("ticks", last=1000)            # a numpy array; rows["arm0_sent_fx"] in N
+        with daemon.lead_model("door") as door:
+            door.put([0.1, 0, 0])                         # m; at most 1 m/s and 20 m/s^2
+
+SI units; vectors in the world frame: x to the right, y up, z toward the user; quaternions are w, x, y, z. Needs nothing
+but Python; with numpy, rows are structured arrays, without it lists of tuples.
+"""
+from ._client import Client, Events, connect
+from ._error import HapticdError, Refused
+from ._lead import PoseLead
+from ._models import Model, Parameter
+from ._rows import Column, Stream
+
+__all__ = ["Client", "Column", "Events", "HapticdError", "Model", "Parameter", "PoseLead", "Refused", "Stream", "connect"]

@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: MIT
+"""The connection to a daemon."""
+from __future__ import annotations
+
+import array
+import fcntl
+import json
+import os
+import select
+import socket
+import stat
+import time
+from typing import Any, Iterator, Optional
+
+from ._error import HapticdError, Refused
+from ._lead import PoseLead
+from ._models import Model
+from ._rows import BlackBox, Stream
+
+_MOST_LINE = 1 << 24
+
+
+def _in_memory(folder: str) -> bool:
+    """The folder is on a file system in memory, as the daemon asks of its own."""
+    try:
+        with open("/proc/self/mountinfo", encoding="utf-8") as mounts:
+            best, kind = "", ""
+            real = os.path.realpath(folder)
+            for line in mounts:
+                fields = line.split()
+                point, rest = fields[4], fields[fields.index("-") + 1]
+                if (real + "/").startswith(point.rstrip("/") + "/") and len(point) >= len(best):
+                    best, kind = point, rest
+            return kind in ("tmpfs", "ramfs")
+    except OSError:
+        return False
+
+
+def runtime_folder(name: str) -> str:
+    """Where a daemon of this name shows itself; see control.md."""
+    folders = []
+    if os.environ.get("RUNTIME_DIRECTORY"):
+        folders.append(os.environ["RUNTIME_DIRECTORY"].split(":")[0])
+    if os.environ.get("XDG_RUNTIME_DIR") and _in_memory(os.environ["XDG_RUNTIME_DIR"]):
+        folders.append(os.path.join(os.environ["XDG_RUNTIME_DIR"], "hapticd"))
+    folders += ["/run/hapticd", f"/dev/shm/hapticd-{os.geteuid()}"]
+    for folder in folders:
+        try:
+            if stat.S_ISSOCK(os.stat(os.path.join(folder, name + ".sock")).st_mode):
+                return folder
+        except OSError:
+            continue
+    raise HapticdError(f"no daemon named {name} shows itself in {', '.join(folders)}\n"
+                       "  fix: start one with hapticd run, or name it: hapticd.connect(NAME)")
+
+
+class _Line:
+    """A socket of lines of JSON, with the descriptors that come along."""
+
+    def __init__(self, file: str) -> None:
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        try:
+            self._socket.connect(file)
+        except OSError as error:
+            self._socket.close()
+            raise HapticdError(f"no daemon answers at {file}: {error.strerror}") from None
+        self._heard = b""
+        self._descriptors: list[int] = []
+
+    def say(self, request: dict[str, Any]) -> None:
+        try:
+            self._socket.sendall(json.dumps(request).encode() + b"\n")
+        except OSError as error:
+            raise HapticdError(f"the daemon is gone: {error.strerror}") from None
+
+    def hear(self, timeout: Optional[float]) -> Optional[dict[str, Any]]:
+        """The next line; None: there was none in time."""
+        end = None if timeout is None else time.monotonic() + timeout
+        while b"\n" not in self._heard:
+            if self._socket.fileno() < 0:
+                return None
+            left = None if end is None else max(end - time.monotonic(), 0)
+            if not select.select([self._socket], [], [], left)[0]:
+                return None
+            try:
+                data, ancillary, _, _ = self._socket.recvmsg(1 << 16, socket.CMSG_SPACE(16), socket.MSG_CMSG_CLOEXEC)
+            except OSError as error:
+                raise HapticdError(f"the daemon is gone: {error.strerror}") from None
+            for level, kind, content in ancillary:
+                if level == socket.SOL_SOCKET and kind == socket.SCM_RIGHTS:
+                    fds = array.array("i")
+                    fds.frombytes(content[:len(content) - len(content) % fds.itemsize])
+                    self._descriptors += fds
+            if not data or len(self._heard) > _MOST_LINE:
+                raise HapticdError("the daemon is gone")
+            self._heard += data
+        line, self._heard = self._heard.split(b"\n", 1)
+        return json.loads(line)
+
+    def descriptor(self) -> int:
+        """The one that came with the last line."""
+        if not self._descriptors:
+            raise HapticdError("the daemon sent no memory along with its answer")
+        fd, rest = self._descriptors[0], self._descriptors[1:]
+        self._descriptors = []
+        for other in rest:
+            os.close(other)
+        return fd
+
+    def close(self) -> None:
+        self._socket.close()
+        for fd in self._descriptors:
+            os.close(fd)
+        self._descriptors = []
+
+
+class Events:
+    """What happens in a daemon, as it happens."""
+
+    def __init__(self, line: _Line, patience: float, timeout: Optional[float]) -> None:
+        self._line, self._timeout = line, timeout
+        line.say({"do": "subscribe"})
+        answer = line.hear(patience)
+        if answer is None or not answer.get("ok"):
+            line.close()
+            raise Refused((answer or {}).get("error", "no answer"), (answer or {}).get("code", "timeout"))
+
+    def __iter__(self) -> "Events":
+        return self
+
+    def __next__(self) -> dict[str, Any]:
+        try:
+            event = self._line.hear(self._timeout)
+        except HapticdError:
+            event = None
+        if event is None:
+            self.close()
+            raise StopIteration
+        return event
+
+    def close(self) -> None:
+        """Ends the subscription."""
+        self._line.close()
+
+
+class Client:
+    """A connection to a running daemon. What it leads ends with it. One thread at a time."""
+
+    def __init__(self, name: str = "hapticd", folder: Optional[str] = None, timeout: float = 10) -> None:
+        self.name, self.timeout = name, timeout
+        self._folder = folder or runtime_folder(name)
+        self._base = os.path.join(self._folder, name)
+        self._line = _Line(self._base + ".sock")
+        try:
+            self._box = BlackBox(self._base + ".blackbox.h5")
+        except HapticdError:
+            self._line.close()
+            raise
+        self._asked = 0
+
+    # ---- rows
+
+    @property
+    def about(self) -> dict[str, Any]:
+        """What the daemon says of itself: versions, scene, devices, and unit and meaning of every column."""
+        return self._box.about
+
+    @property
+    def streams(self) -> dict[str, Stream]:
+        """All streams by their names."""
+        return self._box.streams
+
+    def rows(self, stream: str = "ticks", last: int = 1000) -> Any:
+        """The newest rows of a stream, oldest first: a numpy structured array."""
+        return self._box.streams[stream].last(last)
+
+    def follow(self, stream: str = "ticks", timeout: Optional[float] = None, pause: float = 0.01) -> Iterator[Any]:
+        """Rows as they come: arrays of one row or more, without gaps as long as each is taken within what is kept.
+        Ends with the daemon, or where no row came for `timeout` seconds."""
+        rows = self._box.streams[stream]
+        at, since = rows.written, time.monotonic()
+        while True:
+            at, news = rows.read(at)
+            if len(news):
+                at += len(news)
+                since = time.monotonic()
+                yield news
+            elif timeout is not None and time.monotonic() - since > timeout or not self.alive():
+                return
+            else:
+                time.sleep(pause)
+
+    def alive(self) -> bool:
+        """The daemon runs: it holds the lock on its name."""
+        try:
+            with open(self._base + ".lock", "rb") as lock:
+                fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
+                return False
+        except PermissionError:  # another user's: it answers, or it does not
+            return os.path.exists(self._base + ".sock")
+        except BlockingIOError:
+            return True
+        except OSError:
+            return False
+
+    # ---- requests
+
+    def ask(self, **request: Any) -> dict[str, Any]:
+        """Any request of control.md, as ask(do="set", model="teapot", ...). Raises Refused where the daemon refuses."""
+        self._asked += 1
+        self._line.say(dict(request, id=self._asked))
+        while True:
+            answer = self._line.hear(self.timeout)
+            if answer is None:
+                raise HapticdError(f"the daemon did not answer within {self.timeout:g} s")
+            if answer.get("id") != self._asked:
+                continue  # too late for one that was given up
+            if not answer.get("ok"):
+                raise Refused(answer.get("error", "refused"), answer.get("code", "failed"))
+            return answer
+
+    @property
+    def models(self) -> dict[str, Model]:
+        """The models as they are now, by name."""
+        return {facts["name"]: Model(self, facts) for facts in self.ask(do="list")["models"]}
+
+    def status(self) -> dict[str, Any]:
+        """Time, missed ticks, devices with their faults, models that are not felt."""
+        return self.ask(do="status")
+
+    def snapshot(self) -> dict[str, Any]:
+        """Where to begin to read: the next row of each stream, every model with its pose, every device."""
+        return self.ask(do="snapshot")
+
+    def hold(self, device: Optional[str] = None) -> None:
+        """Ramps the force of a device out until it is cleared; of all without a name."""
+        self.ask(do="hold", **({"device": device} if device else {}))
+
+    def clear(self, device: Optional[str] = None) -> None:
+        """Clears a latched fault: the force ramps in."""
+        self.ask(do="clear", **({"device": device} if device else {}))
+
+    def events(self, timeout: Optional[float] = None) -> "Events":
+        """Events from now on, as an iterator over dicts with `event`, `tick`, `t` and what belongs to it. It ends with the
+        daemon, or where none came for `timeout` seconds. On a connection of its own."""
+        return Events(_Line(self._base + ".sock"), self.timeout, timeout)
+
+    # ---- leads
+
+    def lead_model(self, model: str) -> PoseLead:
+        """Leads a kinematic model: it follows with at most 1 m/s and 20 m/s^2."""
+        return self._lead({"model": model})
+
+    def lead_hand(self, device: str) -> PoseLead:
+        """Leads the hand of a simulated arm whose script is `guided`."""
+        return self._lead({"hand": device})
+
+    def _lead(self, target: dict[str, str]) -> PoseLead:
+        answer = self.ask(do="lead", **target)
+        return PoseLead(self._line.descriptor(), answer["bytes"], lambda: self._unlead(target))
+
+    def _unlead(self, target: dict[str, str]) -> None:
+        try:
+            self.ask(do="unlead", **target)
+        except HapticdError:
+            pass  # it has ended with the daemon, or with the model
+
+    def close(self) -> None:
+        """Ends all leads of this connection."""
+        self._line.close()
+        self._box.close()
+
+    def __enter__(self) -> "Client":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def connect(name: str = "hapticd", folder: Optional[str] = None, timeout: float = 10) -> Client:
+    """A client of the daemon that runs as `name`. `folder` is where it shows itself, found without; `timeout` in
+    seconds for an answer."""
+    return Client(name, folder, timeout)

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""Models of a running daemon and their live parameters."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Optional, Sequence
+
+if TYPE_CHECKING:
+    from ._client import Client
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter that may change while the daemon runs."""
+
+    id: str
+    unit: str
+    min: float
+    max: float
+    safety: bool  #: a hand may feel the change suddenly: setting it needs consent
+    value: float
+    whole: bool
+    doc: str
+
+
+class Model:
+    """A model, as it was when the list was asked for."""
+
+    def __init__(self, client: "Client", facts: dict[str, Any]) -> None:
+        self._client = client
+        self.name: str = facts["name"]
+        self.number: int = facts["number"]  #: in the columns `model` of rows
+        self.plugin: str = facts["plugin"]
+        self.enabled: bool = facts["enabled"]
+        self.kinematic: bool = facts["kinematic"]
+        self.leader: Optional[int] = facts["leader"]  #: process that leads it
+        self.position: list[float] = facts["pose"]["position"]  #: m, world frame
+        self.orientation: list[float] = facts["pose"]["orientation"]  #: w, x, y, z
+        self.parameters: dict[str, Parameter] = {p["id"]: Parameter(**p) for p in facts.get("live_parameters", [])}
+
+    def get(self, parameter: str) -> Any:
+        """The value of any parameter, also of those that cannot change."""
+        return self._client.ask(do="get", model=self.name, parameter=parameter)["value"]
+
+    def set(self, parameter: str, value: float, consent: bool = False) -> None:
+        """Sets a live parameter. Whoever holds the arm must agree (`consent`) to what a hand may feel suddenly."""
+        request: dict[str, Any] = {"do": "set", "model": self.name, "parameter": parameter, "value": value}
+        if consent:
+            request["consent"] = True
+        self._client.ask(**request)
+
+    def enable(self) -> None:
+        """Its force fades in."""
+        self._client.ask(do="enable", model=self.name)
+
+    def disable(self) -> None:
+        """Its force fades out; it is traced on."""
+        self._client.ask(do="disable", model=self.name)
+
+    def move(self, position: Sequence[float], seconds: Optional[float] = None) -> float:
+        """Sends a kinematic model to a position [m]. Gives back how many seconds it takes."""
+        request: dict[str, Any] = {"do": "move", "model": self.name, "position": list(position)}
+        if seconds is not None:
+            request["seconds"] = seconds
+        return self._client.ask(**request)["seconds"]

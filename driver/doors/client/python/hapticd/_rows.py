@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: MIT
+"""The black box of a running daemon: the newest rows of every stream, mapped read-only."""
+from __future__ import annotations
+
+import json
+import mmap
+import os
+import struct
+from dataclasses import dataclass
+from typing import Any, Optional
+
+from ._error import HapticdError
+
+try:
+    import numpy
+except ImportError:  # rows are lists of tuples then
+    numpy = None  # type: ignore[assignment]
+
+_HEADER_AT = 512  # see recording.md, "Layout for other writers and readers"
+_HEADER = struct.Struct("<24sIIIIQQQ")
+_STREAM = struct.Struct("<16sIIQQ")
+_BLOCK = struct.Struct("<IIQ")
+_BLOCK_MAGIC = 0x4B4C4248
+_INDEX_NODE = 0xFFFFFFFF
+_CODES = {"f8": "d", "f4": "f", "u8": "Q", "u4": "I", "i4": "i"}
+
+
+@dataclass(frozen=True)
+class Column:
+    """One number of a row: its name, type (f8, f4, u8, u4, i4), place in the row in bytes, unit and meaning."""
+
+    name: str
+    type: str
+    offset: int
+    unit: str
+    doc: str
+
+
+class Stream:
+    """The rows of one stream. Rows are numbered from 0; the newest `capacity` are kept."""
+
+    def __init__(self, memory: mmap.mmap, number: int, name: str, row_bytes: int, capacity: int, rows_at: int,
+                 columns: list[Column]) -> None:
+        self.number, self.name, self.row_bytes, self.capacity = number, name, row_bytes, capacity
+        self.columns = columns
+        self._memory, self._rows_at = memory, rows_at
+        self._count_at = _HEADER_AT + _HEADER.size + number * _STREAM.size + 24
+        self.dtype = None
+        if numpy is not None:
+            self.dtype = numpy.dtype({"names": [c.name for c in columns], "formats": ["<" + c.type for c in columns],
+                                      "offsets": [c.offset for c in columns], "itemsize": row_bytes})
+
+    @property
+    def written(self) -> int:
+        """Rows ever written: the number of the row to come."""
+        return struct.unpack_from("<Q", self._memory, self._count_at)[0]
+
+    def _kept(self, first: int, written: int) -> int:
+        # the slot behind the newest row may be half overwritten already
+        return max(first, written - self.capacity + 1, 0)
+
+    def read(self, first: int, most: Optional[int] = None) -> tuple[int, Any]:
+        """Rows from number `first` on, at most `most`. Those that are not kept any more are left out: gives back the
+        number of the first row that it has, and the rows. Never waits."""
+        while True:
+            written = self.written
+            first = min(self._kept(first, written), written)
+            count = written - first if most is None else min(most, written - first)
+            data = self._copy(first, count)
+            if self._kept(first, self.written) == first:
+                return first, self._parsed(data, count)
+
+    def last(self, count: int) -> Any:
+        """The newest rows, oldest first."""
+        return self.read(max(self.written - count, 0))[1]
+
+    def _copy(self, first: int, count: int) -> bytearray:
+        data = bytearray(count * self.row_bytes)
+        for done in range(0, count):
+            if done and (first + done) % self.capacity:
+                continue
+            at = (first + done) % self.capacity
+            run = min(count - done, self.capacity - at)
+            begin = self._rows_at + at * self.row_bytes
+            data[done * self.row_bytes:(done + run) * self.row_bytes] = self._memory[begin:begin + run * self.row_bytes]
+            if done + run == count:
+                break
+        return data
+
+    def _parsed(self, data: bytearray, count: int) -> Any:
+        if numpy is not None:
+            return numpy.frombuffer(data, self.dtype, count)
+        return [tuple(struct.unpack_from("<" + _CODES[c.type], data, row * self.row_bytes + c.offset)[0]
+                      for c in self.columns) for row in range(count)]
+
+
+class BlackBox:
+    """The whole file: what it says of itself, and its streams."""
+
+    def __init__(self, file: str) -> None:
+        try:
+            fd = os.open(file, os.O_RDONLY | os.O_CLOEXEC)
+        except OSError as error:
+            raise HapticdError(f"cannot read {file}: {error.strerror}\n  fix: start a daemon with hapticd run; its group may read it") from None
+        try:
+            self._memory = mmap.mmap(fd, 0, prot=mmap.PROT_READ)
+        except (OSError, ValueError) as error:
+            raise HapticdError(f"{file}: cannot be mapped: {error}") from None
+        finally:
+            os.close(fd)
+        if len(self._memory) < 4096:
+            raise HapticdError(f"{file}: is too short for a black box")
+        magic, count, ring, _, _, about_at, about_bytes, blocks_at = _HEADER.unpack_from(self._memory, _HEADER_AT)
+        if not magic.startswith(b"hapticd-recording/1") or not ring:
+            raise HapticdError(f"{file}: is no black box of a daemon that this package knows")
+        self.about: dict[str, Any] = json.loads(bytes(self._memory[about_at:about_at + about_bytes]))
+        places = self._rows_of(blocks_at, count)
+        self.streams: dict[str, Stream] = {}
+        for number in range(count):
+            name, row_bytes, capacity, _, _ = _STREAM.unpack_from(
+                self._memory, _HEADER_AT + _HEADER.size + number * _STREAM.size)
+            text = name.rstrip(b"\0").decode()
+            columns = [Column(**column) for column in self.about["columns"][text]]
+            self.streams[text] = Stream(self._memory, number, text, row_bytes, capacity, places[number], columns)
+
+    def _rows_of(self, at: int, count: int) -> dict[int, int]:
+        places: dict[int, int] = {}
+        while len(places) < count and at + _BLOCK.size <= len(self._memory):
+            magic, stream, size = _BLOCK.unpack_from(self._memory, at)
+            if magic != _BLOCK_MAGIC:
+                break
+            at += _BLOCK.size
+            if stream != _INDEX_NODE:
+                places[stream] = at
+            at += size
+        if len(places) < count:
+            raise HapticdError("the black box is damaged: it lacks rows of a stream")
+        return places
+
+    def close(self) -> None:
+        self._memory.close()

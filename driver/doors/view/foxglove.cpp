@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+#include "foxglove.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <map>
+
+#include "export/ros_message.hpp"
+#include "transforms.hpp"
+
+namespace hapticd::view {
+
+namespace {
+
+constexpr uint64_t kAtOnceBytes = 1u << 20;  ///< of one stream in one tick of the view
+constexpr char kMessageData = 1;             ///< op code of a message to a subscription
+
+uint64_t wallNow() {
+  return static_cast<uint64_t>(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
+          .count());
+}
+
+std::vector<record::Column> columnsOf(const Json& about, const std::string& stream) {
+  static const std::map<std::string, record::ColumnType> kTypes = {{"f8", record::ColumnType::kReal},
+                                                                   {"f4", record::ColumnType::kReal32},
+                                                                   {"u8", record::ColumnType::kCount},
+                                                                   {"u4", record::ColumnType::kWord},
+                                                                   {"i4", record::ColumnType::kInt}};
+  std::vector<record::Column> columns;
+  const Json list = about.value("columns", Json::object()).value(stream, Json::array());
+  for (const Json& column : list)
+    if (const auto type = kTypes.find(column.value("type", "")); type != kTypes.end())
+      columns.push_back({column.value("name", ""), column.value("unit", ""), column.value("doc", ""), type->second,
+                         column.value("offset", 0u)});
+  return columns;
+}
+
+class Foxglove final : public Conversation {
+ public:
+  Foxglove(Peer& peer, Stage& stage) : peer_(peer), stage_(stage), alive_(std::make_shared<bool>(true)) {}
+  ~Foxglove() override { *alive_ = false; }
+
+  void onText(std::string_view text) override;
+  void onBinary(std::span<const std::byte>) override {}  // of clients that publish: this server takes nothing
+  void onTick() override;
+
+ private:
+  /// A channel: a stream of rows, or one of the two after them.
+  struct Channel {
+    size_t stream = SIZE_MAX;  ///< SIZE_MAX: /tf or /scene
+    Json advert;
+  };
+
+  void begin();
+  void advertise();
+  void sendStream(size_t stream);
+  void send(uint32_t subscription, uint64_t time, std::string_view head, std::string_view body);
+  void sendTransforms();
+  void sendScene();
+  uint32_t subscriptionOf(uint32_t channel) const;
+  uint32_t tfChannel() const { return static_cast<uint32_t>(channels_.size()) - 1; }
+  uint32_t sceneChannel() const { return static_cast<uint32_t>(channels_.size()); }
+
+  Peer& peer_;
+  Stage& stage_;
+  std::shared_ptr<bool> alive_;
+  uint64_t run_ = 0, list_number_ = 0, start_ = 0;
+  std::vector<Channel> channels_;               ///< channel numbers count from 1
+  std::map<uint32_t, uint32_t> subscriptions_;  ///< subscription -> channel
+  std::vector<uint64_t> next_;
+  std::unique_ptr<Frames> frames_;
+  uint32_t t_offset_ = 0;
+  uint64_t newest_ = 0;  ///< [ns] time of the newest tick, since 1970
+};
+
+void Foxglove::onTick() {
+  if (stage_.rows() == nullptr) return;
+  if (run_ != stage_.run()) begin();
+  if (!peer_.idle()) return;  // the rows wait where they are: in the black box
+  for (size_t i = 0; i < next_.size(); ++i) sendStream(i);
+  sendTransforms();
+  sendScene();
+}
+
+void Foxglove::begin() {
+  run_ = stage_.run();
+  const RowSource& rows = *stage_.rows();
+  next_.clear();
+  for (size_t i = 0; i < rows.streams().size(); ++i) next_.push_back(stage_.recorded() ? 0 : rows.end(i));
+  frames_ = std::make_unique<Frames>(stage_.about());
+  t_offset_ = 0;
+  for (const record::Column& column : columnsOf(stage_.about(), "ticks"))
+    if (column.name == "t") t_offset_ = column.offset;
+  start_ = 0;  // with the first tick that is seen
+  peer_.text(Json({{"op", "serverInfo"},
+                   {"name", "hapticd " + stage_.about().value("hapticd", "")},
+                   {"capabilities", Json::array()},
+                   {"supportedEncodings", Json::array()},
+                   {"metadata", Json::object()},
+                   {"sessionId", std::to_string(run_)}})
+                 .dump());
+  advertise();
+}
+
+void Foxglove::advertise() {
+  channels_.clear();
+  subscriptions_.clear();
+  const auto add = [&](size_t stream, const std::string& topic, const char* encoding, const std::string& type,
+                       const char* schema_encoding, const std::string& schema) {
+    const auto id = static_cast<uint32_t>(channels_.size() + 1);
+    channels_.push_back({stream,
+                         {{"id", id},
+                          {"topic", topic},
+                          {"encoding", encoding},
+                          {"schemaName", type},
+                          {"schemaEncoding", schema_encoding},
+                          {"schema", schema}}});
+  };
+  const RowSource& rows = *stage_.rows();
+  for (size_t i = 0; i < rows.streams().size(); ++i) {
+    const std::string& name = rows.streams()[i].name;
+    const auto columns = columnsOf(stage_.about(), name);
+    if (record::liesAsCdr(columns))
+      add(i, "/hapticd/" + name, "cdr", record::rosType(name), "ros2msg", record::rosDefinition(columns));
+  }
+  add(SIZE_MAX, "/tf", "cdr", "tf2_msgs/msg/TFMessage", "ros2msg", kTfDefinition);
+  add(SIZE_MAX, "/scene", "json", "foxglove.SceneUpdate", "jsonschema", kSceneDefinition);
+  Json adverts = Json::array();
+  for (const Channel& channel : channels_) adverts.push_back(channel.advert);
+  peer_.text(Json({{"op", "advertise"}, {"channels", adverts}}).dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+/// 0: nobody has subscribed to the channel. Subscriptions of the client may be any number; ours are one more.
+uint32_t Foxglove::subscriptionOf(uint32_t channel) const {
+  for (const auto& [subscription, of] : subscriptions_)
+    if (of == channel) return subscription + 1;
+  return 0;
+}
+
+void Foxglove::sendStream(size_t stream) {
+  const RowSource& rows = *stage_.rows();
+  const RowStream& what = rows.streams()[stream];
+  const auto channel =
+      std::find_if(channels_.begin(), channels_.end(), [&](const Channel& c) { return c.stream == stream; });
+  const uint32_t subscription =
+      channel == channels_.end() ? 0 : subscriptionOf(static_cast<uint32_t>(channel - channels_.begin()) + 1);
+  const bool followed = what.name == "ticks" || what.name == "poses";
+  const uint64_t end = rows.end(stream);
+  if (next_[stream] < rows.begin(stream)) next_[stream] = rows.begin(stream) + 1;  // one that reads too slowly
+  if (subscription == 0 && !followed) next_[stream] = end;
+  const uint64_t count = std::min(end - std::min(end, next_[stream]), kAtOnceBytes / what.row_bytes);
+  if (count == 0) return;
+  std::vector<std::byte> bytes(count * what.row_bytes);
+  const uint64_t got = rows.copy(stream, next_[stream], count, bytes.data());
+  next_[stream] += std::max<uint64_t>(got, 1);
+  frames_->take(what.name, bytes.data(), got, what.row_bytes);
+  for (uint64_t i = 0; i < got; ++i) {
+    const auto* row = reinterpret_cast<const char*>(bytes.data() + i * what.row_bytes);
+    if (what.name == "ticks" && t_offset_ + sizeof(double) <= what.row_bytes) {
+      double t = 0;
+      std::memcpy(&t, row + t_offset_, sizeof t);
+      const auto since = static_cast<uint64_t>(std::max(0.0, t) * 1e9);
+      if (start_ == 0) start_ = wallNow() - since;  // once: the wall clock may jump
+      newest_ = start_ + since;
+    }
+    if (subscription != 0)
+      send(subscription - 1, newest_, {record::kCdrHead.data(), record::kCdrHead.size()}, {row, what.row_bytes});
+  }
+}
+
+void Foxglove::send(uint32_t subscription, uint64_t time, std::string_view head, std::string_view body) {
+  std::string bytes(1, kMessageData);
+  bytes.append(reinterpret_cast<const char*>(&subscription), sizeof subscription);
+  bytes.append(reinterpret_cast<const char*>(&time), sizeof time);
+  bytes.append(head).append(body);
+  peer_.binary(std::make_shared<const std::string>(std::move(bytes)));
+}
+
+void Foxglove::sendTransforms() {
+  const uint32_t subscription = subscriptionOf(tfChannel());
+  if (subscription != 0 && newest_ != 0) send(subscription - 1, newest_, "", tfMessage(frames_->all(), newest_));
+}
+
+/// The triangles of every model, when somebody subscribes and when the list of models changes.
+void Foxglove::sendScene() {
+  const uint32_t subscription = subscriptionOf(sceneChannel());
+  if (subscription == 0 || list_number_ == stage_.listNumber() || stage_.list().empty()) return;
+  list_number_ = stage_.listNumber();
+  for (const Json& model : stage_.list().value("models", Json::array())) {
+    const std::string name = model.value("name", "");
+    stage_.draw(name, [this, name, subscription, alive = alive_](const Drawn& drawn) {
+      if (*alive && drawn.mesh) send(subscription - 1, newest_, "", sceneUpdate(name, *drawn.mesh, newest_));
+    });
+  }
+}
+
+void Foxglove::onText(std::string_view text) {
+  const Json request = Json::parse(text, nullptr, false);
+  if (!request.is_object()) return;
+  const std::string op = request.contains("op") && request["op"].is_string() ? request["op"] : "";
+  const auto number = [](const Json& from, const char* key) {
+    const auto it = from.is_object() ? from.find(key) : from.end();
+    return from.is_object() && it != from.end() && it->is_number_unsigned() ? it->get<uint32_t>() : UINT32_MAX;
+  };
+  if (op == "subscribe" && request.contains("subscriptions") && request["subscriptions"].is_array()) {
+    for (const Json& wish : request["subscriptions"]) {
+      const uint32_t id = number(wish, "id"), channel = number(wish, "channelId");
+      if (id == UINT32_MAX || channel == 0 || channel > channels_.size() || subscriptions_.size() > channels_.size())
+        continue;
+      subscriptions_[id] = channel;
+      if (channel == sceneChannel()) list_number_ = 0;
+    }
+  } else if (op == "unsubscribe" && request.contains("subscriptionIds") && request["subscriptionIds"].is_array()) {
+    for (const Json& id : request["subscriptionIds"])
+      if (id.is_number_unsigned()) subscriptions_.erase(id.get<uint32_t>());
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<Conversation> converseInFoxglove(Peer& peer, Stage& stage) {
+  return std::make_unique<Foxglove>(peer, stage);
+}
+
+}  // namespace hapticd::view

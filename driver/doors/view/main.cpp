@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd-view`: shows a running daemon, or a recording, in a browser. A process of its own with no right but to map
+/// the black box and to talk to the control socket; it may be killed at any time. `hapticd view` starts it.
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <cstdio>
+#include <filesystem>
+
+#include "foxglove.hpp"
+#include "native.hpp"
+#include "server.hpp"
+#include "stage.hpp"
+#include "status/page_file.hpp"
+
+extern char** environ;
+
+namespace {
+
+using namespace hapticd::view;
+
+constexpr int kFailed = 1, kBadInput = 2;
+constexpr std::chrono::milliseconds kTick(16);
+
+struct Options {
+  std::string name = "hapticd", file, drawings;
+  unsigned short port = 0;
+  bool control = false, open = false, until_end = false;
+};
+
+/// True as long as a daemon holds the lock on its name.
+bool daemonLives(const std::string& lock_file) {
+  const int fd = open(lock_file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (fd < 0) return errno == EACCES;  // of another user: there at least
+  const bool free = flock(fd, LOCK_SH | LOCK_NB) == 0;
+  close(fd);
+  return !free;
+}
+
+/// Starts the user's browser and does not wait for it.
+void openBrowser(const std::string& url) {
+  pid_t child = 0;
+  std::string program = "xdg-open", address = url;
+  char* arguments[] = {program.data(), address.data(), nullptr};
+  if (posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ) != 0)
+    std::fputs("no browser could be started (xdg-open is missing): open the address above yourself\n", stderr);
+}
+
+/// Ticks the conversations 60 times a second while there are any, and looks for the end of the daemon.
+class Heart {
+ public:
+  Heart(boost::asio::io_context& io, Stage& stage, Server& server, std::string lock_file)
+      : io_(io), timer_(io), stage_(stage), server_(server), lock_file_(std::move(lock_file)) {}
+
+  void beat() {
+    timer_.expires_after(kTick);
+    timer_.async_wait([this](const boost::system::error_code& error) {
+      if (error) return;
+      if (server_.sockets() > 0) {
+        stage_.tick();
+        server_.tick();
+      }
+      if (!lock_file_.empty() && ++beats_ % kLook == 0 && !daemonLives(lock_file_)) return io_.stop();
+      beat();
+    });
+  }
+
+ private:
+  static constexpr unsigned kLook = 64;  ///< beats: about a second, in which pages hear of the end
+  boost::asio::io_context& io_;
+  boost::asio::steady_timer timer_;
+  Stage& stage_;
+  Server& server_;
+  std::string lock_file_;
+  unsigned beats_ = 0;
+};
+
+std::unique_ptr<Conversation> converse(Subprotocol protocol, Peer& peer, Stage& stage) {
+  return protocol == Subprotocol::kFoxglove ? converseInFoxglove(peer, stage) : converseNatively(peer, stage);
+}
+
+int view(const Options& options) {
+  boost::asio::io_context io(1);
+  StageOptions what;
+  what.folder = hapticd::status::runtimeFolder(false);
+  what.name = options.name;
+  what.file = options.file;
+  what.drawings = options.drawings;
+  what.control = options.control && options.file.empty();
+  const std::string lock_file = options.until_end ? what.folder + "/" + what.name + ".lock" : "";
+  Stage stage(io, what);
+  if (auto opened = stage.open(); !opened) {
+    std::fprintf(stderr, "error: %s\n", opened.error().c_str());
+    return kBadInput;
+  }
+  auto server = Server::listen(io, options.port,
+                               [&](Subprotocol protocol, Peer& peer) { return converse(protocol, peer, stage); });
+  if (!server) {
+    std::fprintf(stderr, "error: %s\n", server.error().c_str());
+    return kFailed;
+  }
+  std::printf("%s\n", (*server)->url().c_str());
+  std::fflush(stdout);
+  if (options.open) openBrowser((*server)->url());
+  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+  signals.async_wait([&](const auto&, int) { io.stop(); });
+  Heart heart(io, stage, **server, lock_file);
+  heart.beat();
+  io.run();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("hapticd-view: shows a running daemon, or a recording, in a browser.");
+  app.add_option("--name", options.name, "name of the daemon");
+  app.add_option("--port", options.port, "port on 127.0.0.1; 0: a free one");
+  app.add_option("--file", options.file, "show this recording or dump instead of a daemon");
+  app.add_option("--drawings", options.drawings, "socket of a process that draws the models of the recording");
+  app.add_flag("--control", options.control, "pages may change the run");
+  app.add_flag("--open", options.open, "start a browser");
+  app.add_flag("--until-end", options.until_end, "end with the daemon");
+  try {
+    app.parse(argc, argv);
+    return view(options);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadInput;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return kFailed;
+  }
+}

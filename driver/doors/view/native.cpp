@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: MIT
+#include "native.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <map>
+#include <string_view>
+
+#include "lead.hpp"
+#include "mesh.hpp"
+#include "playback.hpp"
+
+namespace hapticd::view {
+
+namespace {
+
+constexpr uint64_t kBacklogBytes = 4u << 20;  ///< of rows that a new page gets: 10 s of one arm at 1 kHz
+constexpr uint64_t kAtOnceBytes = 1u << 20;   ///< of one stream in one message
+constexpr double kBacklogSeconds = 10;
+constexpr std::array<std::string_view, 3> kReads = {"status", "list", "geometry"};
+constexpr std::array<std::string_view, 14> kControls = {"enable", "disable", "move", "set",  "add", "remove", "reload",
+                                                        "hold",   "clear",   "dump", "stop", "get", "lead",   "unlead"};
+constexpr size_t kMostLeads = 4;  ///< of one page
+
+template <class Words>
+bool contains(const Words& words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// The oldest row that will still be there when it is copied: the servo goes on overwriting meanwhile.
+uint64_t oldest(const RowSource& rows, size_t stream) {
+  constexpr uint64_t kMargin = 64;
+  const uint64_t begin = rows.begin(stream);
+  return begin == 0 ? 0 : std::min(begin + kMargin, rows.end(stream));
+}
+
+class Native final : public Conversation {
+ public:
+  Native(Peer& peer, Stage& stage) : peer_(peer), stage_(stage), alive_(std::make_shared<bool>(true)) {}
+  ~Native() override { *alive_ = false; }
+
+  void onText(std::string_view text) override;
+  void onBinary(std::span<const std::byte> bytes) override;
+  void onTick() override;
+
+ private:
+  void begin();
+  void tellChanges();
+  void sendRows();
+  void sendRows(size_t stream, uint64_t end);
+  void jump();
+  void sendVertices();
+  void answer(const Json& id, Json answer);
+  void draw(const Json& id, const Json& request);
+  void pass(const Json& id, Json request);
+  void lead(const Json& id, const Json& request);
+  void unlead(const Json& id, const Json& request);
+
+  Peer& peer_;
+  Stage& stage_;
+  std::shared_ptr<bool> alive_;  ///< answers of the daemon may come after the page has gone
+  uint64_t run_ = 0, list_number_ = 0, status_number_ = 0;
+  std::vector<uint64_t> next_;  ///< row of each stream
+  std::map<std::string, uint64_t> frames_;
+  std::unique_ptr<Playback> playback_;
+  std::map<uint32_t, std::unique_ptr<Lead>> leads_;
+  uint32_t next_lead_ = 1;
+};
+
+void Native::onTick() {
+  if (stage_.rows() == nullptr) {
+    if (run_ == 0 && peer_.idle() && status_number_ != stage_.statusNumber() + 1) {
+      status_number_ = stage_.statusNumber() + 1;
+      peer_.text(Json({{"type", "waiting"}, {"name", stage_.options().name}}).dump());
+    }
+    return;
+  }
+  if (run_ != stage_.run()) begin();
+  tellChanges();
+  if (!peer_.idle()) return;  // newest values only: what a slow page cannot take is skipped
+  sendRows();
+  sendVertices();
+}
+
+/// A run was found: what it is, and where its rows begin for this page.
+void Native::begin() {
+  run_ = stage_.run();
+  const RowSource& rows = *stage_.rows();
+  Json streams = Json::array();
+  for (const RowStream& stream : rows.streams())
+    streams.push_back({{"name", stream.name}, {"row_bytes", stream.row_bytes}});
+  Json hello = {{"type", "about"},
+                {"control", stage_.options().control},
+                {"recorded", stage_.recorded()},
+                {"name", stage_.recorded() ? stage_.options().file : stage_.options().name},
+                {"streams", streams},
+                {"about", stage_.about()}};
+  peer_.text(hello.dump(-1, ' ', false, Json::error_handler_t::replace));
+  next_.assign(rows.streams().size(), 0);
+  frames_.clear();
+  list_number_ = status_number_ = 0;
+  if (stage_.recorded()) {
+    playback_ = std::make_unique<Playback>(rows, stage_.about());
+    peer_.text(playback_->stateJson());
+    next_ = playback_->rowsFrom(0);
+    return;
+  }
+  for (size_t i = 0; i < next_.size(); ++i) {
+    const uint64_t most = kBacklogBytes / rows.streams()[i].row_bytes, end = rows.end(i);
+    next_[i] = std::max(oldest(rows, i), end > most ? end - most : 0);
+  }
+}
+
+void Native::tellChanges() {
+  if (list_number_ != stage_.listNumber() && !stage_.list().empty()) {
+    list_number_ = stage_.listNumber();
+    Json list = stage_.list();
+    list["type"] = "list";
+    peer_.text(list.dump(-1, ' ', false, Json::error_handler_t::replace));
+  }
+  if (status_number_ == stage_.statusNumber()) return;
+  status_number_ = stage_.statusNumber();
+  Json status = stage_.alive() ? stage_.status() : Json::object();
+  status["type"] = stage_.alive() ? "status" : "end";
+  peer_.text(status.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+void Native::sendRows() {
+  const RowSource& rows = *stage_.rows();
+  if (playback_) {
+    playback_->advance();
+    jump();
+    for (size_t i = 0; i < next_.size(); ++i) sendRows(i, playback_->ends()[i]);
+    if (playback_->takeChanged()) peer_.text(playback_->stateJson());
+    return;
+  }
+  // the ticks' end is read first: rows of other streams are committed before the tick that they belong to
+  const size_t ticks = rows.find("ticks");
+  for (size_t i = 0; i < next_.size(); ++i)
+    if (i != ticks) sendRows(i, rows.end(i));
+  if (ticks < next_.size()) sendRows(ticks, rows.end(ticks));
+}
+
+/// The place in the recording changed by a jump: the page forgets its rows and gets those before the new place.
+void Native::jump() {
+  if (!playback_->takeJumped()) return;
+  peer_.text(R"({"type":"reset"})");
+  next_ = playback_->rowsFrom(kBacklogSeconds);
+}
+
+void Native::sendRows(size_t stream, uint64_t end) {
+  const RowSource& rows = *stage_.rows();
+  const RowStream& what = rows.streams()[stream];
+  uint64_t& next = next_[stream];
+  if (what.name == "activations") return;  // of the search, thousands a second: no page draws them
+  if (next < rows.begin(stream)) next = oldest(rows, stream);
+  const uint64_t most = kAtOnceBytes / what.row_bytes;
+  if (!playback_ && end > next + kBacklogBytes / what.row_bytes) next = end - most;
+  if (next >= end) return;
+  const uint64_t count = std::min(end - next, most);
+  std::string bytes = headed(static_cast<uint32_t>(stream), what.row_bytes, 0, 0);
+  bytes.resize(16 + count * what.row_bytes);
+  const uint64_t got = rows.copy(stream, next, count, reinterpret_cast<std::byte*>(bytes.data() + 16));
+  next += std::max<uint64_t>(got, 1);
+  if (got == 0) return;
+  bytes.resize(16 + got * what.row_bytes);
+  const auto words = static_cast<uint32_t>(got);
+  bytes.replace(8, sizeof words, reinterpret_cast<const char*>(&words), sizeof words);
+  peer_.binary(std::make_shared<const std::string>(std::move(bytes)));
+}
+
+void Native::sendVertices() {
+  for (const auto& [model, live] : stage_.live()) {
+    if (!live.vertices || frames_[model] == live.frame) continue;
+    frames_[model] = live.frame;
+    peer_.binary(live.vertices);
+  }
+}
+
+void Native::onText(std::string_view text) {
+  Json request = Json::parse(text, nullptr, false);
+  const bool good = request.is_object() && request.contains("do") && request["do"].is_string();
+  const Json id = request.is_object() && request.contains("id") ? request["id"] : Json();
+  if (!good) return answer(id, {{"ok", false}, {"error", "expected an object of JSON with \"do\" and \"id\""}});
+  const std::string word = request["do"];
+  request.erase("id");
+  if (word == "geometry") return draw(id, request);
+  if (playback_ && Playback::knows(word)) {
+    const std::string error = playback_->obey(request);
+    jump();
+    return answer(id, error.empty() ? Json({{"ok", true}}) : Json({{"ok", false}, {"error", error}}));
+  }
+  if (contains(kReads, word)) return pass(id, std::move(request));
+  if (!contains(kControls, word))
+    return answer(id, {{"ok", false}, {"error", "unknown request \"" + word.substr(0, 40) + "\""}});
+  if (!stage_.options().control)
+    return answer(id, {{"ok", false}, {"error", "this view may not change the run\n  fix: hapticd view --control"}});
+  if (word == "lead") return lead(id, request);
+  if (word == "unlead") return unlead(id, request);
+  pass(id, std::move(request));
+}
+
+/// u32 lead, 0, and the record of its target. One that is not there is ignored: it may have ended meanwhile.
+void Native::onBinary(std::span<const std::byte> bytes) {
+  constexpr size_t kHead = 8;
+  uint32_t number = 0;
+  if (bytes.size() < kHead) return;
+  std::memcpy(&number, bytes.data(), sizeof number);
+  const auto lead = leads_.find(number);
+  if (lead != leads_.end()) lead->second->put(bytes.subspan(kHead));
+}
+
+void Native::lead(const Json& id, const Json& request) {
+  std::erase_if(leads_, [](const auto& known) { return known.second->refused(); });
+  if (leads_.size() >= kMostLeads)
+    return answer(id, {{"ok", false}, {"error", "this page holds too many leads already"}});
+  const uint32_t number = next_lead_++;
+  leads_[number] =
+      Lead::ask(stage_.io(), stage_.socket(), request, [this, id, number, alive = alive_](const Json& said) {
+        if (!*alive) return;
+        Json taken = said;
+        if (said.value("ok", false)) taken["lead"] = number;
+        answer(id, std::move(taken));
+      });
+}
+
+void Native::unlead(const Json& id, const Json& request) {
+  const auto it = request.find("lead");
+  const bool known = it != request.end() && it->is_number_unsigned() && leads_.erase(it->get<uint32_t>()) == 1;
+  answer(id, known ? Json({{"ok", true}}) : Json({{"ok", false}, {"error", "there is no such lead"}}));
+}
+
+void Native::answer(const Json& id, Json answer) {
+  answer["type"] = "answer";
+  answer["id"] = id;
+  peer_.text(answer.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+/// A mesh goes out as bytes, right before the answer that names it.
+void Native::draw(const Json& id, const Json& request) {
+  if (!request.contains("model") || !request["model"].is_string())
+    return answer(id, {{"ok", false}, {"error", "geometry needs a model"}});
+  stage_.draw(request["model"], [this, id, alive = alive_](const Drawn& drawn) {
+    if (!*alive) return;
+    if (!drawn.mesh) return answer(id, {{"ok", false}, {"error", drawn.error}});
+    peer_.binary(drawn.mesh);
+    answer(id, {{"ok", true}});
+  });
+}
+
+void Native::pass(const Json& id, Json request) {
+  stage_.daemon().ask(request, [this, id, alive = alive_](const Json& said, Descriptor) {
+    if (*alive) answer(id, said);
+  });
+}
+
+}  // namespace
+
+std::unique_ptr<Conversation> converseNatively(Peer& peer, Stage& stage) {
+  return std::make_unique<Native>(peer, stage);
+}
+
+}  // namespace hapticd::view

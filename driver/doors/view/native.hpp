@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+/// The protocol of the page, "hapticd.1". Text is JSON, bytes are rows and meshes (see mesh.hpp).
+///
+/// Down: {"type": "about" | "list" | "status" | "end" | "reset" | "playback", ...}, and {"type": "answer", "id": N,
+/// ...}. Up: requests as in control.md with an "id"; of a recording also play, pause, seek. A page without the right to
+/// control may ask for status, list and geometry alone.
+#pragma once
+#include <memory>
+
+#include "peer.hpp"
+#include "stage.hpp"
+
+namespace hapticd::view {
+
+/// [main] Both arguments outlive the conversation.
+std::unique_ptr<Conversation> converseNatively(Peer& peer, Stage& stage);
+
+}  // namespace hapticd::view

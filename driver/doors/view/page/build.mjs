@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// Bundles the page into ../bundle, or into the folder given: three.js and uPlot with what is used of them, no source
+// maps, nothing that depends on the machine.
+import {build} from 'esbuild';
+import {copyFileSync, mkdirSync} from 'node:fs';
+import {dirname, join} from 'node:path';
+import {fileURLToPath} from 'node:url';
+
+const here = dirname(fileURLToPath(import.meta.url));
+const out = process.argv[2] ?? join(here, '..', 'bundle');
+mkdirSync(out, {recursive: true});
+await build({
+  absWorkingDir: here,
+  entryPoints: [{in: 'src/main.js', out: 'app'}, {in: 'src/style.css', out: 'app'}],
+  outdir: out,
+  bundle: true,
+  minify: true,
+  format: 'esm',
+  target: ['chrome115', 'firefox115', 'safari17'],
+  legalComments: 'eof',
+  logLevel: 'warning',
+});
+for (const file of ['index.html', 'icon.svg']) copyFileSync(join(here, file), join(out, file));

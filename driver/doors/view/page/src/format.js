@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+/** Numbers as people read them, and elements of the page. */
+
+export const norm = (v) => Math.hypot(...v);
+export const fileName = (path) => (path ?? '').split('/').pop();
+
+/** A number with about three digits, never "-0". */
+export function short(value, digits = 3) {
+  if (!Number.isFinite(value)) return '–';
+  const size = Math.abs(value);
+  const decimals = size >= 100 ? 0 : size >= 10 ? Math.max(0, digits - 2) : digits - 1;
+  const text = value.toFixed(decimals);
+  return Number(text) === 0 ? (0).toFixed(decimals) : text;
+}
+
+/** Seconds as m:ss.ss. */
+export function clock(t) {
+  if (!Number.isFinite(t)) return '–';
+  const minutes = Math.floor(t / 60);
+  return `${minutes}:${(t - 60 * minutes).toFixed(2).padStart(5, '0')}`;
+}
+
+/** An element with properties and children. */
+export function element(tag, properties = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [key, value] of Object.entries(properties)) {
+    if (key === 'class') made.className = value;
+    else if (key === 'data') Object.assign(made.dataset, value);
+    else if (key in made) made[key] = value;
+    else made.setAttribute(key, value);
+  }
+  made.append(...children);
+  return made;
+}
+
+/** A colour of the page's theme. */
+export const themeColor = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/** Saves bytes as a file of the user's. */
+export function save(blob, name) {
+  const link = element('a', {href: URL.createObjectURL(blob), download: name});
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+}

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+/** The hand of people who have no arm: the tip is dragged in the plane that faces the viewer, the wheel moves it deeper.
+ * What is sent is a wish; the simulated hand's mass and spring, and the shapes, decide what comes of it. */
+import {Raycaster, Vector2, Vector3} from 'three';
+
+const kGrabPixels = 34; // about the tip; a finger is not finer
+const kStep = 0.001, kFineStep = 0.0001; // m a key
+const kWheelStep = 0.0015; // m a notch
+const kTurn = 0.06; // rad a key
+const kAgainMs = 50; // a wish is told again so often while it is led
+
+/** A target as the daemon takes it: f64 position[3], orientation[4], linear[3], angular[3], time; 0: when it is read. */
+function targetBytes(lead, position) {
+  const bytes = new ArrayBuffer(8 + 14 * 8), view = new DataView(bytes);
+  view.setUint32(0, lead, true);
+  [position.x, position.y, position.z, 1].forEach((value, i) => view.setFloat64(8 + 8 * i, value, true));
+  return bytes;
+}
+
+export class Hand {
+  #lead = null; // number of the lead
+  #asking = false;
+  #wish = null;
+  #drag = null; // what the pointer does: {kind, x, y, ...}
+  #pointers = new Map();
+  #sent = 0;
+
+  /** @param connection to the server @param view the scene */
+  constructor(connection, view) {
+    this.connection = connection;
+    this.view = view;
+    this.arm = 0;
+    this.devices = [];
+    this.possible = false;
+    this.onRefused = () => {};
+    const {canvas} = view;
+    canvas.addEventListener('pointerdown', (e) => this.#down(e));
+    canvas.addEventListener('pointermove', (e) => this.#move(e));
+    for (const type of ['pointerup', 'pointercancel']) canvas.addEventListener(type, (e) => this.#up(e));
+    canvas.addEventListener('wheel', (e) => this.#wheel(e), {passive: false});
+    canvas.addEventListener('keydown', (e) => this.#key(e));
+    canvas.addEventListener('contextmenu', (e) => e.preventDefault());
+  }
+
+  /** A new run: nothing is led. @param devices names @param possible whether the daemon may be asked */
+  begin(devices, possible) {
+    this.devices = devices;
+    this.possible = possible;
+    this.#lead = null;
+    this.#asking = false;
+    this.#wish = null;
+    this.arm = 0;
+  }
+
+  /** Where the led hand of an arm wants to be, or null. */
+  wish(arm) { return arm === this.arm ? this.#wish : null; }
+
+  get leads() { return this.#lead !== null; }
+
+  #tipNear(x, y) {
+    let best = null;
+    this.view.probes.forEach((probe, i) => {
+      if (!probe.tip.visible) return;
+      for (const place of [this.wish(i), probe.tipPlace]) {
+        if (!place) continue;
+        const p = this.view.project(place), distance = Math.hypot(p.x - x, p.y - y);
+        if (p.inFront && distance < kGrabPixels && (!best || distance < best.distance)) best = {arm: i, distance, place};
+      }
+    });
+    return best;
+  }
+
+  /** The place in the plane through `through` that faces the viewer, under the pointer. */
+  #placeAt(x, y, through) {
+    const {canvas, orbit} = this.view, ray = new Raycaster();
+    ray.setFromCamera(new Vector2(2 * x / canvas.clientWidth - 1, 1 - 2 * y / canvas.clientHeight), orbit.camera);
+    const forward = orbit.forward(), along = ray.ray.direction.dot(forward);
+    const distance = through.clone().sub(ray.ray.origin).dot(forward) / along;
+    return ray.ray.at(distance, new Vector3());
+  }
+
+  #down(e) {
+    const {canvas} = this.view;
+    canvas.focus({preventScroll: true});
+    canvas.setPointerCapture(e.pointerId);
+    this.#pointers.set(e.pointerId, {x: e.offsetX, y: e.offsetY});
+    const near = this.#pointers.size === 1 && e.button === 0 && !e.shiftKey ? this.#tipNear(e.offsetX, e.offsetY) : null;
+    if (near && this.possible) {
+      if (near.arm !== this.arm) this.#release(near.arm);
+      const start = near.place.clone();
+      this.#drag = {kind: 'hand', offset: start.clone().sub(this.#placeAt(e.offsetX, e.offsetY, start))};
+      this.#want(start);
+      return;
+    }
+    if (near && !this.possible) this.onRefused('This view only looks. To press with the mouse: hapticd run SCENE --view');
+    const kind = this.#pointers.size > 1 ? 'pinch' : e.button === 2 || e.shiftKey ? 'pan' : 'turn';
+    this.#drag = {kind, spread: this.#spread()};
+  }
+
+  #move(e) {
+    const last = this.#pointers.get(e.pointerId);
+    if (!last) {
+      this.view.canvas.classList.toggle('on-tip', this.#tipNear(e.offsetX, e.offsetY) !== null);
+      return;
+    }
+    const dx = e.offsetX - last.x, dy = e.offsetY - last.y;
+    last.x = e.offsetX, last.y = e.offsetY;
+    const {orbit, canvas} = this.view, drag = this.#drag;
+    if (!drag) return;
+    if (drag.kind === 'hand') this.#want(this.#placeAt(e.offsetX, e.offsetY, this.#wish).add(drag.offset));
+    else if (drag.kind === 'turn') orbit.turn(-dx * 0.008, -dy * 0.008);
+    else if (drag.kind === 'pan') orbit.pan(dx, dy, canvas.clientHeight);
+    else {
+      const spread = this.#spread();
+      if (drag.spread > 0 && spread > 0) orbit.zoom(drag.spread / spread);
+      drag.spread = spread;
+      orbit.pan(dx / 2, dy / 2, canvas.clientHeight);
+    }
+    this.view.dirty = true;
+  }
+
+  #spread() {
+    const [a, b] = [...this.#pointers.values()];
+    return a && b ? Math.hypot(a.x - b.x, a.y - b.y) : 0;
+  }
+
+  #up(e) {
+    this.#pointers.delete(e.pointerId);
+    this.#drag = null; // the hand stays where it was led
+  }
+
+  #wheel(e) {
+    e.preventDefault();
+    const notches = Math.max(-3, Math.min(3, e.deltaY / 100));
+    if (this.#drag?.kind === 'hand' || (this.#wish && e.altKey)) {
+      this.#want(this.#wish.clone().addScaledVector(this.view.orbit.forward(), -notches * kWheelStep));
+    } else this.view.orbit.zoom(Math.exp(notches * 0.14));
+    this.view.dirty = true;
+  }
+
+  #key(e) {
+    const directions = {ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowUp: [0, 1, 0], ArrowDown: [0, -1, 0], PageUp: [0, 0, 1], PageDown: [0, 0, -1]};
+    const {orbit} = this.view, d = directions[e.key];
+    if (e.key === '+' || e.key === '-' || e.key === '=') orbit.zoom(e.key === '-' ? 1.12 : 1 / 1.12);
+    else if (!d) return;
+    else if (e.shiftKey) orbit.turn(-d[0] * kTurn, -d[1] * kTurn);
+    else if (this.possible) {
+      const step = e.ctrlKey ? kFineStep : kStep, from = this.#wish ?? this.view.probes[this.arm]?.tipPlace;
+      if (!from) return;
+      this.#want(from.clone().addScaledVector(orbit.right(), d[0] * step).addScaledVector(orbit.up(), d[1] * step).addScaledVector(orbit.forward(), d[2] * step));
+    }
+    e.preventDefault();
+    this.view.dirty = true;
+  }
+
+  #release(arm) {
+    if (this.#lead !== null) this.connection.ask({do: 'unlead', lead: this.#lead});
+    this.#lead = this.#wish = null;
+    this.arm = arm;
+  }
+
+  /** The hand is to be there. The first wish asks for the lead. */
+  async #want(place) {
+    this.#wish = place;
+    this.#send();
+    if (this.#lead !== null || this.#asking) return;
+    this.#asking = true;
+    const answer = await this.connection.ask({do: 'lead', hand: this.devices[this.arm]});
+    this.#asking = false;
+    if (answer.ok) {
+      this.#lead = answer.lead;
+      this.#send();
+      return;
+    }
+    this.#wish = this.#drag = null;
+    this.view.dirty = true;
+    this.onRefused(answer.error);
+  }
+
+  #send() {
+    if (this.#lead === null || !this.#wish) return;
+    this.connection.put(targetBytes(this.#lead, this.#wish));
+    this.#sent = performance.now();
+  }
+
+  /** Called each frame: what may have been lost is told again. */
+  look(now) {
+    if (this.#lead !== null && now - this.#sent > kAgainMs) this.#send();
+  }
+}

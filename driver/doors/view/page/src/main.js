@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: MIT
+/** The page of hapticd-view: brings what comes over the connection to the scene, the plots and the panels. */
+import {Connection} from './connection.js';
+import {Events} from './events.js';
+import {fileName, norm, save, short, themeColor} from './format.js';
+import {Hand} from './hand.js';
+import {Panel} from './panel.js';
+import {Plots} from './plots.js';
+import {Now} from './rows.js';
+import {View} from './scene.js';
+import {Sound} from './sound.js';
+import {Timeline} from './timeline.js';
+
+const $ = (id) => document.getElementById(id);
+const kFullStain = 0.003; // m: depth of the strongest colour
+const kNoticeMs = 6000;
+const kGuided = 7; // of hand.script: a hand that waits for a leader
+const kHeldFault = 8; // number of the fault that a person's hold is
+
+class Page {
+  constructor() {
+    // the token has done its work: it need not stay in the address
+    if (location.search) history.replaceState(null, '', location.pathname);
+    this.connection = new Connection(`ws://${location.host}/`);
+    this.ask = (request) => this.connection.ask(request);
+    this.panel = new Panel(this.ask);
+    this.panel.onRefused = (error) => this.notice(error);
+    this.timeline = new Timeline(this.ask);
+    this.sound = new Sound();
+    this.view = null;
+    this.now = null;
+    this.hello = null;
+    this.status = {};
+    this.pendingList = null;
+    this.drawn = new Map(); // name -> index of models whose triangles came or come
+    this.paints = {first: performance.now(), scene: 0};
+    this.#listen();
+    this.#buttons();
+    this.#theme(localStorage.getItem('theme') ?? (matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light'));
+    // the page first, the scene one frame later
+    requestAnimationFrame(() => setTimeout(() => this.#startView()));
+  }
+
+  #startView() {
+    try {
+      this.view = new View($('canvas'));
+    } catch (error) {
+      this.notice(`This browser draws no 3D (WebGL 2): ${error.message}`);
+      return;
+    }
+    this.hand = new Hand(this.connection, this.view);
+    this.hand.onRefused = (error) => this.notice(error);
+    this.#theme(document.documentElement.dataset.theme);
+    if (this.hello) this.#begin(this.hello);
+    let last = performance.now();
+    const frame = (time) => {
+      requestAnimationFrame(frame);
+      this.#frame(time);
+      if (this.view.draw()) {
+        this.paints.scene ||= performance.now();
+        this.view.pace(time - last);
+      }
+      last = time;
+    };
+    requestAnimationFrame(frame);
+  }
+
+  #listen() {
+    const on = (type, use) => this.connection.addEventListener(type, (e) => use(e.detail));
+    on('about', (hello) => { this.hello = hello; if (this.view) this.#begin(hello); });
+    on('rows', (message) => this.#rows(message));
+    on('vertices', ({model, xyz}) => { this.view?.models.deform(model, xyz); if (this.view) this.view.dirty = true; });
+    on('list', (list) => this.#list(list));
+    on('status', (status) => this.#status(status));
+    on('reset', () => { this.now?.clear(); this.plots?.clear(); this.events?.clear(); });
+    on('playback', (state) => this.timeline.show(state));
+    on('waiting', ({name}) => this.#lamp('wait', `Waiting for a daemon named ${name}`));
+    on('end', () => { this.#lamp('wait', 'The run has ended'); this.hand?.begin([], false); });
+    on('lost', () => { this.#lamp('bad', 'hapticd-view does not answer'); this.hand?.begin([], false); });
+  }
+
+  /** A run was found. */
+  #begin(hello) {
+    const {about, streams, control, recorded} = hello;
+    this.now = new Now(about, streams);
+    const limit = about.scene?.devices?.[0]?.limits, ticks = this.now.table('ticks');
+    const most = Number(limit?.force) || about.devices?.[0]?.info?.max_force || null;
+    this.plots = ticks ? new Plots($('plots'), ticks, {forceLimit: most}) : null;
+    this.events = new Events($('events'), about, (t, kind) => {
+      if (kind !== 'contact') this.plots?.mark(t, kind);
+      this.sound.play(kind);
+    });
+    this.view.models.clear();
+    this.drawn.clear();
+    this.view.arms(this.now.arms.length);
+    this.fitted = false;
+    this.fitWhenTip = false;
+    $('scene-name').textContent = fileName(about.scene?.file) || hello.name;
+    $('scene-mode').textContent = recorded ? `recording ${fileName(hello.name)}` : control ? 'live' : 'live, looking only';
+    document.title = `${$('scene-name').textContent} · hapticd`;
+    $('run-tools').hidden = !control;
+    this.hand.begin(this.now.arms.map((a) => a.name), control);
+    const script = about.scene?.devices?.[0]?.parameters?.find((p) => p.id === 'hand.script');
+    $('hint').hidden = !control || script?.number !== kGuided;
+    $('hint').textContent = 'Drag the tip to press with the mouse';
+    if (!recorded) this.timeline.show(null);
+    const space = about.scene?.devices?.[0];
+    if (Number(space?.limits?.workspace) > 0) this.view.setWorkspace(space.mount?.position ?? [0, 0, 0], Number(space.limits.workspace));
+    $('pick').replaceChildren(new Option('none', ''), ...(this.plots?.columns() ?? []).map((c) => new Option(c.unit ? `${c.name} [${c.unit}]` : c.name, c.name)));
+    this.pendingList = null; // of the run before
+    this.#drawModels((about.models ?? []).map((m, i) => ({...m, index: i})));
+  }
+
+  /** Asks for the triangles of models that are new. */
+  async #drawModels(models) {
+    const begun = this.now, scene = this.now.about.scene?.models ?? [];
+    const fresh = models.filter((m) => this.drawn.get(m.name) !== m.index);
+    if (fresh.length === 0) return;
+    for (const model of fresh) this.drawn.set(model.name, model.index);
+    await Promise.all(fresh.map(async (model) => {
+      const answer = await this.ask({do: 'geometry', model: model.name});
+      if (begun !== this.now || !answer.mesh) return;
+      const pose = this.now.poses.get(model.index) ?? model.pose ?? scene.find((s) => s.name === model.name)?.pose;
+      this.view.models.add(model.index, {...model, pose}, answer.mesh);
+    }));
+    if (begun !== this.now) return;
+    this.view.measure();
+    if (!this.fitted) this.view.fit();
+    this.fitted = this.fitWhenTip = true;
+  }
+
+  #list(list) {
+    this.pendingList = list;
+    if (!this.view || !this.now) return;
+    this.panel.show(this.#withValues(list.models), this.hello.control);
+    const models = list.models.map((m, i) => ({...m, index: m.number ?? i}));
+    for (const [name, index] of this.drawn)
+      if (!models.some((m) => m.name === name && m.index === index)) {
+        if (this.view.models.byIndex.get(index)?.name === name) this.view.models.remove(index);
+        this.drawn.delete(name);
+      }
+    for (const model of models) this.events.names[model.index] = model.name;
+    this.view.dirty = true;
+    this.#drawModels(models);
+  }
+
+  /** Where the daemon does not tell the values in force, those of the scene are a start. */
+  #withValues(models) {
+    const scene = this.now.about.scene?.models ?? [];
+    for (const model of models)
+      for (const parameter of model.live_parameters ?? []) {
+        const given = scene.find((s) => s.name === model.name)?.parameters?.find((p) => p.id === parameter.id);
+        parameter.value ??= Number(given?.number ?? NaN);
+      }
+    return models;
+  }
+
+  #rows(message) {
+    const table = this.now?.take(message);
+    if (!table) return;
+    const {bytes, count, rowBytes} = message;
+    if (table.name === 'ticks') this.plots?.add(bytes, count, rowBytes);
+    else if (table.name === 'orders') this.events.orders(bytes, count, rowBytes);
+    else if (table.name === 'events') this.events.events(bytes, count, rowBytes);
+    this.fresh = true;
+  }
+
+  #frame(time) {
+    const {now, view} = this;
+    if (!now) return;
+    this.hand.look(time);
+    this.plots?.redraw(now.tick.t, time);
+    if (!this.fresh && !view.dirty) return;
+    if (this.fresh) this.#update();
+    this.fresh = false;
+    view.dirty = true;
+  }
+
+  #update() {
+    const {now, view} = this, contacts = now.current();
+    view.models.move(now.poses);
+    view.models.stain(contacts, kFullStain);
+    now.arms.forEach((arm, i) => {
+      if (!arm.now) return;
+      view.probes[i].update(arm.now, contacts.filter((c) => c.probe === i), this.hand.wish(i));
+    });
+    if (this.fitWhenTip && now.arms[0]?.now?.valid) this.fitWhenTip = false, view.fit();
+    this.events.look(now);
+    this.#showHold(now.arms.some((arm) => arm.now?.fault === kHeldFault));
+    const first = now.arms[0]?.now;
+    $('read-force').value = short(first ? norm(first.sent) : NaN);
+    $('read-depth').value = short(now.tick.depth > 0 ? now.tick.depth * 1e3 : 0);
+    $('read-speed').value = short(this.#speed(first) * 1e3);
+    this.timeline.at(now.tick.t);
+    if (this.hand.leads) $('hint').hidden = true;
+  }
+
+  /** [m/s] Of the tip: from its places, since the daemon estimates a velocity only where a model needs one. */
+  #speed(arm) {
+    const {tick, t} = this.now.tick, before = this.before;
+    if (arm && (!before || t - before.t > 0.02 || t < before.t)) {
+      const moved = before && t > before.t ? norm(arm.position.map((p, i) => p - before.position[i])) / (t - before.t) : 0;
+      this.before = {t, tick, position: arm.position, speed: moved};
+    }
+    return this.before?.speed ?? 0;
+  }
+
+  #status(status) {
+    this.status = status;
+    const faults = (status.devices ?? []).filter((d) => d.fault).map((d) => `${d.name}: ${d.fault}`);
+    if (this.hello?.recorded) return this.#lamp('good', 'Recording');
+    if (!('rate_hz' in status)) return undefined;
+    const p99 = status.lateness_us?.p99;
+    const text = `${short(status.rate_hz)} Hz · late ${short(p99)} µs (99 %) · ${status.missed_ticks ?? 0} missed`;
+    return faults.length > 0 ? this.#lamp(this.held ? 'held' : 'bad', faults.join(', ')) : this.#lamp('good', text);
+  }
+
+  #showHold(held) {
+    if (held === this.held) return;
+    this.held = held;
+    $('hold').firstElementChild.textContent = held ? 'Clear' : 'Hold';
+  }
+
+  #lamp(state, text) {
+    const [lamp, words] = $('status').children;
+    lamp.dataset.state = state;
+    words.textContent = text;
+    words.title = text;
+  }
+
+  notice(text, calm = false) {
+    if (!text) return;
+    const notice = $('notice');
+    notice.textContent = text;
+    notice.classList.toggle('calm', calm);
+    notice.hidden = false;
+    clearTimeout(this.noticeTimer);
+    this.noticeTimer = setTimeout(() => { notice.hidden = true; }, kNoticeMs);
+  }
+
+  async #order(request, done) {
+    const answer = await this.ask(request);
+    this.notice(answer.ok ? done?.(answer) : answer.error, answer.ok);
+  }
+
+  holdOrClear() {
+    if (this.hello?.recorded) return this.timeline.toggle();
+    if (!this.hello?.control) return this.notice('This view only looks. To change the run: hapticd view --control');
+    return this.#order({do: this.held ? 'clear' : 'hold'});
+  }
+
+  #buttons() {
+    $('hold').onclick = () => this.holdOrClear();
+    $('clear').onclick = () => this.#order({do: 'clear'});
+    $('reload').onclick = () => this.#order({do: 'reload'}, (a) => `${a.models} models loaded again`);
+    $('dump').onclick = () => this.#order({do: 'dump'}, (a) => `Written: ${a.file}`);
+    $('stop').onclick = () => this.#order({do: 'stop'});
+    $('theme').onclick = () => this.#theme(document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark', true);
+    $('help').onclick = () => $('keys').showModal();
+    $('fit').onclick = () => this.view?.fit();
+    for (const button of document.querySelectorAll('[data-view]')) button.onclick = () => this.look(button.dataset.view);
+    for (const box of document.querySelectorAll('[data-show]')) box.onchange = () => this.view?.show(box.dataset.show, box.checked);
+    for (const tab of document.querySelectorAll('[role=tab]')) tab.onclick = () => this.#tab(tab);
+    $('sound').onchange = (e) => this.sound.enable(e.target.checked);
+    $('pick').onchange = (e) => this.plots?.pick(e.target.value);
+    $('save-picture').onclick = async () => save(await this.view.picture(), 'hapticd.png');
+    $('save-report').onclick = () => save(new Blob([JSON.stringify(this.report(), null, 2)], {type: 'application/json'}), 'hapticd-report.json');
+    document.addEventListener('keydown', (e) => this.#key(e));
+  }
+
+  #key(e) {
+    if (e.target.matches('input, select, textarea') || document.querySelector('dialog[open]') || e.ctrlKey || e.metaKey || e.altKey) return;
+    const keys = {' ': () => this.holdOrClear(), f: () => this.view?.fit(), 1: () => this.look('front'), 3: () => this.look('right'), 7: () => this.look('top'), '?': () => $('keys').showModal()};
+    const act = keys[e.key.toLowerCase()];
+    if (!act || (e.key === ' ' && e.target.matches('button, a'))) return;
+    e.preventDefault();
+    act();
+  }
+
+  look(name) {
+    this.view?.orbit.look(name);
+    if (this.view) this.view.dirty = true;
+  }
+
+  #tab(tab) {
+    for (const other of document.querySelectorAll('[role=tab]')) {
+      other.setAttribute('aria-selected', String(other === tab));
+      $(other.getAttribute('aria-controls')).hidden = other !== tab;
+    }
+  }
+
+  #theme(name, keep = false) {
+    document.documentElement.dataset.theme = name;
+    if (keep) localStorage.setItem('theme', name);
+    const dark = name === 'dark';
+    this.view?.theme({panel: themeColor('--panel'), line: themeColor('--line'), accent: themeColor('--accent'), force: themeColor('--force'), tip: dark ? '#f2f5f8' : '#1d2730', link: dark ? '#5b6a7a' : '#c3ccd6'});
+  }
+
+  /** What was seen: the status, the models and the extremes of the plots. */
+  report() {
+    const extremes = Object.fromEntries((this.plots?.all ?? []).map((p) => [p.root.querySelector('span').textContent, {
+      unit: p.unit, min: Math.min(...p.extremes.low.filter((v) => v !== null)), max: Math.max(...p.extremes.high.filter((v) => v !== null)),
+    }]));
+    return {scene: this.now?.about.scene?.file, hapticd: this.now?.about.hapticd, seconds: this.now?.tick.t, status: this.status, models: this.panel.models, last_seconds: extremes};
+  }
+}
+
+window.hapticdView = new Page();

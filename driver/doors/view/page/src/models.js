@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+/** The models of the scene as they are felt: the plugin's own triangles and normals, live where a body deforms, and a
+ * stain on the surface where the probe is in contact. */
+import {Box3, BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineBasicMaterial, LineSegments, Mesh,
+  MeshLambertMaterial, Vector4, WireframeGeometry} from 'three';
+import {toCreasedNormals} from 'three/addons/utils/BufferGeometryUtils.js';
+
+const kColors = {nurbs_rigid: '#a3b8c9', mat_deformable: '#e0a08c', push_button: '#8fb0dc', pendulum: '#cdb27a'};
+const kOther = ['#a7c4a0', '#c3a6cf', '#9fc6c4', '#d3bd94'];
+const kCrease = Math.PI / 5; // where a plugin gives no normals: sharper edges than this stay sharp
+const kStains = 4; // contacts that colour a surface at a time
+
+/** Colour of a model, by its plugin. */
+export function colorOf(plugin, index) {
+  return kColors[plugin] ?? kOther[index % kOther.length];
+}
+
+const kFragmentHead = `varying vec3 vPlace;
+uniform vec4 stains[${kStains}];
+uniform float stainRadius;
+uniform vec3 stainColor;
+`;
+const kFragmentStain = `
+  float stain = 0.0;
+  for (int i = 0; i < ${kStains}; ++i) {
+    vec3 away = (vPlace - stains[i].xyz) / stainRadius;
+    stain = max(stain, stains[i].w * exp(-dot(away, away)));
+  }
+  outgoingLight = mix(outgoingLight, stainColor, stain);
+  #include <opaque_fragment>`;
+
+/** Lambert's shading, and a warm stain about each contact: a place in the world and a strength. */
+function stainedMaterial(color) {
+  const material = new MeshLambertMaterial({color, side: DoubleSide});
+  const uniforms = {
+    stains: {value: Array.from({length: kStains}, () => new Vector4(0, 0, 0, 0))},
+    stainRadius: {value: 0.01},
+    stainColor: {value: new Color('#ff4d12')},
+  };
+  material.userData = uniforms;
+  material.onBeforeCompile = (shader) => {
+    Object.assign(shader.uniforms, uniforms);
+    shader.vertexShader = `varying vec3 vPlace;\n${shader.vertexShader}`.replace('#include <project_vertex>',
+      '#include <project_vertex>\nvPlace = (modelMatrix * vec4(transformed, 1.0)).xyz;');
+    shader.fragmentShader = kFragmentHead + shader.fragmentShader.replace('#include <opaque_fragment>', kFragmentStain);
+  };
+  return material;
+}
+
+export class Models {
+  constructor() {
+    this.group = new Group();
+    this.byIndex = new Map();
+  }
+
+  /** Forgets all of them. */
+  clear() {
+    for (const index of [...this.byIndex.keys()]) this.remove(index);
+  }
+
+  remove(index) {
+    const model = this.byIndex.get(index);
+    if (!model) return;
+    this.group.remove(model.mesh);
+    model.mesh.geometry.dispose();
+    model.mesh.material.dispose();
+    this.byIndex.delete(index);
+  }
+
+  /** Adds a model with its triangles {xyz, normals, corners} and pose {position, orientation}. */
+  add(index, {name, plugin, pose}, triangles) {
+    this.remove(index);
+    const live = new BufferGeometry(); // what vertices of a deforming body go to
+    live.setAttribute('position', new BufferAttribute(triangles.xyz, 3));
+    live.setIndex(new BufferAttribute(triangles.corners, 1));
+    if (triangles.normals) live.setAttribute('normal', new BufferAttribute(triangles.normals, 3));
+    else live.computeVertexNormals();
+    const mesh = new Mesh(triangles.normals ? live : toCreasedNormals(live, kCrease), stainedMaterial(colorOf(plugin, index)));
+    mesh.name = name;
+    if (pose) placeMesh(mesh, pose);
+    this.byIndex.set(index, {name, plugin, mesh, live, edges: null, triangles: triangles.corners.length / 3});
+    this.group.add(mesh);
+  }
+
+  /** New vertices of a body that deforms. */
+  deform(index, xyz) {
+    const model = this.byIndex.get(index);
+    const position = model?.live.getAttribute('position');
+    if (!position || position.count * 3 !== xyz.length) return;
+    if (model.mesh.geometry !== model.live) {
+      model.mesh.geometry.dispose();
+      model.mesh.geometry = model.live;
+    }
+    position.copyArray(xyz).needsUpdate = true;
+    model.live.computeVertexNormals();
+    model.live.computeBoundingSphere();
+  }
+
+  /** The newest poses of those that move: Map of index -> {position, orientation}. */
+  move(poses) {
+    for (const [index, pose] of poses) {
+      const model = this.byIndex.get(index);
+      if (model) placeMesh(model.mesh, pose);
+    }
+  }
+
+  /** Colours surfaces about the contacts of now; `full` [m] is the depth of the strongest colour. */
+  stain(contacts, full) {
+    for (const [index, model] of this.byIndex) {
+      const mine = contacts.filter((c) => c.model === index && c.depth > 0);
+      model.mesh.material.userData.stains.value.forEach((stain, i) => {
+        const c = mine[i];
+        if (c) stain.set(...c.point, 0.3 + 0.65 * Math.min(1, c.depth / full));
+        else stain.w = 0;
+      });
+    }
+  }
+
+  wire(shown) {
+    for (const model of this.byIndex.values()) {
+      if (shown && !model.edges) {
+        const material = new LineBasicMaterial({color: '#22303c', transparent: true, opacity: 0.25});
+        model.edges = new LineSegments(new WireframeGeometry(model.mesh.geometry), material);
+        model.mesh.add(model.edges);
+      }
+      if (model.edges) model.edges.visible = shown;
+    }
+  }
+
+  stainRadius(radius) {
+    for (const model of this.byIndex.values()) model.mesh.material.userData.stainRadius.value = radius;
+  }
+
+  box() {
+    const box = new Box3();
+    for (const model of this.byIndex.values()) box.expandByObject(model.mesh);
+    return box;
+  }
+}
+
+function placeMesh(mesh, {position, orientation}) {
+  const [w, x, y, z] = orientation;
+  mesh.position.set(...position);
+  mesh.quaternion.set(x, y, z, w);
+}

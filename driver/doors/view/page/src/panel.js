@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+/** The models and a form of what of them may change: fields come from the plugin's own table, with unit, range and
+ * documentation. What a hand may feel suddenly asks for consent. */
+import {element, short} from './format.js';
+import {colorOf} from './models.js';
+
+const kOpenModels = 3; // more of them are folded
+
+const $ = (id) => document.getElementById(id);
+
+/** Asks whether whoever holds the arm agrees. */
+function consent(text) {
+  const dialog = $('consent');
+  $('consent-text').textContent = text;
+  dialog.returnValue = 'no';
+  dialog.showModal();
+  return new Promise((resolve) => dialog.addEventListener('close', () => resolve(dialog.returnValue === 'yes'), {once: true}));
+}
+
+/** A range that a slider can walk: a table says 0 to 1e5 where 800 stands, so the slider spans about the value. */
+function sliderSpan(parameter, value) {
+  const about = Math.max(Math.abs(value), (parameter.max - parameter.min) * 1e-3, 1e-9);
+  return {min: Math.max(parameter.min, value < 0 ? -4 * about : 0, parameter.min), max: Math.min(parameter.max, 4 * about)};
+}
+
+export class Panel {
+  /** @param ask sends a request, gives a promise of the answer */
+  constructor(ask) {
+    this.ask = ask;
+    this.control = false;
+    this.models = [];
+    this.signature = '';
+    $('add-form').addEventListener('submit', (event) => {
+      event.preventDefault();
+      this.#do({do: 'add', file: $('add-file').value.trim()}).then((answer) => { if (answer.ok) $('add-file').value = ''; });
+    });
+  }
+
+  /** @param models of the answer of `list` @param control whether anything may change */
+  show(models, control) {
+    const shape = JSON.stringify([control, models.map((m) => [m.name, m.plugin, m.enabled, (m.live_parameters ?? []).map((p) => p.id)])]);
+    this.models = models;
+    this.control = control;
+    $('add-form').hidden = !control;
+    if (shape !== this.signature) {
+      this.signature = shape;
+      $('models').replaceChildren(...models.map((model, i) => this.#model(model, i)));
+      if (models.length === 0) $('models').append(element('p', {class: 'quiet'}, 'There is no model.'));
+    }
+    for (const model of models) for (const parameter of model.live_parameters ?? []) this.#refresh(model, parameter);
+  }
+
+  async #do(request) {
+    const answer = await this.ask(request);
+    if (!answer.ok) this.onRefused?.(answer.error);
+    return answer;
+  }
+
+  #model(model, i) {
+    const swatch = element('i', {class: 'swatch'});
+    swatch.style.background = colorOf(model.plugin, model.number ?? i);
+    const head = element('header', {}, swatch, element('h3', {title: model.name}, model.name, element('small', {}, model.plugin)));
+    if (this.control) {
+      const able = element('button', {type: 'button', title: 'Its force fades out, or in'}, model.enabled ? 'Disable' : 'Enable');
+      able.onclick = () => this.#do({do: model.enabled ? 'disable' : 'enable', model: model.name});
+      const remove = element('button', {type: 'button', title: 'Fade it out and take it away', 'aria-label': `Remove ${model.name}`}, '✕');
+      remove.onclick = () => this.#do({do: 'remove', model: model.name});
+      head.append(able, remove);
+    }
+    const live = model.live_parameters ?? [];
+    const fields = this.control ? live.map((parameter) => this.#field(model, parameter)) : [];
+    const body = this.models.length > kOpenModels && fields.length > 0
+      ? [element('details', {}, element('summary', {}, `${fields.length} parameters`), ...fields)] : fields;
+    return element('article', {class: 'model', data: {model: model.name}}, head, ...body);
+  }
+
+  #field(model, parameter) {
+    const id = `p-${model.name}-${parameter.id}`, value = parameter.value;
+    const number = element('input', {type: 'number', id, step: 'any', min: parameter.min, max: parameter.max, value: value ?? ''});
+    const slider = element('input', {type: 'range', step: 'any', 'aria-label': parameter.id});
+    const wrong = element('p', {class: 'wrong', hidden: true});
+    const set = async (wanted) => {
+      wrong.hidden = true;
+      if (!(wanted >= parameter.min && wanted <= parameter.max)) {
+        wrong.textContent = `expected ${short(parameter.min)} to ${short(parameter.max)} ${parameter.unit}`;
+        wrong.hidden = false;
+        return;
+      }
+      const before = Number.isFinite(parameter.value) ? ` from ${short(parameter.value)}` : '';
+      const agreed = !parameter.safety || await consent(`${parameter.label ?? parameter.id} of ${model.name} changes${before} to ${short(wanted)} ${parameter.unit}. A hand may feel that suddenly.`);
+      const answer = agreed ? await this.ask({do: 'set', model: model.name, parameter: parameter.id, value: wanted, ...(parameter.safety ? {consent: true} : {})}) : {ok: false};
+      if (answer.ok) parameter.value = wanted;
+      else if (answer.error) wrong.textContent = answer.error, wrong.hidden = false;
+      this.#refresh(model, parameter, true);
+    };
+    number.onchange = () => set(number.valueAsNumber);
+    slider.oninput = () => { number.value = Number(Number(slider.value).toPrecision(4)); };
+    slider.onchange = () => set(number.valueAsNumber);
+    const title = parameter.doc ? `${parameter.doc} ${short(parameter.min)} to ${short(parameter.max)} ${parameter.unit}` : parameter.id;
+    const field = element('div', {class: parameter.safety ? 'field safety' : 'field', data: {parameter: parameter.id}},
+      element('label', {htmlFor: id, title}, parameter.label ?? parameter.id), number, element('span', {class: 'unit'}, parameter.unit));
+    if (Number.isFinite(value)) field.append(slider);
+    field.append(wrong);
+    return field;
+  }
+
+  /** Shows the value in force, unless somebody is typing another. */
+  #refresh(model, parameter, force = false) {
+    const field = document.querySelector(`[data-model="${CSS.escape(model.name)}"] [data-parameter="${CSS.escape(parameter.id)}"]`);
+    if (!field || !Number.isFinite(parameter.value)) return;
+    const number = field.querySelector('input[type=number]'), slider = field.querySelector('input[type=range]');
+    if (!force && (document.activeElement === number || document.activeElement === slider)) return;
+    number.value = Number(parameter.value.toPrecision(6));
+    if (slider) Object.assign(slider, sliderSpan(parameter, parameter.value), {value: parameter.value});
+  }
+}

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+/** Plots over the last seconds. A column of pixels shows the extremes of its ticks, not a sample of them: a single late
+ * tick stays to be seen. */
+import uPlot from 'uplot';
+import {element, norm, short, themeColor} from './format.js';
+import {reader, vectorReader} from './rows.js';
+
+const kSeconds = 10;
+const kBuckets = 640; // over kSeconds: about 16 ticks of 1 kHz each
+const kRedrawMs = 90;
+
+/** The extremes of one quantity in buckets of time. */
+class Extremes {
+  constructor(read, readTime) {
+    this.read = read;
+    this.readTime = readTime;
+    this.clear();
+  }
+
+  clear() {
+    this.bucket = -1;
+    this.times = [];
+    this.low = [];
+    this.high = [];
+    this.newest = NaN;
+  }
+
+  add(view, at) {
+    const value = this.read(view, at), t = this.readTime(view, at);
+    if (Number.isFinite(value)) this.newest = value;
+    const bucket = Math.floor(t / kSeconds * kBuckets), last = this.times.length - 1;
+    if (bucket === this.bucket) {
+      if (value < this.low[last] || this.low[last] === null) this.low[last] = Number.isFinite(value) ? value : this.low[last];
+      if (value > this.high[last] || this.high[last] === null) this.high[last] = Number.isFinite(value) ? value : this.high[last];
+      return;
+    }
+    this.bucket = bucket;
+    this.times.push(t);
+    this.low.push(Number.isFinite(value) ? value : null);
+    this.high.push(Number.isFinite(value) ? value : null);
+    while (this.times.length > kBuckets + 2) this.times.shift(), this.low.shift(), this.high.shift();
+  }
+}
+
+function axis(size, format) {
+  return {
+    stroke: () => themeColor('--faint'), grid: {stroke: () => themeColor('--line'), width: 1}, ticks: {show: false},
+    font: '11px system-ui, sans-serif', size, gap: 3, values: format,
+  };
+}
+
+class Plot {
+  constructor(parent, {title, unit, color, read, scale = 1, limit = null, zero = true, least = 0}, plots) {
+    this.plots = plots;
+    this.scale = scale;
+    this.limit = limit;
+    this.value = element('b', {}, '–');
+    this.unit = unit;
+    const mark = element('i');
+    mark.style.background = `var(${color})`;
+    this.chartBox = element('div', {class: 'chart'});
+    this.root = element('article', {class: 'plot'}, element('h3', {}, mark, element('span', {}, title), this.value), this.chartBox);
+    parent.append(this.root);
+    this.extremes = new Extremes((view, at) => scale * read(view, at), plots.readTime);
+    this.color = color;
+    this.zero = zero;
+    this.least = least; // span that an axis has at least: noise is not blown up
+    this.#chart();
+    this.#fill();
+  }
+
+  #chart() {
+    const stroke = () => themeColor(this.color);
+    const range = (u, low, high) => {
+      const bottom = this.zero ? Math.min(0, low ?? 0) : low ?? 0, top = Math.max(high ?? 0, bottom + Math.max(this.least, 1e-9));
+      return [bottom - (bottom < 0 ? 0.06 : 0) * (top - bottom), top + 0.1 * (top - bottom)];
+    };
+    this.chart = new uPlot({
+      width: 240, height: 118, legend: {show: false}, cursor: {show: true, points: {show: false}, y: false, drag: {x: false, y: false}},
+      padding: [6, 4, 0, 0], scales: {x: {time: false}, y: {range}},
+      axes: [axis(20, (u, values) => values.map((v) => `${Number(v.toFixed(1))} s`)), axis(40, (u, values) => values.map((v) => String(Number(v.toPrecision(4)))))],
+      series: [{}, {stroke, width: 1.4, points: {show: false}}, {stroke, width: 1.4, points: {show: false}}],
+      bands: [{series: [2, 1], fill: () => `color-mix(in srgb, ${themeColor(this.color)} 45%, transparent)`}],
+      hooks: {draw: [(u) => this.#marks(u)]},
+    }, [[0, 1], [null, null], [null, null]], this.chartBox);
+  }
+
+  /** A dashed line at the limit, a line at each mark (fault, order). */
+  #marks(u) {
+    const {ctx} = u, {left, top, width, height} = u.bbox;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(left, top, width, height);
+    ctx.clip();
+    if (this.limit !== null) {
+      const y = u.valToPos(this.limit, 'y', true);
+      ctx.strokeStyle = themeColor('--bad');
+      ctx.setLineDash([5, 4]);
+      ctx.beginPath();
+      ctx.moveTo(left, y), ctx.lineTo(left + width, y);
+      ctx.stroke();
+      ctx.setLineDash([]);
+    }
+    for (const {t, kind} of this.plots.marks) {
+      const x = u.valToPos(t, 'x', true);
+      ctx.strokeStyle = themeColor(kind === 'fault' ? '--bad' : kind === 'click' ? '--late' : '--faint');
+      ctx.globalAlpha = kind === 'fault' ? 0.9 : 0.45;
+      ctx.beginPath();
+      ctx.moveTo(x, top), ctx.lineTo(x, top + height);
+      ctx.stroke();
+    }
+    ctx.restore();
+  }
+
+  /** From the rows that are kept: a column that was picked shows at once what has been. */
+  #fill() {
+    const {table} = this.plots;
+    for (let row = table.begin; row < table.end; ++row) this.extremes.add(table.view, table.at(row));
+  }
+
+  redraw(from, to) {
+    const {times, low, high, newest} = this.extremes;
+    const {clientWidth, clientHeight} = this.chartBox;
+    if (clientWidth > 0 && (this.chart.width !== clientWidth || this.chart.height !== clientHeight))
+      this.chart.setSize({width: clientWidth, height: clientHeight});
+    this.chart.batch(() => {
+      this.chart.setData([times, low, high], false);
+      this.chart.setScale('x', {min: from, max: to});
+    });
+    this.value.textContent = `${short(newest)} ${this.unit}`;
+  }
+
+  destroy() {
+    this.chart.destroy();
+    this.root.remove();
+  }
+}
+
+export class Plots {
+  constructor(parent, table, {forceLimit}) {
+    parent.replaceChildren();
+    this.parent = parent;
+    this.table = table;
+    this.marks = [];
+    const {columns} = table;
+    this.readTime = reader(columns, 't');
+    const force = vectorReader(columns, 'arm0_sent_f'), depth = reader(columns, 'depth');
+    this.plots = [
+      {title: 'Force on the hand', unit: 'N', color: '--force', read: (v, at) => norm(force(v, at)), limit: forceLimit, least: 0.5},
+      {title: 'Depth', unit: 'mm', color: '--depth', read: (v, at) => Math.max(depth(v, at), -0.02), scale: 1e3, zero: false, least: 0.5},
+      {title: 'Lateness', unit: 'µs', color: '--late', read: reader(columns, 'lateness_us'), least: 50},
+      {title: 'Compute', unit: 'µs', color: '--compute', read: reader(columns, 'compute_us'), least: 20},
+    ].map((what) => new Plot(parent, what, this));
+    this.own = null;
+    this.next = 0;
+  }
+
+  /** Columns that may be picked. */
+  columns() { return this.table.columns.filter((c) => !/reserved|^tick$|_ns$/.test(c.name)); }
+
+  /** Shows a column of the user's choice; null: none. */
+  pick(name) {
+    this.own?.destroy();
+    const column = this.table.columns.find((c) => c.name === name);
+    this.own = column ? new Plot(this.parent, {title: column.name, unit: column.unit, color: '--own', read: reader(this.table.columns, name), zero: false}, this) : null;
+  }
+
+  get all() { return this.own ? [...this.plots, this.own] : this.plots; }
+
+  add(view, count, rowBytes) {
+    for (let i = 0; i < count; ++i) for (const plot of this.all) plot.extremes.add(view, i * rowBytes);
+  }
+
+  mark(t, kind) {
+    this.marks.push({t, kind});
+    if (this.marks.length > 200) this.marks.shift();
+  }
+
+  clear() {
+    this.marks = [];
+    for (const plot of this.all) plot.extremes.clear();
+  }
+
+  /** Draws anew, some ten times a second. @param t newest time [s] */
+  redraw(t, now) {
+    if (now < this.next || !Number.isFinite(t)) return;
+    this.next = now + kRedrawMs;
+    for (const plot of this.all) plot.redraw(t - kSeconds, t);
+  }
+}

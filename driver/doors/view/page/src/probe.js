@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+/** One arm in the scene: tip, foot point and normal, force arrow, ghost of what a led hand wants, and its links. */
+import {BufferAttribute, BufferGeometry, ConeGeometry, CylinderGeometry, DoubleSide, Group, Line, LineBasicMaterial, Mesh,
+  MeshBasicMaterial, MeshLambertMaterial, RingGeometry, SphereGeometry, Vector3} from 'three';
+import {norm} from './format.js';
+
+const kMetresPerNewton = 0.012; // for a tip of kUsualTip; the arrow grows with the tip
+const kUsualTip = 0.0035; // m
+const kSmallForce = 0.02; // N: below it there is no arrow
+const kUp = new Vector3(0, 1, 0), kForward = new Vector3(0, 0, 1);
+
+/** A cylinder of height 1 is laid from one point to another. */
+function span(mesh, from, to, radius) {
+  const along = to.clone().sub(from), length = along.length();
+  mesh.visible = length > 1e-6;
+  if (!mesh.visible) return;
+  mesh.position.copy(from).addScaledVector(along, 0.5);
+  mesh.quaternion.setFromUnitVectors(kUp, along.divideScalar(length));
+  mesh.scale.set(radius, length, radius);
+}
+
+function segment() {
+  const geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array(6), 3));
+  const line = new Line(geometry, new LineBasicMaterial());
+  line.frustumCulled = false;
+  return line;
+}
+
+function setSegment(line, from, to) {
+  const position = line.geometry.getAttribute('position');
+  position.setXYZ(0, from.x, from.y, from.z);
+  position.setXYZ(1, to.x, to.y, to.z);
+  position.needsUpdate = true;
+}
+
+export class Probe {
+  constructor() {
+    this.group = new Group();
+    this.tip = new Mesh(new SphereGeometry(1, 20, 14), new MeshLambertMaterial());
+    this.ghost = new Mesh(new SphereGeometry(1, 16, 12), new MeshBasicMaterial({transparent: true, opacity: 0.35, depthWrite: false}));
+    this.tether = segment();
+    this.foot = new Mesh(new RingGeometry(0.72, 1, 28), new MeshBasicMaterial({side: DoubleSide, depthTest: false, transparent: true}));
+    this.normal = segment();
+    this.shaft = new Mesh(new CylinderGeometry(1, 1, 1, 14), new MeshBasicMaterial({depthTest: false, transparent: true}));
+    this.head = new Mesh(new ConeGeometry(1, 1, 18), this.shaft.material);
+    for (const over of [this.foot, this.shaft, this.head]) over.renderOrder = 2;
+    this.arm = new Group();
+    this.links = [];
+    this.linkMaterial = new MeshLambertMaterial();
+    this.group.add(this.tip, this.ghost, this.tether, this.foot, this.normal, this.shaft, this.head, this.arm);
+    this.ghost.visible = this.tether.visible = this.tip.visible = false;
+    this.tipPlace = new Vector3();
+    this.showForce = true;
+    this.resize(kUsualTip);
+  }
+
+  /** @param size [m] radius of the tip as drawn */
+  resize(size) {
+    this.size = size;
+    this.tip.scale.setScalar(size);
+    this.ghost.scale.setScalar(size * 1.3);
+    this.foot.scale.setScalar(size * 1.4);
+  }
+
+  colors({tip, accent, force, link}) {
+    this.tip.material.color.set(tip);
+    this.linkMaterial.color.set(link);
+    for (const part of [this.ghost, this.tether, this.foot, this.normal]) part.material.color.set(accent);
+    this.shaft.material.color.set(force);
+  }
+
+  /** @param now of the arm @param contacts of this probe @param wish where the led hand wants to be, or null */
+  update(now, contacts, wish) {
+    this.tip.visible = now.valid;
+    this.tipPlace.set(...now.position);
+    if (now.valid) this.tip.position.copy(this.tipPlace);
+    this.#force(new Vector3(...now.sent));
+    this.#foot(contacts);
+    this.ghost.visible = this.tether.visible = wish !== null;
+    if (!wish) return;
+    this.ghost.position.copy(wish);
+    setSegment(this.tether, this.tipPlace, wish);
+  }
+
+  #force(force) {
+    const size = force.length(), visible = this.showForce && size > kSmallForce;
+    this.shaft.visible = this.head.visible = visible;
+    if (!visible) return;
+    const direction = force.clone().divideScalar(size);
+    const length = this.size * (1.2 + size * kMetresPerNewton / kUsualTip), head = Math.min(length * 0.45, this.size * 2.4);
+    const neck = this.tipPlace.clone().addScaledVector(direction, length - head);
+    span(this.shaft, this.tipPlace, neck, this.size * 0.28);
+    this.head.position.copy(neck).addScaledVector(direction, head / 2);
+    this.head.quaternion.setFromUnitVectors(kUp, direction);
+    this.head.scale.set(this.size * 0.72, head, this.size * 0.72);
+  }
+
+  /** The deepest, or nearest, foot that is traced. */
+  #foot(contacts) {
+    const best = contacts.reduce((a, b) => (!a || b.depth > a.depth ? b : a), null);
+    const near = best !== null && best.depth > -12 * this.size && norm(best.normal) > 0.5;
+    this.foot.visible = this.normal.visible = near && this.showForce;
+    if (!near) return;
+    const point = new Vector3(...best.point), normal = new Vector3(...best.normal).normalize();
+    this.foot.position.copy(point).addScaledVector(normal, this.size * 0.06);
+    this.foot.quaternion.setFromUnitVectors(kForward, normal);
+    setSegment(this.normal, point, point.clone().addScaledVector(normal, this.size * 5));
+  }
+
+  /** Draws the arm through places of the world, the last of which is the tip: lists of [x, y, z], one a chain. */
+  setLinks(chains) {
+    let used = 0;
+    for (const points of chains)
+      for (let i = 0; i + 1 < points.length; ++i)
+        this.#link(used++, new Vector3(...points[i]), new Vector3(...points[i + 1]));
+    this.links.slice(used).forEach(({link, joint}) => { link.visible = joint.visible = false; });
+  }
+
+  #link(index, from, to) {
+    if (index === this.links.length) {
+      const link = new Mesh(this.shaft.geometry, this.linkMaterial), joint = new Mesh(this.tip.geometry, this.linkMaterial);
+      this.arm.add(link, joint);
+      this.links.push({link, joint});
+    }
+    const {link, joint} = this.links[index];
+    span(link, from, to, this.size * 0.9);
+    joint.visible = link.visible;
+    joint.position.copy(from);
+    joint.scale.setScalar(this.size * 1.35);
+  }
+}

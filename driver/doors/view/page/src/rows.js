@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+/** Rows as the daemon records them: a table for each stream, the newest rows kept raw, numbers read by the name of a
+ * column. */
+
+const kReaders = {
+  f8: (view, at) => view.getFloat64(at, true),
+  f4: (view, at) => view.getFloat32(at, true),
+  u8: (view, at) => Number(view.getBigUint64(at, true)),
+  u4: (view, at) => view.getUint32(at, true),
+  i4: (view, at) => view.getInt32(at, true),
+};
+const kKeptSeconds = 11, kMostBytes = 24 << 20;
+const kQuaternion = ['w', 'x', 'y', 'z'];
+
+/** Reads a column of a row that begins at `at`; a column that is not there reads as not a number. */
+export function reader(columns, name) {
+  const column = columns.find((c) => c.name === name);
+  if (!column) return () => NaN;
+  const read = kReaders[column.type], {offset} = column;
+  return (view, at) => read(view, at + offset);
+}
+
+/** Columns with a common prefix as a list of numbers. */
+export function vectorReader(columns, prefix, names = ['x', 'y', 'z']) {
+  const readers = names.map((n) => reader(columns, prefix + n));
+  return (view, at) => readers.map((read) => read(view, at));
+}
+
+/** The newest rows of one stream in a circle. */
+export class Table {
+  constructor(name, columns, rowBytes, capacity) {
+    this.name = name;
+    this.columns = columns;
+    this.rowBytes = rowBytes;
+    this.capacity = capacity;
+    this.bytes = new Uint8Array(capacity * rowBytes);
+    this.view = new DataView(this.bytes.buffer);
+    this.end = 0; // rows that ever came
+  }
+
+  clear() { this.end = 0; }
+
+  push(from, count) {
+    for (let i = Math.max(0, count - this.capacity); i < count; ++i) {
+      const row = new Uint8Array(from.buffer, from.byteOffset + i * this.rowBytes, this.rowBytes);
+      this.bytes.set(row, (this.end + i) % this.capacity * this.rowBytes);
+    }
+    this.end += count;
+  }
+
+  get begin() { return Math.max(0, this.end - this.capacity); }
+  at(row) { return row % this.capacity * this.rowBytes; }
+}
+
+function armReaders(columns, prefix, device) {
+  return {
+    name: device.name,
+    joints: Array.from({length: device.info?.joint_count ?? 0}, (_, i) => reader(columns, `${prefix}q${i}`)),
+    position: vectorReader(columns, prefix),
+    orientation: vectorReader(columns, `${prefix}q`, kQuaternion),
+    velocity: vectorReader(columns, `${prefix}v`),
+    force: vectorReader(columns, `${prefix}f`),
+    sent: vectorReader(columns, `${prefix}sent_f`),
+    fault: reader(columns, `${prefix}fault`),
+    valid: reader(columns, `${prefix}valid`),
+    buttons: reader(columns, `${prefix}buttons`),
+    now: null,
+  };
+}
+
+/** What ticks, contacts and poses say of now, taken from each batch of rows as it comes. */
+export class Now {
+  constructor(about, streams) {
+    const columns = (name) => about.columns?.[name] ?? [];
+    const rows = kKeptSeconds * (about.rate_hz || 1000);
+    this.about = about;
+    this.tables = streams.map((s) => new Table(s.name, columns(s.name), s.row_bytes,
+      Math.max(64, Math.min(Math.ceil(rows), Math.floor(kMostBytes / s.row_bytes)))));
+    this.arms = (about.devices ?? []).map((device, i) => armReaders(columns('ticks'), `arm${i}_`, device));
+    this.tick = {t: NaN, tick: -1, depth: NaN, lateness: NaN, compute: NaN};
+    this.contacts = new Map(); // "model/probe" -> contact
+    this.poses = new Map(); // model -> pose
+    const t = columns('ticks'), c = columns('contacts'), p = columns('poses');
+    this.read = {
+      tick: reader(t, 'tick'), t: reader(t, 't'), depth: reader(t, 'depth'), lateness: reader(t, 'lateness_us'),
+      compute: reader(t, 'compute_us'),
+    };
+    this.contact = {
+      tick: reader(c, 'tick'), model: reader(c, 'model'), probe: reader(c, 'probe'), depth: reader(c, 'depth'),
+      feature: reader(c, 'feature'), status: reader(c, 'status'), point: vectorReader(c, 'p'),
+      normal: vectorReader(c, 'n'), force: vectorReader(c, 'f'),
+    };
+    this.pose = {model: reader(p, 'model'), position: vectorReader(p, ''), orientation: vectorReader(p, 'q', kQuaternion)};
+  }
+
+  table(name) { return this.tables.find((t) => t.name === name); }
+
+  clear() {
+    for (const table of this.tables) table.clear();
+    this.contacts.clear();
+    this.tick.tick = -1;
+  }
+
+  /** Takes a message of rows; returns the table that they went to. */
+  take({stream, rowBytes, count, bytes}) {
+    const table = this.tables[stream];
+    if (!table || table.rowBytes !== rowBytes) return null;
+    table.push(bytes, count);
+    if (table.name === 'ticks') this.#ticks(bytes, (count - 1) * rowBytes);
+    else if (table.name === 'contacts') this.#contacts(bytes, count, rowBytes);
+    else if (table.name === 'poses') this.#poses(bytes, count, rowBytes);
+    return table;
+  }
+
+  #ticks(view, at) {
+    const {read, tick} = this;
+    for (const name of Object.keys(read)) tick[name] = read[name](view, at);
+    for (const arm of this.arms) {
+      const number = (name) => arm[name](view, at);
+      arm.now = {
+        position: number('position'), orientation: number('orientation'), velocity: number('velocity'),
+        force: number('force'), sent: number('sent'), fault: number('fault'), valid: number('valid') === 1,
+        buttons: number('buttons'), joints: arm.joints.map((read1) => read1(view, at)),
+      };
+    }
+  }
+
+  #contacts(view, count, rowBytes) {
+    const newest = this.contact.tick(view, (count - 1) * rowBytes);
+    for (let i = count - 1; i >= 0 && this.contact.tick(view, i * rowBytes) === newest; --i) {
+      const c = {};
+      for (const name of Object.keys(this.contact)) c[name] = this.contact[name](view, i * rowBytes);
+      this.contacts.set(`${c.model}/${c.probe}`, c);
+    }
+  }
+
+  #poses(view, count, rowBytes) {
+    const seen = new Set();
+    for (let i = count - 1; i >= 0; --i) {
+      const at = i * rowBytes, model = this.pose.model(view, at);
+      if (seen.has(model)) continue;
+      seen.add(model);
+      this.poses.set(model, {position: this.pose.position(view, at), orientation: this.pose.orientation(view, at)});
+      if (seen.size >= this.poses.size && count - i > 256) break;
+    }
+  }
+
+  /** Contacts of the newest tick. */
+  current() {
+    return [...this.contacts.values()].filter((c) => this.tick.tick - c.tick <= 1);
+  }
+}

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+/** The scene on a canvas. Draws when something changed, at most once a frame of the display, and coarser where the
+ * machine is slow: a processor that plays the graphics card has few pixels to give. */
+import {Box3, BufferGeometry, Color, DirectionalLight, GridHelper, Group, HemisphereLight, LineBasicMaterial, LineLoop, Scene,
+  Vector3, WebGLRenderer} from 'three';
+import {OrbitCamera} from './camera.js';
+import {Models} from './models.js';
+import {Probe} from './probe.js';
+
+const kSlowMs = 55, kFastMs = 24, kCoarsest = 0.56;
+const kGridStep = 0.02; // m
+const kEmptyExtent = 0.15; // m: of a scene without a model
+
+/** True where a processor draws instead of a graphics card. */
+function drawsInSoftware() {
+  const probe = document.createElement('canvas').getContext('webgl2');
+  const info = probe?.getExtension('WEBGL_debug_renderer_info');
+  const name = info ? probe.getParameter(info.UNMASKED_RENDERER_WEBGL) : '';
+  probe?.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|software/i.test(name);
+}
+
+export class View {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.software = drawsInSoftware();
+    this.renderer = new WebGLRenderer({canvas, antialias: !this.software, powerPreference: 'high-performance', preserveDrawingBuffer: false});
+    this.ratio = this.software ? 1 : Math.min(devicePixelRatio, 2);
+    this.scene = new Scene();
+    this.orbit = new OrbitCamera();
+    this.models = new Models();
+    this.probes = [];
+    this.light = new DirectionalLight('#ffffff', 2.1);
+    this.scene.add(this.models.group, new HemisphereLight('#ffffff', '#8d99a6', 1.6), this.light);
+    this.shown = {arm: true, force: true, grid: true, workspace: false, wire: false};
+    this.extent = kEmptyExtent;
+    this.dirty = true;
+    this.frames = 0;
+    this.average = (kSlowMs + kFastMs) / 2;
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    this.resize();
+  }
+
+  resize() {
+    const {clientWidth: width, clientHeight: height} = this.canvas.parentElement;
+    this.renderer.setPixelRatio(this.ratio);
+    this.renderer.setSize(width, height, false);
+    this.orbit.resize(width, height);
+    this.dirty = true;
+  }
+
+  theme(colors) {
+    this.colors = colors;
+    this.scene.background = new Color(colors.panel);
+    for (const probe of this.probes) probe.colors(colors);
+    this.#floor();
+    this.dirty = true;
+  }
+
+  /** As many probes as arms. */
+  arms(count) {
+    for (const probe of this.probes) this.scene.remove(probe.group);
+    this.probes = Array.from({length: count}, () => {
+      const probe = new Probe();
+      if (this.colors) probe.colors(this.colors);
+      this.scene.add(probe.group);
+      return probe;
+    });
+  }
+
+  /** Size of tip, floor and stains follow from the size of the scene. */
+  measure() {
+    const box = this.models.box();
+    this.extent = box.isEmpty() ? kEmptyExtent : box.getSize(new Vector3()).length();
+    for (const probe of this.probes) probe.resize(Math.min(Math.max(this.extent / 60, 0.002), 0.006));
+    this.models.stainRadius(Math.min(this.extent / 26, 0.02));
+    this.#floor();
+    this.show('wire', this.shown.wire);
+  }
+
+  #floor() {
+    if (this.grid) {
+      this.scene.remove(this.grid);
+      this.grid.geometry.dispose();
+    }
+    const box = this.models.box(), step = kGridStep * Math.max(1, Math.round(this.extent / 0.4));
+    const lines = 2 * Math.ceil(1.3 * Math.max(this.extent, 0.2) / step / 2);
+    this.grid = new GridHelper(lines * step, lines, this.colors?.line, this.colors?.line);
+    this.grid.position.y = box.isEmpty() ? -0.08 : box.min.y - 0.004;
+    this.grid.visible = this.shown.grid;
+    this.scene.add(this.grid);
+  }
+
+  /** A ball of the world that the arm may reach: three great circles of a radius [m] about a centre. */
+  setWorkspace(center, radius) {
+    if (this.workspace) this.scene.remove(this.workspace);
+    this.workspace = new Group();
+    const circle = new BufferGeometry().setFromPoints(Array.from({length: 96}, (_, i) => new Vector3(Math.cos(i * Math.PI / 48) * radius, Math.sin(i * Math.PI / 48) * radius, 0)));
+    const material = new LineBasicMaterial({color: this.colors?.accent});
+    for (const [x, y] of [[0, 0], [Math.PI / 2, 0], [0, Math.PI / 2]]) {
+      const line = new LineLoop(circle, material);
+      line.rotation.set(x, y, 0);
+      this.workspace.add(line);
+    }
+    this.workspace.position.set(...center);
+    this.workspace.visible = this.shown.workspace;
+    this.scene.add(this.workspace);
+  }
+
+  show(what, on) {
+    this.shown[what] = on;
+    if (this.grid) this.grid.visible = this.shown.grid;
+    if (this.workspace) this.workspace.visible = this.shown.workspace;
+    this.models.wire(this.shown.wire);
+    for (const probe of this.probes) {
+      probe.arm.visible = this.shown.arm;
+      probe.showForce = this.shown.force;
+    }
+    this.dirty = true;
+  }
+
+  fit() {
+    const box = this.models.box(), room = new Vector3().setScalar(0.02);
+    for (const probe of this.probes)
+      if (probe.tip.visible) box.union(new Box3().setFromCenterAndSize(probe.tipPlace, room));
+    this.orbit.fit(box);
+    this.dirty = true;
+  }
+
+  /** Draws if there is something new. Returns true if it drew. */
+  draw() {
+    if (!this.dirty) return false;
+    this.dirty = false;
+    const {camera, spherical, center} = this.orbit;
+    this.light.position.copy(camera.position).addScaledVector(this.orbit.up(), spherical.radius * 0.7)
+      .addScaledVector(this.orbit.right(), -spherical.radius * 0.55);
+    this.light.target.position.copy(center);
+    this.light.target.updateMatrixWorld();
+    this.renderer.render(this.scene, camera);
+    ++this.frames;
+    return true;
+  }
+
+  /** The time between two drawn frames sets how fine the next are. */
+  pace(ms) {
+    if (!this.software || ms > 500) return;
+    this.average += 0.06 * (ms - this.average);
+    const before = this.ratio;
+    if (this.average > kSlowMs) this.ratio = Math.max(kCoarsest, this.ratio * 0.85);
+    else if (this.average < kFastMs) this.ratio = Math.min(1, this.ratio * 1.15);
+    if (this.ratio === before) return;
+    this.average = (kSlowMs + kFastMs) / 2;
+    this.resize();
+  }
+
+  /** Where a point of the world is on the canvas, in CSS pixels. */
+  project(point) {
+    const p = point.clone().project(this.orbit.camera);
+    return {x: (p.x + 1) / 2 * this.canvas.clientWidth, y: (1 - p.y) / 2 * this.canvas.clientHeight, inFront: p.z < 1};
+  }
+
+  /** A picture of now, PNG. */
+  picture() {
+    this.renderer.render(this.scene, this.orbit.camera);
+    return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
+  }
+}

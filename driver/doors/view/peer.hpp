@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+/// Both sides of a WebSocket, free of the library that carries it.
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "admission.hpp"
+
+namespace hapticd::view {
+
+/// Bytes on their way to several peers at once.
+using Message = std::shared_ptr<const std::string>;
+
+/// The connection, as a conversation sees it.
+class Peer {
+ public:
+  virtual ~Peer() = default;
+  /// [main] Sends text (JSON) after all that waits. Beyond kMostWaiting bytes the connection ends.
+  virtual void text(std::string json) = 0;
+  virtual void binary(Message bytes) = 0;  ///< [main] the same for bytes
+  /// [main] Nothing waits to be sent: who sends newest values only then skips what a slow reader cannot take.
+  virtual bool idle() const = 0;
+
+  static constexpr size_t kMostWaiting = 64u << 20;  ///< [bytes] the meshes of a large scene
+};
+
+/// What is said over a connection: made when it opens, destroyed when it has ended.
+class Conversation {
+ public:
+  Conversation() = default;
+  virtual ~Conversation() = default;
+  Conversation(const Conversation&) = delete;
+  Conversation& operator=(const Conversation&) = delete;
+
+  virtual void onText(std::string_view text) = 0;               ///< [main] a message came
+  virtual void onBinary(std::span<const std::byte> bytes) = 0;  ///< [main] the same
+  virtual void onTick() = 0;                                    ///< [main] 60 times a second: newest values
+};
+
+}  // namespace hapticd::view

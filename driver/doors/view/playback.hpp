@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+/// A recording as one page plays it: place, speed, loop.
+#pragma once
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "daemon.hpp"
+#include "row_source.hpp"
+
+namespace hapticd::view {
+
+class Playback {
+ public:
+  /// [main] Stands at the beginning and plays. @param rows outlives it @param about of the recording
+  Playback(const RowSource& rows, const Json& about);
+
+  static bool knows(const std::string& word);  ///< [any] play, pause, seek
+  /// [main] {"do": "play", "speed": 1, "loop": true}, {"do": "pause"}, {"do": "seek", "t": seconds}. @return an error,
+  /// or ""
+  std::string obey(const Json& request);
+
+  void advance();                                              ///< [main] goes on with the time that has passed
+  const std::vector<uint64_t>& ends() const { return ends_; }  ///< [main] rows of each stream that have been
+  /// [main] The rows from `seconds` before the present place on.
+  std::vector<uint64_t> rowsFrom(double seconds) const;
+
+  bool takeJumped();              ///< [main] the place changed by a jump since the last call: earlier rows are void
+  bool takeChanged();             ///< [main] the state is worth telling again
+  std::string stateJson() const;  ///< [main] {"type": "playback", ...}
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double timeOf(uint64_t row) const;
+  uint64_t tickAt(double t) const;
+  void place();
+
+  const RowSource& rows_;
+  size_t ticks_;
+  uint32_t t_offset_ = 0;
+  double from_ = 0, to_ = 0, t_ = 0, speed_ = 1;
+  bool playing_ = true, loop_ = true, jumped_ = false, changed_ = false;
+  Clock::time_point last_;
+  std::vector<uint64_t> ends_;
+};
+
+}  // namespace hapticd::view

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+/// Where a view's rows come from: the black box of a running daemon, or a recording. Rows are passed on as they lie
+/// there; `about` says what their columns are.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+
+namespace hapticd::view {
+
+/// One table of rows.
+struct RowStream {
+  std::string name;
+  uint32_t row_bytes = 8;  ///< a multiple of 8; a row begins with its tick, u64
+};
+
+/// The rows of a run. Row numbers count from the beginning of the run. Not for several threads at once.
+class RowSource {
+ public:
+  RowSource() = default;
+  virtual ~RowSource() = default;
+  RowSource(const RowSource&) = delete;
+  RowSource& operator=(const RowSource&) = delete;
+
+  /// [main] The JSON that describes the run: scene, devices, columns (see recording.md).
+  virtual const std::string& aboutJson() const = 0;
+  /// [main] In the order of the file: the index of a stream is its number on the wire.
+  virtual const std::vector<RowStream>& streams() const = 0;
+  virtual uint64_t begin(size_t stream) const = 0;  ///< [main] the oldest row that is kept
+  virtual uint64_t end(size_t stream) const = 0;    ///< [main] one past the newest
+
+  /// [main] Copies up to `count` whole rows from number `first` on. @return how many; 0: `first` is not kept
+  virtual uint64_t copy(size_t stream, uint64_t first, uint64_t count, std::byte* rows) const = 0;
+
+  /// [main] The stream of that name, or streams().size().
+  size_t find(const std::string& name) const;
+};
+
+/// [main] Maps the black box of a running daemon read-only. Fails where the file is none, or is still being made.
+Result<std::unique_ptr<RowSource>> openBlackBox(const std::string& file);
+
+/// [main] Maps a recording, a dump, or what a crash left.
+Result<std::unique_ptr<RowSource>> openRecording(const std::string& file);
+
+/// [main] The first row of a stream whose tick is not before `tick`: rows are in the order of their ticks.
+uint64_t firstRowOf(const RowSource& source, size_t stream, uint64_t tick);
+
+}  // namespace hapticd::view

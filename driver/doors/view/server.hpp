@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+/// HTTP and WebSocket on the loopback interface. Everything is bounded: heads of 8 KiB, messages of 64 KiB, 10 s for a
+/// head, 8 WebSockets, 32 connections. The only part that knows Boost.Beast is server.cpp.
+#pragma once
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "admission.hpp"
+#include "base/result.hpp"
+#include "peer.hpp"
+
+namespace hapticd::view {
+
+/// A file of the page.
+struct Asset {
+  std::string_view type;  ///< Content-Type
+  std::string_view bytes;
+};
+
+/// [main] A file of the page by its path, or nothing of it: `bytes` is empty then.
+Asset assetOf(const std::string& path);
+
+class Server {
+ public:
+  static constexpr size_t kMostSockets = 8, kMostConnections = 32;
+
+  /// Makes the conversation of a new WebSocket; `peer` outlives it.
+  using Converse = std::function<std::unique_ptr<Conversation>(Subprotocol, Peer& peer)>;
+
+  /// [main] Binds 127.0.0.1 and, where there is one, ::1. @param port 0: one that is free
+  static Result<std::unique_ptr<Server>> listen(boost::asio::io_context& io, unsigned short port, Converse converse);
+  virtual ~Server() = default;
+  Server() = default;
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  virtual std::string url() const = 0;  ///< [main] with the token
+  virtual size_t sockets() const = 0;   ///< [main] WebSockets that are open
+  virtual void tick() = 0;              ///< [main] ticks every conversation
+};
+
+}  // namespace hapticd::view

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: MIT
+#include "stage.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "mesh.hpp"
+
+namespace hapticd::view {
+
+namespace {
+
+constexpr std::chrono::milliseconds kFindEvery(500), kPollEvery(1000);
+constexpr std::chrono::milliseconds kGeometryEvery(60), kRestless(1500);  ///< a body swings on for a while
+constexpr uint64_t kContactsAtOnce = 512;
+
+/// The models of a list by their place, which is the number that rows name them by.
+template <class Use>
+void eachModel(const Json& list, Use&& use) {
+  const auto models = list.find("models");
+  if (models == list.end() || !models->is_array()) return;
+  uint32_t place = 0;
+  for (const Json& model : *models) {
+    if (model.is_object() && model.contains("name")) use(model.value("number", place), model);
+    ++place;
+  }
+}
+
+}  // namespace
+
+Stage::Stage(boost::asio::io_context& io, StageOptions options) : io_(io), options_(std::move(options)) {
+  socket_ = recorded() ? options_.drawings : options_.folder + "/" + options_.name + ".sock";
+  daemon_ = Daemon::at(io, socket_);
+}
+
+Result<void> Stage::open() {
+  if (!recorded()) {
+    find();
+    return {};
+  }
+  auto rows = openRecording(options_.file);
+  if (!rows) return Error{rows.error()};
+  adopt(std::move(*rows));
+  daemon_->connect();
+  return {};
+}
+
+void Stage::adopt(std::unique_ptr<RowSource> rows) {
+  rows_ = std::move(rows);
+  about_ = Json::parse(rows_->aboutJson(), nullptr, false);
+  if (!about_.is_object()) about_ = Json::object();
+  meshes_.clear();
+  live_.clear();
+  soft_.clear();
+  next_contact_ = 0;
+  list_ = status_ = Json::object();
+  ++run_, ++list_number_, ++status_number_;
+}
+
+/// A daemon is there once its socket answers; its black box was made before.
+void Stage::find() {
+  daemon_->connect();
+  if (!daemon_->connected()) return;
+  if (auto rows = openBlackBox(options_.folder + "/" + options_.name + ".blackbox.h5")) {
+    adopt(std::move(*rows));
+    next_poll_ = {};
+  }
+}
+
+void Stage::tick() {
+  const Clock::time_point now = Clock::now();
+  if (was_connected_ && !daemon_->connected()) ++status_number_;  // tell that it has ended
+  was_connected_ = daemon_->connected();
+  if (!recorded() && !daemon_->connected() && now >= next_find_) {
+    next_find_ = now + kFindEvery;
+    find();
+  }
+  if (daemon_->connected() && now >= next_poll_) {
+    next_poll_ = now + kPollEvery;
+    poll();
+  }
+  if (daemon_->connected() && !recorded()) pollSoft();
+}
+
+void Stage::poll() {
+  daemon_->ask({{"do", "list"}}, [this](const Json& answer, Descriptor) {
+    if (!answer.value("ok", false) || answer == list_) return;
+    list_ = answer;
+    ++list_number_;
+    std::map<std::string, Soft> soft;
+    eachModel(list_, [&](uint32_t number, const Json& model) {
+      if (!model.value("deforms", false)) return;
+      const std::string name = model["name"];
+      if (const auto known = soft_.find(name); known != soft_.end()) soft[name] = known->second;
+      soft[name].number = number;
+    });
+    soft_ = std::move(soft);
+  });
+  if (recorded()) return;
+  daemon_->ask({{"do", "status"}}, [this](const Json& answer, Descriptor) {
+    if (!answer.value("ok", false)) return;
+    status_ = answer;
+    ++status_number_;
+  });
+}
+
+/// Each model that deforms is asked for its newest frame as soon as the last one has come.
+void Stage::pollSoft() {
+  findTouched();
+  const Clock::time_point now = Clock::now();
+  for (auto& [name, soft] : soft_) {
+    if (soft.asked || now < soft.next) continue;
+    if (soft.frames)
+      askVertices(name);
+    else if (now - soft.touched < kRestless)
+      askGeometry(name);
+  }
+}
+
+void Stage::askVertices(const std::string& name) {
+  soft_[name].asked = true;
+  daemon_->ask({{"do", "vertices"}, {"model", name}, {"after", live_[name].frame}},
+               [this, name, run = run_](const Json& answer, Descriptor) {
+                 const auto soft = soft_.find(name);
+                 if (run != run_ || soft == soft_.end()) return;
+                 soft->second.asked = false;
+                 soft->second.frames = answer.value("ok", false);
+                 if (Message message = verticesMessage(answer, soft->second.number))
+                   live_[name] = {answer.value("frame", uint64_t{0}), std::move(message)};
+               });
+}
+
+void Stage::askGeometry(const std::string& name) {
+  soft_[name].asked = true;
+  soft_[name].next = Clock::now() + kGeometryEvery;
+  daemon_->ask({{"do", "geometry"}, {"model", name}}, [this, name, run = run_](const Json& answer, Descriptor) {
+    const auto soft = soft_.find(name);
+    if (run != run_ || soft == soft_.end()) return;
+    soft->second.asked = false;
+    if (Message message = verticesMessage(answer, soft->second.number))
+      live_[name] = {live_[name].frame + 1, std::move(message)};
+  });
+}
+
+/// Which models were touched of late, by the newest contacts.
+void Stage::findTouched() {
+  const size_t stream = rows_->find("contacts");
+  if (soft_.empty() || stream >= rows_->streams().size()) return;
+  const uint64_t end = rows_->end(stream),
+                 first = std::max(next_contact_, end > kContactsAtOnce ? end - kContactsAtOnce : 0);
+  const uint32_t bytes = rows_->streams()[stream].row_bytes;
+  const Json columns = about_.value("columns", Json::object()).value("contacts", Json::array());
+  uint32_t model_at = UINT32_MAX, depth_at = UINT32_MAX;
+  for (const Json& column : columns) {
+    if (column.value("name", "") == "model") model_at = column.value("offset", UINT32_MAX);
+    if (column.value("name", "") == "depth") depth_at = column.value("offset", UINT32_MAX);
+  }
+  if (model_at > bytes - 4 || depth_at > bytes - 8) return;
+  std::vector<std::byte> rows((end - first) * bytes);
+  const uint64_t got = end > first ? rows_->copy(stream, first, end - first, rows.data()) : 0;
+  next_contact_ = end;
+  for (uint64_t i = 0; i < got; ++i) {
+    uint32_t model = 0;
+    double depth = 0;
+    std::memcpy(&model, rows.data() + i * bytes + model_at, sizeof model);
+    std::memcpy(&depth, rows.data() + i * bytes + depth_at, sizeof depth);
+    if (!(depth > 0)) continue;
+    for (auto& [name, soft] : soft_)
+      if (soft.number == model) soft.touched = Clock::now();
+  }
+}
+
+void Stage::draw(const std::string& model, std::function<void(const Drawn&)> drawn) {
+  const auto known = meshes_.find(model);
+  if (known != meshes_.end()) return drawn(known->second);
+  const uint64_t run = run_;
+  daemon_->ask({{"do", "geometry"}, {"model", model}}, [this, model, run, drawn](const Json& answer, Descriptor) {
+    Drawn result;
+    if (answer.value("ok", false)) result.mesh = meshMessage(answer);
+    if (!result.mesh) result.error = answer.value("error", std::string("the model's triangles cannot be read"));
+    if (run == run_ && result.mesh && !soft_.contains(model)) meshes_[model] = result;
+    drawn(result);
+  });
+}
+
+}  // namespace hapticd::view

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "transforms.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <iterator>
+
+#include "mesh.hpp"
+
+namespace hapticd::view {
+
+namespace {
+
+constexpr uint64_t kNanoseconds = 1'000'000'000;
+
+/// CDR: every number at a multiple of its size, counted from behind the head.
+class Cdr {
+ public:
+  template <class T>
+  void n(T value) {
+    while ((bytes_.size() - kHead) % sizeof value != 0) bytes_ += '\0';
+    char raw[sizeof value];
+    std::memcpy(raw, &value, sizeof value);
+    bytes_.append(raw, sizeof raw);
+  }
+  void text(const std::string& value) {
+    n(static_cast<uint32_t>(value.size() + 1));
+    bytes_.append(value.c_str(), value.size() + 1);
+  }
+  std::string take() { return std::move(bytes_); }
+
+ private:
+  static constexpr size_t kHead = 4;
+  std::string bytes_ = std::string("\0\1\0\0", kHead);
+};
+
+uint32_t offsetOf(const Json& about, const char* stream, const std::string& name) {
+  const Json columns = about.value("columns", Json::object()).value(stream, Json::array());
+  for (const Json& column : columns)
+    if (column.value("name", "") == name) return column.value("offset", 0u);
+  return 0;
+}
+
+/// Seven numbers: place and orientation.
+void readFrame(const std::byte* at, Frame& frame) {
+  std::memcpy(frame.position.data(), at, sizeof frame.position);
+  std::memcpy(frame.orientation.data(), at + sizeof frame.position, sizeof frame.orientation);
+}
+
+constexpr size_t kFrameBytes = 7 * sizeof(double);
+
+}  // namespace
+
+Frames::Frames(const Json& about) {
+  const auto number = [](const Json& value) { return value.is_number() ? value.get<double>() : 0.0; };
+  for (const Json& model : about.value("scene", Json::object()).value("models", Json::array())) {
+    Frame& frame = models_.emplace_back();
+    frame.name = model.value("name", "");
+    const Json pose = model.value("pose", Json::object());
+    const Json position = pose.value("position", Json::array()), turn = pose.value("orientation", Json::array());
+    for (size_t i = 0; i < position.size() && i < 3; ++i) frame.position[i] = number(position[i]);
+    for (size_t i = 0; i < turn.size() && i < 4; ++i) frame.orientation[i] = number(turn[i]);
+  }
+  size_t arm = 0;
+  for (const Json& device : about.value("devices", Json::array())) {
+    tips_.push_back({device.value("name", "arm") + "_tip", {}, {1, 0, 0, 0}});
+    tip_at_.push_back(offsetOf(about, "ticks", fmt::format("arm{}_x", arm++)));
+  }
+  model_at_ = offsetOf(about, "poses", "model");
+  pose_at_ = offsetOf(about, "poses", "x");
+}
+
+void Frames::take(const std::string& stream, const std::byte* rows, uint64_t count, uint32_t row_bytes) {
+  if (count == 0) return;
+  if (stream == "ticks") {
+    const std::byte* newest = rows + (count - 1) * row_bytes;
+    for (size_t i = 0; i < tips_.size(); ++i)
+      if (tip_at_[i] != 0 && tip_at_[i] + kFrameBytes <= row_bytes) readFrame(newest + tip_at_[i], tips_[i]);
+    return;
+  }
+  if (stream != "poses" || pose_at_ + kFrameBytes > row_bytes) return;
+  for (uint64_t i = 0; i < count; ++i) {
+    uint32_t model = 0;
+    std::memcpy(&model, rows + i * row_bytes + model_at_, sizeof model);
+    if (model < models_.size()) readFrame(rows + i * row_bytes + pose_at_, models_[model]);
+  }
+}
+
+std::vector<Frame> Frames::all() const {
+  std::vector<Frame> frames = models_;
+  frames.insert(frames.end(), tips_.begin(), tips_.end());
+  return frames;
+}
+
+std::string tfMessage(const std::vector<Frame>& frames, uint64_t time_ns) {
+  Cdr cdr;
+  cdr.n(static_cast<uint32_t>(frames.size()));
+  for (const Frame& frame : frames) {
+    cdr.n(static_cast<int32_t>(time_ns / kNanoseconds));
+    cdr.n(static_cast<uint32_t>(time_ns % kNanoseconds));
+    cdr.text("world");
+    cdr.text(frame.name);
+    for (const double p : frame.position) cdr.n(p);
+    for (const size_t i : {1, 2, 3, 0}) cdr.n(frame.orientation[i]);  // ROS: x, y, z, w
+  }
+  return cdr.take();
+}
+
+const char* const kTfDefinition =
+    "geometry_msgs/TransformStamped[] transforms\n"
+    "================================================================================\n"
+    "MSG: geometry_msgs/TransformStamped\nstd_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform "
+    "transform\n"
+    "================================================================================\n"
+    "MSG: std_msgs/Header\nbuiltin_interfaces/Time stamp\nstring frame_id\n"
+    "================================================================================\n"
+    "MSG: builtin_interfaces/Time\nint32 sec\nuint32 nanosec\n"
+    "================================================================================\n"
+    "MSG: geometry_msgs/Transform\ngeometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"
+    "================================================================================\n"
+    "MSG: geometry_msgs/Vector3\nfloat64 x\nfloat64 y\nfloat64 z\n"
+    "================================================================================\n"
+    "MSG: geometry_msgs/Quaternion\nfloat64 x 0\nfloat64 y 0\nfloat64 z 0\nfloat64 w 1\n";
+
+const char* const kSceneDefinition =
+    R"({"title":"foxglove.SceneUpdate","type":"object","properties":{"deletions":{"type":"array","items":{"type":"object"}},)"
+    R"("entities":{"type":"array","items":{"type":"object","properties":{"timestamp":{"type":"object","properties":)"
+    R"({"sec":{"type":"integer"},"nsec":{"type":"integer"}}},"frame_id":{"type":"string"},"id":{"type":"string"},)"
+    R"("lifetime":{"type":"object"},"frame_locked":{"type":"boolean"},"metadata":{"type":"array"},"triangles":)"
+    R"({"type":"array","items":{"type":"object"}}}}}}})";
+
+std::string sceneUpdate(const std::string& model, const std::string& mesh, uint64_t time_ns) {
+  uint32_t head[4];
+  std::memcpy(head, mesh.data(), sizeof head);
+  const uint32_t vertices = head[1], triangles = head[2], normals = head[3] & 1;
+  const auto* xyz = reinterpret_cast<const float*>(mesh.data() + sizeof head);
+  const auto* corners = reinterpret_cast<const uint32_t*>(xyz + std::size_t{3} * vertices * (1 + normals));
+  const std::string time = fmt::format(R"({{"sec":{},"nsec":{}}})", time_ns / kNanoseconds, time_ns % kNanoseconds);
+  const std::string name = Json(model).dump();
+  std::string text = fmt::format(
+      R"({{"deletions":[],"entities":[{{"timestamp":{},"frame_id":{},"id":{},"lifetime":{{"sec":0,"nsec":0}},)"
+      R"("frame_locked":true,"metadata":[],"arrows":[],"cubes":[],"spheres":[],"cylinders":[],"lines":[],"texts":[],)"
+      R"("models":[],"triangles":[{{"pose":{{"position":{{"x":0,"y":0,"z":0}},"orientation":{{"x":0,"y":0,"z":0,"w":1}}}},)"
+      R"("color":{{"r":0.64,"g":0.72,"b":0.79,"a":1}},"colors":[],"points":[)",
+      time, name, name);
+  for (uint32_t i = 0; i < vertices; ++i)
+    fmt::format_to(std::back_inserter(text), R"({}{{"x":{:.7g},"y":{:.7g},"z":{:.7g}}})", i == 0 ? "" : ",", xyz[3 * i],
+                   xyz[3 * i + 1], xyz[3 * i + 2]);
+  text += R"(],"indices":[)";
+  for (uint32_t i = 0; i < 3 * triangles; ++i)
+    fmt::format_to(std::back_inserter(text), "{}{}", i == 0 ? "" : ",", corners[i]);
+  return text + "]}]}]}";
+}
+
+}  // namespace hapticd::view

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+// Every scene that ships, looked at in a real browser; the form, the slider, narrow windows and the keyboard.
+import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
+import {readdirSync, readFileSync} from 'node:fs';
+import {join} from 'node:path';
+import {after, before, test} from 'node:test';
+import {Browser, look, pictures, shown} from './browser.mjs';
+import {hapticd, root, Sandbox, scenes, until} from './program.mjs';
+
+const kHardware = ['sarcos']; // scenes whose device is no simulated one
+const all = readdirSync(join(root, 'config', 'scenes')).map((f) => f.replace('.yaml', '')).filter((s) => !kHardware.includes(s));
+let browser;
+before(async () => { browser = await Browser.open(); });
+after(async () => { await browser.close(); });
+
+/** A page on a daemon whose hand follows its script. */
+const scripted = async (scene, use, models) => {
+  const sandbox = new Sandbox();
+  let page;
+  try {
+    sandbox.start(['run', scenes(scene), '--name', 'test']);
+    const view = sandbox.start(['view', '--name', 'test', '--control']);
+    const [url] = await view.says(/http:\S+/);
+    page = await browser.page(url);
+    await shown(page, models);
+    await use(page, sandbox);
+    assert.deepEqual(page.wrong, [], 'nothing went wrong in the page');
+  } catch (error) {
+    await page?.screenshot({path: join(pictures, `${scene}-failed.png`)});
+    throw error;
+  } finally {
+    await page?.close();
+    await sandbox.close();
+  }
+};
+
+for (const scene of all) {
+  test(`${scene}: the tip is where its row says, the plots are drawn, no error`, async () => {
+    const names = readFileSync(scenes(scene), 'utf8').match(/^ *- (\{)?name:/gm)?.length ?? 1;
+    await scripted(scene, async (page) => {
+      await until(async () => (await look(page)).plots.every((p) => p.points > 20), 60, 'half a second of plots');
+      const first = await look(page);
+      await until(async () => (await look(page)).frames > first.frames + 5, 60, 'five more frames');
+      const seen = await look(page);
+      assert.ok(seen.tick > first.tick, 'rows go on');
+      for (const tip of seen.tips) {
+        assert.ok(tip.visible, 'the tip is drawn');
+        assert.ok(Math.hypot(tip.drawn[0] - tip.row[0], tip.drawn[1] - tip.row[1]) <= 2, `tip at ${tip.drawn}, row at ${tip.row}`);
+        const size = Math.hypot(...tip.sent);
+        if (size > 0.1) {
+          assert.ok(tip.arrow, 'a force has an arrow');
+          const along = tip.head.map((h, i) => h - tip.at[i]), dot = along.reduce((sum, a, i) => sum + a * tip.sent[i], 0);
+          assert.ok(dot > 0.98 * size * Math.hypot(...along), 'which points where it acts');
+        }
+      }
+      for (const plot of seen.plots) assert.ok(plot.painted > 300, `${plot.title} has ${plot.painted} painted pixels`);
+      assert.ok(seen.triangles.every((t) => t >= 2), 'every model has triangles');
+      await page.screenshot({path: join(pictures, `${scene}.png`)});
+    }, names);
+  });
+}
+
+test('a parameter that a hand may feel suddenly asks for consent, and then the force follows', async () => {
+  await scripted('sphere', async (page) => {
+    const field = page.locator('[data-parameter="stiffness"]');
+    const force = () => page.evaluate(() => Math.hypot(...window.hapticdView.now.arms[0].now.sent));
+    await until(async () => (await force()) > 0.3, 30, 'a contact');
+    await field.locator('input[type=number]').fill('1e9');
+    await field.locator('input[type=number]').press('Enter');
+    assert.match(await field.locator('.wrong').textContent(), /expected/, 'a value out of range is refused before anybody is asked');
+    assert.equal(await page.locator('#consent').evaluate((d) => d.open), false);
+
+    await field.locator('input[type=number]').fill('100');
+    await field.locator('input[type=number]').press('Enter');
+    await page.locator('#consent button[value=no]').click();
+    const orders = () => page.evaluate(() => window.hapticdView.now.table('orders').end);
+    assert.equal(await orders(), 0, 'without consent nothing is asked of the daemon');
+
+    const before = await force();
+    await field.locator('input[type=number]').fill('100');
+    await field.locator('input[type=number]').press('Enter');
+    await page.locator('#consent button[value=yes]').click();
+    await until(async () => (await orders()) > 0, 20, 'the order in the rows');
+    await until(async () => (await force()) < 0.5 * before, 20, `a force below half of ${before} N`);
+    await page.getByRole('tab', {name: 'Events'}).click();
+    await page.getByText('parameter set to 100').waitFor({timeout: 20000});
+  });
+});
+
+test('space holds and clears, and the events tell', async () => {
+  await scripted('sphere', async (page) => {
+    const force = () => page.evaluate(() => Math.hypot(...window.hapticdView.now.arms[0].now.sent));
+    await until(async () => (await force()) > 0.3, 30, 'a contact');
+    await page.locator('#canvas').focus();
+    await page.keyboard.press('Space');
+    await until(async () => (await force()) === 0, 20, 'no force');
+    await page.locator('#hold b', {hasText: 'Clear'}).waitFor({timeout: 20000});
+    await page.keyboard.press('Space');
+    await until(async () => (await force()) > 0.1, 30, 'the force again');
+    await page.getByRole('tab', {name: 'Events'}).click();
+    assert.ok((await page.locator('#events li').count()) >= 2);
+  });
+});
+
+test('a model is added and removed by file', async () => {
+  await scripted('teapot', async (page) => {
+    await page.locator('#add-file').fill(scenes('torus'));
+    await page.getByRole('button', {name: 'Add', exact: true}).click();
+    await shown(page, 2);
+    await page.getByRole('button', {name: 'Remove torus'}).click();
+    await page.waitForFunction(() => window.hapticdView.view.models.byIndex.size === 1, null, {timeout: 30000});
+    await page.locator('#add-file').fill('/nowhere.yaml');
+    await page.getByRole('button', {name: 'Add', exact: true}).click();
+    await page.locator('#notice', {hasText: 'nowhere.yaml'}).waitFor({timeout: 20000});
+  });
+});
+
+test('a recording has a slider, and its rows are those of the file', async () => {
+  const sandbox = new Sandbox();
+  let page;
+  try {
+    const h5 = join(sandbox.folder, 'run.h5'), csv = join(sandbox.folder, 'ticks.csv');
+    execFileSync(hapticd, ['run', scenes('button'), '--virtual-time', '--for', '6', '--record', h5], {stdio: 'ignore'});
+    execFileSync(hapticd, ['export', h5, '--csv', csv, '--stream', 'ticks']);
+    const [head, ...rows] = readFileSync(csv, 'utf8').trimEnd().split('\n').map((r) => r.split(','));
+    const view = sandbox.start(['view', '--file', h5]);
+    const [url] = await view.says(/http:\S+/);
+    page = await browser.page(url);
+    await shown(page, 1);
+    await page.locator('#play').click(); // it plays by itself
+    await page.waitForFunction(() => window.hapticdView.timeline.state.playing === false, null, {timeout: 20000});
+    for (const t of [4.5, 1.25, 5.9, 0]) {
+      await page.locator('#seek').evaluate((slider, value) => { slider.value = value; slider.dispatchEvent(new Event('input')); }, t);
+      const seen = await until(async () => {
+        const s = await look(page);
+        return Math.abs(s.t - t) < 2e-3 ? s : null;
+      }, 20, `a row at ${t} s`);
+      const row = rows.find((r) => Number(r[0]) === seen.tick), at = (name) => Number(row[head.indexOf(name)]);
+      const depth = at('depth');
+      assert.ok(Object.is(seen.depth, depth), `depth ${seen.depth}, in the file ${depth}`);
+      const tip = await page.evaluate(() => window.hapticdView.now.arms[0].now.position);
+      assert.deepEqual(tip, ['arm0_x', 'arm0_y', 'arm0_z'].map(at));
+    }
+    await page.locator('#speed').selectOption('4');
+    await page.waitForFunction(() => window.hapticdView.timeline.state.playing, null, {timeout: 20000});
+    await until(async () => (await look(page)).t > 3, 20, 'three seconds, four times as fast');
+    await page.screenshot({path: join(pictures, 'recording.png')});
+    assert.deepEqual(page.wrong, []);
+    assert.equal(await page.locator('#run-tools').isVisible(), false, 'a recording cannot be changed');
+  } finally {
+    await page?.close();
+    await sandbox.close();
+  }
+});
+
+for (const dark of [false, true]) {
+  test(`a window of 360 pixels, ${dark ? 'dark' : 'light'}: nothing sticks out, everything can be reached`, async () => {
+    const sandbox = new Sandbox(), narrow = await Browser.open({width: 360, height: 740, dark});
+    try {
+      const {url} = await sandbox.show(scenes('teapot'));
+      const page = await narrow.page(url);
+      await shown(page);
+      assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= 360), 'no sideways scrolling');
+      for (const name of ['Hold', 'Fit', 'Models', 'Events', 'Show']) {
+        const box = await page.locator(`button:has-text("${name}")`).first().boundingBox();
+        assert.ok(box && box.x >= 0 && box.x + box.width <= 360, `${name} is within the window: ${JSON.stringify(box)}`);
+      }
+      const reached = new Set();
+      for (let i = 0; i < 40; ++i) {
+        await page.keyboard.press('Tab');
+        reached.add(await page.evaluate(() => document.activeElement.id || document.activeElement.textContent.trim().slice(0, 12)));
+      }
+      for (const id of ['hold', 'theme', 'canvas', 'fit', 'tab-models']) assert.ok(reached.has(id), `Tab reaches ${id}: ${[...reached]}`);
+      await page.screenshot({path: join(pictures, `narrow-${dark ? 'dark' : 'light'}.png`)});
+      assert.deepEqual(page.wrong, []);
+    } finally {
+      await narrow.close();
+      await sandbox.close();
+    }
+  });
+}
+
+test('a daemon that ends and starts again is followed', async () => {
+  const sandbox = new Sandbox();
+  let page;
+  try {
+    const first = sandbox.start(['run', scenes('sphere'), '--name', 'test']);
+    const view = sandbox.start(['view', '--name', 'test']);
+    const [url] = await view.says(/http:\S+/);
+    page = await browser.page(url);
+    await shown(page);
+    await first.end('SIGINT');
+    await page.locator('#status', {hasText: 'ended'}).waitFor({timeout: 20000});
+    sandbox.start(['run', scenes('torus'), '--name', 'test']);
+    await page.locator('#scene-name', {hasText: 'torus.yaml'}).waitFor({timeout: 30000});
+    await shown(page);
+    assert.equal(await page.locator('#run-tools').isVisible(), false, 'without --control there is nothing to press');
+    assert.deepEqual(page.wrong, []);
+  } finally {
+    await page?.close();
+    await sandbox.close();
+  }
+});

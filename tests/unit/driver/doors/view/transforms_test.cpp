@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "transforms.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "mesh.hpp"
+
+namespace hapticd::view {
+namespace {
+
+const Json kAbout = Json::parse(R"({
+  "scene": {"models": [{"name": "door", "pose": {"position": [1, 2, 3], "orientation": [1, 0, 0, 0]}}]},
+  "devices": [{"name": "arm"}],
+  "columns": {"ticks": [{"name": "tick", "type": "u8", "offset": 0}, {"name": "arm0_x", "type": "f8", "offset": 8}],
+              "poses": [{"name": "tick", "type": "u8", "offset": 0}, {"name": "model", "type": "u4", "offset": 8},
+                        {"name": "x", "type": "f8", "offset": 16}]}})");
+
+TEST(Frames, StandWhereTheSceneSaysUntilARowSaysOtherwise) {
+  Frames frames(kAbout);
+  ASSERT_EQ(frames.all().size(), 2u);
+  EXPECT_EQ(frames.all()[0].name, "door");
+  EXPECT_EQ(frames.all()[0].position[1], 2);
+  struct {
+    uint64_t tick = 5;
+    uint32_t model = 0, reserved = 0;
+    double frame[7] = {9, 8, 7, 0, 1, 0, 0};
+  } pose;
+  frames.take("poses", reinterpret_cast<const std::byte*>(&pose), 1, sizeof pose);
+  EXPECT_EQ(frames.all()[0].position[0], 9);
+  EXPECT_EQ(frames.all()[0].orientation[1], 1);
+  pose.model = 77;  // one that came later and is not known here
+  frames.take("poses", reinterpret_cast<const std::byte*>(&pose), 1, sizeof pose);
+  struct {
+    uint64_t tick = 5;
+    double frame[7] = {0.1, 0.2, 0.3, 1, 0, 0, 0};
+  } tick;
+  frames.take("ticks", reinterpret_cast<const std::byte*>(&tick), 1, sizeof tick);
+  EXPECT_EQ(frames.all()[1].name, "arm_tip");
+  EXPECT_EQ(frames.all()[1].position[2], 0.3);
+}
+
+TEST(Frames, TakeNoRowsThatAreTooShort) {
+  Frames frames(kAbout);
+  uint64_t row = 3;
+  frames.take("poses", reinterpret_cast<const std::byte*>(&row), 1, sizeof row);
+  frames.take("ticks", reinterpret_cast<const std::byte*>(&row), 1, sizeof row);
+  EXPECT_EQ(frames.all()[0].position[0], 1);
+}
+
+TEST(SceneUpdate, IsJsonWithEveryTriangle) {
+  const Message mesh = meshMessage(
+      {{"xyz", {0, 0, 0, 1, 0, 0, 0, 1, 0}}, {"normals", {0, 0, 1, 0, 0, 1, 0, 0, 1}}, {"triangles", {0, 1, 2}}});
+  const Json update = Json::parse(sceneUpdate("a \"quoted\" name", *mesh, 1'500'000'000));
+  EXPECT_EQ(update["entities"][0]["id"], "a \"quoted\" name");
+  EXPECT_EQ(update["entities"][0]["timestamp"]["nsec"], 500'000'000);
+  EXPECT_EQ(update["entities"][0]["triangles"][0]["indices"], Json::parse("[0,1,2]"));
+  EXPECT_EQ(update["entities"][0]["triangles"][0]["points"][1]["x"], 1);
+}
+
+}  // namespace
+}  // namespace hapticd::view
