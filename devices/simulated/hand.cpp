@@ -1,4 +1,5 @@
-#include "hand.hpp"
+// SPDX-License-Identifier: MIT
+#include "simulated/hand.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

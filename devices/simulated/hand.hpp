@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The simulated hand: a mass on a spring and damper whose other end follows a script, with a seeded tremor. Everything
 /// it wants is a function of time alone, so that a run does not depend on how time was cut into steps; but for the
 /// guided hand, which a program leads.
@@ -6,7 +7,7 @@
 #include <array>
 #include <cstdint>
 
-#include "hand_path.hpp"
+#include "simulated/hand_path.hpp"
 
 namespace hapticd::simulated {
 

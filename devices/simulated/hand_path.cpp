@@ -1,59 +1,38 @@
-#include "hand_path.hpp"
+// SPDX-License-Identifier: MIT
+#include "simulated/hand_path.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 namespace hapticd::simulated {
 namespace {
 
-constexpr size_t kMaxRows = 10'000'000;
+constexpr size_t kMaxBytes = size_t{1} << 30;
 
-/// Four numbers of one row, or false.
-bool numbersOf(const std::string& row, double (&values)[4]) {
-  const char* at = row.c_str();
-  for (int i = 0; i < 4; ++i) {
-    char* end = nullptr;
-    values[i] = std::strtod(at, &end);
-    if (end == at || !std::isfinite(values[i])) return false;
-    at = end;
-    while (*at == ' ' || *at == '\t') ++at;
-    if (i < 3 && *at++ != ',') return false;
-  }
-  return *at == '\0' || *at == ',' || *at == '\r';
+const document::CsvRules kRules{{"t,x,y,z", "t,x,y,z,qw,qx,qy,qz"}, true, true};
+
+document::CsvTable orThrow(std::optional<document::CsvTable> table, const document::Problems& problems) {
+  if (!table) throw std::runtime_error(problems.front().text());
+  return std::move(*table);
 }
 
 }  // namespace
 
+HandPath::HandPath(const document::CsvTable& table) {
+  for (size_t i = 0; i < table.rows(); ++i) {
+    times_.push_back(table.row(i)[0]);
+    points_.emplace_back(table.row(i)[1], table.row(i)[2], table.row(i)[3]);
+  }
+}
+
 HandPath HandPath::read(const std::string& file) {
-  std::ifstream in(file);
-  if (!in) throw std::runtime_error(file + ": cannot be read, expected a CSV file with the columns t,x,y,z");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return parse(text.str(), file);
+  document::Problems problems;
+  return HandPath(orThrow(document::readCsv(file, kMaxBytes, kRules, problems), problems));
 }
 
 HandPath HandPath::parse(const std::string& text, const std::string& name) {
-  HandPath path;
-  std::istringstream in(text);
-  std::string row;
-  for (size_t line = 1; std::getline(in, row); ++line) {
-    const auto fail = [&](const std::string& what) {
-      throw std::runtime_error(name + ":" + std::to_string(line) + ": " + what);
-    };
-    if (row.empty() || row == "\r" || row[0] == '#' || (line == 1 && row.rfind("t,x,y,z", 0) == 0)) continue;
-    double values[4];
-    if (!numbersOf(row, values)) fail(row.substr(0, 60).append(" is no row, expected four finite numbers t,x,y,z"));
-    if (!path.times_.empty() && values[0] <= path.times_.back()) fail("time does not grow, expected growing times");
-    if (path.times_.size() == kMaxRows) fail("more than 10 million rows, expected fewer");
-    path.times_.push_back(values[0]);
-    path.points_.emplace_back(values[1], values[2], values[3]);
-  }
-  if (path.empty()) throw std::runtime_error(name + ": no rows, expected at least one row t,x,y,z");
-  return path;
+  document::Problems problems;
+  return HandPath(orThrow(document::parseCsv(text, name, kRules, problems), problems));
 }
 
 void HandPath::at(double t, Eigen::Vector3d& position, Eigen::Vector3d& velocity) const noexcept {

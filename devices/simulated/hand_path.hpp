@@ -1,8 +1,11 @@
+// SPDX-License-Identifier: MIT
 /// A path for the hand from a CSV file with the columns t,x,y,z (s, m, device frame).
 #pragma once
 #include <Eigen/Core>
 #include <string>
 #include <vector>
+
+#include "document/csv.hpp"
 
 namespace hapticd::simulated {
 
@@ -19,6 +22,8 @@ class HandPath {
   bool empty() const noexcept { return times_.empty(); }
 
  private:
+  explicit HandPath(const document::CsvTable& table);
+
   std::vector<double> times_;
   std::vector<Eigen::Vector3d> points_;
 };

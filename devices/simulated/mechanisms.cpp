@@ -1,4 +1,5 @@
-#include "mechanisms.hpp"
+// SPDX-License-Identifier: MIT
+#include "simulated/mechanisms.hpp"
 
 #include <Eigen/Geometry>
 #include <cmath>

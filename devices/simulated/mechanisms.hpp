@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The mechanisms that the simulation knows: the PHANToM's parallelogram and serial chains.
 #pragma once
 #include "kinematics/chain_dynamics.hpp"

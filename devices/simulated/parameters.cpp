@@ -1,8 +1,9 @@
-#include "parameters.hpp"
+// SPDX-License-Identifier: MIT
+#include "simulated/parameters.hpp"
 
 #include <stdexcept>
 
-#include "mechanisms.hpp"
+#include "simulated/mechanisms.hpp"
 
 namespace hapticd::simulated {
 namespace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The parameters of a simulated arm as the device file gives them, and what they are worked out to.
 #pragma once
 #include <array>
@@ -5,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "hand.hpp"
 #include "kinematics/chain.hpp"
 #include "kinematics/phantom.hpp"
-#include "plant.hpp"
+#include "simulated/hand.hpp"
+#include "simulated/plant.hpp"
 
 namespace hapticd::simulated {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A rigid arm that is driven by its motors and pulled by a hand, integrated in small steps.
 ///
 /// The integrator is linearly implicit Euler: springs, dampers, friction and end stops enter with their derivatives, so
@@ -8,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "settings.hpp"
+#include "simulated/settings.hpp"
 
 namespace hapticd::simulated {
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What a simulated arm is made of, with every per-joint list at its full length.
 #pragma once
 #include <cstdint>

@@ -1,14 +1,14 @@
+// SPDX-License-Identifier: MIT
 /// The device module `simulated`: an arm at torque level and the hand that holds it, driven by the time it is given.
 #include <atomic>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
 
-#include "guide.h"
 #include "hapticd/device_pace.h"
 #include "kinematics/extension.hpp"
 #include "kinematics/statics.hpp"
-#include "parameter_table.hpp"
+#include "simulated/parameter_table.hpp"
 
 namespace hapticd::simulated {
 namespace {
@@ -105,7 +105,7 @@ class SimulatedArm : public Device, public Parameters {
   static SimulatedArm& self(hdv_device* device) { return *reinterpret_cast<SimulatedArm*>(device); }
   static hsp_status guide(hdv_device* device, const double position[3], const double velocity[3],
                           const double force[3]) noexcept HSP_RT {
-    if (self(device).hand_ == nullptr) return HSP_E_STATE;
+    if (guided(device) == 0) return HSP_E_STATE;
     const HandTarget target{Vector3d(position), Vector3d(velocity), Vector3d(force)};
     if (!target.position.allFinite() || !target.velocity.allFinite() || !target.force.allFinite()) return HSP_E_ARG;
     self(device).hand_->guide(target);
@@ -119,6 +119,10 @@ class SimulatedArm : public Device, public Parameters {
     Eigen::Map<Vector3d>(force, 3) = plant->handForce();
     return HSP_OK;
   }
+  static int32_t guided(const hdv_device* device) noexcept HSP_RT {
+    const Hand* hand = reinterpret_cast<const SimulatedArm*>(device)->hand_.get();
+    return hand != nullptr && hand->settings().script == Script::kGuided ? 1 : 0;
+  }
   static void cut(hdv_device* device) noexcept HSP_RT { self(device).cut_.store(true); }
   static uint64_t nextSample(hdv_device* device, uint64_t until_ns) noexcept {
     const SimulatedArm& arm = self(device);
@@ -130,7 +134,7 @@ class SimulatedArm : public Device, public Parameters {
   }
   static constexpr hdv_ext_pace kPace = {sizeof(hdv_ext_pace), 0, &nextSample};
   static constexpr hdv_ext_cut kCut = {sizeof(hdv_ext_cut), 0, &cut};
-  static constexpr hdv_ext_hand kHand = {sizeof(hdv_ext_hand), 0, &guide, &truth};
+  static constexpr hdv_ext_hand kHand = {sizeof(hdv_ext_hand), 0, &guide, &truth, &guided};
 
   /// What the arm says of itself; what it does not publish follows from its own kinematics at the neutral pose.
   void describe(hdv_info& info) const {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "usb_bulk/bulk_transport.hpp"
 
 #include <libusb.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Arms with bulk or interrupt endpoints of their own, through libusb.
 #pragma once
 #include <memory>

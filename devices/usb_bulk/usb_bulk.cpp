@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The device module `usb_bulk`: any arm with bulk or interrupt endpoints, described by its device file.
 #include "usb_bulk/bulk_transport.hpp"
 #include "wire_arm/arm.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "usb_hid/hid_transport.hpp"
 
 #include <fcntl.h>

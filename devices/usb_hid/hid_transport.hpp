@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// HID arms through hidapi and the kernel's hidraw.
 #pragma once
 #include <memory>

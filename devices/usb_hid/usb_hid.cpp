@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The device module `usb_hid`: any arm that speaks HID reports, described by its device file.
 #include "usb_hid/hid_transport.hpp"
 #include "wire_arm/arm.hpp"

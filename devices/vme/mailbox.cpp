@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "vme/mailbox.hpp"
 
 #include <algorithm>

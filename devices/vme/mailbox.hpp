@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The mailbox that the host and an arm controller board share: two blocks in a window of the bus. Nothing locks it.
 /// Who writes a block writes its last sequence number last; who reads takes the last number first, then the block, and
 /// the block is whole if its first number is the same.

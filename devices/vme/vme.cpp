@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The device module `vme`: an arm behind a controller board on a VME bus, such as the Sarcos Dextrous Arm Master,
 /// through Linux' vme_user. The board runs the torque loop; its device file says what its mailbox holds.
 #include "vme/mailbox.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The ioctl interface of Linux' vme_user driver (drivers/staging/vme_user). The kernel does not export its header, so
 /// that every client carries the structures itself. Kernels since 3.18 pack them; older ones left them to the compiler,
 /// which shows in the number of the request: the wrong one is answered with ENOTTY.

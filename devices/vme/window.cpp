@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "vme/window.hpp"
 
 #include <fcntl.h>
@@ -91,7 +92,7 @@ Result<void> Window::point(const Place& place) {
     error = setAndGet(fd_, kSetOldMaster, kGetOldMaster, place, old);
     same = old.enable != 0 && old.address == place.address && old.size == place.size;
   }
-  struct stat about {};
+  struct stat about{};
   file_ = error == ENOTTY && ::fstat(fd_, &about) == 0 && S_ISREG(about.st_mode);
   if (file_) return {};
   const std::string who = place.node + ": cannot be set to " + describe(place) + ": ";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One master window of a VME bridge: a part of the bus that read and write at an offset reach. A plain file may stand
 /// in for it, so that everything above runs without a bus.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "base/allocation_count.hpp"
 
 #include <cerrno>

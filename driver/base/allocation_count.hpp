@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Counts the allocations of each thread, so that a run can say how many its servo thread made (the answer must be 0).
 /// Linked into the daemon alone: it replaces malloc and its kind by wrappers of glibc's own.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "base/bell.hpp"
 
 #include <linux/futex.h>

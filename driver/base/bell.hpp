@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Wakes one thread that sleeps until there is news, without a lock that a real-time thread could wait for.
 #pragma once
 #include <atomic>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Time in nanoseconds since an arbitrary start, and the clocks that give it. Only these classes read or wait for time:
 /// everything else gets time as an argument, so that timing policies run in virtual time and in tests without sleeping.
 #pragma once

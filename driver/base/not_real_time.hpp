@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A stretch of the servo thread that need not keep real time, such as the search in virtual time, told to RTSan.
 #pragma once
 

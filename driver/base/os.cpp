@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "base/os.hpp"
 
 #include <fcntl.h>
@@ -184,7 +185,7 @@ bool wasPreempted() noexcept {
 }
 
 void onCrashSignals(void (*handler)(int)) {
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_handler = handler != nullptr ? handler : SIG_DFL;
   action.sa_flags = SA_ONSTACK | SA_NODEFER;
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU}) sigaction(signal, &action, nullptr);
@@ -209,10 +210,10 @@ std::error_code limitRealTimeRun(uint64_t us) {
 }
 
 void onStopSignal(void (*handler)(int)) {
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_handler = handler;
   for (const int signal : {SIGINT, SIGTERM, SIGQUIT}) sigaction(signal, &action, nullptr);
-  struct sigaction before {};  // nohup: the run outlives its terminal
+  struct sigaction before{};  // nohup: the run outlives its terminal
   if (sigaction(SIGHUP, nullptr, &before) != 0 || before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
   action.sa_handler = SIG_IGN;
   for (const int signal : {SIGPIPE, SIGXFSZ}) sigaction(signal, &action, nullptr);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Everything that the daemon asks of the operating system for real time. The only place that calls pthread_*,
 /// mlockall, getrusage and their kind; pthread calls return their error and never set errno.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "base/regular_file.hpp"
 
 #include <fcntl.h>
@@ -43,7 +44,7 @@ std::string notAFile(mode_t mode) {
 }
 
 Result<int> openRegular(const std::string& file) {
-  struct stat info {};
+  struct stat info{};
   if (stat(file.c_str(), &info) != 0) return cannotBeRead(errno);
   // known before it is opened: opening a device may already move something, and a socket has no better message
   if (std::string other = notAFile(info.st_mode); !other.empty()) return Error{std::move(other)};
@@ -72,7 +73,7 @@ Result<std::string> readRegular(const std::string& file, size_t max_bytes) {
 }
 
 Result<void> writeWhole(const std::string& file, const std::string& text) {
-  struct stat info {};
+  struct stat info{};
   const bool special = lstat(file.c_str(), &info) == 0 && !S_ISREG(info.st_mode);
   const std::string part = special ? file : file + ".part";
   int code = writeTo(part, text);

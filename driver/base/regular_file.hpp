@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Files that somebody names. None that is read can wait: a pipe without a writer would hold the thread for ever.
 #pragma once
 #include <sys/types.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Result<T>: a value, or a message made for the user. For set-up code; the servo path uses status codes instead.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A bounded ring between one writing and one reading thread: no lock, no allocation after construction, order kept.
 #pragma once
 #include <atomic>

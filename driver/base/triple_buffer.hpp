@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The newest value from one writing to one reading thread: the writer never waits, the reader never sees half a value,
 /// older values are lost.
 #pragma once

@@ -1,15 +1,18 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd check`: validates files and prints every problem, warns of what cannot be stable; also prints the JSON
 /// Schema of a format.
 #include <memory>
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/trial.hpp"
-#include "cli/try_device.hpp"
+#include "diagnostics/device_trial.hpp"
+#include "diagnostics/model_trial.hpp"
 #include "host/device_instance.hpp"
 #include "tune/stability.hpp"
 
 namespace hapticd::cli {
+
+using namespace diagnostics;
 namespace {
 
 struct Options {
@@ -24,8 +27,8 @@ int printSchema(const std::string& format) {
 }
 
 /// What cannot be stable. Only simulated arms are opened: `check` touches no hardware; `run` warns of it as well.
-scene::Problems unstable(const scene::Scene& scene, const std::vector<double>& stiffness) {
-  scene::Problems warnings = tune::fastPaths(scene);
+document::Problems unstable(const scene::Scene& scene, const std::vector<double>& stiffness) {
+  document::Problems warnings = tune::fastPaths(scene);
   std::vector<scene::Device> devices = scene.devices;
   if (const auto file = host::shippedFile(scene::kDefaultDevice); devices.empty() && file)  // as `run` will
     if (auto loaded = scene::loadDevice(*file, catalog()); loaded.device) devices.push_back(*loaded.device);
@@ -33,7 +36,7 @@ scene::Problems unstable(const scene::Scene& scene, const std::vector<double>& s
     if (device.module != "simulated") continue;
     auto arm = host::DeviceInstance::create(device, nullptr);
     if (!arm || !(*arm)->open()) continue;
-    const scene::Problems found = tune::unstableSettings(scene, device, (*arm)->info(), stiffness);
+    const document::Problems found = tune::unstableSettings(scene, device, (*arm)->info(), stiffness);
     warnings.insert(warnings.end(), found.begin(), found.end());
   }
   return warnings;
@@ -45,11 +48,11 @@ int check(const Options& options) {
   size_t problems = 0, bad_files = 0;
   for (const std::string& file : options.files) {
     std::optional<scene::Scene> scene;
-    scene::Problems found = scene::checkFile(file, catalog(), &scene);
-    Trial trial;
+    document::Problems found = scene::checkFile(file, catalog(), &scene);
+    ModelTrial trial;
     if (scene && !options.files_only) trial = tryModels(*scene);
     found.insert(found.end(), trial.problems.begin(), trial.problems.end());
-    if (!scene && found.empty()) found = tryDevice(file);
+    if (!scene && found.empty()) found = tryDevice(file, catalog());
     printProblems(found, stdout);
     printWarnings(trial.warnings, stdout);
     if (scene && found.empty()) printWarnings(unstable(*scene, trial.stiffness), stdout);
@@ -72,16 +75,15 @@ void addCheck(CLI::App& app, int& exit_code) {
   command->add_option("files", options->files, "files to check");
   command->add_option("--schema", options->schema, "print the JSON Schema of a format instead, for editors")
       ->check(CLI::IsMember({"scene", "device", "daemon"}));
-  command->add_flag("--quiet,-q", options->quiet, "say nothing about files that are good");
-  command->add_flag("--files-only", options->files_only,
-                    "do not set up the models of a good scene, only read its files");
+  command->add_flag("--quiet,-q", options->quiet, "print nothing about files without problems");
+  command->add_flag("--files-only", options->files_only, "only read the files; do not set up the models of a scene");
   command->footer(
-      "Each problem is a line: file:line:column: key: what is wrong, and what was expected.\n"
-      "Exit code 2 if there is any. The models of a scene without problems are set up once, so that\n"
-      "what only a plugin can judge, such as a geometry file, is judged too. Settings that cannot be stable on\n"
-      "the device are warned of, with the bound and the nearest stable setting; warnings leave the exit code.\n\n"
-      "Example:\n  hapticd check config/scenes/teapot.yaml config/devices/simulated-premium15.yaml\n"
-      "  hapticd check --schema scene > scene.schema.json");
+      "Each problem is one line: file:line:column: key: what is wrong, and what was expected.\nThe exit code is 2 if "
+      "there is a problem. If a scene has none, its models are set up once, because only\na plugin can check some "
+      "files, such as geometry. A warning names each setting that cannot be stable on\nthe device, with the bound and "
+      "the nearest stable setting. Warnings do not affect the exit code.\n\nExample:\n  hapticd check "
+      "config/scenes/teapot.yaml config/devices/simulated-premium15.yaml\n  hapticd check --schema scene > "
+      "scene.schema.json");
   command->callback([options, &exit_code] { exit_code = check(*options); });
 }
 

@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: MIT
 #include "cli/class_info.hpp"
 
 #include <algorithm>
 #include <cstdio>
 #include <map>
 
+#include "document/reader.hpp"
+#include "document/suggestion.hpp"
 #include "hapticd/shape.h"
-#include "host/nearest.hpp"
-#include "scene/reader.hpp"
 
 namespace hapticd::cli {
 namespace {
@@ -20,7 +21,7 @@ std::string typeText(const host::ParamInfo& p) {
     case HSP_BOOL:
       return "true or false";
     case HSP_ENUM:
-      return "one of " + host::listed(p.choices, 40);
+      return "one of " + document::listed(p.choices, 40);
     case HSP_PATH:
       return "path of a file";
     case HSP_TEXT:
@@ -45,7 +46,7 @@ std::string defaultText(const host::ParamInfo& p) {
   switch (p.kind) {
     case HSP_REAL:
     case HSP_INT:
-      return scene::numberText(p.def);
+      return document::numberText(p.def);
     case HSP_BOOL:
       return p.def != 0 ? "true" : "false";
     case HSP_ENUM:
@@ -59,7 +60,7 @@ void printParam(const host::ParamInfo& p) {
   std::string facts = typeText(p);
   const bool ranged = p.kind == HSP_REAL || p.kind == HSP_INT || p.kind == HSP_ARRAY;
   if (p.kind == HSP_ARRAY) facts += ", " + countText(p);
-  if (ranged) facts += ", " + scene::expectedOf({p.min, p.max, p.unit.c_str()});
+  if (ranged) facts += ", " + document::expectedOf({p.min, p.max, p.unit.c_str()});
   const bool is_required = (p.flags & HSP_P_REQUIRED) != 0;
   const std::string def = defaultText(p);
   facts += is_required ? "; required" : def.empty() ? "" : "; default " + def;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Plugins and modules on the terminal.
 #pragma once
 #include <filesystem>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "cli/command.hpp"
 
 #include <fmt/format.h>
@@ -98,9 +99,9 @@ void logToTerminal(int level, const std::string& who, const std::string& text) {
 
 void addGlobalOptions(CLI::App& app) {
   app.add_option("--config", settings().config_file,
-                 "daemon file; without it $HAPTICD_CONFIG, /etc/hapticd/hapticd.yaml or the one shipped");
+                 "daemon file; default: $HAPTICD_CONFIG, /etc/hapticd/hapticd.yaml or the installed one");
   app.add_option("--plugin-path", settings().plugin_path,
-                 "folders searched for plugins and device modules before all others")
+                 "folders that are searched first for plugins and device modules")
       ->delimiter(':');
 }
 
@@ -126,12 +127,12 @@ host::Catalog& catalog() {
   return instance;
 }
 
-void printProblems(const scene::Problems& problems, std::FILE* out) {
-  for (const scene::Problem& problem : problems) std::fprintf(out, "%s\n", problem.text().c_str());
+void printProblems(const document::Problems& problems, std::FILE* out) {
+  for (const document::Problem& problem : problems) std::fprintf(out, "%s\n", problem.text().c_str());
 }
 
-void printWarnings(scene::Problems warnings, std::FILE* out) {
-  for (scene::Problem& warning : warnings) warning.what = "warning: " + warning.what;
+void printWarnings(document::Problems warnings, std::FILE* out) {
+  for (document::Problem& warning : warnings) warning.what = "warning: " + warning.what;
   printProblems(warnings, out);
 }
 

@@ -1,8 +1,8 @@
+// SPDX-License-Identifier: MIT
 /// What the subcommands share: exit codes, messages, loading a scene.
 ///
-/// A subcommand is a file of its own that defines `void addNAME(CLI::App& app, int& exit_code)`: the build finds it by
-/// that line, so a new one touches no other file. Files are called in the order of their names, so plugin_check.cpp may
-/// hang its command under app.get_subcommand("plugin").
+/// A subcommand is a file of its own with a function `void addNAME(CLI::App& app, int& exit_code)`, listed in
+/// commands.hpp.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -49,10 +49,10 @@ const scene::Daemon& daemonSettings();
 host::Catalog& catalog();
 
 /// Every problem as file:line:column: key: what, expected what.
-void printProblems(const scene::Problems& problems, std::FILE* out);
+void printProblems(const document::Problems& problems, std::FILE* out);
 
 /// The same for what is only warned of.
-void printWarnings(scene::Problems warnings, std::FILE* out);
+void printWarnings(document::Problems warnings, std::FILE* out);
 
 /// Loads a scene, or prints every problem on standard error.
 /// @param device_file replaces the scene's devices; empty: as the scene says

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd completion`: completion scripts for bash, zsh and fish, made of the option table itself.
 #include <memory>
 #include <sstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd ctl`: asks a running daemon.
 #include <cstdio>
 #include <filesystem>
@@ -9,6 +10,7 @@
 
 #include "base/clock.hpp"
 #include "cli/command.hpp"
+#include "cli/ctl_lead.hpp"
 #include "control/client.hpp"
 #include "status/page_file.hpp"
 
@@ -19,10 +21,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct Options {
-  std::string name = "hapticd", model, device, parameter, file, line, obj;
+  std::string name = "hapticd", model, device, hand, parameter, file, line, obj;
   std::vector<double> position, orientation;
   std::optional<double> seconds;
-  double value = 0, tolerance = 0;
+  double value = 0, tolerance = 0, hold = 1;
   bool consent = false, follow = false;
 };
 
@@ -53,7 +55,7 @@ int send(const Options& options, const std::string& line) {
   auto answer = control::ask(socketOf(options), line);
   if (!answer) return fail(kFailed, answer.error());
   const Json json = Json::parse(*answer, nullptr, false);
-  if (!json.is_object()) return fail(kFailed, "the answer cannot be read: " + *answer);
+  if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
   if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
   if (!options.obj.empty()) return saveObj(json, options.obj);
   std::printf("%s\n", json.dump(2).c_str());
@@ -72,7 +74,7 @@ int follow(const Options& options) {
     const auto answer = client->ask(lineOf({{"do", word}, {"model", options.model}}));
     const Json json = answer ? Json::parse(*answer, nullptr, false) : Json();
     if (!answer) return fail(kFailed, answer.error());
-    if (!json.is_object()) return fail(kFailed, "the answer cannot be read: " + *answer);
+    if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
     if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
     if (word == std::string("geometry")) std::printf("%s\n", answer->c_str());
   }
@@ -102,21 +104,76 @@ CLI::App* addRequest(CLI::App& parent, const char* word, const char* doc, const 
 }
 
 void addGeometryRequest(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
-  CLI::App* geometry =
-      addRequest(ctl, "geometry", "Triangles of a model as it looks now: a soft body as it is pressed.", options,
-                 exit_code, [options](Json& json) {
-                   json["model"] = options->model;
-                   if (options->tolerance > 0) json["tolerance"] = options->tolerance;
-                 });
-  geometry->add_option("model", options->model, "its name")->required();
+  CLI::App* geometry = addRequest(ctl, "geometry", "Print the triangles of a model in its current shape.", options,
+                                  exit_code, [options](Json& json) {
+                                    json["model"] = options->model;
+                                    if (options->tolerance > 0) json["tolerance"] = options->tolerance;
+                                  });
+  geometry->add_option("model", options->model, "name of the model")->required();
   geometry->add_option("--obj", options->obj, "write an OBJ file, in the model's frame, instead of printing JSON");
-  geometry->add_option("--tolerance", options->tolerance, "chord error in m; 0: 5/1000 of the model's size")
+  geometry->add_option("--tolerance", options->tolerance, "chord error [m]; 0: 0.5 % of the model's size")
       ->check(within(0, 1e9));  // the daemon knows what it draws
   geometry
       ->add_flag("--follow", options->follow,
-                 "print the vertices as the body's steps write them, about 60 times a second, a line of JSON each")
+                 "print every new frame of vertices (about 60 per second), one line of JSON each")
       ->excludes("--obj")
       ->excludes("--tolerance");
+}
+
+/// Prints what happened, a line of JSON each; with `follow` also what happens from now on, until the daemon ends.
+int showEvents(const Options& options) {
+  auto client = control::Client::connect(socketOf(options));
+  if (!client) return fail(kFailed, client.error());
+  uint64_t end = UINT64_MAX;  // the first event that comes by itself
+  for (const char* word : {"subscribe", "events"}) {
+    if (word == std::string("subscribe") && !options.follow) continue;
+    const auto answer = client->ask(lineOf({{"do", word}}));
+    const Json json = answer ? Json::parse(*answer, nullptr, false) : Json();
+    if (!answer) return fail(kFailed, answer.error());
+    if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
+    if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
+    if (!json.contains("events")) {
+      end = json.value("next", end);
+      continue;
+    }
+    uint64_t number = json.value("first", uint64_t{0});
+    for (const Json& event : json["events"])
+      if (number++ < end) std::printf("%s\n", event.dump().c_str());
+  }
+  constexpr double kLong = 1e6;
+  while (options.follow && std::fflush(stdout) == 0) {
+    const auto line = client->hear(kLong);
+    if (!line) break;  // the daemon has ended
+    std::printf("%s\n", line->c_str());
+  }
+  return kWorked;
+}
+
+void addEvents(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
+  CLI::App* events = ctl.add_subcommand(
+      "events", "Show what happened: clicks, touches, faults, models and programs that came and left.");
+  events->add_flag("--follow", options->follow, "go on with what happens, a line of JSON each");
+  events->callback([options, &exit_code] { exit_code = showEvents(*options); });
+}
+
+void addLead(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
+  CLI::App* lead =
+      ctl.add_subcommand("lead", "Move a kinematic model, or the simulated hand, by lines of standard input.");
+  lead->add_option("model", options->model, "name of the model");
+  lead->add_option("--hand", options->hand, "device whose simulated hand is led, instead of a model");
+  lead->add_option("--hold", options->hold, "seconds that the lead goes on after the last line; 1 unless given")
+      ->check(within(0, 1e9));
+  lead->footer(
+      "A line is \"x y z\" in m, or \"x y z qw qx qy qz\", world frame. The model follows with at most 1 m/s and\n"
+      "20 m/s^2. When the lead ends it brakes and stays.\n"
+      "Example:\n  echo 0.1 0 0 | hapticd ctl lead door");
+  lead->callback([options, &exit_code] {
+    if (options->model.empty() == options->hand.empty()) {
+      exit_code = fail(kBadInput, "lead: expected either a model or --hand DEVICE");
+    } else {
+      exit_code = leadByLines({socketOf(*options), options->model, options->hand, options->hold});
+    }
+  });
 }
 
 std::string absolute(const std::string& file) {
@@ -125,39 +182,50 @@ std::string absolute(const std::string& file) {
 
 void addModelRequests(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
   const auto model = [options](Json& json) { json["model"] = options->model; };
-  for (const auto& [word, doc] : {std::pair{"enable", "Let a model be felt again; its force fades in."},
-                                  std::pair{"disable", "Fade a model's force out; it is traced on."},
-                                  std::pair{"remove", "Fade a model out and take it away."}})
-    addRequest(ctl, word, doc, options, exit_code, model)->add_option("model", options->model, "its name")->required();
+  for (const auto& [word, doc] : {std::pair{"enable", "Enable a model; its force fades in."},
+                                  std::pair{"disable", "Disable a model: its force fades out, tracing goes on."},
+                                  std::pair{"remove", "Remove a model; its force fades out first."}})
+    addRequest(ctl, word, doc, options, exit_code, model)
+        ->add_option("model", options->model, "name of the model")
+        ->required();
 
   CLI::App* set = addRequest(ctl, "set", "Set a live parameter of a model.", options, exit_code, [options](Json& json) {
     json["model"] = options->model, json["parameter"] = options->parameter, json["value"] = options->value;
     if (options->consent) json["consent"] = true;
   });
-  set->add_option("model", options->model, "its name")->required();
-  set->add_option("parameter", options->parameter, "one that `ctl list` shows")->required();
+  set->add_option("model", options->model, "name of the model")->required();
+  set->add_option("parameter", options->parameter, "a live parameter; `hapticd ctl list` shows them")->required();
   set->add_option("value", options->value, "a number in the parameter's unit")->required();
-  set->add_flag("--consent", options->consent, "whoever holds the arm agrees: for what a hand may feel suddenly");
+  set->add_flag("--consent", options->consent,
+                "the person who holds the arm agrees; needed where the change may be felt suddenly");
+
+  CLI::App* get = addRequest(ctl, "get", "Show the value of a parameter of a model, or of all.", options, exit_code,
+                             [options](Json& json) {
+                               json["model"] = options->model;
+                               if (!options->parameter.empty()) json["parameter"] = options->parameter;
+                             });
+  get->add_option("model", options->model, "name of the model")->required();
+  get->add_option("parameter", options->parameter, "one of its plugin's; all without");
 
   CLI::App* move = addRequest(ctl, "move", "Move a kinematic model.", options, exit_code, [options](Json& json) {
     json["model"] = options->model, json["position"] = options->position;
     if (!options->orientation.empty()) json["orientation"] = options->orientation;
     if (options->seconds) json["seconds"] = *options->seconds;
   });
-  move->add_option("model", options->model, "its name")->required();
-  move->add_option("--position", options->position, "x y z in m, world frame")->required()->expected(3);
+  move->add_option("model", options->model, "name of the model")->required();
+  move->add_option("--position", options->position, "x y z [m], world frame")->required()->expected(3);
   move->add_option("--orientation", options->orientation, "w x y z, a unit quaternion")->expected(4);
-  move->add_option("--seconds", options->seconds, "how long it takes at least; without it at most 0.2 m/s");
+  move->add_option("--seconds", options->seconds, "shortest duration of the motion [s]; default: 0.2 m/s at most");
 }
 
 void addSceneRequests(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
-  CLI::App* add = addRequest(ctl, "add", "Add models of a scene file.", options, exit_code, [options](Json& json) {
+  CLI::App* add = addRequest(ctl, "add", "Add the models of a scene file.", options, exit_code, [options](Json& json) {
     json["file"] = absolute(options->file);
     if (!options->model.empty()) json["model"] = options->model;
   });
   add->add_option("file", options->file, "scene file")->required();
-  add->add_option("model", options->model, "only this one");
-  CLI::App* reload = addRequest(ctl, "reload", "Load the scene again, or another, with a cross-fade.", options,
+  add->add_option("model", options->model, "name of the only model to add");
+  CLI::App* reload = addRequest(ctl, "reload", "Load the scene again, or another scene, with a cross-fade.", options,
                                 exit_code, [options](Json& json) {
                                   if (!options->file.empty()) json["file"] = absolute(options->file);
                                 });
@@ -168,28 +236,31 @@ void addDeviceRequests(CLI::App& ctl, const std::shared_ptr<Options>& options, i
   const auto device = [options](Json& json) {
     if (!options->device.empty()) json["device"] = options->device;
   };
-  for (const auto& [word, doc] : {std::pair{"hold", "Ramp the force of a device out, until it is cleared."},
-                                  std::pair{"clear", "Forgive a latched fault: the force ramps in again."}})
+  for (const auto& [word, doc] :
+       {std::pair{"hold", "Ramp the force of a device to zero and keep it there until it is cleared."},
+        std::pair{"clear", "Clear a latched fault or a hold: the force ramps in again."}})
     addRequest(ctl, word, doc, options, exit_code, device)
-        ->add_option("device", options->device, "its name; all without");
+        ->add_option("device", options->device, "name of the device; default: all");
 }
 
 }  // namespace
 
 void addCtl(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* ctl = app.add_subcommand("ctl", "Ask a running daemon: status, models, parameters, black box.");
+  CLI::App* ctl = app.add_subcommand("ctl", "Control a running daemon: status, models, parameters, black box.");
   ctl->require_subcommand(1);
   ctl->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
   const auto nothing = [](Json&) {};
-  addRequest(*ctl, "status", "How it is.", options, exit_code, nothing);
-  addRequest(*ctl, "list", "Its models and what of them can change.", options, exit_code, nothing);
+  addRequest(*ctl, "status", "Show the daemon's status.", options, exit_code, nothing);
+  addRequest(*ctl, "list", "List the models and their live parameters.", options, exit_code, nothing);
   addModelRequests(*ctl, options, exit_code);
   addSceneRequests(*ctl, options, exit_code);
   addDeviceRequests(*ctl, options, exit_code);
   addGeometryRequest(*ctl, options, exit_code);
-  addRequest(*ctl, "dump", "Write the black box: the last 10 s of every tick.", options, exit_code, nothing);
-  addRequest(*ctl, "stop", "End the run in order.", options, exit_code, nothing);
+  addLead(*ctl, options, exit_code);
+  addEvents(*ctl, options, exit_code);
+  addRequest(*ctl, "dump", "Write the black box to disk: every tick of the last 10 s.", options, exit_code, nothing);
+  addRequest(*ctl, "stop", "End the run; forces ramp to zero first.", options, exit_code, nothing);
   ctl->footer("Example:\n  hapticd ctl set teapot stiffness 600 --consent");
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd device list|info`: modules, device files, what is plugged in, and the facts of one arm.
 #include <algorithm>
 #include <array>
@@ -7,12 +8,14 @@
 
 #include "cli/class_info.hpp"
 #include "cli/command.hpp"
-#include "cli/device_bus.hpp"
-#include "cli/try_device.hpp"
+#include "diagnostics/device_bus.hpp"
+#include "diagnostics/device_trial.hpp"
+#include "document/reader.hpp"
 #include "host/device_instance.hpp"
-#include "scene/reader.hpp"
 
 namespace hapticd::cli {
+
+using namespace diagnostics;
 namespace {
 
 void printShippedFiles() {
@@ -41,8 +44,8 @@ void printBuses() {
                 device.module.empty() ? "" : ", module ", device.module.c_str());
     if (!device.module.empty() && !device.may_open)
       std::printf(
-          "    you may not open %s\n    fix: install the udev rules (udev/70-hapticd.rules) and plug it in again; "
-          "hapticd doctor tells more\n",
+          "    you may not open %s\n    fix: install the udev rules (udev/70-hapticd.rules) and plug the device in "
+          "again; hapticd doctor tells more\n",
           device.node.c_str());
   }
   if (found.empty()) std::printf("  no known haptic device (USB and VME scanned)\n");
@@ -61,7 +64,7 @@ int list() {
 
 void printLimits(const scene::Limits& limits) {
   const auto text = [](double value, const char* unit, const char* none) {
-    return value == 0 ? std::string(none) : scene::numberText(value) + " " + unit;
+    return value == 0 ? std::string(none) : document::numberText(value) + " " + unit;
   };
   std::printf("limits\n  force      %s\n  torque     %s\n  slew       %s\n  velocity   %s\n  workspace  %s\n",
               text(limits.force, "N", "the device's own").c_str(), text(limits.torque, "N m", "the motors'").c_str(),
@@ -137,7 +140,7 @@ int info(const std::string& file, bool with_parameters) {
   printProblems(loaded.problems, stderr);
   if (!loaded.device) return kBadInput;
   const scene::Device& description = *loaded.device;
-  const scene::Problems wrong = tryDevice(file);
+  const document::Problems wrong = tryDevice(file, catalog());
   printProblems(wrong, stderr);
   if (!wrong.empty()) return kBadInput;
   auto device = host::DeviceInstance::create(description, logButNoErrors);
@@ -161,21 +164,22 @@ int info(const std::string& file, bool with_parameters) {
 }  // namespace
 
 void addDevice(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("device", "Arms: modules, what is plugged in, facts, kinematics.");
+  CLI::App* command = app.add_subcommand("device", "Show, calibrate and check arms.");
   command->require_subcommand(1);
   command->footer("Example:\n  hapticd device info config/devices/simulated-premium15.yaml");
 
   CLI::App* list_command =
-      command->add_subcommand("list", "Device modules, device files, and known devices on the buses.");
+      command->add_subcommand("list", "List device modules, device files, and known devices on the buses.");
   list_command->footer("Example:\n  hapticd device list");
   list_command->callback([&exit_code] { exit_code = list(); });
 
   auto file = std::make_shared<std::string>();
-  CLI::App* info_command = command->add_subcommand("info", "Facts of one arm; opens it if it is there, moves nothing.");
+  CLI::App* info_command = command->add_subcommand(
+      "info", "Show the facts of one arm. Opens the arm if it is plugged in, but moves nothing.");
   info_command->add_option("file", *file, "device file (YAML)")->required();
   info_command->footer("Example:\n  hapticd device info config/devices/simulated-premium15.yaml");
   auto parameters = std::make_shared<bool>(false);
-  info_command->add_flag("--parameters", *parameters, "also every parameter of the module");
+  info_command->add_flag("--parameters", *parameters, "also print every parameter of the module");
   info_command->callback([file, parameters, &exit_code] { exit_code = info(*file, *parameters); });
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd device calibrate`: lets an arm find its zero, with the user's help. No force while it does.
 #include <unistd.h>
 
@@ -6,8 +7,8 @@
 
 #include "base/clock.hpp"
 #include "cli/command.hpp"
+#include "document/reader.hpp"
 #include "host/device_instance.hpp"
-#include "scene/reader.hpp"
 
 namespace hapticd::cli {
 namespace {
@@ -59,7 +60,7 @@ int calibrate(const Options& options) {
   waitForUser(calibration->instructions, options.yes);
   if (calibration->calibrate((*device)->handle()) < 0)
     return fail(kFailed, "device '" + loaded.device->name +
-                             "': not calibrated\n  it stays without force\n  fix: follow the instructions above, then "
+                             "': not calibrated\n  no force is sent to it\n  fix: follow the instructions above, then "
                              "hapticd device calibrate " +
                              options.file);
   printWhere(**device);
@@ -71,7 +72,7 @@ int calibrate(const Options& options) {
 void addDeviceCalibrate(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.get_subcommand("device")->add_subcommand(
-      "calibrate", "Let an arm find its zero; it has no force before. Says what you must do with it.");
+      "calibrate", "Calibrate the encoders of an arm. The command says what you must do; no force is sent before.");
   command->add_option("file", options->file, "device file (YAML)")->required();
   command->add_flag("-y,--yes", options->yes, "do not wait for Enter");
   command->footer("Example:\n  hapticd device calibrate config/devices/simulated-premium15.yaml");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd device kinematics`: forward kinematics, Jacobian and torques of an arm, offline, for joints of a CSV file.
 #include <Eigen/Core>
 #include <array>
@@ -6,8 +7,9 @@
 #include <string>
 
 #include "cli/command.hpp"
+#include "document/csv.hpp"
+#include "document/reader.hpp"
 #include "host/device_instance.hpp"
-#include "scene/reader.hpp"
 
 namespace hapticd::cli {
 namespace {
@@ -17,26 +19,6 @@ struct Options {
 };
 
 constexpr size_t kMaxCsvBytes = 256u << 20;
-constexpr size_t kWrench = 6;
-
-/// Rows of numbers: joints first, then (if the header has them) force and torque on the hand.
-struct Rows {
-  size_t columns = 0;
-  std::vector<std::vector<double>> rows;
-};
-
-std::vector<std::string> fieldsOf(const std::string& line) {
-  std::vector<std::string> fields;
-  for (size_t start = 0; start <= line.size();) {
-    const size_t comma = std::min(line.find(',', start), line.size());
-    std::string field = line.substr(start, comma - start);
-    field.erase(0, std::min(field.find_first_not_of(" \t"), field.size()));
-    field.erase(field.find_last_not_of(" \t\r") + 1);
-    fields.push_back(field);
-    start = comma + 1;
-  }
-  return fields;
-}
 
 std::string headerOf(size_t joints) {
   std::string header;
@@ -44,36 +26,13 @@ std::string headerOf(size_t joints) {
   return header;
 }
 
-Result<Rows> readRows(const std::string& file, size_t joints) {
-  scene::Problems problems;
-  const auto text = scene::readFile(file, kMaxCsvBytes, problems);
-  if (!text) return Error{problems.front().text()};
-  std::istringstream lines(*text);
-  Rows rows;
-  size_t number = 0;
-  for (std::string line; std::getline(lines, line);) {
-    ++number;
-    const std::vector<std::string> fields = fieldsOf(line);
-    if (line.empty() || line[0] == '#' || (fields.size() == 1 && fields[0].empty())) continue;
-    const std::string where = file + ":" + std::to_string(number) + ":1: ";
-    if (rows.columns == 0) {
-      rows.columns = fields.size();
-      if (fields.size() != joints && fields.size() != joints + 3 && fields.size() != joints + kWrench)
-        return Error{where + std::to_string(fields.size()) + " columns, expected " + headerOf(joints) +
-                     " and, for torques, fx,fy,fz or fx,fy,fz,tx,ty,tz"};
-      if (!scene::toNumber(fields[0])) continue;  // a header; without one the file begins with numbers
-    }
-    std::vector<double> row;
-    for (const std::string& field : fields) row.push_back(scene::toNumber(field).value_or(std::nan("")));
-    if (row.size() != rows.columns)
-      return Error{where + std::to_string(row.size()) + " columns, expected " + std::to_string(rows.columns)};
-    for (size_t i = 0; i < row.size(); ++i)
-      if (!std::isfinite(row[i]))
-        return Error{where + "column " + std::to_string(i + 1) + " is \"" + fields[i] + "\", expected a finite number"};
-    rows.rows.push_back(std::move(row));
-  }
-  if (rows.rows.empty()) return Error{file + ":1:1: no rows, expected joint positions in rad (m for sliding joints)"};
-  return rows;
+/// Joints, then (where the file has them) force and torque on the hand.
+Result<document::CsvTable> readRows(const std::string& file, size_t joints) {
+  const std::string q = headerOf(joints);
+  document::Problems problems;
+  auto table = document::readCsv(file, kMaxCsvBytes, {{q, q + ",fx,fy,fz", q + ",fx,fy,fz,tx,ty,tz"}}, problems);
+  if (!table) return Error{problems.front().text()};
+  return std::move(*table);
 }
 
 class Table {
@@ -101,8 +60,7 @@ class Table {
     const hsp_status status = std::min({kinematics_.forward(device_, q.data(), p.data(), o.data()),
                                         kinematics_.jacobian(device_, q.data(), J.data()),
                                         kinematics_.gravity(device_, q.data(), gravity_.data(), held.data())});
-    if (status < 0)
-      return Error{"the kinematics have no answer for these joints (status " + std::to_string(status) + ")"};
+    if (status < 0) return Error{"the kinematics failed for these joints (status " + std::to_string(status) + ")"};
     line_.clear();
     add(values.data(), n);
     add(p.data(), 3);
@@ -160,14 +118,14 @@ int kinematics(const Options& options) {
   const Eigen::Vector3d gravity = loaded.device->mount.orientation.conjugate() * scene::Servo{}.gravity;
   Table table(out, (*device)->kinematics(), (*device)->handle(), gravity);
   table.header(rows->columns);
-  for (size_t i = 0; i < rows->rows.size(); ++i)
-    if (auto done = table.row(rows->rows[i]); !done)
+  for (size_t i = 0; i < rows->rows(); ++i)
+    if (auto done = table.row({rows->row(i), rows->row(i) + rows->columns}); !done)
       return fail(kFailed, options.joints + ": row " + std::to_string(i + 1) + ": " + done.error());
   if (table.outside() > 0)
     std::fprintf(stderr,
-                 "warning: %s: in %zu of %zu rows the tip is where the arm's joint limits do not let it\n  the numbers are "
-                 "those of its mechanism without stops\n  fix: correct the joints, or arm.limits in %s\n",
-                 options.joints.c_str(), table.outside(), rows->rows.size(), options.file.c_str());
+                 "warning: %s: in %zu of %zu rows the tip is beyond the arm's joint limits\n  the numbers ignore these "
+                 "limits\n  fix: correct the joints, or arm.limits in %s\n",
+                 options.joints.c_str(), table.outside(), rows->rows(), options.file.c_str());
   return std::fflush(out) == 0 ? kWorked : fail(kFailed, options.out + ": cannot be written");
 }
 
@@ -176,17 +134,18 @@ int kinematics(const Options& options) {
 void addDeviceKinematics(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.get_subcommand("device")->add_subcommand(
-      "kinematics", "Tip pose, Jacobian, gravity torques and J^T W of an arm for joint positions of a CSV file.");
+      "kinematics", "Compute tip pose, Jacobian, gravity torques and J^T W for the joint positions of a CSV file.");
   command->add_option("file", options->file, "device file (YAML)")->required();
   command
       ->add_option("--joints", options->joints,
-                   "CSV: q1,q2,... in rad (m for sliding joints), then perhaps fx,fy,fz[,tx,ty,tz] in N and N m")
+                   "CSV with q1,q2,... [rad; m for sliding joints] and optionally fx,fy,fz[,tx,ty,tz] [N, N m]")
       ->required();
-  command->add_option("-o,--out", options->out, "result (CSV); - for standard output");
+  command->add_option("-o,--out", options->out, "CSV file to write; - for standard output");
   command->footer(
-      "All in the device frame, SI units. J is row by row: J1..J3 velocity of the tip, J4..J6 angular velocity.\n"
-      "gravityN holds the arm against gravity as it is mounted; tauN = J^T W, with forces in the file only.\n\n"
-      "Example:\n  hapticd device kinematics config/devices/simulated-premium15.yaml --joints joints.csv");
+      "Everything is in the device frame and in SI units. J is given row by row: J1..J3 are the velocity of the "
+      "tip,\nJ4..J6 the angular velocity. gravityN are the torques that hold the arm against gravity as it is "
+      "mounted.\ntauN = J^T W is given if the file has forces.\n\nExample:\n  hapticd device kinematics "
+      "config/devices/simulated-premium15.yaml --joints joints.csv");
   command->callback([options, &exit_code] { exit_code = kinematics(*options); });
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd doctor`: everything that keeps real time or a device from working, each with the command that fixes it.
 #include <algorithm>
 #include <cstdio>
@@ -5,9 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
-#include "cli/doctor_checks.hpp"
+#include "diagnostics/doctor_checks.hpp"
 
 namespace hapticd::cli {
+
+using namespace diagnostics;
 
 namespace {
 
@@ -24,7 +27,7 @@ void print(const Finding& finding) {
 
 /// 0: all well, 1: warnings, 2: something fails.
 int doctor(bool json, double seconds) {
-  std::vector<Finding> findings = checkSystem();
+  std::vector<Finding> findings = checkSystem(catalog());
   if (!json)
     for (const Finding& finding : findings) print(finding);
   if (seconds > 0) {
@@ -55,15 +58,15 @@ int doctor(bool json, double seconds) {
 void addDoctor(CLI::App& app, int& exit_code) {
   auto json = std::make_shared<bool>(false);
   auto seconds = std::make_shared<double>(10);
-  CLI::App* command =
-      app.add_subcommand("doctor", "What keeps real time or a device from working, each with its cure.");
-  command->add_flag("--json", *json, "as JSON, for issue reports");
-  command->add_option("--seconds", *seconds, "length of the latency run; 0: none")
+  CLI::App* command = app.add_subcommand(
+      "doctor", "Find what keeps real time or a device from working, with the command that fixes it.");
+  command->add_flag("--json", *json, "print JSON, for issue reports");
+  command->add_option("--seconds", *seconds, "duration of the latency test [s]; 0: no test")
       ->check(within(0.0, 3600.0))
       ->capture_default_str();
   command->footer(
-      "Exit code 0 when all is well, 1 with warnings, 2 when a check fails.\n\nExample:\n  hapticd doctor --json > "
-      "doctor.json");
+      "The exit code is 0 if all checks pass, 1 with warnings, 2 if a check fails.\n\nExample:\n  hapticd doctor "
+      "--json > doctor.json");
   command->callback([=, &exit_code] { exit_code = doctor(*json, *seconds); });
 }
 

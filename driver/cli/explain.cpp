@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd explain`: what a scene makes the daemon load, start and compute, why, and what it costs.
 #include <algorithm>
 #include <cstdio>
@@ -9,12 +10,14 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
-#include "cli/explain_cost.hpp"
-#include "scene/reader.hpp"
-#include "servo/lockstep.hpp"
-#include "servo/world.hpp"
+#include "diagnostics/explain_cost.hpp"
+#include "document/reader.hpp"
+#include "servo/loop/lockstep.hpp"
+#include "session/world.hpp"
 
 namespace hapticd::cli {
+
+using namespace diagnostics;
 
 namespace {
 
@@ -23,7 +26,7 @@ void say(const char* what, const std::string& why) {
   std::printf("  %-22s %s\n", what, why.c_str());
 }
 
-std::string where(const scene::Place& place) {
+std::string where(const document::Place& place) {
   return place.line > 0 ? place.file + ":" + std::to_string(place.line) : place.file;
 }
 
@@ -51,7 +54,7 @@ std::vector<uint64_t> measureSteps(servo::World& world, const scene::Scene& scen
     // Just outside the face of the box that a hand meets first.
     const Eigen::Vector3d front(0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), high.z() + 1e-3);
     probe.position = scene.models[index].pose.orientation * front + scene.models[index].pose.position;
-    servo::Lockstep lockstep(world);
+    servo::Lockstep lockstep = world.lockstep();
     std::vector<uint64_t> costs;
     for (int i = 0; i < kTicks; ++i) {
       world.core().publish(i * dt, {&probe, 1});
@@ -76,20 +79,20 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
     const std::string surfaces = shape.surfaces() != nullptr
                                      ? std::to_string(count) + (count == 1 ? " surface" : " surfaces") +
                                            ", traced while within the activation radius"
-                                     : "traces itself, every tick";
+                                     : "is traced by its plugin in every tick";
     say("  surfaces", surfaces);
-    say("  motion", (report.flags & HSP_R_MOVES) != 0 ? "moves by itself: integrated every tick"
+    say("  motion", (report.flags & HSP_R_MOVES) != 0 ? "moved by its plugin: integrated in every tick"
                     : model.kinematic ? "follows " + std::to_string(model.path.size()) + " points of a path"
                                       : "none: no integrator, its pose is fixed");
     if ((shape.description().flags & HSP_C_DEFORMS) != 0)
-      say("  deformation", "asleep until it is touched; then only control points in motion are integrated");
+      say("  deformation", "not computed until it is touched; then only moving control points are integrated");
     const bool identity = model.pose.position.isZero(0) && model.pose.orientation.vec().isZero(0);
     const bool still = (report.flags & HSP_R_MOVES) == 0 && !model.kinematic;
     say("  transform", identity && still ? "none: the model stands at the world's origin"
-                                         : "probe in, foot point and normal out, each tick that it is traced");
+                                         : "probe in, foot point and normal out, in every tick in which it is traced");
     say("  velocity", (report.flags & HSP_R_VELOCITY) != 0 ? "used (damping, viscosity or friction)" : "not used");
     say("  memory", bytes(report.locked_bytes));
-    say("  cost", std::to_string(costs[i]) + " ns a tick near the surface (median of 300)");
+    say("  cost", std::to_string(costs[i]) + " ns per tick near the surface (median of 300)");
   }
 }
 
@@ -98,13 +101,14 @@ void explainServo(const scene::Scene& scene, const servo::World& world) {
   say("rate", std::to_string(static_cast<int>(scene.servo.rate)) + " Hz");
   constexpr double kShare = 0.8;
   char deadline[160];
-  std::snprintf(deadline, sizeof deadline,
-                "%.4g us for all models; beyond it the least important are answered coarser, never left out",
-                scene.servo.budget_us > 0 ? scene.servo.budget_us : kShare * 1e6 / scene.servo.rate);
+  std::snprintf(
+      deadline, sizeof deadline,
+      "%.4g us for all models; beyond it the least important models are traced less accurately, never left out",
+      scene.servo.budget_us > 0 ? scene.servo.budget_us : kShare * 1e6 / scene.servo.rate);
   say("budget of a tick", deadline);
   say("velocity estimator", world.needsVelocity()
                                 ? scene.servo.velocity.estimator + " (" +
-                                      scene::numberText(scene.servo.velocity.parameter) + "): a model uses velocity"
+                                      document::numberText(scene.servo.velocity.parameter) + "): a model uses velocity"
                                 : "none: nothing in the scene uses velocity");
 }
 
@@ -115,8 +119,8 @@ void explainSimulation(servo::World& world) {
   const sim::Searching amount = world.proximity().amount();
   say("proximity search", amount == sim::Searching::kNone ? "none: no model has surfaces to search"
                           : amount == sim::Searching::kSmall
-                              ? every + "by the main thread: one small surface needs none"
-                              : every + "on a thread of its own");
+                              ? every + "by the main thread: one small surface needs no thread"
+                              : every + "on its own thread");
 }
 
 void explainFiles(const scene::Scene& scene) {
@@ -166,13 +170,13 @@ int explain(const Options& options) {
 
 void addExplain(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("explain", "What a scene makes the daemon load, start and compute, why, and its cost.");
+  CLI::App* command = app.add_subcommand(
+      "explain", "Show what the daemon loads, starts and computes for a scene, why, and at what cost.");
   command->add_option("scene", options->scene, "scene file (YAML)")->required();
   command->add_flag("--cost", options->cost,
-                    "a table of every part: the line that asked for it, ns a tick and bytes, which are what leaving it "
-                    "out saves; and what is not there");
-  command->add_flag("--json", options->json, "the same table for programs");
+                    "print a table of every part with its line in the scene, and the ns per tick and bytes that it "
+                    "costs; also of what is not needed");
+  command->add_flag("--json", options->json, "print the same table as JSON");
   command->footer("Example:\n  hapticd explain config/scenes/teapot.yaml --cost");
   command->callback([options, &exit_code] { exit_code = explain(*options); });
 }

@@ -1,12 +1,13 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd`: one program, a subcommand a file.
 #include <exception>
 #include <string_view>
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/commands.hpp"  // made by the build: a declaration and a table entry for each subcommand
-#include "host/description.hpp"
-#include "host/nearest.hpp"
+#include "cli/commands.hpp"
+#include "document/suggestion.hpp"
+#include "host/describe.hpp"
 
 namespace {
 
@@ -31,22 +32,19 @@ int main(int argc, char** argv) {
   using namespace hapticd::cli;
   if (argc == 3 && argv[1] == std::string_view(hapticd::host::kDescribeForParent))
     hapticd::host::describeForParent(argv[2]);
-  CLI::App app{"hapticd: a real-time haptic servo daemon. Traces NURBS and medial-axis shapes and pushes back."};
+  CLI::App app{"hapticd: a real-time haptic servo daemon. It traces NURBS and medial-axis shapes and pushes back."};
   int exit_code = kWorked;
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("hapticd ") + HAPTICD_VERSION);
   app.footer(
-      "Examples:\n"
-      "  hapticd run config/scenes/teapot.yaml --for 10 --report report.json\n"
-      "  hapticd check my-scene.yaml\n"
-      "  hapticd plugin list\n\n"
-      "Exit codes: 0 worked, 1 failed while running, 2 bad input or usage.");
+      "Examples:\n  hapticd run config/scenes/teapot.yaml --for 10 --report report.json\n  hapticd check "
+      "my-scene.yaml\n  hapticd plugin list\n\nExit codes: 0 success, 1 failure while running, 2 bad input or usage.");
   addGlobalOptions(app);
   for (const auto add : kCommands) add(app, exit_code);
   if (const std::string word = unknownCommand(app, argc, argv); !word.empty())
     return fail(kBadInput, "there is no subcommand \"" + word + "\", expected one of " +
-                               hapticd::host::listed(commandNames(app), 30) +
-                               hapticd::host::suggestion(word, commandNames(app)));
+                               hapticd::document::listed(commandNames(app), 30) +
+                               hapticd::document::suggestion(word, commandNames(app)));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd manual`: the pages that follow from tables, so that they cannot say other than the program does:
 /// hapticd(1) from the option table, hapticd.yaml(5) from the tables of keys. man(7) source.
 #include <memory>
@@ -59,7 +60,7 @@ std::string programPage(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options(nullptr)) text += optionText(*option);
   text += ".SH COMMANDS\n";
   for (const CLI::App* command : app.get_subcommands(nullptr)) text += commandText(*command, "");
-  text += ".SH EXIT STATUS\n0 worked, 1 failed while running, 2 bad input or usage.\n";
+  text += ".SH EXIT STATUS\n0 success, 1 failure while running, 2 bad input or usage.\n";
   text +=
       ".SH ENVIRONMENT\n.TP\n.B HAPTICD_PLUGIN_PATH\nfolders searched for shape plugins, separated by colons\n"
       ".TP\n.B HAPTICD_DEVICE_PATH\nfolders searched for device modules, separated by colons\n"
@@ -70,15 +71,15 @@ std::string programPage(const CLI::App& app) {
   return text + ".SH SEE ALSO\n.BR hapticd.yaml (5),\n.BR hapticd\\-shape (7),\n.BR hapticd\\-device (7)\n";
 }
 
-std::string keyText(const scene::Key& key, const std::string& above) {
+std::string keyText(const document::Key& key, const std::string& above) {
   const std::string name = above + key.name;
   std::string text = ".TP\n.B " + plain(name) + "\n" + plain(key.doc) + " Expected: " + plain(key.expected()) + ".";
   if (key.required) text += " Required.";
   if (key.def != nullptr) text += " Default: " + plain(key.def) + ".";
   text += "\n";
   if (key.table != nullptr)
-    for (const scene::Key& below : key.table->keys)
-      text += keyText(below, name + (key.type == scene::Type::kList ? "[]." : "."));
+    for (const document::Key& below : key.table->keys)
+      text += keyText(below, name + (key.type == document::Type::kList ? "[]." : "."));
   return text;
 }
 
@@ -86,14 +87,13 @@ std::string filesPage() {
   std::string text = header("HAPTICD.YAML", 5);
   text += ".SH NAME\nhapticd.yaml \\- scene, device and daemon files of hapticd\n.SH DESCRIPTION\n";
   text +=
-      "The first key of a file tells its format. Units are SI; quaternions are w, x, y, z; the world has x to the "
-      "right,\n"
-      "y up, z toward the user. Paths are relative to the file that names them. Unknown keys are errors.\n"
-      ".B hapticd check\nprints every problem of a file,\n.B hapticd check \\-\\-schema\na JSON Schema for editors,\n"
-      ".B hapticd plugin info\nand\n.B hapticd device info\nthe parameters of a plugin and of an arm.\n";
+      "The first key of a file names its format. Units are SI; quaternions are w, x, y, z; the world has x to the "
+      "right,\ny up, z toward the user. Paths are relative to the file that names them. Unknown keys are errors.\n.B "
+      "hapticd check\nprints every problem of a file,\n.B hapticd check \\-\\-schema\na JSON Schema for editors,\n.B "
+      "hapticd plugin info\nand\n.B hapticd device info\nthe parameters of a plugin and of an arm.\n";
   for (const scene::Format& format : scene::kFormats) {
     text += ".SH " + std::string(format.name) + " file (begins with " + format.key + ":)\n" + plain(format.doc) + "\n";
-    for (const scene::Key& key : format.table->keys) text += keyText(key, "");
+    for (const document::Key& key : format.table->keys) text += keyText(key, "");
   }
   return text + ".SH SEE ALSO\n.BR hapticd (1)\n";
 }
@@ -102,7 +102,7 @@ std::string filesPage() {
 
 void addManual(CLI::App& app, int& exit_code) {
   auto page = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("manual", "Print a manual page that follows from the program's own tables.");
+  CLI::App* command = app.add_subcommand("manual", "Print a manual page that is made from the program's own tables.");
   command->add_option("page", *page, "hapticd or hapticd.yaml")
       ->required()
       ->check(CLI::IsMember({"hapticd", "hapticd.yaml"}));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd plot`: a picture of a recording.
 #include <fmt/format.h>
 
@@ -59,10 +60,11 @@ record::Sample sampleAt(const record::RecordedStream& ticks, const Columns& c, u
 int plot(const Options& options) {
   const std::string out = options.out.empty() ? options.file + ".svg" : options.out;
   if (options.from && options.to && *options.from >= *options.to)
-    return fail(kBadInput, "--from is not before --to: nothing lies between them");
+    return fail(kBadInput, "--from is not before --to, expected a time before it");
   auto recording = record::Recording::open(options.file);
   if (!recording) return fail(kBadInput, recording.error());
-  if (!(*recording)->closed()) std::fprintf(stderr, "note: its writer was cut off; drawing what is there\n");
+  if (!(*recording)->closed())
+    std::fprintf(stderr, "note: the recording ends early because its writer was killed; drawing what was written\n");
   const record::RecordedStream* ticks = (*recording)->stream("ticks");
   const auto columns = ticks != nullptr ? columnsOf(*ticks, options.arm) : std::nullopt;
   if (!columns) return fail(kBadInput, options.file + ": has no ticks of arm " + std::to_string(options.arm));
@@ -75,8 +77,8 @@ int plot(const Options& options) {
     samples.push_back(sampleAt(*ticks, *columns, row));
   }
   if (samples.empty() && ticks->rows() > 0)
-    return fail(kBadInput, fmt::format("{}: has no tick from --from to --to; it runs from {:g} to {:g} s", options.file,
-                                       first, last));
+    return fail(kBadInput, fmt::format("{}: has no tick between --from and --to; the recording covers {:g} to {:g} s",
+                                       options.file, first, last));
   if (!std::ofstream(out, std::ios::app))
     return fail(kBadInput, out + ": cannot be written, expected a file in a folder that you may write to");
   record::RunReport report;
@@ -96,10 +98,10 @@ void addPlot(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("plot", "Draw a recording: depth, force, lateness and position over time (SVG).");
   command->add_option("file", options->file, "recording or black box")->required();
-  command->add_option("--out", options->out, "picture to write; without it FILE.svg");
-  command->add_option("--arm", options->arm, "which arm, from 0")->check(CLI::Range(0, 7));
-  command->add_option("--from", options->from, "s: begin here");
-  command->add_option("--to", options->to, "s: end here");
+  command->add_option("--out", options->out, "picture to write; default: FILE.svg");
+  command->add_option("--arm", options->arm, "index of the arm, from 0")->check(CLI::Range(0, 7));
+  command->add_option("--from", options->from, "start time [s]");
+  command->add_option("--to", options->to, "end time [s]");
   command->footer("Example:\n  hapticd plot run.h5 --out run.svg --from 2 --to 4");
   command->callback([options, &exit_code] { exit_code = plot(*options); });
 }

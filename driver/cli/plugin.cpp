@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd plugin list|info`: what is there, and the documentation that its parameter table holds.
 #include <algorithm>
 #include <memory>
@@ -29,8 +30,7 @@ int clear(const std::string& name) {
   const auto dir = watch::stateDir();
   if (dir.empty())
     return fail(kFailed,
-                "there is no state folder that can be written\n  fix: export HOME, XDG_STATE_HOME or STATE_DIRECTORY "
-                "as the daemon has it");
+                "no state folder is writable\n  fix: set HOME, XDG_STATE_HOME or STATE_DIRECTORY as for the daemon");
   auto cleared = watch::clearQuarantine(dir, name);
   if (!cleared) return fail(kFailed, cleared.error());
   if (*cleared) {
@@ -46,26 +46,27 @@ int clear(const std::string& name) {
 }  // namespace
 
 void addPlugin(CLI::App& app, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("plugin", "Shape plugins: find them, read their documentation, make a new one.");
+  CLI::App* command = app.add_subcommand("plugin", "Find, document, check and create shape plugins.");
   command->require_subcommand(1);
   command->footer("Example:\n  hapticd plugin info nurbs_rigid");
 
   auto details = std::make_shared<bool>(false);
   CLI::App* list_command =
-      command->add_subcommand("list", "Every plugin that a scene can name, and every file that cannot be used.");
+      command->add_subcommand("list", "List every plugin that a scene can name, and every file that cannot be used.");
   list_command->add_flag("--files", *details, "show the file and licence of each");
   list_command->footer("Example:\n  HAPTICD_PLUGIN_PATH=~/my-plugins/build hapticd plugin list --files");
   list_command->callback([details, &exit_code] { exit_code = list(*details); });
 
   auto crashed = std::make_shared<std::string>();
-  CLI::App* clear_command = command->add_subcommand("clear", "Lets a plugin run again that crashed the daemon.");
-  clear_command->add_option("name", *crashed, "name of the plugin, as the crash message gives it")->required();
+  CLI::App* clear_command =
+      command->add_subcommand("clear", "Take a plugin that crashed the daemon out of quarantine.");
+  clear_command->add_option("name", *crashed, "name of the plugin, as in the crash message")->required();
   clear_command->footer("Example:\n  hapticd plugin clear my_shape");
   clear_command->callback([crashed, &exit_code] { exit_code = clear(*crashed); });
 
   auto name = std::make_shared<std::string>();
-  CLI::App* info_command = command->add_subcommand("info", "A plugin's parameters with unit, range and default.");
+  CLI::App* info_command =
+      command->add_subcommand("info", "Show the parameters of a plugin with unit, range and default.");
   info_command->add_option("name", *name, "name or id of the plugin")->required();
   info_command->footer("Example:\n  hapticd plugin info nurbs_rigid");
   info_command->callback([name, &exit_code] { exit_code = info(*name); });

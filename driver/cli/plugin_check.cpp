@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd plugin check FILE.so`: the conformance tests, each in a child process of its own.
 #include <cstdio>
 #include <memory>
@@ -7,11 +8,13 @@
 
 #include "base/clock.hpp"
 #include "cli/command.hpp"
-#include "cli/conformance.hpp"
+#include "conformance/conformance.hpp"
 #include "host/child.hpp"
-#include "host/description.hpp"
+#include "host/describe.hpp"
 
 namespace hapticd::cli {
+
+using namespace conformance;
 namespace {
 
 constexpr int kLimitMs = 120'000;
@@ -150,16 +153,16 @@ int check(const Options& options) {
 void addPluginCheck(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.get_subcommand("plugin")->add_subcommand(
-      "check", "Conformance tests of a plugin's file, each in a process of its own.");
-  command->add_option("file", options->file, "the plugin, FILE.so")->required()->check(CLI::ExistingFile);
-  command->add_option("--set", options->set, "id=value of a parameter, again for more");
-  command->add_flag("--json", options->json, "results as JSON");
-  command->add_option("--fuzz", options->fuzz, "seconds of random parameters and probes, after the tests")
+      "check", "Run the conformance tests of a plugin file, each in its own process.");
+  command->add_option("file", options->file, "plugin file (.so)")->required()->check(CLI::ExistingFile);
+  command->add_option("--set", options->set, "set a parameter: ID=VALUE; may be repeated");
+  command->add_flag("--json", options->json, "print the results as JSON");
+  command->add_option("--fuzz", options->fuzz, "after the tests, try random parameters and probes for this time [s]")
       ->check(within(0.0, 1e6));
-  command->add_option("--seed", options->seed, "of everything random; a failure names the seed that repeats it")
+  command->add_option("--seed", options->seed, "seed of all random numbers; a failure names the seed that repeats it")
       ->capture_default_str();
   command->footer(
-      "Exit code 1 when a test fails.\n\nExample:\n  hapticd plugin check ./my_shape.so --fuzz 60 --seed 7");
+      "The exit code is 1 if a test fails.\n\nExample:\n  hapticd plugin check ./my_shape.so --fuzz 60 --seed 7");
   command->callback([options, &exit_code] { exit_code = check(*options); });
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd plugin new`: a plugin to start from, made of the template under another name.
 #include <cctype>
 #include <filesystem>
@@ -61,17 +62,17 @@ std::optional<fs::path> templateFolder() {
 int makeNew(const Options& options) {
   if (!usable(options.name))
     return fail(kBadInput, "\"" + options.name +
-                               "\" is not usable as the name of a plugin, expected lower-case letters, "
-                               "digits and _, beginning with a letter: my_shape");
+                               "\" is not a valid name of a plugin, expected lower-case letters, digits and _, "
+                               "beginning with a letter: my_shape");
   const fs::path target = options.folder.empty() ? fs::path(options.name) : fs::path(options.folder);
   std::error_code error;
   if (fs::exists(target, error))
-    return fail(kBadInput, target.string() + " exists already, expected a folder to be made");
+    return fail(kBadInput, target.string() + " exists already, expected the name of a new folder");
   const auto source = templateFolder();
   if (!source)
-    return fail(kFailed, "the template is not installed beside this program; expected share/hapticd/template");
+    return fail(kFailed, "the template is not installed; expected it in share/hapticd/template beside this program");
   if (!fs::create_directories(target, error))
-    return fail(kFailed, target.string() + " cannot be made: " + error.message());
+    return fail(kFailed, target.string() + " cannot be created: " + error.message());
   for (const auto& entry : fs::directory_iterator(*source)) {
     if (!entry.is_regular_file()) continue;
     std::ifstream in(entry.path(), std::ios::binary);
@@ -79,13 +80,13 @@ int makeNew(const Options& options) {
     const fs::path file = target / renamed(entry.path().filename().string(), options.name);
     std::ofstream out(file, std::ios::binary);
     out << renamed(text, options.name) << std::flush;
-    if (!out) return fail(kFailed, file.string() + " cannot be written");
+    if (!out) return fail(kFailed, file.string() + " is not writable");
     std::printf("%s\n", file.c_str());
   }
   std::printf("\nbuild it:  cmake -S %s -B %s/build && cmake --build %s/build\n", target.c_str(), target.c_str(),
               target.c_str());
   std::puts(
-      "           where hapticd is not installed, cmake --install its build folder --prefix FOLDER, and add "
+      "           if hapticd is not installed: cmake --install BUILD --prefix FOLDER, and add "
       "-DCMAKE_PREFIX_PATH=FOLDER");
   std::printf("touch it:  HAPTICD_PLUGIN_PATH=%s/build hapticd run %s/scene.yaml\n", target.c_str(), target.c_str());
   return kWorked;
@@ -96,9 +97,9 @@ int makeNew(const Options& options) {
 void addPluginNew(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.get_subcommand("plugin")->add_subcommand(
-      "new", "Make a new plugin from the template: source, build file, scene.");
+      "new", "Create a new plugin from the template: source, build file, scene.");
   command->add_option("name", options->name, "name of the plugin: lower-case letters, digits and _")->required();
-  command->add_option("--dir", options->folder, "folder to make; without it, one of that name here");
+  command->add_option("--dir", options->folder, "folder to create; default: NAME in the current folder");
   command->footer(
       "Example:\n  hapticd plugin new my_shape && cmake -S my_shape -B my_shape/build && cmake --build my_shape/build");
   command->callback([options, &exit_code] { exit_code = makeNew(*options); });

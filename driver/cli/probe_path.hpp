@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Probe paths of `hapticd trace`: CSV with a header line t,x,y,z[,qw,qx,qy,qz].
 #pragma once
 #include <Eigen/Geometry>
@@ -10,13 +11,11 @@ namespace hapticd::cli {
 
 /// One tick of a prescribed path, world frame. Positions and orientations may be not-a-numbers: a bad sample.
 struct PathRow {
-  double t = 0;                       ///< [s]
-  Eigen::Vector3d position;           ///< [m]
+  double t = 0;              ///< [s]
+  Eigen::Vector3d position;  ///< [m]
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
 
-  bool finite() const {
-    return position.allFinite() && orientation.coeffs().allFinite() && orientation.norm() > 0.5;
-  }
+  bool finite() const { return position.allFinite() && orientation.coeffs().allFinite() && orientation.norm() > 0.5; }
 };
 
 /// [main] Reads and checks a whole file: times are finite and grow. Errors name file, line and column.

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd replay`: runs a recording again and says where it first differs.
-#include "servo/replay.hpp"
+#include "session/replay.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -8,9 +9,9 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "host/nearest.hpp"
+#include "document/node.hpp"
+#include "document/suggestion.hpp"
 #include "record/recording.hpp"
-#include "scene/node.hpp"
 
 namespace hapticd::cli {
 
@@ -41,7 +42,7 @@ Result<void> findLibraries(scene::Scene& scene) {
 /// "teapot.stiffness=900": a number for a parameter of a model.
 Result<void> change(scene::Scene& scene, const std::string& text) {
   const size_t equals = text.find('='), dot = text.find('.');
-  const auto number = equals == std::string::npos ? std::nullopt : scene::toNumber(text.substr(equals + 1));
+  const auto number = equals == std::string::npos ? std::nullopt : document::toNumber(text.substr(equals + 1));
   if (dot == std::string::npos || !number || dot > equals)
     return Error{"--set " + text + ": expected MODEL.PARAMETER=NUMBER"};
   const std::string name = text.substr(0, dot), id = text.substr(dot + 1, equals - dot - 1);
@@ -52,11 +53,11 @@ Result<void> change(scene::Scene& scene, const std::string& text) {
   const int index = found ? (*found)->indexOf(id) : -1;
   if (index < 0)
     return Error{"--set " + text + ": plugin " + model->plugin + " has no parameter \"" + id + "\"" +
-                 (found ? host::suggestion(id, (*found)->paramIds()) : "")};
+                 (found ? document::suggestion(id, (*found)->paramIds()) : "")};
   const host::ParamInfo& param = (*found)->params[static_cast<size_t>(index)];
   const bool is_number = param.kind >= HSP_REAL && param.kind <= HSP_ENUM;
   if (!is_number || !(*number >= param.min && *number <= param.max))
-    return Error{"--set " + text + ": expected a parameter that is a number, and one in its range"};
+    return Error{"--set " + text + ": expected a number within the range of a numeric parameter"};
   const auto same = [&](const scene::Value& v) { return v.index == static_cast<uint32_t>(index); };
   auto value = std::find_if(model->parameters.begin(), model->parameters.end(), same);
   if (value == model->parameters.end()) value = model->parameters.insert(value, scene::Value{});
@@ -72,7 +73,7 @@ void warnOfChanges(const servo::RecordedRun& run) {
     std::fprintf(stderr, "warning: recorded by hapticd %s, this is %s\n", run.version.c_str(), HAPTICD_VERSION);
   for (const servo::Fingerprint& file : run.files)
     if (const std::string now = servo::fingerprint(file.path); !now.empty() && now != file.hash)
-      std::fprintf(stderr, "warning: %s has changed since\n", file.path.c_str());
+      std::fprintf(stderr, "warning: %s has changed since the recording\n", file.path.c_str());
 }
 
 int replay(const Options& options) {
@@ -84,7 +85,8 @@ int replay(const Options& options) {
   for (const std::string& text : options.changes)
     if (auto done = change(run->scene, text); !done) return fail(kBadInput, done.error());
   warnOfChanges(*run);
-  if (!(*recording)->closed()) std::fprintf(stderr, "note: its writer was cut off; replaying what is there\n");
+  if (!(*recording)->closed())
+    std::fprintf(stderr, "note: the recording ends early because its writer was killed; replaying what was written\n");
   const SetupErrors once;
   auto again = servo::Replay::prepare(**recording, *run, logToTerminal);
   if (!again) return fail(kBadInput, options.file + ": " + again.error());
@@ -97,9 +99,9 @@ int replay(const Options& options) {
     return outcome.note.empty() ? kFailed : kPartly;
   }
   const servo::Difference& first = *outcome.first;
-  std::printf("differs first in tick %llu (t = %.6f s): %s was %.17g, is now %.17g\n",
+  std::printf("the first difference is in tick %llu (t = %.6f s): %s was %.17g, is now %.17g\n",
               static_cast<unsigned long long>(first.tick), first.t, first.what.c_str(), first.recorded, first.replayed);
-  std::printf("largest difference of the force sent: %.3g N in %llu ticks\n", outcome.largest_force_error,
+  std::printf("largest difference of the sent force: %.3g N in %llu ticks\n", outcome.largest_force_error,
               static_cast<unsigned long long>(outcome.ticks));
   return kFailed;
 }
@@ -109,13 +111,12 @@ int replay(const Options& options) {
 void addReplay(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("replay", "Run a recording again and compare every force to the last bit.");
-  command->add_option("file", options->file, "recording that `hapticd run --record` wrote")->required();
-  command->add_option("--set", options->changes, "try another parameter: MODEL.PARAMETER=NUMBER; may be repeated");
+  command->add_option("file", options->file, "recording made by `hapticd run --record`")->required();
+  command->add_option("--set", options->changes, "change a parameter: MODEL.PARAMETER=NUMBER; may be repeated");
   command->footer(
-      "Exit codes: 0 every bit is the same, 1 something differs, 2 it cannot be replayed, 3 every bit is the same up "
-      "to\n"
-      "where models came or left, from where on it cannot be replayed.\n\n"
-      "Example:\n  hapticd run config/scenes/teapot.yaml --for 10 --record run.h5\n  hapticd replay run.h5");
+      "Exit codes: 0 every bit is the same, 1 something differs, 2 the recording cannot be replayed, 3 every bit is "
+      "the same\nup to a tick in which models were added or removed; the rest cannot be replayed.\n\nExample:\n  "
+      "hapticd run config/scenes/teapot.yaml --for 10 --record run.h5\n  hapticd replay run.h5");
   command->callback([options, &exit_code] { exit_code = replay(*options); });
 }
 

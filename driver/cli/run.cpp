@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd run`: the daemon itself, in the foreground.
 #include <fcntl.h>
 #include <unistd.h>
@@ -14,10 +15,11 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
-#include "cli/outside.hpp"
+#include "cli/view_process.hpp"
 #include "record/picture.hpp"
 #include "record/report.hpp"
-#include "servo/runner.hpp"
+#include "session/run_files.hpp"
+#include "session/runner.hpp"
 #include "tune/stability.hpp"
 #include "watch/quarantine.hpp"
 
@@ -30,7 +32,7 @@ struct Options {
   std::optional<double> duration, rate;
   std::optional<int> cpu;
   std::optional<int> priority;
-  bool virtual_time = false, allow_non_rt = false;
+  bool virtual_time = false, allow_non_rt = false, view = false, no_open = false;
 };
 
 const Nanoseconds program_start = monotonicNow();  ///< when the libraries were loaded
@@ -164,9 +166,9 @@ std::vector<std::string> leaveOutQuarantined(scene::Scene& scene, const std::fil
   for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir))
     std::erase_if(scene.models, [&](const scene::Model& model) {
       if (model.plugin != entry.plugin) return false;
-      messages.push_back(
-          "model " + model.name + ": plugin '" + entry.plugin + "' ended an earlier run by " + entry.reason +
-          "; the model is left out; when the plugin is good again: hapticd plugin clear " + entry.plugin);
+      messages.push_back("model " + model.name + ": plugin '" + entry.plugin + "' ended an earlier run by " +
+                         entry.reason + "; the model is left out; once the plugin is repaired: hapticd plugin clear " +
+                         entry.plugin);
       return true;
     });
   return messages;
@@ -193,17 +195,29 @@ void tellFaults(const servo::Runner& runner, std::vector<std::string>& told) {
   }
 }
 
+/// A page for this run, by another process: started here, before this one takes rights that it must not inherit.
+Result<void> showPage(const Options& options, const servo::RunFiles* files, scene::Scene& scene) {
+  if (files == nullptr || files->name().empty())
+    return Error{
+        "--view: a run in virtual time has no black box, so there is nothing to show\n  fix: leave --virtual-time out"};
+  guideSimulatedHands(scene);
+  std::vector<std::string> arguments{"--name", files->name(), "--control", "--until-end"};
+  if (!options.no_open) arguments.emplace_back("--open");
+  if (auto started = startView(arguments); !started) return Error{started.error()};
+  return {};
+}
+
 int run(const Options& options) {
   for (const std::string& file : {options.report, options.picture, options.record})
     if (!writable(file))
       return fail(kBadInput, file + ": cannot be written, expected a file in a folder that you may write to");
   if (const std::string file = writtenTwice(options); !file.empty())
     return fail(kBadInput,
-                file + ": named twice, expected a file of its own for the scene, --report, --picture and --record");
+                file + ": named twice, expected different files for the scene, --report, --picture and --record");
   auto scene = loadSceneOrReport(options.scene, options.device);
   if (!scene) return kBadInput;
   if (scene->devices.front().chosen_by_default)
-    std::fprintf(stderr, "no device named: using the simulated one of %s\n", scene->devices.front().file.c_str());
+    std::fprintf(stderr, "no device is named: using the simulated one of %s\n", scene->devices.front().file.c_str());
   servo::RunOptions how;
   how.rate = options.rate.value_or(scene->servo.rate);
   how.duration = options.duration;
@@ -212,18 +226,19 @@ int run(const Options& options) {
   how.priority = options.priority.value_or(daemonSettings().priority.value_or(os::kServoPriority));
   how.allow_non_rt = options.allow_non_rt;
   how.record = options.record;
-  std::unique_ptr<Outside> outside;  // a virtual run is over before anybody looks, unless it was given a name
+  std::unique_ptr<servo::RunFiles> files;  // a virtual run is over before anybody looks, unless it was given a name
   if (!options.virtual_time || !options.name.empty()) {
-    auto opened = Outside::open(options.name, how);
+    auto opened = servo::RunFiles::open(options.name, how);
     if (!opened) return fail(kBadInput, opened.error());
-    outside = std::move(*opened);
+    files = std::move(*opened);
   }
+  if (options.view)
+    if (auto shown = showPage(options, files.get(), *scene); !shown) return fail(kFailed, shown.error());
   how.state_dir = watch::stateDir().string();
   if (how.state_dir.empty())
     std::fputs(
-        "warning: there is no state folder that can be written: a plugin that ends this run will not be left out of "
-        "the "
-        "next\n  fix: export HOME, XDG_STATE_HOME or STATE_DIRECTORY, a folder that you may write to\n",
+        "warning: no state folder is writable: a plugin that ends this run will not be left out of the next one\n  "
+        "fix: set HOME, XDG_STATE_HOME or STATE_DIRECTORY to a folder that you may write to\n",
         stderr);
   const std::vector<std::string> left_out = leaveOutQuarantined(*scene, watch::stateFolder());
   for (const std::string& text : left_out) std::fprintf(stderr, "warning: %s\n", text.c_str());
@@ -236,7 +251,7 @@ int run(const Options& options) {
   once.tell();
   warnOfSettings(**runner, how.rate);
   const StopBySignal stop(**runner);
-  if (outside) outside->serve(**runner, options.device);
+  if (files) files->serve(**runner, options.device, catalog(), logToTerminal);
 
   const bool terminal = isatty(STDERR_FILENO) != 0;
   size_t told = 0;
@@ -245,9 +260,9 @@ int run(const Options& options) {
     for (; told < r.warnings().size(); ++told) std::fprintf(stderr, "warning: %s\n", r.warnings()[told].c_str());
     tellFaults(r, alarms);
     if (terminal) showStatus(r);
-    if (outside) outside->look();
+    if (files) files->look();
   });
-  if (outside) outside->end();
+  if (files) files->end();
   if (terminal) std::fputs("\r\033[K", stderr);
   if (!done) return fail(kFailed, done.error());
   return conclude(options, **runner, left_out);
@@ -258,38 +273,42 @@ std::string plainSeconds(const std::string& text) {
   char* end = nullptr;
   std::strtod(text.c_str(), &end);
   if (end != text.c_str() && *end == '\0') return "";
-  return "\"" + text + "\": expected seconds as a plain number, as --for 10";
+  return "\"" + text + "\" is not a number, expected seconds, such as --for 10";
 }
 
 }  // namespace
 
 void addRun(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("run", "The daemon: runs the servo loop on a scene and its device.");
+  CLI::App* command = app.add_subcommand("run", "Run the daemon: the servo loop on a scene and its device.");
   command->add_option("scene", options->scene, "scene file (YAML)")->required();
   command->add_option("--device", options->device, "device file to use instead of the scene's");
-  command->add_option("--for", options->duration, "seconds to run; without it, until stopped (Ctrl-C)")
+  command->add_option("--for", options->duration, "duration of the run [s]; default: until it is stopped (Ctrl-C)")
       ->check(plainSeconds)
       ->check(within(1e-3, 1e9));
   command->add_flag("--virtual-time", options->virtual_time,
-                    "as fast as the processor allows, on simulated devices; same input, same bits");
-  command->add_option("--rate", options->rate, "servo rate in Hz instead of the scene's")
+                    "run as fast as the processor allows, on simulated devices; the same input gives the same bits");
+  command->add_option("--rate", options->rate, "servo rate [Hz] instead of the scene's")
       ->check(within(10.0, 20000.0));  // as servo.rate
   command->add_option("--cpu", options->cpu, "processor to pin the servo thread to")->check(CLI::Range(0, 1023));
   command
       ->add_option("--priority", options->priority,
-                   "SCHED_FIFO priority of the servo thread; without it the daemon file's, or 80")
+                   "SCHED_FIFO priority of the servo thread; default: the daemon file's, or 80")
       ->check(CLI::Range(1, 98));
   command->add_option("--report", options->report, "write a report (JSON)");
   command->add_option("--picture", options->picture, "write a picture of depth, force and lateness over time (SVG)");
-  command->add_option("--name", options->name, "name of this daemon for top and ctl; without it hapticd")
+  command->add_option("--name", options->name, "name of this daemon for top, ctl and view; default: hapticd")
       ->check([](const std::string& name) {
         const bool plain = name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_") ==
                            std::string::npos;
         return plain && name.size() <= 32 ? std::string() : "expected up to 32 letters, digits, - and _";
       });
   command->add_option("--record", options->record, "record every tick (HDF5), for replay, plot, Python and MATLAB");
-  command->add_flag("--allow-non-rt", options->allow_non_rt, "push with real hardware even without real-time rights");
+  command->add_flag("--view", options->view,
+                    "show the run in a browser page; on a simulated arm the mouse replaces the hand's script");
+  command->add_flag("--no-open", options->no_open, "with --view: print the address of the page, but start no browser")
+      ->needs("--view");
+  command->add_flag("--allow-non-rt", options->allow_non_rt, "allow forces on real hardware without real-time rights");
   command->footer("Example:\n  hapticd run config/scenes/teapot.yaml --for 10 --report report.json --picture run.svg");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

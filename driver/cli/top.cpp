@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd top`: what a running daemon does, from its status page. Maps the page read-only: it may be killed at any
 /// time.
 #include <fmt/format.h>
@@ -16,7 +17,7 @@
 
 #include "cli/command.hpp"
 #include "host/class_table.hpp"
-#include "servo/limiter.hpp"
+#include "servo/safety/limiter.hpp"
 #include "status/page_file.hpp"
 
 namespace hapticd::cli {
@@ -220,7 +221,8 @@ int top(const Options& options) {
   const std::string file = status::runtimeFolder(false) + "/" + options.name + ".status";
   auto opened = status::PageFile::open(file);
   if (!opened)
-    return fail(kFailed, opened.error() + "\n  fix: start a daemon with hapticd run, or name it with --name");
+    return fail(kFailed,
+                opened.error() + "\n  fix: start a daemon with hapticd run, or name a running one with --name");
   const status::Page& page = std::as_const(**opened).page();
   if (!options.once) return watch(options, page);
   View view = look(page);
@@ -235,14 +237,14 @@ int top(const Options& options) {
 void addTop(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      app.add_subcommand("top", "Watch a running daemon: time, lateness, force, depth per model and device.");
+      app.add_subcommand("top", "Watch a running daemon: time, lateness, force and depth of each model and device.");
   command->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
-  command->add_option("--sort", options->sort, "models by step time, force, depth or name")
+  command->add_option("--sort", options->sort, "order of the models")
       ->check(CLI::IsMember({"step", "force", "depth", "name"}));
-  command->add_option("--every", options->every, "seconds between two looks")->check(within(0.05, 60.0));
-  command->add_flag("--once", options->once, "one look, then end");
-  command->add_flag("--json", options->json, "with --once: as JSON");
-  command->footer("Keys: s, f, d, n sort by step time, force, depth, name; q ends.");
+  command->add_option("--every", options->every, "refresh interval [s]")->check(within(0.05, 60.0));
+  command->add_flag("--once", options->once, "print once and exit");
+  command->add_flag("--json", options->json, "with --once: print JSON");
+  command->footer("Keys: s, f, d and n sort by step time, force, depth and name; q quits.");
   command->callback([options, &exit_code] { exit_code = top(*options); });
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd trace`: the same servo core over a prescribed probe path, in virtual time, without a device.
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -10,10 +11,10 @@
 #include "cli/command.hpp"
 #include "cli/probe_path.hpp"
 #include "cli/trace_writer.hpp"
-#include "servo/lockstep.hpp"
-#include "servo/probe_velocity.hpp"
-#include "servo/silenced.hpp"
-#include "servo/world.hpp"
+#include "servo/loop/lockstep.hpp"
+#include "servo/velocity/probe_velocity.hpp"
+#include "session/silence_reason.hpp"
+#include "session/world.hpp"
 
 namespace hapticd::cli {
 
@@ -48,7 +49,7 @@ Result<void> traceRows(const scene::Scene& scene, servo::World& world, const std
     if (!estimator) return Error{estimator.error()};
     velocity.emplace(*estimator);
   }
-  servo::Lockstep lockstep(world);
+  servo::Lockstep lockstep = world.lockstep();
   servo::Probe probe;
   for (size_t i = 0; i < rows.size(); ++i) {
     const double t = rows[i].t, dt = i == 0 ? 0 : t - rows[i - 1].t;
@@ -83,7 +84,7 @@ int trace(const Options& options) {
   if (auto done = traceRows(*scene, **world, *rows, **writer); !done) return fail(kFailed, done.error());
   int code = kWorked;
   for (const servo::ModelState& model : (*world)->core().models())
-    if (const std::string why = servo::whySilenced(model); !why.empty()) code = fail(kFailed, why);
+    if (const std::string why = servo::silenceReason(model); !why.empty()) code = fail(kFailed, why);
   return code;
 }
 
@@ -95,19 +96,16 @@ void addTrace(CLI::App& app, int& exit_code) {
   command->add_option("scene", options->scene, "scene file (YAML)")->required();
   command
       ->add_option("--probe", options->probe,
-                   "probe path (CSV): t,x,y,z[,qw,qx,qy,qz] in s and m, world frame; a row a tick")
+                   "probe path (CSV) with t,x,y,z[,qw,qx,qy,qz] in s and m, world frame; one row per tick")
       ->required();
-  command->add_option("--out", options->out, "result (CSV): a row a tick and model; - for standard output")->required();
-  command->add_option("--models", options->models, "only these models, comma-separated");
+  command->add_option("--out", options->out, "CSV file to write, one row per tick and model; - for standard output")
+      ->required();
+  command->add_option("--models", options->models, "names of the only models to write, separated by commas");
   command->footer(
-      "Status column: 0 good, 1 good but coarser than asked, -2 the model was silenced, -6 the surface or the sample "
-      "was\n"
-      "lost (no force).\n"
-      "Forces are those of the models as the hand would feel them without limits: limits belong to a device, and a "
-      "trace\n"
-      "has none.\n"
-      "Foot columns are nan while nothing of the model is traced.\n\n"
-      "Example:\n  hapticd trace config/scenes/teapot.yaml --probe stroke.csv --out feet.csv");
+      "The column status is 0 if the answer is good, 1 if it is coarser than asked, -2 if the model was silenced, and "
+      "-6 if\nthe surface or the sample was lost (no force).\nForces are those of the models without limits: limits "
+      "belong to a device, and a trace has none.\nThe columns of the foot point are nan while nothing of the model is "
+      "traced.\n\nExample:\n  hapticd trace config/scenes/teapot.yaml --probe stroke.csv --out feet.csv");
   command->callback([options, &exit_code] { exit_code = trace(*options); });
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Results of `hapticd trace`: a CSV row a tick and model, numbers with 17 digits so that doubles survive the file.
 #pragma once
 #include <cstdint>
@@ -7,8 +8,8 @@
 #include <vector>
 
 #include "base/result.hpp"
-#include "scene/scene.hpp"
-#include "servo/core.hpp"
+#include "description/scene.hpp"
+#include "servo/core/core.hpp"
 
 namespace hapticd::cli {
 

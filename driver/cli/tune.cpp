@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// `hapticd tune`: cost against error of every setting of a scene, on this machine, and the setting to take.
 #include <unistd.h>
 
@@ -12,7 +13,7 @@
 #include "cli/command.hpp"
 #include "cli/probe_path.hpp"
 #include "record/recording.hpp"
-#include "servo/world.hpp"
+#include "session/world.hpp"
 #include "tune/page.hpp"
 #include "tune/write_scene.hpp"
 
@@ -40,7 +41,7 @@ Result<tune::Motion> motionOfFile(const std::string& file, double rate) {
   const double period = (rows->back().t - rows->front().t) / static_cast<double>(rows->size() - 1);
   std::vector<Eigen::Vector3d> position;
   for (const PathRow& row : *rows) {
-    if (!row.finite()) return Error{file + ": a row holds no number, expected a path without gaps"};
+    if (!row.finite()) return Error{file + ": a row has a value that is not finite, expected a path without gaps"};
     position.push_back(row.position);
   }
   return tune::resampled(tune::motionThrough(std::move(position), period), rate);
@@ -57,7 +58,9 @@ Result<tune::Motion> motionOfRecording(const std::string& file, double rate) {
     if (ticks == nullptr || (columns[i] = ticks->find(names[i])) == nullptr)
       return Error{file + ": has no column " + names[i] + " in ticks, expected a recording of `hapticd run --record`"};
   if (!(*recording)->closed())
-    std::fprintf(stderr, "note: %s: its writer was cut off; measuring over what is there\n", file.c_str());
+    std::fprintf(stderr,
+                 "note: %s: the recording ends early because its writer was killed; measuring over what was written\n",
+                 file.c_str());
   if (ticks->rows() < 100) return Error{file + ": " + std::to_string(ticks->rows()) + " ticks, expected at least 100"};
   std::vector<Eigen::Vector3d> position;
   for (uint64_t i = 0; i < ticks->rows(); ++i) {
@@ -68,7 +71,7 @@ Result<tune::Motion> motionOfRecording(const std::string& file, double rate) {
   }
   const double seconds = ticks->number(ticks->rows() - 1, *columns[0]) - ticks->number(0, *columns[0]);
   const double period = seconds / static_cast<double>(ticks->rows() - 1);
-  if (!(period > 0)) return Error{file + ": its times do not grow"};
+  if (!(period > 0)) return Error{file + ": its times do not increase"};
   return tune::resampled(tune::motionThrough(std::move(position), period), rate);
 }
 
@@ -146,8 +149,7 @@ Result<void> sweep(const scene::Scene& scene, const tune::Motion& motion, bool u
 int tuneScene(const Options& options) {
   auto scene = loadSceneOrReport(options.scene);
   if (!scene) return kBadInput;
-  if (scene->models.empty())
-    return fail(kBadInput, options.scene + ": the scene has no model, so there is nothing to tune");
+  if (scene->models.empty()) return fail(kBadInput, options.scene + ": the scene has no model, expected one to tune");
   auto world = servo::World::build(*scene, {.rate = scene->servo.rate}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   const bool uses_velocity = (*world)->needsVelocity();
@@ -156,7 +158,7 @@ int tuneScene(const Options& options) {
   auto motion = motionFor(options, *scene);
   if (!motion)
     return fail(kBadInput, motion.error() + ((options.probe + options.motion).empty()
-                                                 ? "; --probe or --motion gives a motion where no hand is simulated"
+                                                 ? "; if no hand is simulated, give a motion with --probe or --motion"
                                                  : ""));
   tune::Findings findings;
   findings.scene = options.scene;
@@ -181,42 +183,42 @@ int tuneScene(const Options& options) {
 
 void addTune(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("tune", "Measure cost against error of a scene's settings on this machine, and choose.");
+  CLI::App* command = app.add_subcommand(
+      "tune", "Measure the cost and the error of a scene's settings on this machine, and choose one.");
   command->add_option("scene", options->scene, "scene file (YAML)")->required();
   auto* budget = command
                      ->add_option("--budget-us", options->budget_us,
-                                  "take the most accurate setting whose p99 of a tick is below this [us]")
+                                  "choose the most accurate setting whose tick time (p99) is below this [us]")
                      ->check(within(1e-3, 1e6));
   command
       ->add_option("--tolerance-um", options->tolerance_um,
-                   "take the cheapest setting whose foot points are this exact [um]")
+                   "choose the cheapest setting with errors of the foot point below this [um]")
       ->check(within(1e-6, 1e6))
       ->excludes(budget)
       ->capture_default_str();
-  command->add_option("--force-tolerance-n", options->force_tolerance, "and whose forces are this exact [N]")
+  command->add_option("--force-tolerance-n", options->force_tolerance, "and with errors of the force below this [N]")
       ->check(within(1e-9, 1e3))
       ->capture_default_str();
-  auto* probe = command->add_option("--probe", options->probe,
-                                    "measure over this path (CSV, as for trace) instead of the scene's hand");
-  command
-      ->add_option("--motion", options->motion,
-                   "measure over the motion in this recording (of run --record, or a black box)")
+  auto* probe =
+      command->add_option("--probe", options->probe,
+                          "measure over this path (CSV, as for trace) instead of the motion of the scene's hand");
+  command->add_option("--motion", options->motion, "measure over the motion in this recording or black box")
       ->excludes(probe);
-  command->add_option("--motion-seconds", options->motion_seconds, "length of the hand's motion [s]")
+  command->add_option("--motion-seconds", options->motion_seconds, "duration of the hand's motion [s]")
       ->check(within(0.2, 10.0))
       ->capture_default_str();
   command->add_option("--limit-seconds", options->limit_seconds, "stop trying settings after this [s]")
       ->check(within(1.0, 86400.0))
       ->capture_default_str();
-  command->add_flag("--write", options->write, "write SCENE.tuned.yaml beside the scene, with what was chosen and why");
-  command->add_option("--page", options->page, "write a report (HTML, one file, needs no network)");
+  command->add_flag("--write", options->write,
+                    "write SCENE.tuned.yaml beside the scene, with the chosen setting and the reason");
+  command->add_option("--page", options->page, "write a report (one HTML file that needs no network)");
   command->add_option("--picture", options->picture, "write the picture (SVG)");
   command->add_option("--json", options->json, "write everything that was measured (JSON)");
   command->footer(
-      "Errors are against a converged reference, the largest over the whole motion. Ctrl-C keeps what was measured.\n"
-      "Exit code 1 when no setting reaches the goal.\n\n"
-      "Example:\n  hapticd tune config/scenes/teapot.yaml --tolerance-um 1 --page tune.html --write");
+      "Errors are measured against a converged reference; the largest over the motion counts. Ctrl-C ends the "
+      "measurement\nand keeps the results so far. The exit code is 1 if no setting reaches the goal.\n\nExample:\n  "
+      "hapticd tune config/scenes/teapot.yaml --tolerance-um 1 --page tune.html --write");
   command->callback([options, &exit_code] { exit_code = tuneScene(*options); });
 }
 

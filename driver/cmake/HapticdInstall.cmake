@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What is installed beside the program and its modules. Component `dev`: what building a plugin outside this tree needs.
 include(CMakePackageConfigHelpers)
 
@@ -11,8 +12,11 @@ install(FILES ${PROJECT_SOURCE_DIR}/driver/cmake/hapticdConfig.cmake ${PROJECT_S
               ${PROJECT_BINARY_DIR}/hapticdConfigVersion.cmake
         DESTINATION ${package_dir} COMPONENT dev)
 
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
-        DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# pkg-config for plugins and modules that are not built with CMake. Its paths are relative, so that the folder may move.
+file(RELATIVE_PATH pc_to_prefix /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+string(REGEX REPLACE "/$" "" pc_to_prefix ${pc_to_prefix})
+configure_file(${PROJECT_SOURCE_DIR}/driver/cmake/hapticd.pc.in ${PROJECT_BINARY_DIR}/hapticd.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/hapticd.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 
 # The unit names the program, wherever it is installed.
 configure_file(${PROJECT_SOURCE_DIR}/config/systemd/hapticd.service.in ${PROJECT_BINARY_DIR}/hapticd.service @ONLY)

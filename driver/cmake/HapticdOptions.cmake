@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # What every target shares: language level, warnings as errors, sanitizers, where artefacts land.
 
 option(HAPTICD_TESTS "build the tests" ON)
@@ -19,7 +20,7 @@ endif()
 
 find_program(HAPTICD_CCACHE ccache)
 if(HAPTICD_CCACHE) # paths below the checkout are taken as relative, so that another checkout finds what this one built
-  set(ccache env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${HAPTICD_CCACHE})
+  set(ccache env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros ${HAPTICD_CCACHE})
   set(CMAKE_C_COMPILER_LAUNCHER ${ccache})
   set(CMAKE_CXX_COMPILER_LAUNCHER ${ccache})
 endif()

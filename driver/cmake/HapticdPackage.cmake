@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # `cpack` in the build folder makes two Debian packages: hapticd (the daemon, its plugins and modules) and hapticd-dev
 # (headers and CMake package for plugins of one's own). Licences of what is linked: see dpkg's own records.
 set(CPACK_GENERATOR DEB)

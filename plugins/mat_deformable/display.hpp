@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What a body looks like now, for whoever draws it: displacements that the servo leaves and another thread takes.
 #pragma once
 #include <Eigen/Core>

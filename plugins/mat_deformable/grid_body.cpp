@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Soft bodies from a grid of skeleton points.
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@ using medial::SkeletonFoot;
 
 constexpr double kNewPlace = 0.25;     ///< a probe that moved by this share of a cell is looked for all over the body
 constexpr double kWithinReach = 0.02;  ///< [m] farther bodies wait for the search of the simulation side
+constexpr double kSameSide = 0.99;     ///< cosine of the direction of the foot and the one that is felt
 constexpr double kHullError = 0.005;   ///< of the greatest radius
 constexpr double kOtherFoot = 0.02;    ///< difference of parameters from which an offered foot is another one
 
@@ -56,6 +58,11 @@ class GridBody final : public SoftBody {
                           double closing_speed) const noexcept override {
     return body_.press(p, foot, felt.normal, felt.depth, closing_speed);
   }
+  void placeOf(const Vector3d& p, const SkeletonFoot& foot, const Felt& felt, medial::Envelope envelope,
+               medial::FeltPlace& place) const noexcept override {
+    body_.placeOf(p, foot, felt.normal, envelope, felt.normal.dot(foot.normal) > kSameSide, place);
+  }
+  medial::FeltSurface* feltSurface() noexcept override { return body_.feltSurface(); }
   void yield(std::span<const medial::Press> contacts) noexcept override { body_.deformation().press(contacts); }
   SkeletonFoot search(const Vector3d& p, const FindOptions& options) const noexcept override {
     return body_.skeleton().search(p, options.newton);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "ma_file.hpp"
 
 #include <algorithm>

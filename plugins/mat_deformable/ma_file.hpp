@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Medial meshes in the format of Q-MAT (Li et al. 2015) and its successors: a line with the numbers of vertices, edges
 /// and triangles, then a line each: `v x y z r`, `e i j`, `f i j k`; indices count from 0, # begins a comment line.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mat_deformable.hpp"
 
 #include <algorithm>
@@ -21,7 +22,15 @@ constexpr double kGapFactor = 1.5;        ///< so many ticks without a step: the
 
 }  // namespace
 
-medial::BodyOptions MatDeformable::bodyOptions() const {
+MatDeformable::Dynamics MatDeformable::dynamicsOf(const MedialFile& file) const {
+  int chosen = dynamics_;
+  if (chosen == kAsFile) chosen = file.revision >= 2 ? kAuto : kSeen;
+  if (chosen == kAuto) chosen = file.swings || file.damps || relaxation_share_ > 0 ? kFelt : kOff;
+  return chosen == kOn ? kSeen : static_cast<Dynamics>(chosen);
+}
+
+medial::BodyOptions MatDeformable::bodyOptions(const MedialFile& file, double rate_hz) const {
+  const Dynamics dynamics = dynamicsOf(file);
   medial::BodyOptions options;
   options.degree = degree_;
   options.form = evaluation_ == 0 ? spline::Form::kTable : spline::Form::kNet;
@@ -30,14 +39,20 @@ medial::BodyOptions MatDeformable::bodyOptions() const {
   options.deformation.split = split_;
   options.deformation.influence = {static_cast<int>(influence_[0]), static_cast<int>(influence_[1])};
   options.deformation.rings = rings_;
-  options.deformation.dynamics = dynamics_ == 1;
+  options.deformation.dynamics = dynamics == kSeen;
+  options.felt.on = dynamics == kFelt;
+  options.felt.contact_ratio = contact_ratio_;
+  options.felt.relaxation_share = relaxation_share_;
+  options.felt.relaxation_time = relaxation_time_;
+  if (rate_hz > 0) options.felt.tick = 1 / rate_hz;
   return options;
 }
 
 void MatDeformable::activate(const hsp_activation& activation, hsp_report& report) {
   MedialFile file = readMedialFile(geometry_, {stiffness_, damping_, mass_});
   try {
-    body_ = file.grid ? makeSoftBody(*file.grid, bodyOptions()) : makeSoftBody(*file.mesh, bodyOptions());
+    const medial::BodyOptions options = bodyOptions(file, activation.rate_hz);
+    body_ = file.grid ? makeSoftBody(*file.grid, options) : makeSoftBody(*file.mesh, options);
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(geometry_ + ": medial: " + e.what());
   }
@@ -45,6 +60,13 @@ void MatDeformable::activate(const hsp_activation& activation, hsp_report& repor
   tracks_.assign(probes, Track{});
   presses_.clear();
   presses_.reserve(probes);
+  contacts_.clear();
+  met_.clear();
+  const medial::FeltSurface* const surface = body_->feltSurface();
+  if (surface != nullptr) {
+    contacts_.reserve(probes);
+    met_.reserve(probes);
+  }
   last_time_ns_ = 0;
   stored_ = since_shown_ = 0;
   shown_at_rest_ = true;
@@ -64,10 +86,10 @@ void MatDeformable::activate(const hsp_activation& activation, hsp_report& repor
     keeper_.reset(new Keeper{std::move(hull), volume});
   }
   const std::vector<unsigned char> loaded = std::exchange(states_->loaded, {});
-  if (!loaded.empty() && !restoreState(loaded, body_->nodes()))
+  if (!loaded.empty() && !restoreState(loaded, body_->nodes(), body_->feltSurface()))
     throw std::invalid_argument(geometry_ + ": the state that was loaded is of another body");
-  if (file.swings || file.damps || viscosity_ > 0) report.flags |= HSP_R_VELOCITY;
-  report.max_stiffness = body_->greatestStiffness();
+  if (viscosity_ > 0 || (surface == nullptr && (file.swings || file.damps))) report.flags |= HSP_R_VELOCITY;
+  report.max_stiffness = body_->greatestStiffness() * (surface != nullptr ? surface->contactRatio() : 1);
   report.size_m = body_->bounds().diagonal().norm();
   report.locked_bytes = body_->bytes() + displaced_->bytes() + volume_bytes + probes * sizeof(Track) + sizeof *this +
                         (frames_ ? frames_->bytes() : 0);
@@ -89,7 +111,7 @@ void MatDeformable::describe() const {
 }
 
 void MatDeformable::deactivate() {
-  if (body_) states_->kept = stateOf(body_->nodes());
+  if (body_) states_->kept = stateOf(body_->nodes(), body_->feltSurface());
   tracks_.clear();
   display_.reset();
   frames_.reset();
@@ -100,12 +122,13 @@ void MatDeformable::deactivate() {
 
 void MatDeformable::reset() noexcept HSP_RT {
   for (Track& track : tracks_) {
-    track.known = track.offered = false;
+    track.known = track.offered = track.met = track.counted = false;
     track.side = 0;
     track.pushed.setZero();
     track.friction.reset();
   }
   body_->nodes().reset();
+  if (medial::FeltSurface* const surface = body_->feltSurface(); surface != nullptr) surface->reset();
   if (keeper_) keeper_->volume.reset();
   stored_ = 0;
   shown_at_rest_ = false;
@@ -122,6 +145,7 @@ double MatDeformable::elapsed(const hsp_step& step) noexcept HSP_RT {
 }
 
 hsp_status MatDeformable::step(const hsp_step& step) noexcept HSP_RT {
+  if (body_->feltSurface() != nullptr) return stepFelt(step);
   body_->nodes().advance(elapsed(step));
   presses_.clear();
   stored_ = 0;
@@ -135,6 +159,11 @@ hsp_status MatDeformable::step(const hsp_step& step) noexcept HSP_RT {
   if (keeper_) keeper_->volume.step(body_->nodes());
   show(step);
   return worst;
+}
+
+double MatDeformable::energy() const noexcept HSP_RT {
+  const medial::FeltSurface* const surface = body_->feltSurface();
+  return stored_ + (surface != nullptr ? surface->energy(contacts_) : body_->nodes().energy());
 }
 
 /// Leaves displacements for drawing 60 times a second while the body moves, and once when it has come to rest.
@@ -181,19 +210,21 @@ FindOptions MatDeformable::findOptions(const hsp_step& step) const noexcept HSP_
   return options;
 }
 
-hsp_status MatDeformable::touch(const hsp_probe& probe, const hsp_step& step, uint32_t index,
-                                hsp_contact& contact) noexcept HSP_RT {
-  if (index >= tracks_.size()) return HSP_E_ARG;
+MatDeformable::Located MatDeformable::locate(const hsp_probe& probe, const hsp_step& step, uint32_t index,
+                                             hsp_contact& contact) noexcept HSP_RT {
+  if (index >= tracks_.size()) return {HSP_E_ARG, false, {}};
   Track& track = tracks_[index];
   if (!track.active || (probe.flags & HSP_IN_INVALID) != 0) {
     track.friction.reset();
-    return HSP_OK;
+    track.counted = false;
+    return {};
   }
   const Vector3d p(probe.position);
-  if (!p.allFinite()) return HSP_E_NUMERIC;
+  if (!p.allFinite()) return {HSP_E_NUMERIC, false, {}};
   if ((probe.flags & HSP_IN_JUMP) != 0) {
     track.side = 0;
     track.pushed.setZero();
+    track.met = false;
   }
   body_->find(p, probe.flags, findOptions(step), track);
   const Vector3d moved = track.known ? Vector3d(p - track.last) : Vector3d(Vector3d::Zero());
@@ -212,13 +243,20 @@ hsp_status MatDeformable::touch(const hsp_probe& probe, const hsp_step& step, ui
   contact.iterations = static_cast<uint32_t>(foot.evaluations);
   contact.flags = HSP_OUT_TRACED;
   if (foot.rim) contact.flags |= HSP_OUT_EDGE;
-  if (surface.depth > 0) {
-    contact.flags |= HSP_OUT_CONTACT;
-    push(probe, surface, track, contact);
+  if (surface.depth > 0) contact.flags |= HSP_OUT_CONTACT;
+  return {foot.converged ? HSP_OK : HSP_DEGRADED, true, surface};
+}
+
+hsp_status MatDeformable::touch(const hsp_probe& probe, const hsp_step& step, uint32_t index,
+                                hsp_contact& contact) noexcept HSP_RT {
+  const Located located = locate(probe, step, index, contact);
+  if (!located.found) return located.status;
+  if (located.surface.depth > 0) {
+    push(probe, located.surface, tracks_[index], contact);
   } else {
-    track.friction.reset();
+    tracks_[index].friction.reset();
   }
-  return foot.converged ? HSP_OK : HSP_DEGRADED;
+  return located.status;
 }
 
 void MatDeformable::push(const hsp_probe& probe, const Felt& felt, Track& track, hsp_contact& contact) noexcept HSP_RT {
@@ -251,7 +289,7 @@ int64_t MatDeformable::nearby(const double p_model[3], double radius, hsp_near* 
 hsp_status MatDeformable::start(const hsp_near& near) noexcept HSP_RT {
   if (near.probe >= tracks_.size() || near.surface != 0) return HSP_E_ARG;
   Track& track = tracks_[near.probe];
-  if (!track.active) track.known = false;
+  if (!track.active) track.known = track.met = false;
   track.active = track.offered = true;
   track.offer = {near.param[0], near.param[1]};
   return HSP_OK;
@@ -265,7 +303,7 @@ hsp_status MatDeformable::stop(uint32_t probe) noexcept HSP_RT {
 
 /// A body that is not there yet is as it was loaded; one that is gone, as it was last.
 int64_t MatDeformable::save(void* buffer, uint64_t capacity) const {
-  const std::vector<unsigned char> state = body_                     ? stateOf(body_->nodes())
+  const std::vector<unsigned char> state = body_                     ? stateOf(body_->nodes(), body_->feltSurface())
                                            : states_->loaded.empty() ? states_->kept
                                                                      : states_->loaded;
   if (buffer != nullptr && state.size() <= capacity)
@@ -315,7 +353,7 @@ const void* MatDeformable::extension(const char* name) {
     static constexpr hsp_ext_energy kExtension = {sizeof(hsp_ext_energy), 0, [](hsp_shape* shape) HSP_RT -> double {
                                                     const MatDeformable& body =
                                                         *reinterpret_cast<MatDeformable*>(shape);
-                                                    return body.stored_ + body.body_->nodes().energy();
+                                                    return body.energy();
                                                   }};
     return &kExtension;
   }

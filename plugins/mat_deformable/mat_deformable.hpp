@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A soft body from its medial axis: a grid of skeleton points (Corso et al. 2002) or a medial mesh of cones and slabs.
 #pragma once
 #include <array>
@@ -8,6 +9,7 @@
 #include "display.hpp"
 #include "hapticd/shape.hpp"
 #include "kernels/medial/volume.hpp"
+#include "medial_file.hpp"
 #include "soft_body.hpp"
 #include "state.hpp"
 
@@ -43,8 +45,16 @@ class MatDeformable final : public Shape {
                 "g: share of the depth by which the skeleton moves; 0.5: the opposite side stays, 1: it follows"),
         F::array("influence", &T::influence_, "", 2, 2, 2, 1, medial::kMaxSkeletonDegree + 1, "[4, 4]",
                  "p', q': control points that a contact moves; degree + 1: no jumps. Seen, not felt"),
-        F::choice("dynamics", &T::dynamics_, kSwitchNames, 1,
-                  "on: control points swing and creep back; off: they return at once. Seen, not felt"),
+        F::choice("dynamics", &T::dynamics_, kDynamicsNames, kAsFile,
+                  "off: the body springs back at once; seen (or on): it swings and creeps for the eye alone; felt: the "
+                  "hand meets the surface as it moves; auto: felt where damping or mass is given, else off; file: auto "
+                  "for model files of format hapticd-model/2, seen for others"),
+        F::real("contact_ratio", &T::contact_ratio_, "", 1.1, 100, 3,
+                "felt: spring between probe and surface, over the stiffness of the body: the stiffest that fast motion "
+                "feels"),
+        F::real("relaxation.share", &T::relaxation_share_, "", 0, 10, 0,
+                "felt: a fast press is stiffer by this share of the stiffness, and relaxes to it"),
+        F::real("relaxation.time", &T::relaxation_time_, "s", 1e-4, 100, 0.5, "felt: time in which it relaxes"),
         F::real("shear_offset", &T::shear_offset_, "", 0, 0.5, 0.05,
                 "distance of the four springs along the surface, as a share of the parameters; 0: none"),
         F::real("damping_scale", &T::damping_scale_, "m", 1e-6, 1, 5e-3,
@@ -81,6 +91,8 @@ class MatDeformable final : public Shape {
   static constexpr const char* kEnvelopeNames[] = {"exact", "foot"};
   static constexpr const char* kEvaluationNames[] = {"fast", "small"};
   static constexpr const char* kSwitchNames[] = {"off", "on"};
+  static constexpr const char* kDynamicsNames[] = {"off", "on", "seen", "felt", "auto", "file"};
+  enum Dynamics { kOff, kOn, kSeen, kFelt, kAuto, kAsFile };
 
   /// Bytes that describe a body: of the last deactivation; for the next activation.
   struct States {
@@ -91,13 +103,27 @@ class MatDeformable final : public Shape {
     medial::VolumeKeeper volume;
   };
 
-  medial::BodyOptions bodyOptions() const;
+  medial::BodyOptions bodyOptions(const MedialFile& file, double rate_hz) const;
+  Dynamics dynamicsOf(const MedialFile& file) const;
   void describe() const;
   double elapsed(const hsp_step& step) noexcept HSP_RT;
   FindOptions findOptions(const hsp_step& step) const noexcept HSP_RT;
   FindOptions searchOptions() const noexcept;
+  /// The surface that a probe is at, if there is one and the sample is good.
+  struct Located {
+    hsp_status status = HSP_OK;
+    bool found = false;
+    Felt surface;
+  };
+  Located locate(const hsp_probe& probe, const hsp_step& step, uint32_t index, hsp_contact& contact) noexcept HSP_RT;
   hsp_status touch(const hsp_probe& probe, const hsp_step& step, uint32_t index, hsp_contact& contact) noexcept HSP_RT;
+  hsp_status stepFelt(const hsp_step& step) noexcept HSP_RT;
+  hsp_status meet(const hsp_probe& probe, const hsp_step& step, uint32_t index, hsp_contact& contact) noexcept HSP_RT;
+  void answer(const hsp_probe& probe, const medial::FeltContact& met, const Felt& felt, Track& track,
+              hsp_contact& contact) noexcept HSP_RT;
   void push(const hsp_probe& probe, const Felt& felt, Track& track, hsp_contact& contact) noexcept HSP_RT;
+
+  double energy() const noexcept HSP_RT;  ///< [J]
 
   int64_t nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const;
   hsp_status start(const hsp_near& near) noexcept HSP_RT;
@@ -109,9 +135,10 @@ class MatDeformable final : public Shape {
   hsp_status mesh(double chord_error, hsp_mesh& out);
 
   std::string geometry_;
-  int search_ = 0, depth_ = 10, envelope_ = 0, degree_ = 3, evaluation_ = 0, dynamics_ = 1;
+  int search_ = 0, depth_ = 10, envelope_ = 0, degree_ = 3, evaluation_ = 0, dynamics_ = kAsFile;
   double tolerance_ = 1e-8, split_ = 0.5, shear_offset_ = 0.05, damping_scale_ = 5e-3;
   double friction_static_ = 0, friction_dynamic_ = 0, viscosity_ = 0, display_tolerance_ = 0;
+  double contact_ratio_ = 3, relaxation_share_ = 0, relaxation_time_ = 0.5;
   double stiffness_ = 300, damping_ = 0.5, mass_ = 0.01, crease_ = 1e-3;
   int volume_ = 0, rings_ = 2;
   std::vector<double> influence_{4, 4};
@@ -119,6 +146,13 @@ class MatDeformable final : public Shape {
   std::unique_ptr<SoftBody> body_;
   std::vector<Track> tracks_;           ///< one a probe
   std::vector<medial::Press> presses_;  ///< of this step, reserved for all probes
+  /// What a step met on a surface that is felt, one a probe that is near, and which probe that is.
+  struct Met {
+    uint32_t probe = 0;
+    Felt felt;
+  };
+  std::vector<medial::FeltContact> contacts_;  ///< reserved for all probes
+  std::vector<Met> met_;                       ///< likewise
   std::unique_ptr<Displaced> displaced_;
   std::unique_ptr<Frames> frames_;  ///< written by the step, if display_tolerance asks for it
   std::unique_ptr<Keeper> keeper_;  ///< of the volume, if that was asked for

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "medial_file.hpp"
 
 #include <algorithm>
@@ -38,8 +39,10 @@ class Reader {
   void read(const Json& root, MedialFile& file) {
     if (!root.is_object()) return problems_.add({}, "expected a mapping with format and medial");
     checkKeys(root, {}, {"format", "name", "credit", "surfaces", "edges", "medial"});
-    if (const auto format = root.find("format"); format == root.end() || *format != "hapticd-model/1")
-      problems_.add({PathStep{"format", 0}}, "expected hapticd-model/1");
+    const auto format = root.find("format");
+    file.revision = format != root.end() && *format == "hapticd-model/2" ? 2 : 1;
+    if (format == root.end() || (file.revision == 1 && *format != "hapticd-model/1"))
+      problems_.add({PathStep{"format", 0}}, "expected hapticd-model/2, or hapticd-model/1 as older files have it");
     const Path at = below(Path{}, "medial");
     const auto medial = root.find("medial");
     if (medial == root.end() || !medial->is_object())

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Model files of soft bodies: the grid or the mesh of a medial axis.
 #pragma once
 #include <optional>
@@ -13,6 +14,7 @@ inline constexpr double kFarthestPoint = 1e6;  ///< [m] of points and radii: squ
 struct MedialFile {
   std::optional<medial::BodyData> grid;
   std::optional<medial::MeshBodyData> mesh;
+  int revision = 1;                    ///< of the format: hapticd-model/1 or /2
   bool swings = false, damps = false;  ///< some point has mass, some has damping
 };
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Soft bodies from a medial mesh: cones and slabs.
 #include <algorithm>
 #include <cmath>
@@ -37,6 +38,9 @@ class MeshSoftBody final : public SoftBody {
                           double closing_speed) const noexcept override {
     return body_.press(foot, felt.normal, felt.depth, closing_speed);
   }
+  void placeOf(const Vector3d&, const SkeletonFoot&, const Felt&, medial::Envelope,
+               medial::FeltPlace&) const noexcept override {}
+  medial::FeltSurface* feltSurface() noexcept override { return nullptr; }
   void yield(std::span<const medial::Press> contacts) noexcept override { body_.deformation().press(contacts); }
   SkeletonFoot search(const Vector3d& p, const FindOptions& options) const noexcept override {
     return body_.foot(p, MedialMesh::kNoStart, options.crease);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What a probe feels that was pushed through the middle of a tube, a sheet or a branching body.
 #pragma once
 #include "soft_body.hpp"

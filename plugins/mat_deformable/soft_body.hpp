@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the plugin needs of a soft body, whichever form its medial axis has: a grid of points or a mesh.
 #pragma once
 #include <array>
@@ -32,6 +33,10 @@ struct Track {
   int side = 0;          ///< of a sheet that it came from; 0: of neither
   bool settled = false;  ///< within a sheet: `pushed` has turned to the direction of the foot
   contact::Friction friction;
+  // On a surface that is felt:
+  bool met = false;      ///< the probe has been at the surface since it came near; else it may have begun inside
+  bool counted = false;  ///< `inside` is that of the last tick
+  double inside = 0;     ///< [m] by how much the probe was inside the present surface
 };
 
 /// The surface as the probe feels it: where it was pushed through the skeleton, still that of the side it came from.
@@ -61,7 +66,11 @@ class SoftBody {
   /// [rt] The force on a probe so deep.
   virtual medial::BodyForce press(const Eigen::Vector3d& p, const medial::SkeletonFoot& foot, const Felt& felt,
                                   double closing_speed) const noexcept = 0;
-  /// [rt] Gives way to all contacts of a tick.
+  /// [rt] The place that the probe is at, for a surface that is felt.
+  virtual void placeOf(const Eigen::Vector3d& p, const medial::SkeletonFoot& foot, const Felt& felt,
+                       medial::Envelope envelope, medial::FeltPlace& place) const noexcept = 0;
+  virtual medial::FeltSurface* feltSurface() noexcept = 0;  ///< [any] nullptr: its dynamics are seen alone
+  /// [rt] Gives way to all contacts of a tick, where its dynamics are seen alone.
   virtual void yield(std::span<const medial::Press> contacts) noexcept = 0;
   /// [sim] The foot of p with no start known.
   virtual medial::SkeletonFoot search(const Eigen::Vector3d& p, const FindOptions& options) const noexcept = 0;

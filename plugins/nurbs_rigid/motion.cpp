@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "motion.hpp"
 
 #include <algorithm>

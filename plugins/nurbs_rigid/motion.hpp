@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: MIT
 /// A rigid model that moves by the forces on it: its parameters, its body, and the contacts that push it.
 #pragma once
 #include <array>
 #include <vector>
 
 #include "hapticd/shape.hpp"
+#include "kernels/brep/model.hpp"
 #include "kernels/dynamics/mass_properties.hpp"
 #include "kernels/dynamics/rigid_body.hpp"
 #include "kernels/trace/model.hpp"
@@ -49,6 +51,8 @@ struct MotionParameters {
 /// [main] Centre and inertia of 1 kg that fills a model: the volume that its surfaces bound, or the box around it when
 /// they bound none; `bounded` tells which.
 dynamics::MassProperties massProperties(const trace::Model& model, bool& bounded);
+/// [main] The same of a part, from triangles within a ten-thousandth of its size.
+dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded);
 
 /// The moving frame of one model.
 class DynamicBody {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "nurbs_rigid.hpp"
 
 #include <algorithm>
@@ -22,10 +23,13 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
   if (friction_dynamic_ > friction_static_)
     throw std::invalid_argument("friction_dynamic: " + number(friction_dynamic_) + " is more than friction_static, " +
                                 number(friction_static_) + "; expected at most as much");
+  takeParts(instance_name_);
+  load(activation, report);
   if (pop_through_ > 0 && sides_ != kBoth && host() != nullptr && host()->log != nullptr)
     host()->log(host(), HSP_LOG_WARNING, "pop_through has no effect: only a shell gives way; expected sides: both");
-  load(activation, report);
-  extents_ = extentsOf(model());
+  extents_ = part() != nullptr ? extentsOf(*part()) : extentsOf(model());
+  if (extents_.empty() && texture_amplitude_ > 0)
+    throw std::invalid_argument("texture.amplitude: a mesh has no parameters to lay bumps along; expected 0");
   double slope = 0;
   for (const Extent& extent : extents_) slope = std::max(slope, slopeOf(extent));
   if (slope > kSteepest)
@@ -42,7 +46,8 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
 
 void NurbsRigid::setInMotion(const hsp_activation& activation, hsp_report& report) {
   bool bounded = true;
-  const dynamics::MassProperties shape = massProperties(model(), bounded);
+  const dynamics::MassProperties shape =
+      part() != nullptr ? massProperties(*part(), bounded) : massProperties(model(), bounded);
   const bool asked = center_.empty() || inertia_.empty();
   if (!bounded && asked && host() != nullptr && host()->log != nullptr)
     host()->log(host(), HSP_LOG_WARNING,
@@ -150,6 +155,7 @@ std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const trace::Model& model)
 /// Height [m] of the bumps at a foot. Waves along u and v, a whole number of them on the surface: their product
 /// vanishes on every side of it, so the skin has no step at seams, common edges and poles.
 double NurbsRigid::texture(const trace::Foot& foot) const noexcept HSP_RT {
+  if (extents_.empty()) return 0;
   const Extent& extent = extents_[static_cast<std::size_t>(foot.surface)];
   const double steep = slopeOf(extent) / kSteepest;  // above 1 only where it was set so while it runs
   const Eigen::Array2d phase =

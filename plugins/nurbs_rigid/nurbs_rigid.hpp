@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A rigid model of NURBS surfaces with the feel of a material: wall, friction, viscosity, texture, pop-through.
 #pragma once
 #include <array>
@@ -25,6 +26,8 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
     return join(
         tracingFields<NurbsRigid>(),
         std::array{
+            F::text("instance", &NurbsRigid::instance_name_, "",
+                    "of a part: the name of one instance or assembly, or its path assembly/sub/part; left out: all"),
             F::choice("motion", &NurbsRigid::motion_, kMotionNames, 0,
                       "static; kinematic: moved by the host along a path; dynamic: moved by the forces on it"),
             F::real("stiffness", &NurbsRigid::stiffness_, "N/m", 0, 1e5, 800, "k of Eq. 4: force is k x0 at depth x0",
@@ -71,6 +74,7 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
     Eigen::Array2d length;     ///< [m] along u and along v, on average
   };
   static std::vector<Extent> extentsOf(const trace::Model& model);
+  static std::vector<Extent> extentsOf(const brep::Model& part);
   /// Bumps along u and along v of a surface: at least one each.
   Eigen::Array2d wavesOf(const Extent& extent) const noexcept HSP_RT {
     return (extent.length / texture_wavelength_).round().max(1);
@@ -81,12 +85,13 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
   }
   double texture(const trace::Foot& foot) const noexcept HSP_RT;
 
+  std::string instance_name_;
   int motion_ = kStatic;
   double stiffness_ = 800, damping_ = 0, exponent_ = 1, depth_scale_ = 1e-3;
   double friction_static_ = 0, friction_dynamic_ = 0;
   double viscosity_ = 0, texture_amplitude_ = 0, texture_wavelength_ = 2e-3, pop_through_ = 0;
   std::vector<contact::Friction> friction_;  ///< one a probe, empty if nothing rubs
-  std::vector<Extent> extents_;              ///< by surface
+  std::vector<Extent> extents_;              ///< by surface; empty for meshes, which have no bumps
   std::optional<DynamicBody> body_;          ///< of a dynamic model
   double stored_ = 0;                        ///< [J] in the wall
   hsp_ext_energy energy_extension_{};

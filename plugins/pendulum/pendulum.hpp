@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A pendulum of any NURBS bob and rod, pushed by the user's hand.
 #pragma once
 #include <array>

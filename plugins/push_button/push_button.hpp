@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A push button with a detent, of any NURBS cap: Thompson et al. 1999, Eq. 10 and 11.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A ball: the smallest whole plugin. `hapticd plugin new NAME` copies it under another name.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A YAML or JSON file as one tree, and where in the file each value stands.
 #pragma once
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Model files: the surfaces that a scene's `geometry` names.
 #pragma once
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Traced shapes that move: where a model is, and its probes seen from where it goes.
 #pragma once
 #include <Eigen/Geometry>

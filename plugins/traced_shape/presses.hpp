@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Traced shapes that the probes push: what each probe does to the body in the coming step.
 #pragma once
 #include <algorithm>

@@ -1,9 +1,15 @@
+// SPDX-License-Identifier: MIT
 #include "traced_shape.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <stdexcept>
 
+#include "document.hpp"
+#include "kernels/brep/part_file.hpp"
 #include "model_file.hpp"
+#include "part_mesh.hpp"
 
 namespace hapticd {
 namespace {
@@ -13,7 +19,14 @@ constexpr double kFarthestMesh = 1e-6;  // [m] finer meshes are for files, not f
 }  // namespace
 
 void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
-  ModelFile file = readModelFile(geometry_);
+  part_.reset();
+  const std::string text = readModelText(geometry_);
+  if (brep::looksLikePart(std::as_bytes(std::span(text)))) return loadPart(text, activation, report);
+  if (!instance_.empty())
+    throw std::invalid_argument("instance: '" + instance_ + "', but " + geometry_ +
+                                " is a model file, which has none; expected a part (.hpart)");
+  if (sides_ == kAuto) sides_ = kFront;
+  ModelFile file = parseModelFile(text, geometry_);
   trace::ModelOptions options;
   options.edges = std::move(file.edges);
   options.form = evaluation_ == 0 ? spline::Form::kTable : spline::Form::kNet;
@@ -34,10 +47,13 @@ void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
 void TracedShape::deactivate() {
   tracers_.clear();
   model_.reset();
+  part_tracers_.clear();
+  part_.reset();
 }
 
 void TracedShape::reset() noexcept HSP_RT {
   for (trace::Tracer& tracer : tracers_) tracer.reset();
+  for (brep::Tracer& tracer : part_tracers_) tracer.reset();
   for (Offers& offers : offers_) offers.count = 0;
   std::fill(entered_.begin(), entered_.end(), 0);
 }
@@ -55,6 +71,7 @@ trace::TraceOptions TracedShape::optionsOf(const hsp_step& step) const noexcept 
 }
 
 Touch TracedShape::trace(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT {
+  if (part_) return tracePart(probe, step, contact);
   Touch touch;
   const uint32_t index = indexOf(probe, step);
   if (index >= tracers_.size()) {
@@ -110,6 +127,7 @@ double TracedShape::felt(const trace::Foot& foot, uint32_t probe, double& outwar
 }
 
 void TracedShape::popThrough(uint32_t probe) noexcept HSP_RT {
+  if (sides_ == kBoth && probe < part_tracers_.size()) part_tracers_[probe].popThrough();
   if (sides_ == kBoth && probe < entered_.size()) entered_[probe] = -entered_[probe];
 }
 
@@ -142,9 +160,10 @@ hsp_status TracedShape::stop(uint32_t probe, uint32_t surface) noexcept HSP_RT {
 }
 
 hsp_status TracedShape::mesh(double chord_error, hsp_mesh& out) {
-  if (!model_) return HSP_E_STATE;
+  if (!model_ && !part_) return HSP_E_STATE;
   if (!(chord_error > 0)) return HSP_E_ARG;
-  mesh_ = tessellate(*model_, std::max(chord_error, kFarthestMesh));
+  chord_error = std::max(chord_error, kFarthestMesh);
+  mesh_ = part_ ? tessellate(*part_, chord_error) : tessellate(*model_, chord_error);
   out.vertex_count = static_cast<uint32_t>(mesh_.xyz.size() / 3);
   out.triangle_count = static_cast<uint32_t>(mesh_.indices.size() / 3);
   out.xyz = mesh_.xyz.data();
@@ -154,9 +173,10 @@ hsp_status TracedShape::mesh(double chord_error, hsp_mesh& out) {
 }
 
 hsp_status TracedShape::bounds(double min[3], double max[3]) const {
-  if (!model_) return HSP_E_STATE;
-  Eigen::Map<Eigen::Vector3d>(min, 3) = model_->bounds().min();
-  Eigen::Map<Eigen::Vector3d>(max, 3) = model_->bounds().max();
+  if (!model_ && !part_) return HSP_E_STATE;
+  const Eigen::AlignedBox3d& box = part_ ? part_->bounds() : model_->bounds();
+  Eigen::Map<Eigen::Vector3d>(min, 3) = box.min();
+  Eigen::Map<Eigen::Vector3d>(max, 3) = box.max();
   return HSP_OK;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Base of shapes that trace NURBS models: geometry and tracing parameters, the tracers, the surfaces and geometry
 /// extensions. A derived class adds what happens at contact.
 #pragma once
@@ -7,7 +8,9 @@
 #include <vector>
 
 #include "hapticd/shape.hpp"
+#include "kernels/brep/tracer.hpp"
 #include "kernels/trace/tracer.hpp"
+#include "traced_shape/mesh.hpp"
 
 namespace hapticd {
 
@@ -20,11 +23,6 @@ struct Touch {
   hsp_status status = HSP_OK;       ///< what step() answers for this probe
 };
 
-/// Vertices, normals and triangles of a model, for drawing.
-struct Mesh {
-  std::vector<float> xyz, normals;
-  std::vector<uint32_t> indices;
-};
 /// [main] Triangles within `chord_error` [m] of the surfaces.
 Mesh tessellate(const trace::Model& model, double chord_error);
 
@@ -36,11 +34,13 @@ class TracedShape : public Shape {
   static constexpr auto tracingFields() {
     using F = Fields<T>;
     return std::array{
-        F::path("geometry", &TracedShape::geometry_, "model file (format hapticd-model/1), YAML or JSON",
-                HSP_P_REQUIRED),
-        F::choice("sides", &TracedShape::sides_, kSideNames, 0,
+        F::path(
+            "geometry", &TracedShape::geometry_,
+            "model file (format hapticd-model/1), YAML or JSON; nurbs_rigid: or a part (.hpart), see hapticd import",
+            HSP_P_REQUIRED),
+        F::choice("sides", &TracedShape::sides_, kSideNames, kAuto,
                   "front: solid behind the outward normal; back: before it; both: a shell that pushes back to the side "
-                  "it was entered from"),
+                  "it was entered from; auto: both for parts that bound no volume, front for all others"),
         F::choice("method", &TracedShape::method_, kMethodNames, 1,
                   "dpt: the first-order step of Thompson et al.; newton: safeguarded Newton to tolerance",
                   HSP_P_ACCURACY),
@@ -59,7 +59,7 @@ class TracedShape : public Shape {
   void reset() noexcept HSP_RT;
 
  protected:
-  enum Sides { kFront = 0, kBack = 1, kBoth = 2 };
+  enum Sides { kFront = 0, kBack = 1, kBoth = 2, kAuto = 3 };
 
   /// [main] Reads and prepares the model, one tracer a probe. Logs the model's warnings; fills size and memory of the
   /// report. @throws std::exception for the user.
@@ -73,18 +73,26 @@ class TracedShape : public Shape {
   }
   /// [rt] A shell that was pushed through: from now on the other side of it is felt by this probe.
   void popThrough(uint32_t probe) noexcept HSP_RT;
-  const trace::Model& model() const noexcept { return *model_; }
+  const trace::Model& model() const noexcept { return *model_; }  ///< only without a part
+  /// [any] The part that is traced in place of a model file, null: none.
+  const brep::Model* part() const noexcept { return part_.get(); }
 
   /// [main] Extensions of a T; call from T's extension().
   template <class T>
   const void* tracedExtension(const char* name);
 
+  /// [main] A class that can do with parts says so before load(). `instance`: see brep::ModelOptions.
+  void takeParts(const std::string& instance) {
+    takes_parts_ = true;
+    instance_ = instance;
+  }
+
   std::string geometry_;
-  int sides_ = kFront, method_ = 1, iterations_ = 1, evaluation_ = 0;
+  int sides_ = kAuto, method_ = 1, iterations_ = 1, evaluation_ = 0;
   double tolerance_ = 1e-9, hold_ = 0;
 
  private:
-  static constexpr const char* kSideNames[] = {"front", "back", "both"};
+  static constexpr const char* kSideNames[] = {"front", "back", "both", "auto"};
   static constexpr const char* kMethodNames[] = {"dpt", "newton"};
   static constexpr const char* kEvaluationNames[] = {"table", "net"};
 
@@ -103,6 +111,13 @@ class TracedShape : public Shape {
   hsp_status bounds(double min[3], double max[3]) const;
   double felt(const trace::Foot& foot, uint32_t probe, double& outward) noexcept HSP_RT;
 
+  void loadPart(const std::string& bytes, const hsp_activation& activation, hsp_report& report);
+  Touch tracePart(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT;
+
+  bool takes_parts_ = false;
+  std::string instance_;
+  std::unique_ptr<brep::Model> part_;
+  std::vector<brep::Tracer> part_tracers_;  ///< one a probe
   std::unique_ptr<trace::Model> model_;
   std::vector<trace::Tracer> tracers_;  ///< one a probe
   std::vector<Offers> offers_;          ///< by probe
@@ -132,7 +147,7 @@ const void* TracedShape::tracedExtension(const char* name) {
         }};
     return &surfaces_extension_;
   }
-  if (wanted == HSP_EXT_GEOMETRY && model_) {
+  if (wanted == HSP_EXT_GEOMETRY && (model_ || part_)) {
     geometry_extension_ = {sizeof(hsp_ext_geometry), 0,
                            [](hsp_shape* shape, double chord_error, hsp_mesh* out) -> hsp_status {
                              TracedShape& self = *reinterpret_cast<T*>(shape);

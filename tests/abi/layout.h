@@ -1,9 +1,11 @@
+/* SPDX-License-Identifier: MIT */
 /* The layout of every struct of the two ABIs as text: a line for the struct, a line for each member with offset and
  * size. Plain C, so that both languages can be asked; static, because each asks its own compiler. */
 #ifndef HAPTICD_TESTS_ABI_LAYOUT_H
 #define HAPTICD_TESTS_ABI_LAYOUT_H
 #include <stdio.h>
 
+#include "hapticd/client.h"
 #include "hapticd/device.h"
 #include "hapticd/shape.h"
 

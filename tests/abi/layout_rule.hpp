@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The rule that keeps the ABI stable: lines of a struct never change and never move; new ones stand at its end.
 #pragma once
 #include <set>

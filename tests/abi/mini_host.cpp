@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A host built against one minor version of the headers steps plugins built against each: all must answer alike.
 /// This file is compiled once for each version.
 #include <dlfcn.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Headers as an older and as a newer minor version would have them: structs cut short, and structs grown at the end.
 set(abi_headers ${CMAKE_CURRENT_BINARY_DIR}/headers)
 set(include_dir ${PROJECT_SOURCE_DIR}/driver/include/hapticd)
@@ -30,12 +31,12 @@ string(REGEX REPLACE "HSP_LAYOUT\\([a-z_]+, [0-9]+\\);\n" "" shape "${shape}")
 
 set(small_abi "${abi}")
 set(small_shape "${shape}")
-cut(small_abi "const char *def_text;")
-cut(small_shape "hsp_pose *pose;")
+cut(small_abi "const char* def_text;")
+cut(small_shape "hsp_pose* pose;")
 cut(small_shape "uint32_t iterations, reserved;")
 cut(small_shape "hsp_pose pose; ")
-cut(small_shape "uint32_t flags, reserved;                /* HSP_R_* */")
-cut(small_shape "const void *(*extension)(hsp_shape *, const char *name);                          /* [main] NULL if absent */")
+cut(small_shape "uint32_t flags, reserved; /* HSP_R_* */")
+cut(small_shape "const void* (*extension)(hsp_shape*, const char* name);")
 file(GENERATE OUTPUT ${abi_headers}/small/abi.h CONTENT "${small_abi}")
 file(GENERATE OUTPUT ${abi_headers}/small/shape.h CONTENT "${small_shape}")
 

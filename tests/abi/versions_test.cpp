@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The host as it ships, with plugins of smaller and larger minor versions, and with plugins that are broken.
 #include <gtest/gtest.h>
 
@@ -6,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "host/description.hpp"
+#include "host/describe.hpp"
 #include "host/shape_instance.hpp"
 
 namespace hapticd::test {
@@ -104,7 +105,7 @@ TEST_P(BrokenPlugin, IsRefusedWithItsOwnReason) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, BrokenPlugin,
                          testing::Values(Broken{"bad_no_symbol", "hsp_plugin_entry"},
-                                         Broken{"bad_magic", "does not begin with its mark"},
+                                         Broken{"bad_magic", "does not begin with the expected mark"},
                                          Broken{"bad_major", "built for version 2."},
                                          Broken{"bad_no_class", "lists 0 classes"}, Broken{"bad_null_class", "damaged"},
                                          Broken{"bad_no_step", "lacks a required function"},

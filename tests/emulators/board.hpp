@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The device side of the interface board's reports, written down a second time by hand:
 /// driver/docs/usb_interface_board.md.
 #pragma once

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: MIT
 /// The dynamics of a delta arm for the simulated plant: upper arms with half of their rods, and a platform that only
 /// translates with the other halves and the hand.
 #pragma once
 #include "kinematics/delta.hpp"
-#include "plant.hpp"
+#include "simulated/plant.hpp"
 
 namespace hapticd::emulator {
 

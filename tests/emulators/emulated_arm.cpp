@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "emulators/emulated_arm.hpp"
 
 #include <algorithm>
@@ -5,7 +6,7 @@
 #include <stdexcept>
 
 #include "emulators/delta_mechanism.hpp"
-#include "mechanisms.hpp"
+#include "simulated/mechanisms.hpp"
 
 namespace hapticd::emulator {
 namespace {

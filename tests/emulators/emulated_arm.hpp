@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// An arm on the far side of a wire: the firmware's reports and commands as bytes, and behind them motors, a mechanism
 /// and the hand that holds it. Transport programs (uhid, USB/IP, umockdev) put it on a bus.
 #pragma once
@@ -9,7 +10,7 @@
 
 #include "emulators/firmware.hpp"
 #include "emulators/step_meter.hpp"
-#include "parameters.hpp"
+#include "simulated/parameters.hpp"
 
 namespace hapticd::emulator {
 

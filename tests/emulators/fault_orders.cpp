@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "emulators/fault_orders.hpp"
 
 #include <csignal>

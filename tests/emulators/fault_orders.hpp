@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Faults of an emulated arm on order: SIGHUP has the name of one read from a file. It strikes while the motors push,
 /// and what follows is told: how long they pushed on, and when they push again after "none".
 #pragma once

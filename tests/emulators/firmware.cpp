@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "emulators/firmware.hpp"
 
 #include "emulators/board.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What an arm's own processor says and understands: counts become reports, commands become motor currents. Each is
 /// written down here a second time, by hand, so that a mistake in a device file meets something that disagrees.
 #pragma once

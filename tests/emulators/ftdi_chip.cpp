@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "emulators/ftdi_chip.hpp"
 
 #include <algorithm>

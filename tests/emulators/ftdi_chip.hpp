@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The Falcon's electronics as its USB chip shows them: an FTDI serial converter, and behind it a processor that
 /// forgets its firmware with its power. Published by the libnifalcon project.
 #pragma once

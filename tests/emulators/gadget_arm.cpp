@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// An emulated arm on the device side of this machine's own kernel: the reports of a HID gadget that somebody bound to
 /// a controller such as dummy_hcd. Usage: gadget_arm KIND ...: see options.hpp; the node is /dev/hidg0
 #include <fcntl.h>

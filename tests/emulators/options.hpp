@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What every program that plugs in an emulated arm understands, and the signals that lead it:
 /// SIGUSR1 unplugs the arm (and plugs it in again after --replug-after), SIGUSR2 lets the hand begin, SIGHUP has a
 /// fault read from the file of --faults, SIGTERM ends the program.

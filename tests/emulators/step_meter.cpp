@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "emulators/step_meter.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// How long it takes from a report to the command that answers it, on the wire: every few reports the encoders show the
 /// arm a little further inside, or outside again, and the first command that answers with another torque ends the wait.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// An emulated arm through /dev/uhid: hid core, hidraw and udev are the kernel's own, only the hardware is not there.
 /// Usage: uhid_arm KIND ...: see options.hpp
 #include <fcntl.h>

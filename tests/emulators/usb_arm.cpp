@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "emulators/usb_arm.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// An emulated arm as a USB function: descriptors, control requests and endpoints, for whatever carries transfers
 /// (USB/IP into a kernel, a played usbfs). Full speed, one interface, one endpoint in and one out.
 #pragma once

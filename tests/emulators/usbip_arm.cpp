@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Plugs an emulated arm into this machine's kernel over USB/IP: the virtual host controller vhci_hcd gets one end of a
 /// socket pair, so nothing listens on a network. USB core, usbfs, usbhid and hidraw above it are the kernel's own.
 /// Root. Usage: usbip_arm KIND ...: see options.hpp

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The wire format of a shipped device file, for tests and emulators: the same text that the module gets.
 #pragma once
 #include <yaml-cpp/yaml.h>

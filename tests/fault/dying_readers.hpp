@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Processes that read the status page of this one and are killed while they do.
 #pragma once
 #include <signal.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Millions of virtual ticks with random faults: `soak TICKS [SEED]`. A device that is lost, stale, faulty, jumps or
 /// sends NaN, late ticks, plugins that fail, readers of the status page that are killed. Exit 1 when a fault does not
 /// end in zero force within 20 ms, when a fault raises a force, when anything sent is not finite, when memory grows, or
@@ -11,8 +12,8 @@
 
 #include "base/allocation_count.hpp"
 #include "dying_readers.hpp"
-#include "servo/servo_watch.hpp"
-#include "servo/status_writer.hpp"
+#include "session/status_writer.hpp"
+#include "session/watched_servo.hpp"
 #include "test_rig.hpp"
 
 namespace hapticd::servo {

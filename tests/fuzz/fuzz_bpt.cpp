@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: MIT
 /// Any bytes as Bezier patches.
-#include "cli/bezier_import.hpp"
+#include "import/bezier_import.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   auto model = hapticd::cli::parseBpt({reinterpret_cast<const char*>(data), size}, "fuzz.bpt");

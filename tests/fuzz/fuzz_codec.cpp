@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A million mutated reports through every shipped codec: decoder, framer and session must stay finite and in bounds.
 /// Usage: fuzz_codec [REPORTS]. Not a coverage-guided fuzzer: the formats are flat, and it must run in every build.
 #include <cmath>

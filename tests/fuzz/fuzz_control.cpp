@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Any bytes as a request to the control socket.
 #include "control/request.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Any bytes as a medial mesh (.ma): read, built, searched, pressed and drawn.
 #include "mat_deformable/medial_file.hpp"
 #include "press_a_body.hpp"

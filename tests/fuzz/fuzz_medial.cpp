@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Any bytes as a model file of a soft body, YAML or JSON, a grid or a mesh: read, built, searched, pressed and drawn.
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Any bytes as a model file of surfaces, YAML or JSON: read, sewn, searched, traced and drawn.
 #include <cmath>
 

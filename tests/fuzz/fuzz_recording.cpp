@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Any bytes as a recording: every number of what it claims to hold is read.
 #include <vector>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Any bytes as a scene, device or daemon file, and as a kinematic path.
 #include <algorithm>
 
@@ -12,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
   if (std::count(text.begin(), text.end(), '*') > kMostAliases) return 0;
   hapticd::scene::checkText(text, "fuzz.yaml", catalog);
-  hapticd::scene::Problems problems;
+  hapticd::document::Problems problems;
   hapticd::scene::parseKinematicPath(text, "fuzz.csv", problems);
   return 0;
 }

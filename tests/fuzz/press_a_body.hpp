@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the plugin does with a soft body, for the fuzzers of its files.
 #pragma once
 #include <cmath>

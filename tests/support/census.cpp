@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "census.hpp"
 
 #if defined(__x86_64__) && !defined(HAPTICD_SANITIZED)
@@ -31,7 +32,7 @@ struct Entry {
 };
 
 std::vector<Entry> entries;  // by address; neither grows nor shrinks while breakpoints are set
-struct sigaction before {};
+struct sigaction before{};
 
 /// Puts the byte back and goes on there. Runs nothing that may hold a breakpoint.
 void onBreakpoint(int, siginfo_t*, void* context) {
@@ -59,7 +60,7 @@ std::string demangled(const char* name) {
 /// Functions of namespace hapticd in a loaded ELF file, those with internal linkage too.
 void addFunctions(const std::string& file, uintptr_t base) {
   const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  struct stat facts {};
+  struct stat facts{};
   if (descriptor < 0 || fstat(descriptor, &facts) != 0) return;
   const auto size = static_cast<size_t>(facts.st_size);
   void* mapped = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
@@ -119,7 +120,7 @@ void Census::begin() {
   entries.erase(std::unique(entries.begin(), entries.end(),
                             [](const Entry& a, const Entry& b) { return a.address == b.address; }),
                 entries.end());
-  struct sigaction action {};
+  struct sigaction action{};
   action.sa_sigaction = onBreakpoint;
   action.sa_flags = SA_SIGINFO;
   sigaction(SIGTRAP, &action, &before);

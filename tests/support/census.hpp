@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Which functions a piece of work runs: a breakpoint at the entry of each, taken away when it is reached. So a test
 /// can prove that something is not computed, in the very code that ships, without a clock.
 #pragma once
@@ -24,9 +25,7 @@ class Census {
   }
 
   /// A function of an object (part of its file name) was entered that has `part` in its name.
-  bool ran(const std::string& object, const std::string& part) const {
-    return !text(object, part).empty();
-  }
+  bool ran(const std::string& object, const std::string& part) const { return !text(object, part).empty(); }
   /// For messages: "object function", a line each.
   std::string text(const std::string& object = "", const std::string& part = "") const;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "rt_guard.hpp"
 
 #include <dlfcn.h>

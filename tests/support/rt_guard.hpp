@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Proves that code is fit for the servo thread: inside an RtScope every allocation and lock of this thread is counted.
 /// Link hapticd_rt_guard; it replaces malloc and its kind, and pthread_mutex_lock, in the test program.
 #pragma once

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* abi.h - what the two ABIs of hapticd, shape.h and device.h, share: status codes, parameter tables, host services.
  *
  * Units are SI everywhere: m, s, N, N*m, rad, kg.
@@ -27,19 +28,19 @@ extern "C" {
 #else
 #define HSP_RT
 #endif
-#define HSP_AT(T, base, stride, i) ((T *)((char *)(base) + (size_t)(stride) * (size_t)(i)))
+#define HSP_AT(T, base, stride, i) ((T*)((char*)(base) + (size_t)(stride) * (size_t)(i)))
 #define HSP_HAS(p, field) ((p)->struct_size >= offsetof(__typeof__(*(p)), field) + sizeof((p)->field))
 
 typedef int32_t hsp_status; /* 0 or positive: worked. Negative: did not, and changed nothing. */
 enum {
   HSP_OK = 0,
-  HSP_DEGRADED = 1,       /* budget met with a cheaper method; the residual says how good */
-  HSP_E_ARG = -1,         /* an argument or a parameter is wrong; the log says which */
-  HSP_E_STATE = -2,       /* not in the state that this call needs */
+  HSP_DEGRADED = 1, /* budget met with a cheaper method; the residual says how good */
+  HSP_E_ARG = -1,   /* an argument or a parameter is wrong; the log says which */
+  HSP_E_STATE = -2, /* not in the state that this call needs */
   HSP_E_NOMEM = -3,
-  HSP_E_IO = -4,          /* a file or a device could not be read or written; the log says why */
+  HSP_E_IO = -4, /* a file or a device could not be read or written; the log says why */
   HSP_E_UNSUPPORTED = -5,
-  HSP_E_NUMERIC = -6      /* lost the surface: the host ramps the force to zero and calls reset() */
+  HSP_E_NUMERIC = -6 /* lost the surface: the host ramps the force to zero and calls reset() */
 };
 
 /* ---- parameters: described before an instance exists, so that `check`, documentation and completion need none */
@@ -47,8 +48,8 @@ enum {
   HSP_REAL = 1,
   HSP_INT,
   HSP_BOOL,
-  HSP_ENUM,  /* value: index into choices */
-  HSP_PATH,  /* text: absolute path; the host resolves it against the file that names it */
+  HSP_ENUM, /* value: index into choices */
+  HSP_PATH, /* text: absolute path; the host resolves it against the file that names it */
   HSP_TEXT,
   HSP_ARRAY, /* numbers: rows of `columns` numbers one after the other */
   HSP_DATA   /* text: any structure as JSON, which the module itself checks */
@@ -64,17 +65,17 @@ typedef struct hsp_param {
   const char *id, *unit, *doc;  /* "stiffness", "N/m", one sentence. A dot nests: "hand.mass" is mass under hand.
                                    An id never changes its meaning. */
   double min, max, def;         /* REAL, INT, BOOL, ENUM; ARRAY: range of each number */
-  const char *const *choices;   /* ENUM */
+  const char* const* choices;   /* ENUM */
   uint32_t columns, min_count;  /* ARRAY: numbers a row; fewest numbers (0: may be left out) */
   uint32_t max_count, reserved; /* ARRAY: most numbers */
-  const char *def_text;         /* TEXT, PATH, DATA; NULL: none. ARRAY: the default as YAML, for people and set() alike */
+  const char* def_text; /* TEXT, PATH, DATA; NULL: none. ARRAY: the default as YAML, for people and set() alike */
 } hsp_param;
 
 typedef struct hsp_value {
   uint32_t kind, count;  /* count of numbers */
   double number;         /* REAL, INT, BOOL, ENUM */
-  const char *text;      /* PATH, TEXT, DATA: copied by the receiver */
-  const double *numbers; /* ARRAY: copied by the receiver */
+  const char* text;      /* PATH, TEXT, DATA: copied by the receiver */
+  const double* numbers; /* ARRAY: copied by the receiver */
 } hsp_value;
 
 /* A change of a numeric HSP_P_LIVE parameter, delivered at the start of a step. */
@@ -87,14 +88,14 @@ typedef struct hsp_change {
 enum { HSP_LOG_DEBUG = 0, HSP_LOG_INFO, HSP_LOG_WARNING, HSP_LOG_ERROR };
 typedef struct hsp_host {
   uint32_t struct_size, abi_minor;
-  void *ctx;
-  void (*log)(const struct hsp_host *, int32_t level, const char *utf8);              /* [main][sim] copied */
-  void (*trace)(const struct hsp_host *, uint32_t event, double a, double b) HSP_RT;  /* [rt] lossy ring of events */
-  void *(*alloc)(const struct hsp_host *, size_t bytes, size_t align);                /* [main] locked, touched, zeroed */
-  void (*release)(const struct hsp_host *, void *);                                   /* [main] */
-  int32_t (*is_rt_thread)(const struct hsp_host *);                                   /* [any] for assertions */
-  void (*request_restart)(const struct hsp_host *);                                   /* [any] */
-  const void *(*extension)(const struct hsp_host *, const char *name);                /* [main] NULL if absent */
+  void* ctx;
+  void (*log)(const struct hsp_host*, int32_t level, const char* utf8);             /* [main][sim] copied */
+  void (*trace)(const struct hsp_host*, uint32_t event, double a, double b) HSP_RT; /* [rt] lossy ring of events */
+  void* (*alloc)(const struct hsp_host*, size_t bytes, size_t align);               /* [main] locked, touched, zeroed */
+  void (*release)(const struct hsp_host*, void*);                                   /* [main] */
+  int32_t (*is_rt_thread)(const struct hsp_host*);                                  /* [any] for assertions */
+  void (*request_restart)(const struct hsp_host*);                                  /* [any] */
+  const void* (*extension)(const struct hsp_host*, const char* name);               /* [main] NULL if absent */
 } hsp_host;
 
 #ifdef __cplusplus

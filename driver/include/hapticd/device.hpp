@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A device module in C++: derive from hapticd::Device, list the parameters, write open, start, read, write, stop,
 /// close, and name the class in HAPTICD_DEVICES(...). The C ABI behind it is device.h.
 #pragma once
@@ -98,10 +99,27 @@ struct DeviceClass {
   }
   static const void* extension(hdv_device* device, const char* name) { return self(device).extension(name); }
 
-  static constexpr hdv_class kClass = {
-      sizeof(hdv_class), static_cast<uint32_t>(kParams.size()), 0, 0, T::kInfo.id, T::kInfo.name, T::kInfo.version,
-      T::kInfo.license, T::kInfo.doc, kParams.data(), &create, &destroy, &set, &get, &open, &start, &read, &write,
-      &stop, &close, &extension};
+  static constexpr hdv_class kClass = {sizeof(hdv_class),
+                                       static_cast<uint32_t>(kParams.size()),
+                                       0,
+                                       0,
+                                       T::kInfo.id,
+                                       T::kInfo.name,
+                                       T::kInfo.version,
+                                       T::kInfo.license,
+                                       T::kInfo.doc,
+                                       kParams.data(),
+                                       &create,
+                                       &destroy,
+                                       &set,
+                                       &get,
+                                       &open,
+                                       &start,
+                                       &read,
+                                       &write,
+                                       &stop,
+                                       &close,
+                                       &extension};
 
  private:
   static Device& base(hdv_device* device) { return self(device); }
@@ -133,9 +151,9 @@ inline constexpr std::array<const hdv_class*, sizeof...(T)> kDeviceClasses = {&D
 }  // namespace hapticd
 
 /// Exports the devices of this module: HAPTICD_DEVICES(SimulatedArm)
-#define HAPTICD_DEVICES(...)                                                                                 \
-  extern "C" {                                                                                               \
-  constinit const hdv_entry hdv_module_entry = {HDV_MAGIC, HSP_ABI_MAJOR, HSP_ABI_MINOR,                     \
-                                                ::hapticd::detail::kDeviceClasses<__VA_ARGS__>.size(),       \
-                                                ::hapticd::detail::kDeviceClasses<__VA_ARGS__>.data()};      \
+#define HAPTICD_DEVICES(...)                                                                            \
+  extern "C" {                                                                                          \
+  constinit const hdv_entry hdv_module_entry = {HDV_MAGIC, HSP_ABI_MAJOR, HSP_ABI_MINOR,                \
+                                                ::hapticd::detail::kDeviceClasses<__VA_ARGS__>.size(),  \
+                                                ::hapticd::detail::kDeviceClasses<__VA_ARGS__>.data()}; \
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Parameter tables for plugins and device modules in C++: one line a parameter gives the C table, the defaults, the
 /// checks and the assignment to a member. Used through shape.hpp and device.hpp.
 #pragma once
@@ -15,20 +16,20 @@ namespace hapticd {
 /// The member of class T that holds a value: exactly one of the pointers is set.
 template <class T>
 struct Member {
-  double T::*real = nullptr;
-  int T::*integer = nullptr;
-  bool T::*boolean = nullptr;
-  std::string T::*text = nullptr;
-  std::vector<double> T::*array = nullptr;
-  std::array<double, 3> T::*vector3 = nullptr;
+  double T::* real = nullptr;
+  int T::* integer = nullptr;
+  bool T::* boolean = nullptr;
+  std::string T::* text = nullptr;
+  std::vector<double> T::* array = nullptr;
+  std::array<double, 3> T::* vector3 = nullptr;
 
   constexpr Member() = default;
-  constexpr Member(double T::*m) : real(m) {}                  // NOLINT: implicit by intent, a table line names a member
-  constexpr Member(int T::*m) : integer(m) {}                  // NOLINT
-  constexpr Member(bool T::*m) : boolean(m) {}                 // NOLINT
-  constexpr Member(std::string T::*m) : text(m) {}             // NOLINT
-  constexpr Member(std::vector<double> T::*m) : array(m) {}    // NOLINT
-  constexpr Member(std::array<double, 3> T::*m) : vector3(m) {}  // NOLINT
+  constexpr Member(double T::* m) : real(m) {}                // NOLINT: implicit by intent, a table line names a member
+  constexpr Member(int T::* m) : integer(m) {}                // NOLINT
+  constexpr Member(bool T::* m) : boolean(m) {}               // NOLINT
+  constexpr Member(std::string T::* m) : text(m) {}           // NOLINT
+  constexpr Member(std::vector<double> T::* m) : array(m) {}  // NOLINT
+  constexpr Member(std::array<double, 3> T::* m) : vector3(m) {}  // NOLINT
 };
 
 /// One parameter of class T and its member.
@@ -51,26 +52,26 @@ struct Fields {
     p.doc = doc;
     return p;
   }
-  static constexpr Field<T> real(const char* id, double T::*member, const char* unit, double min, double max, double def,
-                                 const char* doc, uint32_t flags = 0) {
+  static constexpr Field<T> real(const char* id, double T::* member, const char* unit, double min, double max,
+                                 double def, const char* doc, uint32_t flags = 0) {
     hsp_param p = blank(HSP_REAL, id, unit, flags, doc);
     p.min = min, p.max = max, p.def = def;
     return {p, member};
   }
-  static constexpr Field<T> integer(const char* id, int T::*member, const char* unit, int min, int max, int def,
+  static constexpr Field<T> integer(const char* id, int T::* member, const char* unit, int min, int max, int def,
                                     const char* doc, uint32_t flags = 0) {
     hsp_param p = blank(HSP_INT, id, unit, flags, doc);
     p.min = min, p.max = max, p.def = def;
     return {p, member};
   }
-  static constexpr Field<T> boolean(const char* id, bool T::*member, bool def, const char* doc, uint32_t flags = 0) {
+  static constexpr Field<T> boolean(const char* id, bool T::* member, bool def, const char* doc, uint32_t flags = 0) {
     hsp_param p = blank(HSP_BOOL, id, "", flags, doc);
     p.min = 0, p.max = 1, p.def = def ? 1 : 0;
     return {p, member};
   }
   /// `choices` must have static storage; the member holds the index of the choice.
   template <size_t N>
-  static constexpr Field<T> choice(const char* id, int T::*member, const char* const (&choices)[N], int def,
+  static constexpr Field<T> choice(const char* id, int T::* member, const char* const (&choices)[N], int def,
                                    const char* doc, uint32_t flags = 0) {
     hsp_param p = blank(HSP_ENUM, id, "", flags, doc);
     p.min = 0, p.max = N - 1, p.def = def;
@@ -78,29 +79,29 @@ struct Fields {
     p.choice_count = N;
     return {p, member};
   }
-  static constexpr Field<T> path(const char* id, std::string T::*member, const char* doc, uint32_t flags = 0) {
+  static constexpr Field<T> path(const char* id, std::string T::* member, const char* doc, uint32_t flags = 0) {
     return {blank(HSP_PATH, id, "", flags, doc), member};
   }
-  static constexpr Field<T> text(const char* id, std::string T::*member, const char* def, const char* doc,
+  static constexpr Field<T> text(const char* id, std::string T::* member, const char* def, const char* doc,
                                  uint32_t flags = 0) {
     hsp_param p = blank(HSP_TEXT, id, "", flags, doc);
     p.def_text = def;
     return {p, member};
   }
   /// Any structure, handed over as JSON text that the module itself checks.
-  static constexpr Field<T> data(const char* id, std::string T::*member, const char* def, const char* doc,
+  static constexpr Field<T> data(const char* id, std::string T::* member, const char* def, const char* doc,
                                  uint32_t flags = 0) {
     hsp_param p = blank(HSP_DATA, id, "", flags, doc);
     p.def_text = def;
     return {p, member};
   }
   /// Three numbers; `def` is their default as text, "[0, 1, 0]".
-  static constexpr Field<T> vector3(const char* id, std::array<double, 3> T::*member, const char* unit, double min,
+  static constexpr Field<T> vector3(const char* id, std::array<double, 3> T::* member, const char* unit, double min,
                                     double max, const char* def, const char* doc, uint32_t flags = 0) {
     return {arrayParam(id, unit, 3, 3, 3, min, max, def, doc, flags), member};
   }
   /// `columns` numbers a row, between min_count and max_count numbers in all.
-  static constexpr Field<T> array(const char* id, std::vector<double> T::*member, const char* unit, uint32_t columns,
+  static constexpr Field<T> array(const char* id, std::vector<double> T::* member, const char* unit, uint32_t columns,
                                   uint32_t min_count, uint32_t max_count, double min, double max, const char* def,
                                   const char* doc, uint32_t flags = 0) {
     return {arrayParam(id, unit, columns, min_count, max_count, min, max, def, doc, flags), member};
@@ -123,7 +124,11 @@ template <class T, size_t... N>
 constexpr auto join(const std::array<Field<T>, N>&... tables) {
   std::array<Field<T>, (N + ...)> all{};
   size_t i = 0;
-  ((void)[&] { for (const Field<T>& field : tables) all[i++] = field; }(), ...);
+  (
+      (void)[&] {
+        for (const Field<T>& field : tables) all[i++] = field;
+      }(),
+      ...);
   return all;
 }
 
@@ -167,7 +172,9 @@ template <class T, size_t N>
   }
 }
 
-inline bool inRange(const hsp_param& p, double x) { return std::isfinite(x) && x >= p.min && x <= p.max; }
+inline bool inRange(const hsp_param& p, double x) {
+  return std::isfinite(x) && x >= p.min && x <= p.max;
+}
 
 /// Nothing, or what is wrong with `value` for parameter `p`.
 inline std::string complaint(const hsp_param& p, const hsp_value& value) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A shape plugin in C++: derive from hapticd::Shape, list the parameters, write activate() and touch() (or step()),
 /// and name the class in HAPTICD_SHAPES(...). The C ABI behind it is shape.h; plugins/template shows a whole plugin.
 #pragma once
@@ -12,8 +13,8 @@ namespace hapticd {
 
 /// What a class says of itself before any instance exists.
 struct ShapeInfo {
-  const char* id;      ///< reverse DNS, "org.example.shape.sphere"
-  const char* name;    ///< as scenes write it, "sphere"
+  const char* id;    ///< reverse DNS, "org.example.shape.sphere"
+  const char* name;  ///< as scenes write it, "sphere"
   const char* version;
   const char* license;
   const char* doc;     ///< one or two sentences
@@ -29,10 +30,10 @@ struct ShapeInfo {
 /// and may hide the functions below.
 class Shape {
  public:
-  void deactivate() {}                                      ///< [main] gives back what activate() took
-  void reset() noexcept HSP_RT {}                           ///< [rt] forgets history
+  void deactivate() {}                                             ///< [main] gives back what activate() took
+  void reset() noexcept HSP_RT {}                                  ///< [rt] forgets history
   const void* extension(const char* /*name*/) { return nullptr; }  ///< [main]
-  void changed() noexcept HSP_RT {}                         ///< [rt] live parameters have new values
+  void changed() noexcept HSP_RT {}                                ///< [rt] live parameters have new values
   const hsp_host* host() const { return host_; }
 
  private:
@@ -113,10 +114,25 @@ struct ShapeClass {
   }
   static const void* extension(hsp_shape* shape, const char* name) { return self(shape).extension(name); }
 
-  static constexpr hsp_class kClass = {
-      sizeof(hsp_class), static_cast<uint32_t>(kParams.size()), T::kInfo.flags, 0, T::kInfo.id, T::kInfo.name,
-      T::kInfo.version, T::kInfo.license, T::kInfo.doc, kParams.data(), &create, &destroy, &set, &get, &activate,
-      &deactivate, &reset, &step, &extension};
+  static constexpr hsp_class kClass = {sizeof(hsp_class),
+                                       static_cast<uint32_t>(kParams.size()),
+                                       T::kInfo.flags,
+                                       0,
+                                       T::kInfo.id,
+                                       T::kInfo.name,
+                                       T::kInfo.version,
+                                       T::kInfo.license,
+                                       T::kInfo.doc,
+                                       kParams.data(),
+                                       &create,
+                                       &destroy,
+                                       &set,
+                                       &get,
+                                       &activate,
+                                       &deactivate,
+                                       &reset,
+                                       &step,
+                                       &extension};
 
  private:
   static Shape& base(hsp_shape* shape) { return self(shape); }
@@ -142,9 +158,9 @@ inline constexpr std::array<const hsp_class*, sizeof...(T)> kShapeClasses = {&Sh
 }  // namespace hapticd
 
 /// Exports the shapes of this plugin: HAPTICD_SHAPES(Sphere, Box)
-#define HAPTICD_SHAPES(...)                                                                                  \
-  extern "C" {                                                                                               \
-  constinit const hsp_entry hsp_plugin_entry = {HSP_MAGIC, HSP_ABI_MAJOR, HSP_ABI_MINOR,                     \
-                                                ::hapticd::detail::kShapeClasses<__VA_ARGS__>.size(),        \
-                                                ::hapticd::detail::kShapeClasses<__VA_ARGS__>.data()};       \
+#define HAPTICD_SHAPES(...)                                                                            \
+  extern "C" {                                                                                         \
+  constinit const hsp_entry hsp_plugin_entry = {HSP_MAGIC, HSP_ABI_MAJOR, HSP_ABI_MINOR,               \
+                                                ::hapticd::detail::kShapeClasses<__VA_ARGS__>.size(),  \
+                                                ::hapticd::detail::kShapeClasses<__VA_ARGS__>.data()}; \
   }

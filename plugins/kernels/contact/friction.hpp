@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Stick-slip friction on a traced surface, by a proxy: the point of the surface where the probe sticks.
 #pragma once
 #include <Eigen/Core>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Wall models: the force of a penetrated surface.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A push button without mass: the surface's spring k1 in series with a detent curve (Thompson et al. 1999, Eq. 10,
 /// 11).
 #pragma once
@@ -60,7 +61,7 @@ class ButtonState {
   void reset() noexcept {
     x2_ = 0;
     pressed_ = false;
-  }                                                   ///< [rt]
+  }  ///< [rt]
   double position() const noexcept { return x2_; }    ///< [m] x2
   bool pressed() const noexcept { return pressed_; }  ///< past the detent
 

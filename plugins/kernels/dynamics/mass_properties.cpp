@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/dynamics/mass_properties.hpp"
 
 #include <Eigen/Eigenvalues>

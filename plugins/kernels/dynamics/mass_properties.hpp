@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Centre and inertia of a solid of constant density, from integrals over its surface.
 #pragma once
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/dynamics/oscillator.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The linear oscillator m x'' + b x' + k x = f, stepped exactly.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A pendulum: one angle about a fixed axis, I theta'' = -m g L sin(theta) - c theta' + torque.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/dynamics/press.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What presses on a moving body: contacts foreseen at the end of a step, with the way they give as the body moves.
 #pragma once
 #include <Eigen/Core>

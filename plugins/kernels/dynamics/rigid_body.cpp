@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/dynamics/rigid_body.hpp"
 
 #include <Eigen/Cholesky>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A rigid body with its full inertia, free or on a joint to the world.
 #pragma once
 #include <Eigen/Core>

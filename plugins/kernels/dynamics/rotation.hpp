@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Poses that do not drift: unit quaternions, turned exactly and renormalised, never multiplied matrices.
 #pragma once
 #include <Eigen/Geometry>

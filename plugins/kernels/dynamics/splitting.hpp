@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Coefficients of a splitting of fourth order: motions that are exact for a part of the energy each, in turn, add up
 /// to one whose energy error stays bounded for ever.
 #pragma once

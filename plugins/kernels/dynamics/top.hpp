@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// How a free rigid body turns in its own frame.
 #pragma once
 #include <Eigen/Core>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/medial/body.hpp"
 
 #include <algorithm>
@@ -39,8 +40,32 @@ Body::Body(const BodyData& data, const BodyOptions& options)
     : options_(options), skeleton_(data.grid, options.degree, options.form) {
   stiffness_ = fieldOf(skeleton_, data.stiffness, data.grid, "stiffness");
   damping_ = fieldOf(skeleton_, orZeros(data.damping, data.grid.points.size()), data.grid, "damping");
-  deformation_.emplace(skeleton_, materialOf(data), options.deformation);
+  const std::vector<Oscillator> material = materialOf(data);
+  deformation_.emplace(skeleton_, material, options.deformation);
+  if (options.felt.on)
+    felt_.emplace(*deformation_, tissueOf(material), deformation_->compliance(), options.felt.contact_ratio,
+                  options.felt.tick);
   skeleton_.trim();
+}
+
+std::vector<Tissue> Body::tissueOf(const std::vector<Oscillator>& material) const {
+  std::vector<Tissue> all;
+  for (const Oscillator& o : material)
+    all.push_back({o.stiffness, o.damping, o.mass, options_.felt.relaxation_share, options_.felt.relaxation_time});
+  return all;
+}
+
+void Body::placeOf(const Vector3d& p, const SkeletonFoot& foot, const Vector3d& normal, Envelope envelope, bool direct,
+                   FeltPlace& place) const noexcept {
+  deformation_->nodesAt(foot.u, foot.v, place);
+  place.normal = normal;
+  place.stiffness = stiffness_.evaluate(foot.u, foot.v).f;
+  const FootMotion motion = footMotion(skeleton_, p, foot, normal, envelope, direct);
+  place.toward_u = motion.toward_u;
+  place.toward_v = motion.toward_v;
+  place.tangent_u = motion.tangent_u;
+  place.tangent_v = motion.tangent_v;
+  place.turn = motion.turn;
 }
 
 /// The material of a control point is that of the body where it acts most.
@@ -159,7 +184,7 @@ MonotonicityReport Body::checkMonotonicity() const {
 
 std::size_t Body::bytes() const noexcept {
   return sizeof *this - sizeof skeleton_ + skeleton_.bytes() + stiffness_.bytes() + damping_.bytes() +
-         deformation_->bytes();
+         deformation_->bytes() + (felt_ ? felt_->bytes() : 0);
 }
 
 }  // namespace hapticd::medial

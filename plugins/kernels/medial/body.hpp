@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A soft body from a grid of skeleton points: where its surface is, how hard it pushes back, how it gives way.
 #pragma once
 #include <memory>
@@ -5,6 +6,8 @@
 #include <string>
 
 #include "kernels/medial/deformation.hpp"
+#include "kernels/medial/felt_surface.hpp"
+#include "kernels/medial/foot_motion.hpp"
 #include "kernels/medial/shear.hpp"
 #include "kernels/medial/skeleton.hpp"
 
@@ -18,12 +21,21 @@ struct BodyData {
   std::vector<double> mass;       ///< [kg] one a point; empty: none, so that control points creep
 };
 
+/// How a surface with dynamics of its own is felt.
+struct FeltOptions {
+  bool on = false;
+  double contact_ratio = 3;                          ///< contact spring over the stiffness of a fast press
+  double relaxation_share = 0, relaxation_time = 0;  ///< see Tissue
+  double tick = 1e-3;                                ///< [s] that most steps take
+};
+
 struct BodyOptions {
   int degree = 3;
   spline::Form form = spline::Form::kTable;
   double shear_offset = 0.05;   ///< distance of the four neighbours, as a share of the parameter range; 0: no shear
   double damping_scale = 5e-3;  ///< [m] depth at which damping of the contact is whole; it grows from 0 at the surface
   DeformationOptions deformation;
+  FeltOptions felt;
 };
 
 /// The force of a pressed body.
@@ -59,6 +71,11 @@ class Body {
   /// along the normal.
   BodyForce press(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
                   double closing_speed) const noexcept;
+  /// [rt] The place of the contour that a probe at `p` is at, with its foot, as a felt surface needs it.
+  /// @param direct whether `normal` is the direction from the foot to the probe
+  void placeOf(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, Envelope envelope,
+               bool direct, FeltPlace& place) const noexcept;
+  FeltSurface* feltSurface() noexcept { return felt_ ? &*felt_ : nullptr; }  ///< [any] nullptr: it is only seen
   /// [main] Looks at the force law all over the skeleton, on both sides.
   MonotonicityReport checkMonotonicity() const;
   /// [any] No force rises faster with depth [N/m]: the normal spring and four others in line with it.
@@ -72,11 +89,13 @@ class Body {
   };
   Neighbours neighboursOf(const SkeletonFoot& foot, const Eigen::Vector3d& normal) const noexcept;
   std::vector<Oscillator> materialOf(const BodyData& data) const;
+  std::vector<Tissue> tissueOf(const std::vector<Oscillator>& material) const;
 
   BodyOptions options_;
   Skeleton skeleton_;
   ScalarField stiffness_, damping_;
   std::optional<Deformation> deformation_;
+  std::optional<FeltSurface> felt_;
 };
 
 }  // namespace hapticd::medial

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The search for the foot on a skeleton with no start known: Newton from the best samples.
 #include <algorithm>
 #include <cmath>

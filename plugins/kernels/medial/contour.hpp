@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The contour of a body as triangles, for drawing: top and bottom of a skeleton surface closed round its rim, or the
 /// tube about a skeleton curve closed by caps. Vertices lie on the envelope of the spheres itself, and move with the
 /// body.

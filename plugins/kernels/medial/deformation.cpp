@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/medial/deformation.hpp"
 
 #include <algorithm>
@@ -30,6 +31,61 @@ void list(const std::array<Influence, 2>& influence, int columns, Weights weight
       out.parts[out.count++] = {
           static_cast<uint32_t>((influence[0].first + i) * columns + influence[1].first + j),
           (influence[0].*weights)[static_cast<std::size_t>(i)] * (influence[1].*weights)[static_cast<std::size_t>(j)]};
+}
+
+/// Basis functions of one direction and their derivatives at a parameter.
+struct Basis {
+  std::array<double, spline::kMaxDegree + 1> value{}, slope{};
+  int first = 0, count = 0;
+
+  Basis(const ControlGrid& grid, std::size_t axis, double t) noexcept {
+    const std::vector<double>& knots = grid.knots[axis];
+    const int degree = grid.degree[axis], span = spline::findSpan(knots, degree, t);
+    first = span - degree;
+    count = degree + 1;
+    spline::basisFunctions(knots, degree, span, t, value);
+    if (degree == 0) return;
+    std::array<double, spline::kMaxDegree + 1> lower{};  // of one degree less: N_(first + 1) and on
+    spline::basisFunctions(knots, degree - 1, span, t, lower);
+    for (int i = 0; i < count; ++i) {  // Piegl & Tiller, Eq. 2.7
+      const auto at = static_cast<std::size_t>(first + i), next = static_cast<std::size_t>(first + i + 1);
+      const double left = knots[at + static_cast<std::size_t>(degree)] - knots[at];
+      const double right = knots[next + static_cast<std::size_t>(degree)] - knots[next];
+      const auto k = static_cast<std::size_t>(i);
+      if (i > 0 && left > 0) slope[k] += degree / left * lower[k - 1];
+      if (i < degree && right > 0) slope[k] -= degree / right * lower[k];
+    }
+  }
+};
+
+/// Of one direction: the least change from equal ones that makes the sum 1 at places all along it, by multiplying each
+/// by the mean of what is missing where it acts.
+std::vector<double> complianceAlong(const ControlGrid& grid, std::size_t axis) {
+  constexpr int kLooks = 16, kRounds = 60;  // a knot interval; the changes then are below 1e-3
+  const std::vector<double>& knots = grid.knots[axis];
+  std::vector<Basis> looks;
+  for (std::size_t k = 0; k + 1 < knots.size(); ++k)
+    for (int i = 0; i < kLooks && knots[k + 1] > knots[k]; ++i)
+      looks.emplace_back(grid, axis, knots[k] + (knots[k + 1] - knots[k]) * (i + 0.5) / kLooks);
+  std::vector<double> all(static_cast<std::size_t>(grid.count[axis]), 1);
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<double> missing(all.size(), 0), weight(all.size(), 0);
+    for (const Basis& b : looks) {
+      double sum = 0;
+      for (int i = 0; i < b.count; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        sum += b.value[k] * b.value[k] * all[static_cast<std::size_t>(b.first) + k];
+      }
+      for (int i = 0; i < b.count; ++i) {
+        const auto k = static_cast<std::size_t>(i), at = static_cast<std::size_t>(b.first) + k;
+        missing[at] += b.value[k] * b.value[k] / sum;
+        weight[at] += b.value[k] * b.value[k];
+      }
+    }
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (weight[i] > 0) all[i] *= missing[i] / weight[i];
+  }
+  return all;
 }
 
 }  // namespace
@@ -65,6 +121,28 @@ void Deformation::press(std::span<const Press> contacts) noexcept {
   for (int sweep = 0; sweep < sweeps; ++sweep)
     for (std::size_t i = 0; i < count; ++i)
       yield({contacts[i].normal, contacts[i].depth, contacts[i].speed}, reach[i].all.span(), reach[i].moved.span());
+}
+
+void Deformation::nodesAt(double u, double v, FeltPlace& place) const noexcept {
+  const ControlGrid& grid = skeleton_->control();
+  const Basis along_u(grid, 0, u), along_v(grid, 1, v);
+  place.count = 0;
+  for (int i = 0; i < along_u.count; ++i) {
+    for (int j = 0; j < along_v.count; ++j) {
+      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+      place.nodes[place.count++] = {static_cast<uint32_t>((along_u.first + i) * grid.count[1] + along_v.first + j),
+                                    along_u.value[a] * along_v.value[b], along_u.slope[a] * along_v.value[b],
+                                    along_u.value[a] * along_v.slope[b]};
+    }
+  }
+}
+
+std::vector<double> Deformation::compliance() const {
+  const std::vector<double> u = complianceAlong(skeleton_->control(), 0), v = complianceAlong(skeleton_->control(), 1);
+  std::vector<double> all;
+  for (const double a : u)
+    for (const double b : v) all.push_back(a * b);
+  return all;
 }
 
 Vector4d Deformation::at(double u, double v) const noexcept {

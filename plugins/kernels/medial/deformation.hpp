@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: MIT
 /// How a body from a grid of skeleton points gives way: its nodes are the control points of the skeleton spline.
 #pragma once
 #include <Eigen/Core>
 #include <span>
 #include <vector>
 
+#include "kernels/medial/felt_surface.hpp"
 #include "kernels/medial/influence.hpp"
 #include "kernels/medial/nodes.hpp"
 #include "kernels/medial/skeleton.hpp"
@@ -30,6 +32,10 @@ class Deformation : public Nodes {
   void press(std::span<const Press> contacts) noexcept;
   /// [rt] Displacement of the skeleton (x, y, z) and change of the radius at one point [m].
   Eigen::Vector4d at(double u, double v) const noexcept;
+  /// [rt] The control points that shape the contour at (u, v), with their derivatives.
+  void nodesAt(double u, double v, FeltPlace& place) const noexcept;
+  /// [main] One a control point, so that the sum of weight^2 * compliance is nearly 1 everywhere.
+  std::vector<double> compliance() const;
 
  private:
   /// The control points that a contact moves, and those that shape the surface there.

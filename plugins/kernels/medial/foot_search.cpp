@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Two searches for the foot on a skeleton: warm Newton, and nested bisection.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Which control points a displaced point of a spline takes along, and how far (Corso et al. 2002, section 3.3).
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A medial mesh: spheres joined by edges and triangles, in any order and with any branches. The body is the union of
 /// the cones and slabs that they span, with its distance in closed form (primitives.hpp) behind a tree of boxes.
 #pragma once

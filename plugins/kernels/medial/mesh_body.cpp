@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/medial/mesh_body.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A soft body from a medial mesh: where its surface is, how hard it pushes back, how it gives way.
 #pragma once
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The surface of a medial mesh as triangles: closed, whatever branches it has, with every vertex on a cone or slab.
 #pragma once
 #include <Eigen/Core>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/medial/moving_mesh.hpp"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Closed triangles whose vertices move with the nodes of a soft body, for drawing and for its volume.
 #pragma once
 #include <Eigen/Core>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What moves in a soft body: nodes (control points of a skeleton, vertices of a medial mesh), each a place and a
 /// radius on a spring and a damper about where it is at rest (Corso et al. 2002, sections 3.2 and 3.3).
 #pragma once
@@ -50,6 +51,8 @@ class Nodes {
   std::size_t bytes() const noexcept;
 
  protected:
+  friend class FeltSurface;  // moves the nodes by itself where they are felt
+
   /// A contact that holds the contour where the probe is.
   struct Hold {
     Eigen::Vector3d normal;  ///< outward, unit

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/medial/oscillator.hpp"
 
 #include <cmath>
@@ -35,6 +36,8 @@ OscillatorStep oscillatorStep(const Oscillator& o, double dt) noexcept {
   step.xv = static_cast<double>(p.s);
   step.vx = static_cast<double>(-w2 * p.s);
   step.vv = static_cast<double>(p.c - a * p.s);
+  if (o.stiffness > 0) step.xf = static_cast<double>((1 - (p.c + a * p.s)) / o.stiffness);
+  step.vf = static_cast<double>(p.s / m);
   return step;
 }
 

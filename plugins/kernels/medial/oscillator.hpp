@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The exact step of a mass on a spring and a damper.
 #pragma once
 
@@ -15,6 +16,7 @@ struct Oscillator {
 /// about which x is measured to f / k.
 struct OscillatorStep {
   double xx = 1, xv = 0, vx = 0, vv = 1;
+  double xf = 0, vf = 0;  ///< what a constant force of 1 N adds over the time [m], [m/s]
 
   /// [any] Advances displacement x [m] and speed v [m/s].
   void advance(double& x, double& v) const noexcept {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Primitives of a medial mesh: the hulls of one, two and three spheres, with their distance in closed form.
 ///
 /// All are unions of the spheres whose centre and radius run linearly over a point, a segment or a triangle. The signed

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A scalar over a parameter rectangle, such as a radius or a stiffness, that keeps the shape of its samples.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The force of a pressed surface: a normal spring and four springs along the surface (Corso et al. 2002, section 3.4).
 #pragma once
 #include <Eigen/Core>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/medial/skeleton.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The skeleton of a body: a spline surface (or curve) through the centres of its spheres, with their radii beside it.
 #pragma once
 #include <Eigen/Core>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Keeps the volume of a pressed body: what a contact pushes in comes out all round.
 #pragma once
 #include <algorithm>

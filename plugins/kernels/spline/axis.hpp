@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One parameter direction of a spline: its knots, its spans, and which span holds a parameter.
 #pragma once
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// B-spline basis functions of one span: the small tools of set-up code.
 #pragma once
 #include <array>

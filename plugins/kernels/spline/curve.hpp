@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Evaluation of spline curves of any degree to 15, polynomial or rational, with first and second derivatives.
 #pragma once
 #include <Eigen/Core>

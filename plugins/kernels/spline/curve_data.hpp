@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A spline curve as data.
 #pragma once
 #include <Eigen/Core>

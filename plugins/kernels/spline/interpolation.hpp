@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Splines through given points, in any number of dimensions: positions alone, or with radii and material as well.
 #pragma once
 #include <Eigen/Core>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The innermost loops of evaluation, in plain arrays, so that one source serves every instruction set.
 #pragma once
 #include <cstdint>

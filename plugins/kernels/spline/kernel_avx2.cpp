@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Compiled with -mavx2 -mfma; nothing here runs before kernel_choice.cpp has asked the processor.
 #include "kernels/spline/kernel.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/spline/kernel.hpp"
 
 namespace hapticd::spline {

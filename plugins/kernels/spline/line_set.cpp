@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/spline/line_set.hpp"
 
 #include <algorithm>

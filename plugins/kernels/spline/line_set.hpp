@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Knot insertion along one axis, for all the lines of control points that run along it at once.
 #pragma once
 #include <vector>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Control points as the kernels read them: scaled where coordinates are extreme, weights about 1.
 #pragma once
 #include <Eigen/Core>

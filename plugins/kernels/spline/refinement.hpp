@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The same curve or surface with more knots, as Bezier pieces, or in smooth parts. Parameters never change.
 #pragma once
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/spline/surface_data.hpp"
 
 #include <algorithm>

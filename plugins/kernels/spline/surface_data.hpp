@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A spline surface as a model file states it, and the rules it must keep.
 #pragma once
 #include <Eigen/Core>

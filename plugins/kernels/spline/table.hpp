@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Power-basis coefficients of a surface, a cell a span: the fast form of evaluation.
 #pragma once
 #include <cstddef>

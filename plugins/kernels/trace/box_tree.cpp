@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/trace/box_tree.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Bounding boxes of small, nearly flat pieces of patches, in a binary tree: where a global search may stop looking.
 #pragma once
 #include <Eigen/Geometry>

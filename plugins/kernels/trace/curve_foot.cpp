@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/trace/curve_foot.hpp"
 
 #include <algorithm>

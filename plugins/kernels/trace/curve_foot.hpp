@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Closest points on curves: the paper's first-order step, and Newton.
 #pragma once
 #include "kernels/spline/curve.hpp"

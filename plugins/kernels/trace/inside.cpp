@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Which side of the model the probe is on, decided where the nearest foot lies: on a face, an edge or a corner.
 #include <Eigen/Geometry>
 #include <cmath>

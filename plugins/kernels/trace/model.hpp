@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A model of many spline surfaces, ready for tracing: smooth patches, what adjoins what, and a tree for global search.
 #pragma once
 #include <Eigen/Geometry>

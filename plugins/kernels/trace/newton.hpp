@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Local closest point on one patch: the safeguarded Newton iteration, and the paper's one-step method as reference.
 #pragma once
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Which shells of a model bound one solid together, and which run into each other.
 #pragma once
 #include <vector>

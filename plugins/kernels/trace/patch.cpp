@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/trace/patch.hpp"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One smooth piece of a model: a spline surface without creases or gaps inside, and what lies across its four sides.
 #pragma once
 #include <Eigen/Core>

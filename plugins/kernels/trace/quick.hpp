@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The common tick, written for speed: the last foot is near, the next one is inside the patch, and the surface between
 /// them is smooth. Plain arrays, so that one source (quick.inl) serves every instruction set; newton.hpp is the
 /// interface.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Compiled with -mavx2 -mfma; nothing here runs before quick_choice.cpp has asked the processor.
 #include "kernels/trace/quick.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Global search over a model: leaves of the box tree, nearest first, and Newton from the middle of each.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Finds what adjoins what in a model: vertices, seams, common edges, poles, shells.
 #pragma once
 #include <string>

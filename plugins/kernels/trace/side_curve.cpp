@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/trace/side_curve.hpp"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One side of a patch as a curve.
 #pragma once
 #include "kernels/trace/patch.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Traces one probe over the active surfaces of a model. One Tracer a probe; the Model is shared.
 #pragma once
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/trace/tracks.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The feet that a Tracer follows: one for each active patch, and rivals, feet in other valleys of the same patches.
 #pragma once
 #include <cstdint>

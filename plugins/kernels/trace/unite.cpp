@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Models whose parts run into each other, as the handle of a pot ends inside its body: what is buried is not felt, and
 /// where parts meet they act together.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A plugin whose static constructor throws.
 #include <stdexcept>
 

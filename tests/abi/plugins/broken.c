@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* Plugins that must be refused; which one is chosen by a definition. */
 #include <stdlib.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Shapes that fail while they are set up.
 #include <cmath>
 #include <stdexcept>

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT */
 /* A sphere in plain C, without any helper: the smallest whole plugin. It is built against the headers as they are,
  * against smaller ones and against larger ones (VERSIONED_NAME tells them apart); all must answer alike. */
 #include <math.h>

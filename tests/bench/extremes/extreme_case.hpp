@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A surface model, a probe path, and the true distance at every tick.
 #pragma once
 #include <Eigen/Core>

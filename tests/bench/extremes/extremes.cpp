@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Traces extreme surfaces and probe paths with the production tracer, in lockstep with the global search as
 /// `hapticd trace` runs it, and prints what came of each. Exit code 1 if any case is not ok.
 ///   extremes [--random TICKS] [FOLDER...]   without a folder: tests/cases/extremes, closed forms, walks

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Walks of a hand over whole models, with edges, seams, poles and medial axes on its way.
 #include <algorithm>
 #include <random>

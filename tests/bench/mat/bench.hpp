@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Figures of the soft bodies: tables of text, and how times are taken.
 #pragma once
 #include <algorithm>

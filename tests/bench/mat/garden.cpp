@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The paper's Table 1: scenes of 1 to 35 bodies, through the whole servo core.
 #include <fmt/format.h>
 #include <unistd.h>

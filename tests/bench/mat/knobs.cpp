@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Accuracy against speed, a table a knob.
 #include <fmt/format.h>
 

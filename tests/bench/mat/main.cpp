@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: MIT
 /// bench_mat: what soft bodies cost and how exact they are. Prints the tables, or those that are named (knobs, scenes,
-/// meshes, volume, searches); with --write, writes driver/docs/bench_mat.md.
+/// meshes, volume, searches); with --write, writes driver/docs/reports/bench_mat.md.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +37,7 @@ int main(int argc, char** argv) {
       std::fflush(stdout);
       text += made;
     }
-    if (write) std::ofstream(HAPTICD_SOURCE_DIR "/driver/docs/bench_mat.md") << text;
+    if (write) std::ofstream(HAPTICD_SOURCE_DIR "/driver/docs/reports/bench_mat.md") << text;
     return 0;
   } catch (const std::exception& e) {
     fmt::print(stderr, "error: {}\n", e.what());

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Medial meshes: what a cone and a slab cost, and a whole tick on bodies of many of them.
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "scene_world.hpp"
 
 #include <algorithm>
@@ -17,7 +18,7 @@ std::unique_ptr<servo::World> buildWorld(const std::string& scene, const std::fi
   host::Catalog catalog;
   scene::Loaded loaded = scene::load(folder / "scene.yaml", catalog, {.default_device = false, .device_file = {}});
   std::string problems;
-  for (const scene::Problem& problem : loaded.problems) problems += problem.text() + "\n";
+  for (const document::Problem& problem : loaded.problems) problems += problem.text() + "\n";
   if (!loaded.scene) throw std::runtime_error(problems);
   const auto begun = std::chrono::steady_clock::now();
   auto world = servo::World::build(*loaded.scene, {1000, 1, false}, [](int, const auto&, const auto&) {});

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A scene in the whole servo core, ticked by a probe that is put anywhere.
 #pragma once
 #include <Eigen/Core>
@@ -7,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "servo/lockstep.hpp"
-#include "servo/world.hpp"
+#include "servo/loop/lockstep.hpp"
+#include "session/world.hpp"
 
 namespace hapticd::bench_mat {
 
@@ -24,7 +25,7 @@ struct Ticks {
 
 class Hand {
  public:
-  explicit Hand(servo::World& world) : world_(world), lockstep_(world) { probe_.valid = true; }
+  explicit Hand(servo::World& world) : world_(world), lockstep_(world.lockstep()) { probe_.valid = true; }
 
   void tick(const Eigen::Vector3d& at) {
     prepare(at);

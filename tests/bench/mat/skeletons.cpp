@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Searches on ten skeletons: failures and errors against brute force, evaluations and times.
 #include <fmt/format.h>
 

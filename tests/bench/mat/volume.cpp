@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Volume of pressed bodies, with and without keeping it.
 #include "kernels/medial/volume.hpp"
 

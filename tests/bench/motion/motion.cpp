@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// bench_motion: CPU time of one tick of each thing that moves, without the tracing of its surfaces. Figures to read,
 /// not a test; the goal is below 1 us each.
 #include <benchmark/benchmark.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Plots of the benches: panels with axes, curves, bars and a legend, in one SVG file.
 #pragma once
 #include <algorithm>

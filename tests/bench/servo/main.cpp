@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What a tick costs besides its plugin and its device: `bench_servo [TICKS]`. The whole tick from waking to sleeping,
 /// with black box and status page, over a wall and a gantry that take nanoseconds. At 10 kHz in real time every second
 /// tick follows a sleep, with caches and branch predictors as cold as the kernel and a hypervisor's other guests leave
@@ -48,7 +49,7 @@ void bench(uint64_t ticks) {
   rig.telemetry->attach(
       std::make_unique<Flight>(std::move(*record::FlightRing::create(
                                    flightStreams(rig.scene, rig.arms, kRate, Telemetry::kBlackBoxSeconds, 0), {})),
-                               rig.arms));
+                               rig.arms, 8));
   rig.telemetry->attach(
       std::make_unique<StatusWriter>(std::move(*status::PageFile::create(page.string())), rig.scene, rig.arms, kRate));
   BookingClock clock;
@@ -56,7 +57,7 @@ void bench(uint64_t ticks) {
   settings.period_ns = static_cast<Nanoseconds>(1e9 / kRate);
   settings.ticks = ticks;
   settings.lockstep = false;
-  Loop loop(*rig.world, rig.arms, clock, settings, *rig.telemetry);
+  Loop loop(rig.world->core(), rig.world->lockstep(), rig.arms, clock, settings, *rig.telemetry);
   os::Thread servo;
   const auto code = servo.start("bench-servo", [&] {
     if (os::setFifo(os::kServoPriority)) std::fprintf(stderr, "warning: no real-time rights; others take part\n");

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// table1: the evaluation of Thompson et al. 1999 in simulation, see kUsage.
 #include <fmt/format.h>
 #include <unistd.h>
@@ -21,7 +22,7 @@ constexpr const char* kUsage =
     "  --seconds S  of simulated time a row; without it 60, as the goals need\n"
     "  --seed N     of the hand's tremor\n"
     "  --check      exit code 1 where a goal is missed\n"
-    "  --write      overwrite driver/docs/table1.md and its pictures\n\n"
+    "  --write      overwrite driver/docs/reports/table1.md and its pictures\n\n"
     "Exit code 2: bad usage.\n"
     "Example: table1 --check\n";
 
@@ -100,7 +101,7 @@ int evaluate(int argc, char** argv) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   fmt::print("{:.1f} s for {:.0f} s of simulated time a row\n", seconds, protocol.seconds);
   if (has(argc, argv, "--write"))
-    writePage({rows, varied, pressed, protocol, verdict}, HAPTICD_SOURCE_DIR "/driver/docs");
+    writePage({rows, varied, pressed, protocol, verdict}, HAPTICD_SOURCE_DIR "/driver/docs/reports");
   return has(argc, argv, "--check") && !verdict.met ? 1 : 0;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The operator of the evaluation: a person who strokes a model with a finger and pushes on it, as a spring and damper
 /// pulled to a point behind the surface. Sees the model 150 ms late.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "page.hpp"
 
 #include <fmt/format.h>
@@ -135,7 +136,7 @@ std::string protocolText(const Protocol& p) {
       R"(- **From the paper**: 1500 Hz; Eq. 4 with n = 1/2 and 6000 N/m, read as 6 N at 1 mm (k x0 (x/x0)^n with x0 = 1 mm: in SI units
   as printed the mean row would need 242 N); velocity by Eq. 5 with n = {}; models of 40 kg, the button without mass and with
   linear springs (Eq. 10); the button's own resistance rises to 9 N, falls to 5 N and rises again (Fig. 6 has no numbers).
-- **The arm** ([simulated-sarcos.yaml](../../config/devices/simulated-sarcos.yaml)): eight joints, 10 to 30 um at the tip, one sample of delay,
+- **The arm** (`config/devices/simulated-sarcos.yaml`): eight joints, 10 to 30 um at the tip, one sample of delay,
   joint friction. Its masses were never published: 1.1 to 1.9 kg are felt at the tip. Assumption.
 - **The hand**: 1 kg on {:g} N/m and 10 N s/m, pulled to a point behind the surface. The push is {:g} N on average and wanders by {:.0f} %
   (Ornstein-Uhlenbeck, {:g} Hz, at most {:g} standard deviations), with a tremor of {:.0f} % at {:g} Hz. Assumptions, but for one subject's

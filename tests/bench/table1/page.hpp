@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The table as text, as a page and as pictures.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "session.hpp"
 
 #include <fmt/format.h>
@@ -6,11 +7,11 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "guide.h"
+#include "hapticd/device.h"
 #include "scene/load.hpp"
-#include "servo/arm.hpp"
-#include "servo/lockstep.hpp"
-#include "servo/world.hpp"
+#include "servo/arm/arm.hpp"
+#include "servo/loop/lockstep.hpp"
+#include "session/world.hpp"
 #include "traced_shape/model_file.hpp"
 
 namespace hapticd::table1 {
@@ -64,7 +65,7 @@ scene::Scene makeScene(const Subject& subject, bool moving, const Protocol& prot
   host::Catalog catalog;
   scene::Loaded loaded = scene::load(work / "scene.yaml", catalog);
   std::string problems;
-  for (const scene::Problem& problem : loaded.problems) problems += problem.text() + "\n";
+  for (const document::Problem& problem : loaded.problems) problems += problem.text() + "\n";
   if (!loaded.scene) throw std::runtime_error(problems);
   return *loaded.scene;
 }
@@ -87,7 +88,7 @@ class Rig {
     handle_ = arm_->device().handle();
     hand_ = static_cast<const hdv_ext_hand*>(arm_->device().description().extension(handle_, HDV_EXT_HAND));
     if (hand_ == nullptr) throw std::runtime_error("the arm has no hand to guide");
-    lockstep_.emplace(*world_);
+    lockstep_.emplace(world_->lockstep());
     if (auto started = arm_->start(0, scene.servo.gravity); !started) throw std::runtime_error(started.error());
   }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// One row of the table: a scene run in virtual time with the simulated Sarcos-like arm and the operator.
 #pragma once
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The five models of Table 1 and the way over each that the operator's finger takes.
 #pragma once
 #include <Eigen/Geometry>

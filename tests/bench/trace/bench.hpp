@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// What the parts of bench_trace share: surfaces, clock, solvers of one closest point a tick.
 #pragma once
 #include <Eigen/Core>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Whether single precision would pay: the same table evaluation of one bicubic span, in double and in float.
 #include <Eigen/Dense>
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// bench_trace: figures to read, not a test, as Markdown. Run it on an idle machine; compare ratios, not absolute
 /// times.
 #include <cstdio>
@@ -63,7 +64,7 @@ void printUsage(std::FILE* to) {
                "Prints what tracing costs on this machine, as Markdown: all parts, or those named of\n ");
   for (const Part& part : kParts) std::fprintf(to, " %s", part.name);
   std::fprintf(to,
-               ".\n  --write    all parts, over driver/docs/bench_trace.md\n\n"
+               ".\n  --write    all parts, over driver/docs/reports/bench_trace.md\n\n"
                "Run it on an idle machine; all of it takes minutes. Exit code 2: bad usage.\n"
                "Example: bench_trace tick\n");
 }
@@ -90,8 +91,8 @@ int main(int count, char** names) {
   }
   if (count == 2 && std::strcmp(names[1], "--write") == 0) {
     count = 1;
-    if (std::freopen(HAPTICD_SOURCE_DIR "/driver/docs/bench_trace.md", "w", stdout) == nullptr) {
-      std::perror("error: driver/docs/bench_trace.md");
+    if (std::freopen(HAPTICD_SOURCE_DIR "/driver/docs/reports/bench_trace.md", "w", stdout) == nullptr) {
+      std::perror("error: driver/docs/reports/bench_trace.md");
       return 1;
     }
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Open CASCADE as Debian packages it. Millimetres, as CAD kernels and their tolerances expect.
 #include <Extrema_GenLocateExtPS.hxx>
 #include <Extrema_POnSurf.hxx>

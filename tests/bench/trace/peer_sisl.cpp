@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // SISL as Debian packages it. Millimetres, as its tolerances expect.
 #include <sisl.h>
 

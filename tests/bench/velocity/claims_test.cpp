@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The claims of the NURBS paper about its velocity estimate, checked.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "delays.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The delays that the NURBS paper compares: low passes behind a difference of two samples, cut off where its window
 /// is.
 #pragma once

@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: MIT
 /// velocity: the estimators side by side, and the claims of the NURBS paper about theirs. Prints tables; with --write,
-/// writes driver/docs/velocity.md and its picture.
+/// writes driver/docs/reports/velocity.md and its picture.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -194,7 +195,7 @@ int run(bool write) {
   const std::string text = table(1000, 30e-6) + table(1500, 10e-6) + table(10000, 3e-6) + claims();
   fmt::print("{}", text);
   if (!write) return 0;
-  const std::filesystem::path folder = HAPTICD_SOURCE_DIR "/driver/docs";
+  const std::filesystem::path folder = HAPTICD_SOURCE_DIR "/driver/docs/reports";
   std::filesystem::create_directories(folder / "pictures");
   draw(folder / "pictures/velocity.svg");
   std::ofstream out(folder / "velocity.md");
@@ -226,7 +227,7 @@ int main(int argc, char** argv) {
   constexpr const char* kUsage =
       "Usage: velocity [--write]\n\n"
       "Compares the velocity estimators on steps of an encoder and prints tables.\n"
-      "  --write  overwrite driver/docs/velocity.md and its picture\n\n"
+      "  --write  overwrite driver/docs/reports/velocity.md and its picture\n\n"
       "Exit code 2: bad usage.\n";
   const std::string word = argc > 1 ? argv[1] : "";
   if (word == "--help" || word == "-h") {

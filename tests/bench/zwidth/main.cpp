@@ -1,5 +1,6 @@
+// SPDX-License-Identifier: MIT
 /// zwidth: the largest stiffness and damping that can be rendered, against rate, window, delay and resolution, beside
-/// the theoretical bounds. Prints tables; with --write, writes driver/docs/zwidth.md and its picture.
+/// the theoretical bounds. Prints tables; with --write, writes driver/docs/reports/zwidth.md and its picture.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,7 +10,7 @@
 #include <stdexcept>
 
 #include "plot/plot.hpp"
-#include "servo/passivity/bounds.hpp"
+#include "servo/safety/passivity/bounds.hpp"
 #include "wall_loop.hpp"
 
 namespace {
@@ -227,7 +228,7 @@ int draw(bool write) {
   bounce(picture, page);
   fmt::print("{}", page.text);
   if (!write) return 0;
-  const std::filesystem::path folder = HAPTICD_SOURCE_DIR "/driver/docs";
+  const std::filesystem::path folder = HAPTICD_SOURCE_DIR "/driver/docs/reports";
   std::filesystem::create_directories(folder / "pictures");
   picture.save(folder / "pictures/zwidth.svg");
   std::ofstream out(folder / "zwidth.md");
@@ -239,7 +240,7 @@ int draw(bool write) {
          "and Schenkel 1997, with\n"
          "  the window of Eq. 5 of Thompson et al. put in); with delay or both, the numeric maximum over frequency. "
          "Below it no passive\n"
-         "  hand makes the wall oscillate. The functions are in `driver/servo/passivity/bounds.hpp`.\n"
+         "  hand makes the wall oscillate. The functions are in `driver/daemon/servo/safety/passivity/bounds.hpp`.\n"
          "- **Found, worst hand**: the smallest stiffness at which some hand of mass and spring, without friction, "
          "makes the loop grow: the\n"
          "  eigenvalues of the exact sampled loop. The bound is as tight as these hands come near it.\n"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "wall_loop.hpp"
 
 #include <Eigen/Eigenvalues>

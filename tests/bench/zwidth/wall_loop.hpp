@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A sampled wall in a loop with a device and a hand: how stiff may it be? Linear loops by their eigenvalues, quantised
 /// ones by the energy that the nastiest motion draws from them.
 #pragma once

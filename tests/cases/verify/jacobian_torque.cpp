@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Family jacobian_torque: wrench, Jacobian and torques of an arm with a spherical wrist (Thompson et al. 1999, Eq.
 /// 7-9).
 #include "kinematics/chain.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// verify_cases DIR: every truth case of a folder through the production kernels.
 #include <algorithm>
 #include <cstdio>
@@ -29,11 +30,12 @@ std::optional<std::vector<Case>> readCases(const fs::path& file) {
   for (const Json& item : list) {
     for (const char* key : {"id", "family", "input", "expect", "tol"})
       if (!item.is_object() || !item.contains(key)) {
-        std::fprintf(stderr, "error: %s: case %zu: no \"%s\", expected {id, family, input, expect, tol}\n", file.c_str(),
-                     cases.size(), key);
+        std::fprintf(stderr, "error: %s: case %zu: no \"%s\", expected {id, family, input, expect, tol}\n",
+                     file.c_str(), cases.size(), key);
         return std::nullopt;
       }
-    cases.push_back({item["id"].get<std::string>(), item["family"].get<std::string>(), item["input"], item["expect"], item["tol"]});
+    cases.push_back(
+        {item["id"].get<std::string>(), item["family"].get<std::string>(), item["input"], item["expect"], item["tol"]});
   }
   return cases;
 }

@@ -1,4 +1,5 @@
-#include "servo/frame.hpp"
+// SPDX-License-Identifier: MIT
+#include "servo/core/frame.hpp"
 #include "verify.hpp"
 
 namespace hapticd::verify {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/spline/curve.hpp"
 #include "verify.hpp"
 

@@ -1,4 +1,5 @@
-#include "servo/passivity/bounds.hpp"
+// SPDX-License-Identifier: MIT
+#include "servo/safety/passivity/bounds.hpp"
 #include "verify.hpp"
 
 namespace hapticd::verify {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/medial/influence.hpp"
 #include "kernels/spline/basis.hpp"
 #include "verify.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "servo/velocity/estimator.hpp"
 #include "servo/velocity/response.hpp"
 #include "verify.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Truth cases: a family of cases is a function that computes each with the production kernels and checks the answers.
 #pragma once
 #include <cmath>
@@ -18,8 +19,8 @@ struct Case {
   Json input, expect, tol;
 };
 
-/// An expected number: a decimal string of up to 30 digits, or a plain number. Kept in long double, so that rounding the
-/// string costs nothing against the tolerances.
+/// An expected number: a decimal string of up to 30 digits, or a plain number. Kept in long double, so that rounding
+/// the string costs nothing against the tolerances.
 inline long double truth(const Json& value) {
   if (!value.is_string()) return static_cast<long double>(value.get<double>());
   const std::string text = value.get<std::string>();
@@ -30,7 +31,9 @@ inline long double truth(const Json& value) {
 }
 
 /// A tolerance or other number that may be written as a string.
-inline double number(const Json& value) { return static_cast<double>(truth(value)); }
+inline double number(const Json& value) {
+  return static_cast<double>(truth(value));
+}
 
 /// Gathers the comparisons of one case.
 class Check {

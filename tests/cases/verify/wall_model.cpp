@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/contact/wall.hpp"
 #include "verify.hpp"
 
@@ -9,8 +10,7 @@ void wallModel(const Case& c, Check& check) {
   const contact::WallLaw law{number(in["k"]), number(in["lam"]), number(in["n"]), number(in["x0"])};
   const contact::WallForce wall = contact::wallForce(law, number(in["x"]), number(in["v"]));
   check.relative("F", wall.force, c.expect["F"], number(c.tol["rel"]));
-  if (c.expect.contains("dFdx"))
-    check.relative("dFdx", wall.stiffness, c.expect["dFdx"], number(c.tol["rel"]));
+  if (c.expect.contains("dFdx")) check.relative("dFdx", wall.stiffness, c.expect["dFdx"], number(c.tol["rel"]));
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Every file of tests/scenes/malformed is refused with exit code 2 and a problem that says where; a first line
 /// `# expect: TEXT` names what the message must hold. A new case is a new file.
 #include <gtest/gtest.h>
@@ -46,8 +47,7 @@ TEST_P(MalformedFile, IsRefusedWithPlaceAndReason) {
 
 std::string nameOf(const testing::TestParamInfo<std::filesystem::path>& info) {
   std::string name = info.param.stem().string();
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+  std::replace_if(name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
   return name;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Runs the program `hapticd` as a user does and gives back what it printed.
 #pragma once
 #include <sys/wait.h>

@@ -95,7 +95,7 @@ def sameName(folder):
     third = Daemon(folder).ready()
     check("the name of one that was killed is free", third.ctl("status")[0] == 0)
     code, said = third.end()
-    check("and what it left is kept", code == 0 and "did not end in order" in said and
+    check("and what it left is kept", code == 0 and "was killed or crashed" in said and
           os.path.exists(os.path.join(folder, "blackbox-x-crash-1.h5")), (code, said, os.listdir(folder)))
     check("at the end nothing is left", not [n for n in os.listdir(folder) if n.startswith("x.")], os.listdir(folder))
 
@@ -108,7 +108,7 @@ def unnamedTogether(folder):
     names = sorted(n for n in os.listdir(folder) if n.endswith(".sock"))
     check("two unnamed daemons started together have a name each", len(names) == 2 and "hapticd.sock" in names, names)
     told = [daemon.end() for daemon in both]
-    check("and no files of the other", all(code == 0 and "did not end in order" not in said for code, said in told), told)
+    check("and no files of the other", all(code == 0 and "was killed or crashed" not in said for code, said in told), told)
 
 
 def oneRecording(folder):
@@ -135,7 +135,7 @@ def partly(folder):
     time.sleep(0.5)
     daemon.end()
     done = subprocess.run([HAPTICD, "replay", file], capture_output=True, text=True, timeout=60)
-    check("a replay that ends where models came has a code of its own", done.returncode == 3 and "came or left" in done.stderr, done)
+    check("a replay that ends where models came has a code of its own", done.returncode == 3 and "added or removed" in done.stderr, done)
 
 
 CASES = [pipes, idle, sameName, unnamedTogether, oneRecording, partly]

@@ -64,7 +64,7 @@ with tempfile.TemporaryDirectory() as scratch:
     status, text = hapticd("plot", teapot, "--from", "2", "--to", "1")
     check("--from after --to is refused by its name", status == 2 and "--from is not before --to" in text, text)
     status, text = hapticd("plot", teapot, "--from", "50")
-    check("a time beyond the recording is refused with the times it has", status == 2 and "it runs from" in text, text)
+    check("a time beyond the recording is refused with the times it has", status == 2 and "the recording covers" in text, text)
     check("and leaves no picture", not os.path.exists(teapot + ".svg"))
     status, text = hapticd("plot", teapot, "--out", "/nonexistent/a.svg")
     check("a picture that cannot be written is bad input, as it is to run", status == 2 and "cannot be written" in text, text)

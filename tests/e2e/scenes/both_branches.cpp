@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The simulated hand of soft-branch.yaml feels both fingers and the crotch between them, in virtual time.
 /// Usage: both_branches HAPTICD SCENE
 #include <unistd.h>

@@ -116,5 +116,5 @@ with tempfile.TemporaryDirectory() as folder:
     # A goal that nothing reaches: the nearest is chosen, and the exit code says so.
     assert "none of" in run("tune", file, "--motion-seconds", "0.5", "--limit-seconds", "5", "--budget-us", "0.001", code=1)
     open(f"{folder}/empty.yaml", "w").write("hapticd: 1\nmodels: []\n")
-    assert "nothing to tune" in run("tune", f"{folder}/empty.yaml", code=2)
+    assert "expected one to tune" in run("tune", f"{folder}/empty.yaml", code=2)
 print("tuned; the choice holds over another motion")

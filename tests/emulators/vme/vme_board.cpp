@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "emulators/vme/vme_board.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The arm controller board at the other end of a VME mailbox: its blocks as bytes, written down a second time by hand
 /// from driver/docs/vme_board.md, and behind them a simulated arm with the hand that holds it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Runs an arm controller board on a slave window of a VME bus, or on a plain file that stands in for it.
 ///
 ///   vme_board WINDOW --arm FILE [--plugin-path DIR] [--rate HZ] [--for S] [--fault NAME --at S --lasts S [--in-force]]
@@ -42,7 +43,7 @@ const std::map<std::string, VmeFault> kFaults = {{"silent", VmeFault::kSilent}, 
 
 int openWindow(const std::string& path) {
   const int fd = open(path.c_str(), O_RDWR | O_CLOEXEC | (path.rfind("/dev/", 0) == 0 ? 0 : O_CREAT), 0600);
-  struct stat about {};
+  struct stat about{};
   if (fd < 0 || fstat(fd, &about) != 0) return -1;
   if (S_ISREG(about.st_mode)) return ftruncate(fd, kSize) == 0 ? fd : -1;
   vme::PackedSlave slave{1, kBase, kSize, vme::kA24, vme::kSingle | vme::kUser | vme::kData};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A shape plugin through its C ABI alone, as the host uses it: it traces what is near, keeps the pose and gives
 /// positions and velocities relative to it.
 #pragma once

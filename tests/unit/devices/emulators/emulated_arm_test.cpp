@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The shipped device files against arms whose wire format was written down a second time: a wall that the host makes
 /// must hold a hand that presses into it. A wrong sign, scale or offset anywhere pushes the hand through instead.
 #include "emulators/emulated_arm.hpp"

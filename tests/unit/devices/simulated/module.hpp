@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The built module `simulated`, driven through its C ABI as the host does it.
 #pragma once
 #include <dlfcn.h>
@@ -8,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "guide.h"
 #include "hapticd/device.h"
 #include "hapticd/device_pace.h"
 

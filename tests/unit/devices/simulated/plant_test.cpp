@@ -1,8 +1,9 @@
-#include "plant.hpp"
+// SPDX-License-Identifier: MIT
+#include "simulated/plant.hpp"
 
 #include <gtest/gtest.h>
 
-#include "mechanisms.hpp"
+#include "simulated/mechanisms.hpp"
 
 namespace hapticd::simulated {
 namespace {

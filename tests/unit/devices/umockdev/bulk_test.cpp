@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The bulk transport and its I/O thread with the real libusb: open by serial number, push, stall, lose, find again.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Runs a program, such as hapticd, as a child that finds an emulated WoodenHaptics plugged in.
 /// Usage: LD_PRELOAD=libumockdev-preload.so.0 hidraw_host COMMAND ARGUMENT...
 #include <sys/wait.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The HID transport and its I/O thread with the real hidapi: open by serial number, push, lose, find again.
 #include <gtest/gtest.h>
 

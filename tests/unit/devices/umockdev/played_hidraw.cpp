@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "played_hidraw.hpp"
 
 #include <fcntl.h>

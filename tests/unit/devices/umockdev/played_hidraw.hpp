@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A hidraw device that exists for this process alone: umockdev gives /sys, the node and its reads, writes and ioctls;
 /// an emulated arm is behind them. umockdev's plain files are always readable, so the node is a pseudo-terminal whose
 /// one byte says that a report waits, and whose closed master is an unplugged device.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "played_usb.hpp"
 
 #include <pty.h>

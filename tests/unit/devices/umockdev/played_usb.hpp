@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A USB device that exists for this process alone: umockdev gives /sys and the ioctls of its node, an emulated arm is
 /// behind them, and a thread is its clock. umockdev's plain files are always ready, so the node is a pseudo-terminal:
 /// writable while a transfer is done, its closed master an unplugged device, as usbfs has it.

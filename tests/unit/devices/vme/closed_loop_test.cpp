@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A hand that strokes a cylinder through the board: the host's side uses the shipped device file alone, so a wrong
 /// sign, scale, offset or kinematic length anywhere lets the hand through or throws it off. The same loop around the
 /// simulated arm itself is the measure.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Faults of a controller board, in virtual time: each ends the force within 20 ms, has a name, and is over when the
 /// board is well again.
 #include "rig.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Kinematics of the shipped Sarcos description: the thumb takes no part, and going there and back again ends where it
 /// began. Eight joints for a point are too many: "back" means the tip, the joints may be others.
 #include <random>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The mailbox's own duties over a plain file: places that cannot be, half blocks, silence of the bus.
 #include "rig.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A controller board and the host's end of its mailbox over a plain file, in virtual time. The board writes 1500
 /// blocks a second, the host looks twice as often.
 #pragma once

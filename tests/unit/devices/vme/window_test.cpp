@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The window's ioctls, answered by a kernel that umockdev plays: what is asked for, and every refusal in words.
 #include "vme/window.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mat_deformable/ma_file.hpp"
 
 #include <gtest/gtest.h>

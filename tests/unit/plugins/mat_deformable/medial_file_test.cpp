@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mat_deformable/medial_file.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Bodies from a medial mesh, through the C ABI.
 #include <map>
 

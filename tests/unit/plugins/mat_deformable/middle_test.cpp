@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Forces in the middle of a sheet and round its rim: constant while the probe is still, without jumps while it moves.
 #include <random>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The plugin through its C ABI alone, as the host uses it.
 #pragma once
 #include <gtest/gtest.h>

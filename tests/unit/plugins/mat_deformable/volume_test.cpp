@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The volume of pressed bodies.
 #include "../kernels/medial/meshes.hpp"
 #include "soft_plugin.hpp"

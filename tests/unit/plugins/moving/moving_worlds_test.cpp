@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Several models at once, through the servo core in virtual time: what moves, what stands, and a hand between them.
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,9 +9,9 @@
 
 #include "kernels/dynamics/oscillator.hpp"
 #include "scene/load.hpp"
-#include "servo/lockstep.hpp"
-#include "servo/probe_velocity.hpp"
-#include "servo/world.hpp"
+#include "servo/loop/lockstep.hpp"
+#include "servo/velocity/probe_velocity.hpp"
+#include "session/world.hpp"
 
 namespace hapticd::test {
 namespace {
@@ -30,12 +31,12 @@ class Scene {
     host::Catalog catalog{host::SearchPath{{PLUGINS}, {}}};
     auto loaded = scene::load(file, catalog, {false, {}});
     fs::remove(file);
-    for (const scene::Problem& problem : loaded.problems) ADD_FAILURE() << problem.text();
+    for (const document::Problem& problem : loaded.problems) ADD_FAILURE() << problem.text();
     auto world = servo::World::build(*loaded.scene, {rate, 1, false},
                                      [](int, const std::string&, const std::string& text) { ADD_FAILURE() << text; });
     EXPECT_TRUE(world) << world.error();
     world_ = std::move(*world);
-    lockstep_.emplace(*world_);
+    lockstep_.emplace(world_->lockstep());
     if (world_->needsVelocity()) estimator_ = *servo::makeEstimator(loaded.scene->servo.velocity, rate);
   }
   /// One tick with the probe at `position` [m]; the force on it [N].

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "nurbs_rigid/motion.hpp"
 
 #include <gtest/gtest.h>
@@ -267,13 +268,9 @@ TEST(Motion, SaysWhatBodyItRefuses) {
     EXPECT_LT(plugin.activate(), 0);
     return plugin.log;
   };
-  EXPECT_NE(complaint([](auto& p) {
-              p.set("inertia", {1, 1, 3});
-            }).find("none above the sum of the others"),
+  EXPECT_NE(complaint([](auto& p) { p.set("inertia", {1, 1, 3}); }).find("none above the sum of the others"),
             std::string::npos);
-  EXPECT_NE(complaint([](auto& p) {
-              p.set("inertia", {1, 0.5, 0, 0, 1, 0, 0, 0, 1});
-            }).find("symmetric"),
+  EXPECT_NE(complaint([](auto& p) { p.set("inertia", {1, 0.5, 0, 0, 1, 0, 0, 0, 1}); }).find("symmetric"),
             std::string::npos);
   EXPECT_NE(complaint([](auto& p) { p.set("inertia", {1, 0, 1}); }).find("above 0"), std::string::npos);
   EXPECT_NE(complaint([](auto& p) { p.set("inertia", {1, 1, 1, 0, 0, 0}); }).find("6 numbers"), std::string::npos);

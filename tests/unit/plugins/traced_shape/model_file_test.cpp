@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "traced_shape/model_file.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A body between contacts: what a held force would do to it, and that ours does not.
 #include <gtest/gtest.h>
 

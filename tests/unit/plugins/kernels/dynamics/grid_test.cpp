@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Stiffness from 1 to 1e6 N/m, mass from 1e-6 to 1e6 kg, steps from 0.1 to 10 ms, damping up to ten times critical:
 /// no integrator gains energy anywhere.
 #include <gtest/gtest.h>

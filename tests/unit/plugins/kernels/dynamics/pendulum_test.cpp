@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/dynamics/pendulum.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// The ten skeletons on which searches are judged, and the truth by brute force.
 #pragma once
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/medial/body.hpp"
 
 #include <gtest/gtest.h>

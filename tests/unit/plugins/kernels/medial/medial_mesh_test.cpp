@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/medial/medial_mesh.hpp"
 
 #include <gtest/gtest.h>

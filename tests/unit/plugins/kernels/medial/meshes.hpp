@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Medial meshes for tests.
 #pragma once
 #include <random>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/spline/axis.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Truth for spline tests: the definitions (Cox-de Boor, quotient rule) in exact rational arithmetic.
 #pragma once
 #include <Eigen/Core>

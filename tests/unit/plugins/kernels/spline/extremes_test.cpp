@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Numbers at the ends of what a double holds, and weights and knots at the ends of what a model file may.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/spline/refinement.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Curves and surfaces for tests, the same in every run.
 #pragma once
 #include <cmath>

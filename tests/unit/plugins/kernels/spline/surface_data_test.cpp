@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/spline/surface_data.hpp"
 
 #include <gtest/gtest.h>
@@ -36,10 +37,7 @@ const Fault kFaults[] = {
      }},
     {"points: 35 points; knots and degrees state 6 x 6 = 36", [](SurfaceData& d) { d.points.pop_back(); }},
     {"points[7]: a coordinate is not a finite number", [](SurfaceData& d) { d.points[7].y() = std::nan(""); }},
-    {"weights: 3 weights for 36 points",
-     [](SurfaceData& d) {
-       d.weights = {1, 1, 1};
-     }},
+    {"weights: 3 weights for 36 points", [](SurfaceData& d) { d.weights = {1, 1, 1}; }},
     {"weights[2]: 0 is not a weight", [](SurfaceData& d) { d.weights.assign(36, 1), d.weights[2] = 0; }},
     {"weights[2]: -1 is not a weight", [](SurfaceData& d) { d.weights.assign(36, 1), d.weights[2] = -1; }},
     {"weights[35]: nan", [](SurfaceData& d) { d.weights.assign(36, 1), d.weights[35] = std::nan(""); }},

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Force round sharp and open edges, in circles about points of them.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kernels/trace/newton.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Models of config/models and their closed forms, and random patches.
 #pragma once
 #include <cmath>

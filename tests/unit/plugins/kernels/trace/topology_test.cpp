@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// Force across edges, overlapping parts, rival feet, and contacts that are held.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 /// A hand on whole models: walks near and through them against the exact global search, stand-off, deep corners.
 #include <gtest/gtest.h>
 

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+/// Reports of an arm as data: which bytes mean what. Decoding and encoding are pure, allocation-free and bounded; every
+/// byte sequence has an answer, and nothing that is not a finite number leaves a decoder.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace hapticd::codec {
+
+inline constexpr size_t kMaxJoints = 16;
+inline constexpr size_t kMaxReportBytes = 1024;
+inline constexpr size_t kMaxButtons = 32;
+
+enum class Type : uint8_t {
+  kI8,
+  kI16,
+  kI32,
+  kU8,
+  kU16,
+  kU32,
+  kF32,
+  kF64,
+  kNibble,   ///< one character: 0x41 + four bits (Novint Falcon)
+  kNibbles,  ///< four such characters, lowest four bits first: a signed 16-bit number
+};
+
+enum class Role : uint8_t {
+  kPosition,    ///< in: rad or m of joint `index`
+  kVelocity,    ///< in: rad/s or m/s
+  kTorque,      ///< in: measured; out: wanted [N m or N]
+  kButton,      ///< in: bit of button `index`
+  kSequence,    ///< in and out: counts reports; a second one, at the end, tells a half-written report
+  kFault,       ///< in: bit, or any value but zero: the hardware reports a fault
+  kCalibrated,  ///< in: positions are absolute
+  kFirmware,    ///< in: must be `value`: the version that this description fits
+  kConstant,    ///< in: must be `value`; out: is `value`
+  kChecksum,    ///< over the bytes from `from` up to, but without, `to`
+  kEnable,      ///< out: motors on
+  kCalibrate,   ///< out: the arm shall find its zero
+  kReference,   ///< out: wanted position of joint `index` [rad or m]
+  kFollow,      ///< out: the joints shall go to their references
+  kStarts,      ///< in: counts how often the device started: another number means that it forgot everything
+};
+
+enum class Checksum : uint8_t { kSum8, kXor8, kCrc16 };
+
+/// One field of a report. SI value = raw * scale + offset, in both directions.
+struct Field {
+  Role role = Role::kConstant;
+  Type type = Type::kU8;
+  Checksum method = Checksum::kSum8;
+  bool big_endian = false, wraps = false;
+  int8_t bit = -1;  ///< of an integer; -1: the whole number
+  uint8_t index = 0;
+  uint16_t at = 0;  ///< first byte, counted after the report id
+  uint16_t from = 0, to = 0;
+  double scale = 1, offset = 0;
+  double least = 0, most = 0;  ///< raw limits of an output
+  double value = 0;
+  bool inverted = false;  ///< of a bit: 0 means yes
+};
+
+/// All fields of one kind of report.
+struct Report {
+  int id = -1;      ///< HID report id, in front of the bytes; -1: unnumbered
+  size_t size = 0;  ///< bytes without the id
+  std::vector<Field> fields;
+  size_t bytes() const noexcept { return size + (id >= 0 ? 1 : 0); }
+};
+
+/// What a report from the arm says.
+struct State {
+  std::array<double, kMaxJoints> position{}, velocity{}, torque{};
+  uint32_t buttons = 0, sequence = 0, starts = 0;
+  bool has_sequence = false, has_starts = false, fault = false, calibrated = false;
+};
+
+/// What a report to the arm says.
+struct Order {
+  std::array<double, kMaxJoints> torque{};    ///< [N m or N]; left out of the report while `enable` is false
+  std::array<double, kMaxJoints> position{};  ///< [rad or m] references, obeyed while `follow` and `enable`
+  bool enable = false, calibrate = false, follow = false;
+  uint32_t sequence = 0;
+};
+
+enum class Verdict : uint8_t { kGood, kWrongSize, kWrongId, kWrongFirmware, kCorrupt, kTorn };
+
+/// Bytes that a number of this type takes.
+size_t sizeOf(Type type) noexcept;
+/// Smallest and greatest raw number of an integer type; of a floating one, of its finite numbers.
+std::pair<double, double> rangeOf(Type type) noexcept;
+
+/// [any] Reads one report, with its id in front if it has one. Anything but kGood leaves `state` undefined.
+Verdict decode(const Report& report, std::span<const uint8_t> bytes, State& state) noexcept;
+
+/// [any] Writes one report, with its id in front if it has one; numbers beyond the limits of their field are clamped, a
+/// torque that is no number becomes none. @param bytes at least report.bytes() @return bytes written
+size_t encode(const Report& report, const Order& order, std::span<uint8_t> bytes) noexcept;
+
+}  // namespace hapticd::codec

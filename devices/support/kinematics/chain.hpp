@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+/// Serial chains described by a Denavit-Hartenberg table: any arm of revolute and sliding joints, one after the other.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "kinematics/arm.hpp"
+
+namespace hapticd::kinematics {
+
+/// One joint and the link it carries, in the standard (distal) convention: Rot_z(theta) Trans_z(d) Trans_x(a)
+/// Rot_x(alpha), the joint's axis being z of the frame before it.
+struct ChainLink {
+  double a = 0, alpha = 0, d = 0;  ///< [m], [rad], [m]
+  double theta = 0;                ///< [rad] added to a revolute joint's value; the fixed angle of a sliding one
+  bool sliding = false;
+  double min = -M_PI, max = M_PI;                     ///< [rad] or [m]
+  double mass = 0;                                    ///< [kg]
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< [m] of mass, in the frame after the joint
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< [kg m^2] about the centre, axes of the frame after the joint
+};
+
+struct ChainGeometry {
+  std::vector<ChainLink> links;
+  Pose base;  ///< frame 0 in the device frame
+  Pose tool;  ///< the tip in the last link's frame
+};
+
+/// Where the joints and links are for one q; axes and points in the device frame.
+struct ChainFrames {
+  std::array<Eigen::Matrix3d, kMaxJoints + 1> R;  ///< orientation of frame i (0: base)
+  std::array<Eigen::Vector3d, kMaxJoints + 1> o;  ///< its origin; joint i turns about z of frame i
+};
+
+class Chain : public Arm {
+ public:
+  /// Throws std::invalid_argument with a message for the user.
+  explicit Chain(const ChainGeometry& geometry);
+
+  int jointCount() const noexcept override { return count_; }
+  bool forward(const JointVector& q, Pose& tip) const noexcept override;
+  bool jacobian(const JointVector& q, Jacobian& J) const noexcept override;
+  bool gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept override;
+  /// Position only; redundant joints stay near where they start and away from their limits.
+  bool inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept override;
+  JointVector neutral() const noexcept override;
+
+  const std::array<ChainLink, kMaxJoints>& links() const noexcept { return links_; }
+
+  /// [any] All frames of the chain.
+  void frames(const JointVector& q, ChainFrames& at) const noexcept;
+
+  /// [any] The Jacobian of a point that the first `moving` joints carry, such as a wrist: the columns z x (point - o),
+  /// z of Thompson et al. 1999, Eq. 8; the columns of joints beyond are zero.
+  Jacobian jacobianAt(const ChainFrames& at, const Eigen::Vector3d& point, int moving) const noexcept;
+
+ private:
+  bool reach(const Eigen::Vector3d& position, JointVector& q) const noexcept;
+  JointVector stepTowards(const Jacobian& J, const Eigen::Vector3d& error, double lambda,
+                          const JointVector& q) const noexcept;
+  Eigen::Vector3d tipOf(const ChainFrames& at) const noexcept;
+  std::array<ChainLink, kMaxJoints> links_{};
+  std::array<double, kMaxJoints> cos_alpha_{}, sin_alpha_{};  ///< exact for multiples of a right angle
+  Eigen::Matrix3d R_base_, R_tool_;
+  Eigen::Vector3d base_, tool_;
+  int count_ = 0;
+};
+
+}  // namespace hapticd::kinematics

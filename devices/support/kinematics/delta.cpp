@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "kinematics/delta.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <stdexcept>
+
+namespace hapticd::kinematics {
+namespace {
+
+constexpr int kMaxNewton = 40;
+constexpr double kClosed = 1e-15;      ///< [m^2] of the closure: rounding of lengths of 0.1 m
+constexpr double kAccepted = 1e-13;    ///< [m^2]
+constexpr double kLargestStep = 0.03;  ///< [m] keeps Newton on the platform's side of the base
+
+}  // namespace
+
+Delta::Delta(const DeltaGeometry& geometry)
+    : geometry_(geometry), R_device_arm_(geometry.base.orientation.normalized().toRotationMatrix()) {
+  if (!(geometry.a > 0 && geometry.b > 0))
+    throw std::invalid_argument("delta: arm lengths a and b, expected more than 0 m");
+  if (!(geometry.theta_min < geometry.theta_max))
+    throw std::invalid_argument("delta: angle limits, expected the smaller one first");
+  for (size_t i = 0; i < 3; ++i) {
+    cos_[i] = std::cos(geometry.phi[i]);
+    sin_[i] = std::sin(geometry.phi[i]);
+  }
+  limits_.min = Eigen::Vector3d::Constant(geometry.theta_min);
+  limits_.max = Eigen::Vector3d::Constant(geometry.theta_max);
+  neutral_ = 0.5 * (limits_.min + limits_.max);
+  middle_ = Eigen::Vector3d(0, 0, geometry.a * std::sin(neutral_[0]) + geometry.b);
+  if (!solve(neutral_, middle_))
+    throw std::invalid_argument("delta: the arms do not meet in the middle of their range");
+}
+
+Delta::Closure Delta::closure(size_t arm, const Eigen::Vector3d& p, double theta) const noexcept {
+  const DeltaGeometry& g = geometry_;
+  const double u = p.x() * cos_[arm] + p.y() * sin_[arm] - g.r + g.c;
+  const double v = -p.x() * sin_[arm] + p.y() * cos_[arm] - g.s - g.f;
+  const double side2 = g.b * g.b - v * v;  // (b sin theta3)^2
+  Closure out{0, 0, Eigen::Vector3d::Zero(), side2 > 0};
+  if (!out.valid) return out;
+  const double side = std::sqrt(side2), reach = g.d + g.e + side;
+  const double along = u - g.a * std::cos(theta), up = p.z() - g.a * std::sin(theta);
+  out.value = along * along + up * up - reach * reach;
+  const double d_u = 2 * along, d_v = 2 * reach * v / side;
+  out.d_p = Eigen::Vector3d(d_u * cos_[arm] - d_v * sin_[arm], d_u * sin_[arm] + d_v * cos_[arm], 2 * up);
+  out.d_theta = 2 * g.a * (along * std::sin(theta) - up * std::cos(theta));
+  return out;
+}
+
+bool Delta::solve(const JointVector& q, Eigen::Vector3d& p) const noexcept {
+  Eigen::Vector3d residual;
+  for (int step = 0; step < kMaxNewton; ++step) {
+    Eigen::Matrix3d A;
+    for (int i = 0; i < 3; ++i) {
+      const Closure arm = closure(static_cast<size_t>(i), p, q[i]);
+      if (!arm.valid) return false;
+      residual[i] = arm.value;
+      A.row(i) = arm.d_p;
+    }
+    if (residual.cwiseAbs().maxCoeff() <= kClosed) return true;
+    Eigen::Vector3d move = -A.inverse() * residual;
+    if (!move.allFinite()) return false;
+    if (move.norm() > kLargestStep) move *= kLargestStep / move.norm();
+    p += move;
+    if (move.norm() < 1e-17) break;
+  }
+  return residual.cwiseAbs().maxCoeff() <= kAccepted;
+}
+
+bool Delta::forward(const JointVector& q, Pose& tip) const noexcept {
+  Eigen::Vector3d p = middle_;
+  if (!solve(q, p)) return false;
+  tip.position = geometry_.base.position + R_device_arm_ * p;
+  tip.orientation.setIdentity();
+  return true;
+}
+
+bool Delta::localJacobian(const JointVector& q, Eigen::Vector3d& p, Eigen::Matrix3d& J) const noexcept {
+  p = middle_;
+  if (!solve(q, p)) return false;
+  Eigen::Matrix3d A;
+  Eigen::Vector3d b;
+  for (int i = 0; i < 3; ++i) {
+    const Closure arm = closure(static_cast<size_t>(i), p, q[i]);
+    A.row(i) = arm.d_p;
+    b[i] = arm.d_theta;
+  }
+  J = -A.inverse() * b.asDiagonal();  // implicit function theorem: A dp + b dtheta = 0
+  return J.allFinite();
+}
+
+bool Delta::jacobian(const JointVector& q, Jacobian& J) const noexcept {
+  Eigen::Vector3d p;
+  Eigen::Matrix3d local;
+  if (!localJacobian(q, p, local)) return false;
+  J.setZero(6, 3);
+  J.topRows<3>() = R_device_arm_ * local;
+  return true;
+}
+
+bool Delta::gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept {
+  Eigen::Vector3d p;
+  Eigen::Matrix3d J;
+  if (!localJacobian(q, p, J)) return false;
+  const DeltaGeometry& geometry = geometry_;
+  const Eigen::Vector3d g_arm = R_device_arm_.transpose() * gravity;
+  tau = -(geometry.platform_mass + 1.5 * geometry.rod_mass) * J.transpose() * g_arm;
+  for (int i = 0; i < 3; ++i) {
+    const auto n = static_cast<size_t>(i);
+    // centre of the upper arm at half its length, half of the rods at its end
+    const double moment = geometry.a * (0.5 * geometry.arm_mass + 0.5 * geometry.rod_mass);
+    const Eigen::Vector3d tangent(-std::sin(q[i]) * cos_[n], -std::sin(q[i]) * sin_[n], std::cos(q[i]));
+    tau[i] -= moment * tangent.dot(g_arm);
+  }
+  return true;
+}
+
+bool Delta::inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept {
+  const DeltaGeometry& g = geometry_;
+  const Eigen::Vector3d p = R_device_arm_.transpose() * (position - g.base.position);
+  JointVector found(3);
+  for (int i = 0; i < 3; ++i) {
+    const auto n = static_cast<size_t>(i);
+    const double u = p.x() * cos_[n] + p.y() * sin_[n] - g.r + g.c;
+    const double v = -p.x() * sin_[n] + p.y() * cos_[n] - g.s - g.f;
+    if (!(std::abs(v) < g.b)) return false;
+    const double reach = g.d + g.e + std::sqrt(g.b * g.b - v * v), distance = std::hypot(u, p.z());
+    const double cosine = (distance * distance + g.a * g.a - reach * reach) / (2 * g.a * distance);
+    if (!(std::abs(cosine) <= 1)) return false;
+    // The upper arm bends outward: the smaller of the two angles.
+    found[i] = std::atan2(p.z(), u) - std::acos(cosine);
+    if (!(found[i] >= g.theta_min && found[i] <= g.theta_max)) return false;
+  }
+  // A position has one set of angles, but angles may close with the platform behind the base as well: only poses that
+  // forward() gives back are in reach.
+  Pose check;
+  if (!forward(found, check) || (check.position - position).norm() > 1e-9) return false;
+  q = found;
+  return true;
+}
+
+}  // namespace hapticd::kinematics

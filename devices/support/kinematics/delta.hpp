@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+/// Delta arms (Novint Falcon): three driven upper arms on a fixed base, three parallelograms to a platform that only
+/// translates. Geometry after Stamper (1997) and Tsai.
+#pragma once
+#include <array>
+
+#include "kinematics/arm.hpp"
+
+namespace hapticd::kinematics {
+
+/// Lengths in m, named as in the literature. Arm frame i is turned by `phi[i]` about the arm's axis.
+struct DeltaGeometry {
+  double a = 0.060;                 ///< driven upper arm
+  double b = 0.1025;                ///< parallelogram
+  double c = 0.01443;               ///< platform: radial offset of the last hinge
+  double d = 0.01125, e = 0.01125;  ///< hinges before and after the parallelogram
+  double f = -0.025;                ///< platform: tangential offset
+  double r = 0.040;                 ///< base: radius of the driven axes
+  double s = -0.02309;              ///< base: tangential offset
+  std::array<double, 3> phi{105 * M_PI / 180, -15 * M_PI / 180, -135 * M_PI / 180};
+  double theta_min = -0.6, theta_max = 1.7;                       ///< [rad] of the driven arms
+  double arm_mass = 0.05, rod_mass = 0.04, platform_mass = 0.08;  ///< [kg] of each arm and rod pair; of the platform
+  Pose base;  ///< arm axis z, toward the platform, in the device frame
+};
+
+class Delta : public Arm {
+ public:
+  /// Throws std::invalid_argument with a message for the user.
+  explicit Delta(const DeltaGeometry& geometry = {});
+
+  int jointCount() const noexcept override { return 3; }
+  /// Newton from the middle of the workspace; false if the three parallelograms cannot meet.
+  bool forward(const JointVector& q, Pose& tip) const noexcept override;
+  bool jacobian(const JointVector& q, Jacobian& J) const noexcept override;
+  /// Half of each rod pair moves with its upper arm, half with the platform.
+  bool gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept override;
+  bool inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept override;
+  JointVector neutral() const noexcept override { return neutral_; }
+
+ private:
+  /// Closure of one arm, g(p, theta) = 0, with its derivatives; p in the arm-axis frame.
+  struct Closure {
+    double value, d_theta;
+    Eigen::Vector3d d_p;
+    bool valid;
+  };
+  Closure closure(size_t arm, const Eigen::Vector3d& p, double theta) const noexcept;
+  bool solve(const JointVector& q, Eigen::Vector3d& p) const noexcept;
+  bool localJacobian(const JointVector& q, Eigen::Vector3d& p, Eigen::Matrix3d& J) const noexcept;
+
+  DeltaGeometry geometry_;
+  Eigen::Matrix3d R_device_arm_;
+  std::array<double, 3> cos_{}, sin_{};
+  JointVector neutral_;
+  Eigen::Vector3d middle_;  ///< [m] where forward() starts
+};
+
+}  // namespace hapticd::kinematics

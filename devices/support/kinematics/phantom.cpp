@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "kinematics/phantom.hpp"
+
+#include <cmath>
+
+namespace hapticd::kinematics {
+namespace {
+
+constexpr double kDegree = M_PI / 180;
+constexpr double kOpening = 55 * kDegree, kClosing = 65 * kDegree;
+
+/// Of the point (a c2 + b s3 out, a s2 - b c3 up) turned by q1: the tip with the link lengths for a and b, the centre
+/// of mass with the first moments.
+Eigen::Matrix3d planarJacobian(double a, double b, const Eigen::Vector3d& q) noexcept {
+  const double s1 = std::sin(q[0]), c1 = std::cos(q[0]), s2 = std::sin(q[1]), c2 = std::cos(q[1]);
+  const double s3 = std::sin(q[2]), c3 = std::cos(q[2]), r = a * c2 + b * s3;
+  Eigen::Matrix3d J;
+  J << r * c1, -a * s2 * s1, b * c3 * s1,  //
+      0, a * c2, b * s3,                   //
+      -r * s1, -a * s2 * c1, b * c3 * c1;
+  return J;
+}
+
+double wrapped(double angle) noexcept {
+  return std::remainder(angle, 2 * M_PI);
+}
+
+/// The turn of `angle` that is nearest to `reference`.
+double nearest(double angle, double reference) noexcept {
+  return reference + wrapped(angle - reference);
+}
+
+}  // namespace
+
+double Phantom::largestOpening() noexcept {
+  return kOpening;
+}
+double Phantom::largestClosing() noexcept {
+  return kClosing;
+}
+
+Phantom::Phantom(const PhantomGeometry& geometry)
+    : geometry_(geometry),
+      moment2_(geometry.l1 * geometry.ma + geometry.l5 * geometry.mbe + 0.5 * geometry.l1 * geometry.mc),
+      moment3_(0.5 * geometry.l2 * geometry.ma + geometry.l3 * geometry.mc - geometry.l6 * geometry.mdf) {
+  limits_.min = Eigen::Vector3d(-90, -124, -29) * kDegree;
+  limits_.max = Eigen::Vector3d(90, 119, 214) * kDegree;
+}
+
+Eigen::Vector3d Phantom::position(const Eigen::Vector3d& q) const noexcept {
+  const double r = geometry_.l1 * std::cos(q[1]) + geometry_.l2 * std::sin(q[2]);
+  const double h = geometry_.l1 * std::sin(q[1]) - geometry_.l2 * std::cos(q[2]);
+  return geometry_.origin + Eigen::Vector3d(r * std::sin(q[0]), h + geometry_.l2, r * std::cos(q[0]) - geometry_.l1);
+}
+
+bool Phantom::forward(const JointVector& q, Pose& tip) const noexcept {
+  tip.position = position(q.head<3>());
+  tip.orientation.setIdentity();
+  return true;
+}
+
+Eigen::Matrix3d Phantom::positionJacobian(const Eigen::Vector3d& q) const noexcept {
+  return planarJacobian(geometry_.l1, geometry_.l2, q);
+}
+
+bool Phantom::jacobian(const JointVector& q, Jacobian& J) const noexcept {
+  J.setZero(6, 3);
+  J.topRows<3>() = positionJacobian(q.head<3>());
+  return true;
+}
+
+Eigen::Vector3d Phantom::weight(const Eigen::Vector3d& q, const Eigen::Vector3d& gravity) const noexcept {
+  return -planarJacobian(moment2_, moment3_, q).transpose() * gravity;
+}
+
+bool Phantom::gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept {
+  tau = weight(q.head<3>(), gravity);
+  return true;
+}
+
+bool Phantom::allowed(const JointVector& q) const noexcept {
+  return Arm::allowed(q) && q[2] - q[1] <= kOpening && q[1] - q[2] <= kClosing;
+}
+
+bool Phantom::inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept {
+  const Eigen::Vector3d p = position - geometry_.origin + Eigen::Vector3d(0, -geometry_.l2, geometry_.l1);
+  const double l1 = geometry_.l1, l2 = geometry_.l2, out = std::hypot(p.x(), p.z()), h = p.y();
+  const double turn = out > 0 ? std::atan2(p.x(), p.z()) : q[0];  // on the axis every turn will do: keep it
+  // |p|^2 = l1^2 + l2^2 + 2 l1 l2 sin(q3 - q2); the limits leave one branch of the arcsine.
+  const double s = (out * out + h * h - l1 * l1 - l2 * l2) / (2 * l1 * l2);
+  if (!(std::abs(s) <= 1)) return false;
+  const double open = std::asin(s);
+  const double elbow = std::atan2(-l2 * std::cos(open), l1 + l2 * s);
+  JointVector best;
+  double best_distance = HUGE_VAL;
+  for (const int side : {1, -1}) {  // in front of the vertical axis, or reaching over it
+    JointVector candidate(3);
+    candidate[0] = wrapped(side > 0 ? turn : turn + M_PI);
+    candidate[2] = nearest(std::atan2(h, side * out) - elbow + open, M_PI / 2);
+    candidate[1] = candidate[2] - open;
+    const double distance = (candidate - q).norm();
+    if (!allowed(candidate) || !(distance < best_distance)) continue;
+    best = candidate;
+    best_distance = distance;
+  }
+  if (best.size() == 0) return false;
+  q = best;
+  return true;
+}
+
+}  // namespace hapticd::kinematics

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+/// The PHANToM class of arms: a base that turns and a parallelogram whose links are driven from the base, so that both
+/// link angles are absolute (measured against the horizontal), not relative to one another.
+#pragma once
+#include "kinematics/arm.hpp"
+
+namespace hapticd::kinematics {
+
+/// Published numbers of the Premium 1.5 (Cavusoglu, Feygin & Tendick 2002): lengths in m, masses in kg.
+struct PhantomGeometry {
+  double l1 = 0.215;                                            ///< upper arm
+  double l2 = 0.170;                                            ///< forearm
+  double l3 = 0.0325;                                           ///< short side of the parallelogram
+  double l5 = -0.0368;                                          ///< counterweight of the upper arm
+  double l6 = 0.0527;                                           ///< counterweight of the forearm
+  double ma = 0.0202, mc = 0.0249, mbe = 0.2359, mdf = 0.1906;  ///< forearm, parallel link, the driven pairs
+  Eigen::Vector3d origin{0, 0, 0};                              ///< [m] tip of the neutral pose, device frame
+};
+
+/// Three joints. With c1 = cos q1, ...: r = l1 c2 + l2 s3 out from the axis and h = l1 s2 - l2 c3 up, turned by q1
+/// about the vertical. The published base frame (x out toward the user, y, z up) is the device frame with
+///   z = x_published, x = y_published, y = z_published,
+/// and, as there, the origin lies at the tip of the neutral pose q = 0 (upper arm level, forearm hanging), where the
+/// tip is l1 out and l2 down from the shoulder.
+///
+/// The thimble or stylus turns freely in an unmeasured gimbal: orientation is the identity and the angular rows of J
+/// are zero, for no motor can make a torque at the tip.
+class Phantom : public Arm {
+ public:
+  explicit Phantom(const PhantomGeometry& geometry = {});
+
+  int jointCount() const noexcept override { return 3; }
+  bool forward(const JointVector& q, Pose& tip) const noexcept override;
+  bool jacobian(const JointVector& q, Jacobian& J) const noexcept override;
+  bool gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept override;
+  bool inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept override;
+  JointVector neutral() const noexcept override { return JointVector::Zero(3); }
+  bool allowed(const JointVector& q) const noexcept override;
+
+  const PhantomGeometry& geometry() const noexcept { return geometry_; }
+
+  Eigen::Vector3d position(const Eigen::Vector3d& q) const noexcept;          ///< [any] tip [m]
+  Eigen::Matrix3d positionJacobian(const Eigen::Vector3d& q) const noexcept;  ///< [any] d position / d q
+  Eigen::Vector3d weight(const Eigen::Vector3d& q, const Eigen::Vector3d& gravity) const noexcept;  ///< [any] gravity()
+
+  static double largestOpening() noexcept;  ///< [rad] of q3 - q2: the links touch
+  static double largestClosing() noexcept;  ///< [rad] of q2 - q3
+
+ private:
+  PhantomGeometry geometry_;
+  double moment2_, moment3_;  ///< [kg m] first moments of mass along the upper arm and the forearm
+};
+
+}  // namespace hapticd::kinematics

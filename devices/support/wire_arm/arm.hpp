@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: MIT
+/// A device class for an arm behind a wire, whatever its transport (USB, VME): parameters, kinematics, samples,
+/// calibration.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "hapticd/device.hpp"
+#include "hapticd/device_pace.h"
+#include "hapticd/device_trouble.h"
+#include "kinematics/extension.hpp"
+#include "wire_arm/calibration.hpp"
+#include "wire_arm/falcon_loader.hpp"
+#include "wire_arm/link.hpp"
+#include "wire_arm/mechanism.hpp"
+
+namespace hapticd::wire_arm {
+
+inline constexpr const char* kKinds[] = {"phantom", "delta", "chain"};
+inline constexpr const char* kMethods[] = {"none", "device", "pose"};
+inline constexpr const char* kLoaders[] = {"none", "falcon"};
+
+/// What a device file may say.
+struct Parameters : MechanismParameters {
+  std::string id, serial, wire, instructions, firmware;  // id to interface, firmware and loader: USB alone
+  int interface = -1, method = 0, loader = 0;
+  std::vector<double> pose, max_torque;
+  double max_force = 0, continuous_force = 0, max_stiffness = 0, mass = 0, damping = 0;
+  double stale = 0, least_rate = 0, recovery = 0, ramp = 0, max_speed = 0;
+  bool verified = false;
+};
+
+template <class T>
+struct ParameterTable {
+  using F = Fields<T>;
+  static constexpr auto usb() {
+    return std::array{
+        F::text("usb.id", &T::id, "", "Vendor and product id, hexadecimal, \"1234:0006\".", HSP_P_REQUIRED),
+        F::text("usb.serial", &T::serial, "", "Serial number; left out: the first such device that is free."),
+        F::integer("usb.interface", &T::interface, "", -1, 255, -1, "USB interface; -1: any (HID), 0 (bulk)."),
+        F::choice("loader", &T::loader, kLoaders, 0, "How firmware gets into the device; falcon: Novint's protocol."),
+        F::path("firmware", &T::firmware, "Firmware image for the loader; not shipped.")};
+  }
+  static constexpr auto device() {
+    return std::array{
+        F::data("wire", &T::wire, nullptr, "Reports, framing, start-up and timing: see devices.md.", HSP_P_REQUIRED),
+        F::choice("calibration.method", &T::method, kMethods, 0,
+                  "none: absolute encoders; device: it finds its zero and says so; pose: held in a known pose."),
+        F::array("calibration.pose", &T::pose, "rad", 1, 0, 16, -100, 100, "[]", "pose: joint positions there."),
+        F::text("calibration.instructions", &T::instructions, "Hold the arm as its manual says.",
+                "What the user must do with the arm before it is calibrated."),
+        F::boolean("device.verified", &T::verified, false, "This description was tried on hardware."),
+        F::real("device.max_force", &T::max_force, "N", 0, 1000, 0, "Largest force at the tip; 0: unknown."),
+        F::real("device.continuous_force", &T::continuous_force, "N", 0, 1000, 0, "Force for any length of time."),
+        F::real("device.max_stiffness", &T::max_stiffness, "N/m", 0, 1e6, 0, "Stiffness found stable; 0: unknown."),
+        F::real("device.mass", &T::mass, "kg", 0, 100, 0, "Mass felt at the tip; 0: unknown."),
+        F::real("device.damping", &T::damping, "N s/m", 0, 1000, 0, "Damping felt at the tip; 0: unknown.")};
+  }
+  static constexpr auto arm() {
+    return std::array{
+        F::choice("arm.kind", &T::kind, kKinds, 0, "The mechanism."),
+        F::vector3("arm.origin", &T::origin, "m", -10, 10, "[0, 0, 0]",
+                   "phantom: the tip of the neutral pose; delta, chain: the base, in the device frame."),
+        F::array("arm.base_orientation", &T::base_orientation, "", 4, 0, 4, -1.001, 1.001, "[]",
+                 "delta, chain: how the base is turned in the device frame, a unit quaternion w, x, y, z."),
+        F::array("arm.lengths", &T::lengths, "m", 1, 0, 8, -10, 10, "[]",
+                 "phantom: l1 l2 l3 l5 l6; delta: a b c d e f r s; left out: Premium 1.5, Falcon."),
+        F::array("arm.masses", &T::masses, "kg", 1, 0, 16, 0, 100, "[]",
+                 "phantom: ma mc mbe mdf; delta: arm, rod, platform; chain: one a link."),
+        F::array("arm.angles", &T::angles, "rad", 1, 0, 3, -10, 10, "[]", "delta: where the three arms stand."),
+        F::array("arm.dh", &T::dh, "m, rad, m, rad", 4, 0, 64, -10, 10, "[]",
+                 "chain: a row a, alpha, d, theta a joint (standard Denavit-Hartenberg)."),
+        F::array("arm.centers", &T::centers, "m", 3, 0, 48, -10, 10, "[]",
+                 "chain: centre of mass of each link, in the frame after its joint."),
+        F::vector3("arm.tool_position", &T::tool_position, "m", -10, 10, "[0, 0, 0]",
+                   "chain: the tip in the frame of the last link."),
+        F::integer("arm.others", &T::others, "", 0, 8, 0,
+                   "chain: joints after those of arm.dh that do not carry the tip, such as a thumb's."),
+        F::array("arm.limits", &T::limits, "rad", 2, 0, 32, -100, 100, "[]",
+                 "A row least, greatest position a joint; left out: the mechanism's own."),
+        F::array("arm.max_torque", &T::max_torque, "N m", 1, 1, 16, 0, 1000, "", "Largest torque of each joint.",
+                 HSP_P_REQUIRED),
+        F::real("health.stale", &T::stale, "s", 0.001, 0.018, 0.015, "No good report for so long: motors off."),
+        F::real("health.least_rate", &T::least_rate, "", 0, 0.95, 0.57,
+                "Fewer reports than this part of wire.rate: motors off; 0: not watched."),
+        F::real("health.recovery", &T::recovery, "s", 0.02, 10, 0.2, "So long well before a trouble counts as over."),
+        F::real("health.ramp", &T::ramp, "s", 0, 10, 0.25, "From no torque to all of it after that."),
+        F::real("health.max_speed", &T::max_speed, "rad/s", 1, 1e4, 100,
+                "A joint faster than that: its encoder jumped.")};
+  }
+};
+
+/// "1234:0006" as numbers. Throws std::invalid_argument.
+inline Address addressOf(const Parameters& p) {
+  Address address;
+  unsigned vendor = 0, product = 0;
+  int used = 0;
+  if (std::sscanf(p.id.c_str(), "%4x:%4x%n", &vendor, &product, &used) != 2 || static_cast<size_t>(used) != p.id.size())
+    throw std::invalid_argument("usb.id: \"" + p.id + "\", expected vendor:product such as \"1234:0006\"");
+  address.vendor = static_cast<uint16_t>(vendor);
+  address.product = static_cast<uint16_t>(product);
+  address.interface = p.interface;
+  address.serial = p.serial;
+  return address;
+}
+
+/// T adds kInfo, fields() and `std::unique_ptr<Transport> makeTransport() const`, and may hide address().
+template <class T>
+class Arm : public Device, public Parameters {
+ public:
+  void open(hdv_info& info) {
+    prepare();
+    SessionSettings session;
+    session.joints = joints();
+    session.calibration = static_cast<Calibration>(method);
+    session.health.stale = stale, session.health.least_rate = least_rate, session.health.recovery = recovery;
+    session.health.ramp = ramp, session.health.max_speed = max_speed;
+    LinkSettings settings;
+    settings.address = static_cast<const T*>(this)->address();
+    settings.session = session;
+    settings.log = [this](int level, const std::string& text) {
+      if (host() != nullptr && host()->log != nullptr) host()->log(host(), level, text.c_str());
+    };
+    const Address address = settings.address;
+    if (session.calibration == Calibration::kPose)
+      settings.zero = [address, count = joints()](const Identity& identity) {
+        return loadZero(stateFolder(), address, identity, count);
+      };
+    if (loader == 1) settings.prepare = [this](Transport& to) { return loadFalcon(to, wire_, image_); };
+    link_ = std::make_unique<Link>(static_cast<T*>(this)->makeTransport(), wire_, std::move(settings));
+    auto opened = link_->open();
+    if (!opened) throw std::runtime_error(opened.error());
+    describe(info, *opened);
+  }
+
+  void start(const hdv_start&) {
+    if (auto started = link_->start(); !started) throw std::runtime_error(started.error());
+  }
+
+  hsp_status read(uint64_t now_ns, hdv_sample& to) noexcept HSP_RT {
+    constexpr uint64_t kHung = 20'000'000;  // the I/O thread itself hangs in the kernel
+    link_->read(sample_);
+    trouble_.store(sample_.trouble, std::memory_order_relaxed);
+    to.time_ns = sample_.time;
+    to.sequence = sample_.sequence;
+    to.buttons = sample_.buttons;
+    to.flags = (sample_.calibrated ? uint32_t{HDV_S_CALIBRATED} : 0u) | (velocity_ ? uint32_t{HDV_S_VELOCITY} : 0u) |
+               (torque_ ? uint32_t{HDV_S_TORQUE} : 0u);
+    // Silence is judged by the host, which sees no new sequence number; the motors are off by then, and come back in a
+    // ramp if it was short.
+    if (sample_.trouble == Trouble::kUnplugged || sample_.trouble == Trouble::kAbsent)
+      to.flags |= HDV_S_LOST;
+    else if (sample_.trouble != Trouble::kNone && sample_.trouble != Trouble::kStale)
+      to.flags |= HDV_S_FAULT;
+    if (now_ns > sample_.time + kHung && sample_.trouble == Trouble::kNone) to.flags |= HDV_S_FAULT;
+    for (size_t i = 0; i < HDV_MAX_JOINTS; ++i) {
+      to.position[i] = sample_.position[i];
+      to.velocity[i] = sample_.velocity[i];
+      to.torque[i] = sample_.torque[i];
+    }
+    return HSP_OK;
+  }
+
+  hsp_status write(uint64_t now_ns, const hdv_command& command) noexcept HSP_RT {
+    if (command.mode == HDV_OFF) link_->endCut();
+    wish_.time = now_ns;
+    ++wish_.sequence;
+    wish_.follow = command.mode == HDV_POSITION && follows_;
+    wish_.on = command.mode == HDV_TORQUE || wish_.follow;
+    const size_t count = joints_;
+    for (size_t i = 0; i < count; ++i) {
+      const double most = limit_[i], asked = command.torque[i];
+      if (!std::isfinite(asked)) wish_.on = false;
+      wish_.torque[i] = std::clamp(std::isfinite(asked) ? asked : 0.0, -most, most);
+      if (!wish_.follow) continue;
+      if (!std::isfinite(command.position[i])) wish_.on = false;
+      wish_.position[i] = wish_.on ? std::clamp(command.position[i], least_[i], most_[i]) : 0.0;
+    }
+    link_->write(wish_);
+    return HSP_OK;
+  }
+
+  void stop() {
+    if (link_) link_->stop();
+  }
+  void close() { link_.reset(); }
+
+  /// Of a device on USB; a class of another bus hides it.
+  Address address() const { return addressOf(*this); }
+
+  const kinematics::Arm& kinematics() const { return *arm_; }
+  const void* extension(const char* name) {
+    if (std::string_view(name) == HDV_EXT_KINEMATICS) {
+      try {
+        prepare();
+      } catch (const std::exception& e) {
+        detail::logError(host(), e.what());
+        return nullptr;
+      }
+      kinematics_ = kinematics::Extension<T>::of(*arm_);
+      return &kinematics_;
+    }
+    if (std::string_view(name) == HDV_EXT_CUT) {
+      static constexpr hdv_ext_cut kCut{sizeof(hdv_ext_cut), 0, &cut};
+      return &kCut;
+    }
+    if (std::string_view(name) == HDV_EXT_PACE) {
+      static constexpr hdv_ext_pace kPace{sizeof(hdv_ext_pace), 0, &waitForSample};
+      return &kPace;
+    }
+    if (std::string_view(name) == HDV_EXT_TROUBLE) {
+      static constexpr hdv_ext_trouble kTrouble{sizeof(hdv_ext_trouble), 0, &why};
+      return &kTrouble;
+    }
+    if (std::string_view(name) == HDV_EXT_CALIBRATION && method != 0) {
+      calibration_ = {sizeof calibration_, 0, instructions.c_str(), &calibrate};
+      return &calibration_;
+    }
+    return nullptr;
+  }
+
+ protected:
+  const codec::Wire& format() const { return wire_; }  ///< once the parameters were read
+
+ private:
+  size_t joints() const { return static_cast<size_t>(arm_->jointCount()); }
+
+  /// From the parameters alone; throws std::invalid_argument.
+  void prepare() {
+    arm_ = makeMechanism(*this);
+    joints_ = joints();
+    wire_ = codec::readWire(wire, joints_);
+    (void)static_cast<const T*>(this)->address();
+    if (max_torque.size() != joints_ && max_torque.size() != 1)
+      throw std::invalid_argument("arm.max_torque: " + std::to_string(max_torque.size()) + " numbers, expected 1 or " +
+                                  std::to_string(joints_) + ", one a joint");
+    for (size_t i = 0; i < joints_; ++i) limit_[i] = max_torque[max_torque.size() == 1 ? 0 : i];
+    if (method == static_cast<int>(Calibration::kPose) && pose.size() != joints_)
+      throw std::invalid_argument("calibration.pose: " + std::to_string(pose.size()) + " numbers, expected " +
+                                  std::to_string(joints_) + ", one a joint");
+    velocity_ = torque_ = follows_ = false;
+    for (const codec::Field& field : wire_.output.fields) follows_ = follows_ || field.role == codec::Role::kFollow;
+    takeLimits();
+    bool says_calibrated = false;
+    for (const codec::Field& field : wire_.input.fields) {
+      velocity_ = velocity_ || field.role == codec::Role::kVelocity;
+      torque_ = torque_ || field.role == codec::Role::kTorque;
+      says_calibrated = says_calibrated || field.role == codec::Role::kCalibrated;
+    }
+    if (method == static_cast<int>(Calibration::kDevice) && !says_calibrated)
+      throw std::invalid_argument("calibration.method: device, but no field of wire.input is \"calibrated\"");
+    if (loader != 0 && !firmware.empty()) {
+      auto image = readFalconFirmware(firmware);
+      if (!image) throw std::invalid_argument("firmware: " + image.error());
+      image_ = *image;
+    }
+  }
+
+  void takeLimits() {
+    for (size_t i = 0; i < joints_; ++i) {
+      const auto joint = static_cast<Eigen::Index>(i);
+      const bool given = limits.size() == 2 * joints_;
+      least_[i] = given ? limits[2 * i] : arm_->limits().min[joint];
+      most_[i] = given ? limits[2 * i + 1] : arm_->limits().max[joint];
+    }
+  }
+
+  void describe(hdv_info& info, const Identity& identity) const {
+    info.joint_count = static_cast<uint32_t>(joints_);
+    info.capabilities = HDV_C_PACING | (velocity_ ? uint32_t{HDV_C_VELOCITY} : 0u) |
+                        (torque_ ? uint32_t{HDV_C_TORQUE} : 0u) | (follows_ ? uint32_t{HDV_C_POSITION} : 0u) |
+                        (wire_.watchdog > 0 ? uint32_t{HDV_C_WATCHDOG} : 0u) |
+                        (method != 0 ? uint32_t{HDV_C_CALIBRATION} : 0u) | (verified ? 0u : uint32_t{HDV_C_UNVERIFIED});
+    info.rate_hz = wire_.rate;
+    info.max_force = max_force, info.continuous_force = continuous_force, info.max_stiffness = max_stiffness;
+    info.mass_kg = mass, info.damping = damping;
+    kinematics::Jacobian J;
+    const bool has_jacobian = arm_->jacobian(arm_->neutral(), J);
+    for (size_t i = 0; i < joints_; ++i) {
+      const auto joint = static_cast<Eigen::Index>(i);
+      info.max_torque[i] = limit_[i];
+      info.position_min[i] = least_[i];
+      info.position_max[i] = most_[i];
+      for (const codec::Field& field : wire_.input.fields)
+        if (has_jacobian && field.role == codec::Role::kPosition && field.index == i)
+          info.resolution_m = std::max(info.resolution_m, std::abs(field.scale) * J.col(joint).head<3>().norm());
+    }
+    for (const codec::Field& field : wire_.input.fields)
+      if (field.role == codec::Role::kButton) info.buttons = std::max(info.buttons, field.index + 1u);
+    std::snprintf(info.product, sizeof info.product, "%s", identity.product.c_str());
+    std::snprintf(info.serial, sizeof info.serial, "%s", identity.serial.c_str());
+    std::snprintf(info.firmware, sizeof info.firmware, "%s", identity.firmware.c_str());
+  }
+
+  /// Also before open() and after close(): there is nothing to cut then.
+  static void cut(hdv_device* device) noexcept HSP_RT {
+    if (Link* link = reinterpret_cast<T*>(device)->link_.get()) link->cut();
+  }
+
+  static uint64_t waitForSample(hdv_device* device, uint64_t until_ns) noexcept {
+    reinterpret_cast<T*>(device)->link_->waitForNews(until_ns);
+    return std::min<uint64_t>(monotonicNow(), until_ns);
+  }
+
+  static const char* why(const hdv_device* device) noexcept HSP_RT {
+    const Trouble trouble = reinterpret_cast<const T*>(device)->trouble_.load(std::memory_order_relaxed);
+    return trouble == Trouble::kNone ? nullptr : wire_arm::describe(trouble);
+  }
+
+  static hsp_status calibrate(hdv_device* device) {
+    T& self = *reinterpret_cast<T*>(device);
+    try {
+      return self.method == static_cast<int>(Calibration::kPose) ? self.calibratePose() : self.calibrateDevice();
+    } catch (const std::exception& e) {
+      detail::logError(self.host(), e.what());
+      return HSP_E_IO;
+    }
+  }
+
+  hsp_status calibratePose() {
+    JointArray at{};
+    std::copy(pose.begin(), pose.end(), at.begin());
+    auto offset = link_->calibrateAt(at);
+    if (!offset) return detail::logError(host(), offset.error()), HSP_E_IO;
+    auto stored = storeZero(stateFolder(), static_cast<const T*>(this)->address(), link_->identity(), *offset, joints_);
+    if (!stored) detail::logError(host(), stored.error());
+    return stored ? HSP_OK : HSP_E_IO;
+  }
+
+  hsp_status calibrateDevice() {
+    constexpr int kLongest = 30'000;  // ms: the user moves every joint over its index
+    RealClock clock(0);
+    link_->calibrateByDevice(true);
+    for (int i = 0; i < kLongest && !sample_.calibrated; ++i) {
+      clock.waitUntil(clock.now() + 1'000'000);
+      link_->read(sample_);
+    }
+    link_->calibrateByDevice(false);
+    if (sample_.calibrated) return HSP_OK;
+    detail::logError(host(),
+                     "found no zero within 30 s\n  it stays without force\n  fix: move every joint over its whole "
+                     "range, then try again");
+    return HSP_E_IO;
+  }
+
+  std::unique_ptr<kinematics::Arm> arm_;
+  std::unique_ptr<Link> link_;
+  codec::Wire wire_;
+  std::vector<uint8_t> image_;
+  hdv_ext_kinematics kinematics_{};
+  hdv_ext_calibration calibration_{};
+  std::atomic<Trouble> trouble_{Trouble::kNone};
+  Sample sample_;
+  Wish wish_;
+  JointArray limit_{}, least_{}, most_{};
+  size_t joints_ = 0;
+  bool velocity_ = false, torque_ = false, follows_ = false;
+};
+
+}  // namespace hapticd::wire_arm

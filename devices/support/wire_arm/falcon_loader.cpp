@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "wire_arm/falcon_loader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+
+#include "codec/framer.hpp"
+
+namespace hapticd::wire_arm {
+namespace {
+
+constexpr size_t kLargestFirmware = 1u << 20;
+constexpr size_t kPacket = 64, kHeader = 2;  ///< FTDI puts two bytes of modem status before each packet
+constexpr Nanoseconds kAnswer = 20'000'000, kRunning = 50'000'000;
+constexpr int kHelloTries = 100;
+
+/// Requests of FTDI's chips: 0 reset and purge, 1 modem lines, 3 baud rate, 4 format, 9 latency timer.
+enum : uint8_t { kReset = 0, kLines = 1, kBaud = 3, kFormat = 4, kLatency = 9 };
+constexpr uint8_t kVendorOut = 0x40;
+
+class Loader {
+ public:
+  Loader(Transport& transport, const std::vector<uint8_t>& firmware) : transport_(transport), firmware_(firmware) {}
+
+  bool upload() { return slow() && hello() && fast() && answers({0x41}, {0x41}, kHelloTries) && chunks(); }
+
+  /// The line as reports need it: 1 ms latency, full speed.
+  bool run() { return set(kLatency, 1) && set(kBaud, 0x2) && set(kLines, 0x0101); }
+
+  void forget() {
+    size_t size = 0;
+    std::array<uint8_t, 512> scrap;
+    for (int i = 0; i < 64 && transport_.receive(scrap, size, 0) == Status::kOk; ++i) {
+    }
+  }
+
+ private:
+  bool set(uint8_t request, uint16_t value) {
+    codec::StartStep step;
+    step.is_control = true;
+    step.request_type = kVendorOut, step.request = request, step.value = value;
+    return transport_.control(step) == Status::kOk;
+  }
+  bool slow() {  // 9600 8N1 (divisor 0x4138), RTS low, DTR low then high
+    return set(kReset, 0) && set(kReset, 1) && set(kReset, 2) && set(kLatency, 16) && set(kBaud, 0x4138) &&
+           set(kFormat, 8) && set(kLines, 0x0200) && set(kLines, 0x0100) && set(kLines, 0x0101);
+  }
+  bool hello() { return answers({0x0a, 0x43, 0x0d}, {0x0a, 0x44, 0x2c, 0x0d}, kHelloTries); }
+  bool fast() { return set(kLines, 0x0100) && set(kBaud, 0x15); }  // 140000 baud
+
+  /// Sends until the answer is right.
+  bool answers(const std::vector<uint8_t>& bytes, const std::vector<uint8_t>& expected, int tries) {
+    for (int i = 0; i < tries; ++i) {
+      if (transport_.send(bytes) != Status::kOk) return false;
+      if (heard(expected)) return true;
+    }
+    return false;
+  }
+
+  bool heard(const std::vector<uint8_t>& expected) {
+    const Nanoseconds until = monotonicNow() + kAnswer;
+    size_t matched = 0;
+    while (matched < expected.size() && monotonicNow() < until) {
+      size_t size = 0;
+      std::array<uint8_t, 512> got;
+      const Status status = transport_.receive(got, size, 1'000'000);
+      if (status != Status::kOk && status != Status::kNothing) return false;
+      for (size_t i = 0; i < size && matched < expected.size(); ++i) {
+        if (i % kPacket < kHeader) continue;
+        if (got[i] != expected[matched]) return false;
+        ++matched;
+      }
+    }
+    return matched == expected.size();
+  }
+
+  bool chunks() {
+    for (size_t at = 0; at < firmware_.size(); at += kFalconChunk) {
+      const size_t end = std::min(firmware_.size(), at + kFalconChunk);
+      const std::vector<uint8_t> chunk(firmware_.begin() + static_cast<std::ptrdiff_t>(at),
+                                       firmware_.begin() + static_cast<std::ptrdiff_t>(end));
+      if (transport_.send(chunk) != Status::kOk || !heard(chunk)) return false;
+    }
+    return true;
+  }
+
+  Transport& transport_;
+  const std::vector<uint8_t>& firmware_;
+};
+
+/// True if reports of the loaded firmware answer a command.
+bool alreadyRuns(Transport& transport, const codec::Wire& wire) {
+  std::array<uint8_t, codec::kMaxReportBytes> command{}, got{};
+  const size_t bytes = codec::encode(wire.output, codec::Order{}, command);
+  codec::Framer framer(wire.framing, wire.input.bytes());
+  const Nanoseconds until = monotonicNow() + kRunning;
+  bool runs = false;
+  while (!runs && monotonicNow() < until) {
+    if (transport.send({command.data(), bytes}) != Status::kOk) return false;
+    size_t size = 0;
+    if (transport.receive(got, size, 5'000'000) != Status::kOk) continue;
+    framer.take({got.data(), size}, [&](std::span<const uint8_t> report) {
+      codec::State state;
+      runs = runs || codec::decode(wire.input, report, state) == codec::Verdict::kGood;
+    });
+  }
+  return runs;
+}
+
+}  // namespace
+
+Result<std::vector<uint8_t>> readFalconFirmware(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return Error{file + ": cannot be read, expected the Falcon's firmware image"};
+  std::vector<uint8_t> bytes(std::istreambuf_iterator<char>(in), {});
+  if (bytes.empty() || bytes.size() > kLargestFirmware)
+    return Error{file + ": " + std::to_string(bytes.size()) + " bytes, expected a firmware image of up to 1 MiB"};
+  return bytes;
+}
+
+Result<void> loadFalcon(Transport& transport, const codec::Wire& wire, const std::vector<uint8_t>& firmware) {
+  Loader loader(transport, firmware);
+  if (loader.run() && alreadyRuns(transport, wire)) return {};
+  if (firmware.empty())
+    return Error{
+        "the Falcon has no firmware in its memory\n  it loses it with its power, and hapticd does not ship it\n"
+        "  fix: name the image of the maker's driver as `firmware: FILE` in the device file"};
+  for (int i = 0; i < kFalconTries; ++i) {
+    loader.forget();
+    if (loader.upload() && loader.run() && alreadyRuns(transport, wire)) return {};
+  }
+  return Error{"the Falcon took no firmware in " + std::to_string(kFalconTries) +
+               " tries\n  it stays off\n  fix: unplug its power and USB, plug both in again; check the image"};
+}
+
+}  // namespace hapticd::wire_arm

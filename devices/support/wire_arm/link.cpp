@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: MIT
+#include "wire_arm/link.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hapticd::wire_arm {
+namespace {
+
+constexpr Nanoseconds kMillisecond = 1'000'000;
+constexpr Nanoseconds kSearchPause = 100 * kMillisecond;
+constexpr Nanoseconds kFirstReport = 1000 * kMillisecond;
+constexpr Nanoseconds kOld = 5 * kMillisecond;  ///< what waited for a reader comes within this time
+constexpr int kMostReportsAtOnce = 64;          ///< what the kernel holds of a hidraw device
+constexpr int kAbove = 1;  ///< over the servo's priority: a sample is worth nothing when it comes late
+
+void pause(Nanoseconds time) noexcept {
+  RealClock clock(0);
+  clock.waitUntil(clock.now() + time);
+}
+
+Nanoseconds nanoseconds(double seconds) {
+  return static_cast<Nanoseconds>(std::llround(seconds * 1e9));
+}
+
+Trouble troubleOf(Status status) {
+  if (status == Status::kStalled) return Trouble::kStalled;
+  if (status == Status::kAbsent) return Trouble::kAbsent;
+  return status == Status::kGone ? Trouble::kUnplugged : Trouble::kBusError;
+}
+
+}  // namespace
+
+Link::Link(std::unique_ptr<Transport> transport, const codec::Wire& wire, LinkSettings settings)
+    : transport_(std::move(transport)),
+      wire_(wire),
+      settings_(std::move(settings)),
+      session_(wire, settings_.session),
+      period_(nanoseconds(1 / wire.rate)) {}
+
+Link::~Link() {
+  close();
+}
+
+Result<Identity> Link::open() {
+  auto opened = bringUp();
+  if (opened) open_ = true;
+  return opened;
+}
+
+Result<Identity> Link::bringUp() {
+  auto opened = transport_->open(settings_.address, wire_);
+  if (!opened) return opened;
+  auto started = startUp();
+  if (started && settings_.prepare) started = settings_.prepare(*transport_);
+  if (!started) {
+    transport_->close();
+    return Error{started.error()};
+  }
+  const Zero zero = settings_.zero ? settings_.zero(*opened) : Zero{};
+  session_.attach(monotonicNow(), zero.offset, zero.known);
+  const std::lock_guard lock(mutex_);
+  identity_ = *opened;
+  return opened;
+}
+
+Result<void> Link::startUp() {
+  for (size_t i = 0; i < wire_.startup.size(); ++i)
+    if (auto done = perform(wire_.startup[i]); !done)
+      return Error{"start-up step " + std::to_string(i + 1) + " of " + std::to_string(wire_.startup.size()) + ": " +
+                   done.error()};
+  return {};
+}
+
+Result<void> Link::perform(const codec::StartStep& step) {
+  for (int attempt = 0; attempt < step.tries; ++attempt) {
+    if (step.is_control && transport_->control(step) != Status::kOk) continue;
+    if (!step.send.empty() && transport_->send(step.send) != Status::kOk) continue;
+    if (step.expect.empty()) return pause(nanoseconds(step.wait)), Result<void>{};
+    const Nanoseconds until = monotonicNow() + nanoseconds(step.timeout);
+    size_t matched = 0;
+    while (matched < step.expect.size() && monotonicNow() < until) {
+      size_t size = 0;
+      const Status status = transport_->receive(in_, size, kMillisecond);
+      if (status != Status::kOk && status != Status::kNothing) break;
+      const size_t packet = std::max<size_t>(1, wire_.framing.used ? wire_.framing.packet : in_.size());
+      for (size_t i = 0; i < size && matched < step.expect.size(); ++i)
+        if (!wire_.framing.used || i % packet >= wire_.framing.header)
+          matched = in_[i] == step.expect[matched] ? matched + 1 : (in_[i] == step.expect[0] ? 1 : 0);
+    }
+    if (matched == step.expect.size()) return pause(nanoseconds(step.wait)), Result<void>{};
+  }
+  return Error{"the device did not answer as the device file says after " + std::to_string(step.tries) +
+               " tries; wrong firmware?"};
+}
+
+Result<void> Link::start() {
+  if (!open_) return Error{"is not open"};
+  stop_ = false;
+  if (const auto code = thread_.start("hapticd-io", [this] { run(); }))
+    return Error{"cannot start its I/O thread: " + code.message()};
+  const Nanoseconds until = monotonicNow() + kFirstReport;
+  while (monotonicNow() < until) {
+    pause(kMillisecond);
+    if (samples_.update() && samples_.front().sequence > 0) return {};
+  }
+  stop();
+  return Error{"opened, but " + std::string(describe(session_.trouble())) + "; expected " +
+               std::to_string(static_cast<int>(wire_.rate)) + " reports a second, the motors stay off"};
+}
+
+void Link::stop() {
+  stop_ = true;
+  thread_.join();
+}
+
+void Link::close() {
+  stop();
+  if (open_) transport_->close();
+  open_ = false;
+}
+
+bool Link::read(Sample& sample) noexcept HSP_RT {
+  heard_ = news_.strikes();
+  const bool fresh = samples_.update();
+  sample = samples_.front();
+  return fresh;
+}
+
+void Link::write(const Wish& wish) noexcept HSP_RT {
+  wishes_.back() = wish;
+  wishes_.publish();
+  wished_.strike();
+}
+
+void Link::waitForNews(Nanoseconds until) noexcept {
+  paced_.store(true, std::memory_order_relaxed);
+  wished_.wake();
+  news_.wait(heard_, until);
+}
+
+void Link::cut() noexcept {
+  cut_.store(true);
+  wished_.strike();
+}
+
+void Link::run() noexcept {
+  if (os::setFifo(os::kServoPriority + kAbove)) (void)os::setFifo(os::kServoPriority);
+  if (open_) forgetOld();
+  due_ = monotonicNow();
+  while (!stop_.load(std::memory_order_relaxed)) {
+    if (open_)
+      serve(monotonicNow());
+    else
+      lookForIt();
+    tell();
+  }
+  if (!open_) return;
+  const size_t size = session_.command(monotonicNow(), Wish{}, out_);  // motors off
+  (void)transport_->send({out_.data(), size});
+}
+
+/// Reports from before this thread began: the arm has moved since, and the next report would look like a jump.
+void Link::forgetOld() noexcept {
+  size_t size = 0;
+  for (const Nanoseconds until = monotonicNow() + kOld; monotonicNow() < until;)
+    if (const Status status = transport_->receive(in_, size, kMillisecond);
+        status != Status::kOk && status != Status::kNothing)
+      return;
+}
+
+void Link::serve(Nanoseconds now) noexcept {
+  session_.calibrateByDevice(calibrate_.load(std::memory_order_relaxed));
+  wishes_.update();
+  const bool news = wire_.exchange == codec::Exchange::kStream && wishes_.front().sequence != sent_wish_ &&
+                    now - sent_at_ >= period_ / 2;
+  const bool cut = cut_.load(std::memory_order_relaxed) && !cut_sent_;
+  if (now >= due_ || news || cut) send(now);
+  if (!open_) return;
+  now = monotonicNow();
+  const Nanoseconds wait = due_ > now ? due_ - now : 0;
+  // A timeout of whole milliseconds is all that hidapi has: the arm's own reports end the wait in time. An arm that has
+  // answered sends none until it is asked again.
+  if (answered_ && wire_.exchange == codec::Exchange::kPoll)
+    pause(wait);
+  else
+    receive(wait);
+  if (open_ && session_.watch(monotonicNow())) publish();
+  if (zero_wanted_.load(std::memory_order_acquire)) {
+    const std::lock_guard lock(mutex_);
+    for (size_t i = 0; i < settings_.session.joints; ++i) offset_[i] = pose_[i] - session_.raw()[i];
+    session_.setZero(offset_);
+    zero_wanted_ = false;
+    zero_done_.store(true, std::memory_order_release);
+  }
+}
+
+void Link::receive(Nanoseconds wait) noexcept {
+  bool fresh = false;
+  for (int i = 0; i < kMostReportsAtOnce && open_; ++i) {
+    size_t size = 0;
+    const Status status = transport_->receive(in_, size, i == 0 ? wait : 0);
+    if (status == Status::kNothing) break;
+    if (status != Status::kOk) return lose(troubleOf(status));
+    fresh = session_.receive(monotonicNow(), {in_.data(), size}) || fresh;
+    if (session_.trouble() != Trouble::kNone) publish();
+  }
+  answered_ = answered_ || fresh;
+  if (fresh) tellServo();
+}
+
+/// A servo that the samples drive answers each at once: its command need not wait for the next report to end a read.
+/// What the arm sends meanwhile waits in the kernel.
+void Link::tellServo() noexcept {
+  const uint32_t known = wished_.strikes();
+  publish();
+  if (paced_.load(std::memory_order_relaxed) && wire_.exchange == codec::Exchange::kStream)
+    wished_.wait(known, monotonicNow() + period_ / 2);
+}
+
+/// When to ask a polled arm, so that its answer comes half-way between two reads of the servo: wherever the phases
+/// begin, each read then finds a new one.
+Nanoseconds Link::midway(Nanoseconds due) const noexcept {
+  constexpr int64_t kShare = 8;  // of the error, at each command: a late one does not throw the phase about
+  const auto period = static_cast<int64_t>(period_), at = static_cast<int64_t>(due);
+  const auto read = static_cast<int64_t>(wishes_.front().time);
+  const bool follows = paced_.load(std::memory_order_relaxed);  // the servo reads when the answer comes
+  if (read == 0 || follows || wire_.exchange != codec::Exchange::kPoll) return due;
+  const int64_t phase = ((at - read) % period + period) % period;
+  return static_cast<Nanoseconds>(at - (phase - period / 2) / kShare);
+}
+
+void Link::send(Nanoseconds now) noexcept {
+  cut_sent_ = cut_.load(std::memory_order_relaxed);
+  const size_t size = session_.command(now, cut_sent_ ? Wish{} : wishes_.front(), out_);
+  sent_wish_ = wishes_.front().sequence;
+  sent_at_ = now;
+  due_ += period_;
+  if (due_ + 10 * period_ < now || due_ > now + period_) due_ = now + period_;
+  due_ = midway(due_);
+  answered_ = false;
+  const Status status = transport_->send({out_.data(), size});
+  if (status != Status::kOk && status != Status::kNothing) lose(troubleOf(status));
+}
+
+void Link::lose(Trouble trouble) noexcept {
+  session_.lose(monotonicNow(), trouble);
+  transport_->close();
+  open_ = false;
+  publish();
+}
+
+/// At once when it was lost, then ten times a second: a device that opens and fails again and again must not keep a
+/// thread above the servo's from ever sleeping.
+void Link::lookForIt() noexcept {
+  while (monotonicNow() < tried_at_ + kSearchPause && !stop_) pause(10 * kMillisecond);
+  if (stop_) return;
+  tried_at_ = monotonicNow();
+  try {
+    auto found = bringUp();
+    open_ = static_cast<bool>(found);
+    if (open_) {
+      due_ = monotonicNow();
+      refusal_.clear();
+      back_ = found->product + " " + found->serial + " is back; its force ramps in again";
+    } else if (found.error() != refusal_) {
+      refusal_ = found.error();
+      settings_.log(HSP_LOG_DEBUG, "still missing: " + refusal_);
+    }
+  } catch (const std::exception& e) {
+    open_ = false;  // out of memory at worst: the next search may do better
+  }
+}
+
+void Link::tell() noexcept {
+  const Trouble now = session_.trouble();
+  if (now == told_ || session_.sample().sequence == 0) return;  // before the first report, start() does the talking
+  told_ = now;
+  try {
+    if (now == Trouble::kNone)
+      settings_.log(HSP_LOG_INFO, std::exchange(back_, "healthy"));
+    else
+      settings_.log(HSP_LOG_WARNING, std::string(describe(now)) +
+                                         "\n  its force is off until it is well again\n  fix: "
+                                         "hapticd device info FILE tells what it is, hapticd doctor what hinders it");
+  } catch (const std::exception& e) {
+    return;  // a message less
+  }
+}
+
+void Link::publish() noexcept {
+  samples_.back() = session_.sample();
+  samples_.publish();
+  news_.ring();
+}
+
+Result<JointArray> Link::calibrateAt(const JointArray& pose) {
+  {
+    const std::lock_guard lock(mutex_);
+    pose_ = pose;
+  }
+  zero_done_ = false;
+  zero_wanted_.store(true, std::memory_order_release);
+  for (int i = 0; i < 1000; ++i) {
+    if (zero_done_.load(std::memory_order_acquire)) return offset_;
+    pause(kMillisecond);
+  }
+  zero_wanted_ = false;
+  return Error{"sends no reports, expected them while it is calibrated"};
+}
+
+Identity Link::identity() const {
+  const std::lock_guard lock(mutex_);
+  return identity_;
+}
+
+}  // namespace hapticd::wire_arm

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+/// The I/O thread of one arm: between a transport, which may block, and the servo thread, which may not. Newest value
+/// wins in both directions. A device that leaves is looked for until it is back.
+#pragma once
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "base/bell.hpp"
+#include "base/clock.hpp"
+#include "base/os.hpp"
+#include "base/triple_buffer.hpp"
+#include "wire_arm/session.hpp"
+#include "wire_arm/transport.hpp"
+
+namespace hapticd::wire_arm {
+
+/// Where an arm is when it is plugged in, before anybody calibrated it.
+struct Zero {
+  JointArray offset{};
+  bool known = false;
+};
+
+struct LinkSettings {
+  Address address;
+  SessionSettings session;
+  std::function<void(int level, const std::string&)> log;  ///< [any thread] what users should know
+  std::function<Zero(const Identity&)> zero;               ///< I/O thread: what an earlier calibration stored
+  std::function<Result<void>(Transport&)> prepare;  ///< beyond wire.startup, such as a firmware upload; may be empty
+};
+
+class Link {
+ public:
+  Link(std::unique_ptr<Transport> transport, const codec::Wire& wire, LinkSettings settings);
+  ~Link();
+  Link(const Link&) = delete;
+  Link& operator=(const Link&) = delete;
+
+  /// [main] Finds, opens and starts up the device.
+  Result<Identity> open();
+  /// [main] Starts the thread and waits for the first report.
+  Result<void> start();
+  /// [main] Motors off, thread joined.
+  void stop();
+  /// [main]
+  void close();
+
+  /// [rt] The newest sample. @return false: no newer than the last
+  bool read(Sample& sample) noexcept HSP_RT;
+  /// [rt] Between two exchanges: lets the newest wish go out at once, and sleeps until there is something that read()
+  /// did not give, or until `until`. From the first call on this thread sends each wish when it comes.
+  void waitForNews(Nanoseconds until) noexcept;
+  /// [rt] Leaves the newest wish.
+  void write(const Wish& wish) noexcept HSP_RT;
+
+  /// [any] Motors off, whatever the wishes say, until endCut(); async-signal-safe, and at most a report away.
+  void cut() noexcept;
+  /// [rt] Ends a cut: the next wish counts again.
+  void endCut() noexcept HSP_RT { cut_.store(false, std::memory_order_relaxed); }
+
+  /// [main] The device shall find its zero (while true).
+  void calibrateByDevice(bool wanted) noexcept { calibrate_.store(wanted); }
+  /// [main] Positions read `pose` where the arm is now. @return offsets, to be stored
+  Result<JointArray> calibrateAt(const JointArray& pose);
+  /// [main] Of the device that is open.
+  Identity identity() const;
+
+ private:
+  void run() noexcept;
+  void forgetOld() noexcept;
+  void serve(Nanoseconds now) noexcept;
+  void receive(Nanoseconds wait) noexcept;
+  void send(Nanoseconds now) noexcept;
+  Nanoseconds midway(Nanoseconds due) const noexcept;
+  void lose(Trouble trouble) noexcept;
+  void lookForIt() noexcept;
+  void tell() noexcept;
+  void publish() noexcept;
+  void tellServo() noexcept;
+  Result<Identity> bringUp();
+  Result<void> startUp();
+  Result<void> perform(const codec::StartStep& step);
+
+  std::unique_ptr<Transport> transport_;
+  codec::Wire wire_;
+  LinkSettings settings_;
+  Session session_;
+  TripleBuffer<Sample> samples_;
+  TripleBuffer<Wish> wishes_;
+  Bell news_, wished_;  ///< for the servo: a sample or a trouble; for this thread: a wish
+  uint32_t heard_ = 0;  ///< the servo's: of news_, as of its last read()
+  os::Thread thread_;
+  std::atomic<bool> cut_{false};  ///< by the watchdog or in a crash
+  bool cut_sent_ = false;
+  std::atomic<bool> paced_{false};  ///< the servo waits for samples
+  std::atomic<bool> stop_{false}, calibrate_{false}, zero_wanted_{false}, zero_done_{false};
+  mutable std::mutex mutex_;  ///< identity_ and pose_; the servo thread takes it never
+  Identity identity_;
+  JointArray pose_{}, offset_{};
+  bool open_ = false, answered_ = false;
+  Trouble told_ = Trouble::kNone;
+  std::string refusal_;           ///< why the device could not be opened again
+  std::string back_ = "healthy";  ///< what to say once it is well
+  Nanoseconds tried_at_ = 0;      ///< to open it again
+  Nanoseconds due_ = 0, period_ = 0, sent_at_ = 0;
+  uint64_t sent_wish_ = 0;
+  std::array<uint8_t, codec::kMaxReportBytes + 1> in_{}, out_{};
+};
+
+}  // namespace hapticd::wire_arm

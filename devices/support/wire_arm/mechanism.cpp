@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "wire_arm/mechanism.hpp"
+
+#include <stdexcept>
+#include <string>
+
+#include "kinematics/carried_bodies.hpp"
+#include "kinematics/chain.hpp"
+#include "kinematics/delta.hpp"
+#include "kinematics/phantom.hpp"
+
+namespace hapticd::wire_arm {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Puts a list into members, in their order; an empty one keeps the published numbers.
+template <class... Member>
+void assign(const std::vector<double>& from, const char* id, Member&... members) {
+  if (from.empty()) return;
+  if (from.size() != sizeof...(members))
+    throw std::invalid_argument(std::string(id) + ": " + std::to_string(from.size()) + " numbers, expected " +
+                                std::to_string(sizeof...(members)) + " for this kind of arm");
+  size_t i = 0;
+  ((members = from[i++]), ...);
+}
+
+kinematics::Pose baseOf(const MechanismParameters& p) {
+  kinematics::Pose base;
+  base.position = Vector3d(p.origin[0], p.origin[1], p.origin[2]);
+  if (p.base_orientation.empty()) return base;
+  const auto& q = p.base_orientation;
+  base.orientation = Eigen::Quaterniond(q.at(0), q.at(1), q.at(2), q.at(3));
+  if (!(std::abs(base.orientation.norm() - 1) <= 1e-3))
+    throw std::invalid_argument("arm.base_orientation: norm " + std::to_string(base.orientation.norm()) +
+                                ", expected a unit quaternion w, x, y, z");
+  base.orientation.normalize();
+  return base;
+}
+
+std::unique_ptr<kinematics::Arm> phantom(const MechanismParameters& p) {
+  kinematics::PhantomGeometry g;
+  assign(p.lengths, "arm.lengths", g.l1, g.l2, g.l3, g.l5, g.l6);
+  assign(p.masses, "arm.masses", g.ma, g.mc, g.mbe, g.mdf);
+  g.origin = Vector3d(p.origin[0], p.origin[1], p.origin[2]);
+  return std::make_unique<kinematics::Phantom>(g);
+}
+
+std::unique_ptr<kinematics::Arm> delta(const MechanismParameters& p) {
+  kinematics::DeltaGeometry g;
+  assign(p.lengths, "arm.lengths", g.a, g.b, g.c, g.d, g.e, g.f, g.r, g.s);
+  assign(p.masses, "arm.masses", g.arm_mass, g.rod_mass, g.platform_mass);
+  assign(p.angles, "arm.angles", g.phi[0], g.phi[1], g.phi[2]);
+  g.base = baseOf(p);
+  return std::make_unique<kinematics::Delta>(g);
+}
+
+void needRows(const std::vector<double>& list, size_t columns, size_t rows, const char* id, const char* why) {
+  if (list.empty() || list.size() == columns * rows) return;
+  throw std::invalid_argument(std::string(id) + ": " + std::to_string(list.size() / columns) + " rows, expected " +
+                              std::to_string(rows) + ", " + why);
+}
+
+std::unique_ptr<kinematics::Arm> chain(const MechanismParameters& p) {
+  kinematics::ChainGeometry g;
+  g.base = baseOf(p);
+  g.tool.position = Vector3d(p.tool_position[0], p.tool_position[1], p.tool_position[2]);
+  const size_t count = p.dh.size() / 4, all = count + static_cast<size_t>(p.others);
+  if (count == 0) throw std::invalid_argument("arm.dh is empty, expected a row a, alpha, d, theta a joint");
+  needRows(p.limits, 2, all, "arm.limits", "one a row of arm.dh and one each of arm.others");
+  needRows(p.masses, 1, count, "arm.masses", "one a row of arm.dh");
+  needRows(p.centers, 3, count, "arm.centers", "one a row of arm.dh");
+  for (size_t i = 0; i < count; ++i) {
+    kinematics::ChainLink link;
+    link.a = p.dh[4 * i], link.alpha = p.dh[4 * i + 1], link.d = p.dh[4 * i + 2], link.theta = p.dh[4 * i + 3];
+    if (!p.limits.empty()) link.min = p.limits[2 * i], link.max = p.limits[2 * i + 1];
+    if (!p.masses.empty()) link.mass = p.masses[i];
+    if (!p.centers.empty()) link.center = Vector3d(p.centers[3 * i], p.centers[3 * i + 1], p.centers[3 * i + 2]);
+    g.links.push_back(link);
+  }
+  auto arm = std::make_unique<kinematics::Chain>(g);
+  if (p.others == 0) return arm;
+  kinematics::JointLimits others{kinematics::JointVector::Constant(p.others, -M_PI),
+                                 kinematics::JointVector::Constant(p.others, M_PI)};
+  for (size_t i = count; i < all && !p.limits.empty(); ++i) {
+    others.min[static_cast<int>(i - count)] = p.limits[2 * i];
+    others.max[static_cast<int>(i - count)] = p.limits[2 * i + 1];
+  }
+  return std::make_unique<kinematics::Passengers>(std::move(arm), others);
+}
+
+std::unique_ptr<kinematics::Arm> mechanism(const MechanismParameters& p) {
+  switch (static_cast<Kind>(p.kind)) {
+    case Kind::kPhantom:
+      return phantom(p);
+    case Kind::kDelta:
+      return delta(p);
+    case Kind::kChain:
+      return chain(p);
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::unique_ptr<kinematics::Arm> makeMechanism(const MechanismParameters& p) {
+  auto arm = mechanism(p);
+  if (p.limits.empty() || static_cast<Kind>(p.kind) == Kind::kChain) return arm;
+  const auto rows = static_cast<Eigen::Index>(p.limits.size() / 2);
+  needRows(p.limits, 2, static_cast<size_t>(arm->jointCount()), "arm.limits", "one a joint");
+  kinematics::JointLimits limits{kinematics::JointVector(rows), kinematics::JointVector(rows)};
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    limits.min[i] = p.limits[static_cast<size_t>(2 * i)];
+    limits.max[i] = p.limits[static_cast<size_t>(2 * i + 1)];
+  }
+  arm->narrow(limits);
+  return arm;
+}
+
+}  // namespace hapticd::wire_arm

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+/// Kinematics of an arm from the parameters of its device file.
+#pragma once
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "kinematics/arm.hpp"
+
+namespace hapticd::wire_arm {
+
+enum class Kind { kPhantom, kDelta, kChain };
+
+struct MechanismParameters {
+  int kind = 0;
+  int others = 0;
+  std::array<double, 3> origin{}, tool_position{};
+  std::vector<double> base_orientation, lengths, masses, centers, angles, dh, limits;
+};
+
+/// [main] Throws std::invalid_argument with a message for the user.
+std::unique_ptr<kinematics::Arm> makeMechanism(const MechanismParameters& p);
+
+}  // namespace hapticd::wire_arm

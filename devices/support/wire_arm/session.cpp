@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: MIT
+#include "wire_arm/session.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hapticd::wire_arm {
+namespace {
+
+double seconds(Nanoseconds from, Nanoseconds to) noexcept {
+  return to > from ? static_cast<double>(to - from) * kSecondsPerNanosecond : 0;
+}
+
+}  // namespace
+
+const char* describe(Trouble trouble) noexcept {
+  switch (trouble) {
+    case Trouble::kNone:
+      return "healthy";
+    case Trouble::kUnplugged:
+      return "unplugged; plug it in again";
+    case Trouble::kStalled:
+      return "stalled endpoint; the device is reopened, unplug it if this stays";
+    case Trouble::kBusError:
+      return "failing transfers; look at cable, hub or rack";
+    case Trouble::kFirmware:
+      return "wrong firmware; the device file describes another version";
+    case Trouble::kShort:
+      return "reports of a wrong size; the device file does not fit this device";
+    case Trouble::kCorrupt:
+      return "corrupt reports; look at the cable, or the device file does not fit";
+    case Trouble::kStale:
+      return "no new reports; look at power and cable";
+    case Trouble::kSlow:
+      return "too few reports a second; look at the hub, or correct wire.rate";
+    case Trouble::kJump:
+      return "an encoder jumped; calibrate again";
+    case Trouble::kHardware:
+      return "a fault reported by the hardware; switch it off and on";
+    case Trouble::kAbsent:
+      return "nobody answers on the bus; switch the rack on, or correct the address in the device file";
+    case Trouble::kTorn:
+      return "reports that are never whole; the board stopped while it wrote one: reset it";
+    case Trouble::kReset:
+      return "the board started anew; see why, and let it find its zero";
+  }
+  return "unknown trouble";
+}
+
+Session::Session(const codec::Wire& wire, const SessionSettings& settings)
+    : wire_(wire), settings_(settings), framer_(wire.framing, wire.input.bytes()) {
+  for (const codec::Field& field : wire_.input.fields) {
+    if (field.role != codec::Role::kPosition || !field.wraps) continue;
+    const auto [least, most] = codec::rangeOf(field.type);
+    span_[field.index] = (most - least + 1) * std::abs(field.scale);
+  }
+}
+
+void Session::attach(Nanoseconds now, const JointArray& zero, bool calibrated) noexcept {
+  framer_.reset();
+  zero_ = zero;
+  calibrated_ = calibrated;
+  attached_ = true;
+  have_raw_ = false;
+  turns_ = {};
+  reports_ = 0;
+  attached_at_ = sent_;
+  good_at_ = now;
+  last_bad_ = codec::Verdict::kGood;
+  // Not healthy yet: the trouble ends, like every other, after some time of good reports.
+  raise(now, sample_.trouble == Trouble::kNone ? Trouble::kStale : sample_.trouble);
+}
+
+void Session::lose(Nanoseconds now, Trouble trouble) noexcept {
+  attached_ = false;
+  raise(now, trouble);
+}
+
+void Session::raise(Nanoseconds now, Trouble trouble) noexcept {
+  sample_.trouble = trouble;
+  trouble_at_ = now;
+}
+
+bool Session::receive(Nanoseconds now, std::span<const uint8_t> bytes) noexcept {
+  if (!wire_.framing.used) return take(now, bytes);
+  bool fresh = false;
+  const size_t lost = framer_.take(bytes, [&](std::span<const uint8_t> report) { fresh = take(now, report) || fresh; });
+  if (lost > 0) reject(codec::Verdict::kCorrupt);
+  return fresh;
+}
+
+void Session::reject(codec::Verdict verdict) noexcept {
+  ++bad_reports_;
+  last_bad_ = verdict;
+}
+
+bool Session::take(Nanoseconds now, std::span<const uint8_t> bytes) noexcept {
+  const codec::Verdict verdict = codec::decode(wire_.input, bytes, state_);
+  if (verdict == codec::Verdict::kWrongFirmware) {
+    reject(verdict);
+    raise(now, Trouble::kFirmware);
+    return true;
+  }
+  if (verdict == codec::Verdict::kWrongId) return false;  // another report of the same device
+  if (verdict != codec::Verdict::kGood) return reject(verdict), false;
+  if (startedAnew(now)) have_raw_ = false;
+  if (state_.has_sequence && have_raw_ && state_.sequence == last_sequence_) return false;  // the same one again
+  last_sequence_ = state_.sequence;
+  if (!follow(now, state_)) return true;
+  arrivals_[reports_++ % kRateWindow] = now;
+  good_at_ = now;
+  last_bad_ = codec::Verdict::kGood;
+  if (state_.fault)
+    raise(now, Trouble::kHardware);
+  else
+    recover(now);
+  publish(now, state_);
+  return true;
+}
+
+/// After some time of good reports. The very first report need not wait: nothing was wrong before it.
+void Session::recover(Nanoseconds now) noexcept {
+  if (sample_.trouble == Trouble::kJump) return;
+  if (sample_.sequence == 0 || seconds(trouble_at_, now) >= settings_.health.recovery) sample_.trouble = Trouble::kNone;
+}
+
+/// A board that starts anew counts from elsewhere: what was known of its joints is void.
+bool Session::startedAnew(Nanoseconds now) noexcept {
+  const bool anew = state_.has_starts && have_raw_ && state_.starts != last_starts_;
+  last_starts_ = state_.starts;
+  if (!anew) return false;
+  turns_ = {};
+  calibrated_ = false;
+  raise(now, Trouble::kReset);
+  return true;
+}
+
+/// Unwraps positions. False: one of them jumped.
+bool Session::follow(Nanoseconds now, const codec::State& state) noexcept {
+  const double period = std::max(seconds(good_at_, now), 0.5 / wire_.rate);
+  const double most = settings_.health.max_speed * std::max(period, 1 / wire_.rate);
+  JointArray next{};
+  for (size_t i = 0; i < settings_.joints; ++i) {
+    next[i] = state.position[i] + turns_[i];
+    if (!have_raw_) continue;
+    if (span_[i] > 0) {
+      const double turns = std::nearbyint((raw_[i] - next[i]) / span_[i]) * span_[i];
+      turns_[i] += turns;
+      next[i] += turns;
+    }
+    if (std::abs(next[i] - raw_[i]) <= most) continue;
+    if (sample_.trouble != Trouble::kJump) calibrated_ = false;  // counts were lost: the zero with them
+    raise(now, Trouble::kJump);
+  }
+  raw_ = next;
+  have_raw_ = true;
+  if (sample_.trouble != Trouble::kJump) return true;
+  // An arm that knows its own zero may be believed again after a while.
+  const bool absolute = settings_.calibration != Calibration::kPose;
+  if (!absolute || seconds(trouble_at_, now) < settings_.health.recovery) {
+    good_at_ = now;
+    publish(now, state);
+    return false;
+  }
+  sample_.trouble = Trouble::kNone;
+  return true;
+}
+
+void Session::publish(Nanoseconds now, const codec::State& state) noexcept {
+  sample_.time = now;
+  ++sample_.sequence;
+  sample_.buttons = state.buttons;
+  sample_.velocity = state.velocity;
+  sample_.torque = state.torque;
+  for (size_t i = 0; i < settings_.joints; ++i) sample_.position[i] = raw_[i] + zero_[i];
+  if (settings_.calibration == Calibration::kNone) calibrated_ = true;
+  if (settings_.calibration == Calibration::kDevice) calibrated_ = state.calibrated;
+  sample_.calibrated = calibrated_;
+}
+
+bool Session::tooSlow(Nanoseconds now) noexcept {
+  if (settings_.health.least_rate <= 0 || reports_ <= kRateWindow) return false;
+  if (wire_.exchange == codec::Exchange::kPoll) {  // it can answer no more commands than we sent
+    const auto answers = static_cast<double>(reports_ - answered_[sent_ % kRateWindow]);
+    return sent_ > attached_at_ + kRateWindow && answers < settings_.health.least_rate * (kRateWindow - 1);
+  }
+  const Nanoseconds oldest = arrivals_[reports_ % kRateWindow];
+  return seconds(oldest, now) > static_cast<double>(kRateWindow) / (wire_.rate * settings_.health.least_rate);
+}
+
+bool Session::watch(Nanoseconds now) noexcept {
+  if (!attached_) return false;
+  const Trouble before = sample_.trouble;
+  const bool silent = seconds(good_at_, now) > settings_.health.stale;
+  if (silent && before != Trouble::kFirmware) {
+    Trouble found = Trouble::kStale;
+    if (last_bad_ == codec::Verdict::kWrongSize) found = Trouble::kShort;
+    if (last_bad_ == codec::Verdict::kCorrupt) found = Trouble::kCorrupt;
+    if (last_bad_ == codec::Verdict::kTorn) found = Trouble::kTorn;
+    const bool named = before == Trouble::kHardware || before == Trouble::kJump;
+    raise(now, named ? before : found);
+  } else if (tooSlow(now) && (before == Trouble::kNone || before == Trouble::kSlow)) {
+    raise(now, Trouble::kSlow);
+  }
+  return sample_.trouble != before;
+}
+
+/// How much of the host's torque is let through: all of it some time after everything was well again.
+double Session::gain(Nanoseconds now, bool healthy) noexcept {
+  if (!healthy) {
+    healthy_at_ = 0;
+    return 0;
+  }
+  if (healthy_at_ == 0) healthy_at_ = now;
+  return settings_.health.ramp > 0 ? std::min(1.0, seconds(healthy_at_, now) / settings_.health.ramp) : 1;
+}
+
+size_t Session::command(Nanoseconds now, const Wish& wish, std::span<uint8_t> bytes) noexcept {
+  const bool fresh = wish.sequence > 0 && seconds(wish.time, now) <= settings_.health.host_silent;
+  const bool healthy = attached_ && sample_.trouble == Trouble::kNone && sample_.calibrated;
+  const double part = gain(now, healthy && fresh);
+  codec::Order order;
+  order.enable = healthy && fresh && wish.on;
+  order.follow = wish.follow;
+  for (size_t i = 0; i < settings_.joints; ++i) {
+    order.torque[i] = part * wish.torque[i];
+    // From where the joint is: the arm's own loop comes in as softly as a torque does.
+    order.position[i] = raw_[i] + part * (wish.position[i] - zero_[i] - raw_[i]);
+  }
+  order.calibrate = calibrate_;
+  answered_[sent_ % kRateWindow] = reports_;
+  order.sequence = ++sent_;
+  return codec::encode(wire_.output, order, bytes);
+}
+
+void Session::setZero(const JointArray& zero) noexcept {
+  zero_ = zero;
+  calibrated_ = true;
+  if (sample_.trouble == Trouble::kJump) sample_.trouble = Trouble::kStale;
+}
+
+}  // namespace hapticd::wire_arm

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+/// What carries bytes to and from an arm. Implementations own one USB library each; tests put a fake one here.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "base/clock.hpp"
+#include "base/result.hpp"
+#include "codec/wire.hpp"
+
+namespace hapticd::wire_arm {
+
+enum class Status : uint8_t {
+  kOk,
+  kNothing,  ///< nothing came within the time given
+  kGone,     ///< unplugged
+  kStalled,  ///< the endpoint refuses
+  kAbsent,   ///< a bus without plugs: nobody answers at the address
+  kFailed,   ///< another error of the bus: unplugging often begins with some
+};
+
+/// Which device to open.
+struct Address {
+  uint16_t vendor = 0, product = 0;
+  int interface = -1;  ///< -1: any
+  std::string serial;  ///< empty: the first that is free
+  bool operator==(const Address&) const = default;
+};
+
+/// What a device says of itself when it is opened.
+struct Identity {
+  std::string serial, product, firmware;
+  std::string epoch;  ///< changes whenever the device was plugged in anew
+};
+
+/// [main] or the I/O thread, one at a time.
+class Transport {
+ public:
+  virtual ~Transport() = default;
+  /// Finds and opens the device; the error says what was looked for and what to do.
+  virtual Result<Identity> open(const Address& address, const codec::Wire& wire) = 0;
+  virtual void close() noexcept = 0;
+  /// The next report or packet. @param size bytes written to `to`
+  virtual Status receive(std::span<uint8_t> to, size_t& size, Nanoseconds wait) noexcept = 0;
+  virtual Status send(std::span<const uint8_t> bytes) noexcept = 0;
+  /// A control request without data (USB set-up packets of a start-up sequence).
+  virtual Status control(const codec::StartStep& step) noexcept = 0;
+};
+
+}  // namespace hapticd::wire_arm

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+/// What can go wrong between a healthy arm and the servo, and what to tell the user about it.
+#pragma once
+#include <cstdint>
+
+namespace hapticd::wire_arm {
+
+enum class Trouble : uint8_t {
+  kNone,
+  kUnplugged,  ///< the device left the bus
+  kStalled,    ///< an endpoint refuses transfers
+  kBusError,   ///< transfers fail for another reason
+  kFirmware,   ///< reports of a version that the device file does not describe
+  kShort,      ///< reports of a wrong size
+  kCorrupt,    ///< reports with wrong marks, checksum or numbers
+  kStale,      ///< no report at all, or the same one again and again
+  kSlow,       ///< fewer reports than the device file says
+  kJump,       ///< a joint moved further than any hand moves it
+  kHardware,   ///< the device reports a fault
+  kAbsent,     ///< nobody answers on the bus
+  kTorn,       ///< reports that are never whole
+  kReset,      ///< the device started anew and forgot where it was
+};
+
+/// Words for a trouble: what failed and what cures it.
+const char* describe(Trouble trouble) noexcept;
+
+}  // namespace hapticd::wire_arm

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+/// Every subcommand of `hapticd`, in the order of `--help`. A new command is a file of its own and a line in each list.
+#pragma once
+#include "cli/command.hpp"
+
+namespace hapticd::cli {
+
+using AddCommand = void(CLI::App& app, int& exit_code);
+
+AddCommand addCheck, addCompletion, addCtl, addDevice, addDeviceCalibrate, addDeviceKinematics, addDoctor, addExplain,
+    addExport, addImport, addManual, addPart, addPlot, addPlugin, addPluginCheck, addPluginNew, addReplay, addRun, addTop,
+    addTrace, addTune, addView;
+
+/// A command that hangs under another one ("device calibrate") comes after it.
+constexpr AddCommand* kCommands[] = {
+    addCheck,
+    addCompletion,
+    addCtl,
+    addDevice,
+    addDeviceCalibrate,
+    addDeviceKinematics,
+    addDoctor,
+    addExplain,
+    addExport,
+    addImport,
+    addManual,
+    addPart,
+    addPlot,
+    addPlugin,
+    addPluginCheck,
+    addPluginNew,
+    addReplay,
+    addRun,
+    addTop,
+    addTrace,
+    addTune,
+    addView,
+};
+
+}  // namespace hapticd::cli

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd export`: a recording for other tools.
+#include "export/export.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "document/suggestion.hpp"
+
+namespace hapticd::cli {
+
+namespace {
+
+struct Options {
+  std::string file, mcap, csv, stream;
+};
+
+void tell(const std::string& file, const record::Exported& done) {
+  std::printf("%s: %llu rows, %.1f MB\n", file.c_str(), static_cast<unsigned long long>(done.rows),
+              static_cast<double>(done.bytes) / 1e6);
+}
+
+int toMcap(const record::Recording& recording, const std::string& file) {
+  auto done = record::exportMcap(recording, file);
+  if (!done) return fail(kFailed, done.error());
+  tell(file, *done);
+  return kWorked;
+}
+
+std::vector<std::string> namesOf(const record::Recording& recording) {
+  std::vector<std::string> names;
+  for (const record::RecordedStream& stream : recording.streams()) names.push_back(stream.name());
+  return names;
+}
+
+/// One file of one stream, or a folder with a file of each.
+int toCsv(const record::Recording& recording, const Options& options) {
+  const bool one = !options.stream.empty();
+  if (one && recording.stream(options.stream) == nullptr)
+    return fail(kBadInput, "--stream " + options.stream + ": the recording has no such stream, expected one of " +
+                               document::listed(namesOf(recording), 10) +
+                               document::suggestion(options.stream, namesOf(recording)));
+  std::error_code error;
+  if (!one) std::filesystem::create_directories(options.csv, error);
+  if (error) return fail(kFailed, options.csv + ": cannot be created: " + error.message());
+  for (const record::RecordedStream& stream : recording.streams()) {
+    if (one && stream.name() != options.stream) continue;
+    const std::string file =
+        one ? options.csv : (std::filesystem::path(options.csv) / (stream.name() + ".csv")).string();
+    auto done = record::exportCsv(stream, file);
+    if (!done) return fail(kFailed, done.error());
+    tell(file, *done);
+  }
+  return kWorked;
+}
+
+/// Writing over the recording itself would destroy it.
+bool sameFile(const std::string& a, const std::string& b) {
+  std::error_code error;
+  return std::filesystem::equivalent(a, b, error);
+}
+
+int exportRecording(const Options& options) {
+  if (options.mcap.empty() && options.csv.empty())
+    return fail(kBadInput, "nothing to write, expected --mcap FILE or --csv FOLDER");
+  for (const std::string& file : {options.mcap, options.csv})
+    if (!file.empty() && sameFile(options.file, file))
+      return fail(kBadInput, file + ": is the recording itself, expected another file");
+  auto recording = record::Recording::open(options.file);
+  if (!recording) return fail(kBadInput, recording.error());
+  const int code = options.mcap.empty() ? kWorked : toMcap(**recording, options.mcap);
+  return code == kWorked && !options.csv.empty() ? toCsv(**recording, options) : code;
+}
+
+}  // namespace
+
+void addExport(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("export", "Convert a recording for other tools: MCAP or CSV.");
+  command->add_option("recording", options->file, "recording, dump, or black box of a crash")->required();
+  command->add_option("--mcap", options->mcap, "MCAP file, for Foxglove, PlotJuggler and rosbag2");
+  command->add_option("--csv", options->csv,
+                      "folder for one CSV file per stream; with --stream, the CSV file of that stream");
+  command->add_option("--stream", options->stream, "with --csv: the only stream to write (ticks, contacts, poses, ...)")
+      ->needs("--csv");
+  command->footer("Example:\n  hapticd export run.h5 --mcap run.mcap");
+  command->callback([options, &exit_code] { exit_code = exportRecording(*options); });
+}
+
+}  // namespace hapticd::cli

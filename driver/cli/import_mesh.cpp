@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "cli/import_mesh.hpp"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "base/regular_file.hpp"
+#include "cli/command.hpp"
+#include "kernels/brep/part_file.hpp"
+#include "mesh_import/mesh_part.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+constexpr std::size_t kMaxMeshBytes = std::size_t{4} << 30;
+constexpr double kTooLarge = 10;  ///< [m] a part so large was probably stated in millimetres
+
+std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
+  const nlohmann::ordered_json report = {{"part", out},
+                                         {"triangles", r.triangles},
+                                         {"points", r.points},
+                                         {"shells", r.shells},
+                                         {"closed", r.closed},
+                                         {"volume_m3", r.volume},
+                                         {"size_m", {r.size.x(), r.size.y(), r.size.z()}},
+                                         {"degenerate", r.degenerate},
+                                         {"duplicates", r.duplicates},
+                                         {"flipped", r.flipped},
+                                         {"non_manifold_edges", r.non_manifold},
+                                         {"unorientable_edges", r.unorientable},
+                                         {"holes", r.holes},
+                                         {"free_edges", r.free_edges}};
+  return report.dump(2);
+}
+
+void print(const importing::MeshReport& r, const std::string& out) {
+  std::printf("%s: %zu triangles, %zu points, %.4g x %.4g x %.4g m, %s\n", out.c_str(), r.triangles, r.points,
+              r.size.x(), r.size.y(), r.size.z(),
+              r.closed ? "closed" : "open: a shell that is felt from both sides unless the scene says sides: front");
+  for (const std::string& line : importing::linesOf(r)) std::printf("  %s\n", line.c_str());
+  if (r.size.maxCoeff() > kTooLarge)
+    std::fprintf(stderr, "warning: the part is %.4g m large; if the file counts millimetres, add --scale 0.001\n",
+                 r.size.maxCoeff());
+}
+
+}  // namespace
+
+int importMesh(const MeshImport& options) {
+  if (std::filesystem::path(options.out).extension() != ".hpart")
+    return fail(kBadInput, options.out +
+                               ": triangles become a part, expected a name that ends in .hpart\n  fix: for a "
+                               "soft body (.ma, .yaml) add --medial");
+  const auto bytes = readRegular(options.file, kMaxMeshBytes);
+  if (!bytes) return fail(kBadInput, options.file + ": " + bytes.error());
+  const auto mesh = importing::parseMesh(*bytes, options.file);
+  if (!mesh) return fail(kBadInput, mesh.error());
+  importing::MeshReport report;
+  std::string part;
+  try {
+    const importing::MeshOptions how{options.scale, options.smooth_angle * std::numbers::pi / 180};
+    const std::string name = std::filesystem::path(options.file).filename().string();
+    part = brep::writePart(importing::meshPart(*mesh, how, name, report));
+  } catch (const std::exception& error) {
+    return fail(kBadInput, options.file + ": " + error.what());
+  }
+  if (const auto written = writeWhole(options.out, part); !written) return fail(kFailed, written.error());
+  if (options.json)
+    std::printf("%s\n", jsonOf(report, options.out).c_str());
+  else
+    print(report, options.out);
+  return kWorked;
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd import` of a triangle mesh into a part file.
+#pragma once
+#include <string>
+
+namespace hapticd::cli {
+
+struct MeshImport {
+  std::string file, out;
+  double scale = 1;         ///< metres per unit of the file
+  double smooth_angle = 0;  ///< [degrees]
+  bool json = false;        ///< the report as JSON
+};
+
+/// [main] Returns the exit code; everything else has been said.
+int importMesh(const MeshImport& options);
+
+}  // namespace hapticd::cli

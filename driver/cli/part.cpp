@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd part info`: what a part file holds.
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "base/regular_file.hpp"
+#include "cli/command.hpp"
+#include "kernels/brep/part_file.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+using brep::kNone;
+using brep::Part;
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMaxPartBytes = std::size_t{4} << 30;
+constexpr const char* kSurfaceNames[] = {"plane",    "cylinder",  "cone",       "sphere", "torus",
+                                         "B-spline", "extrusion", "revolution", "offset"};
+constexpr const char* kEdgeNames[] = {"unclassified", "smooth", "convex",       "concave",
+                                      "mixed",        "free",   "non-manifold", "pole"};
+constexpr const char* kBodyNames[] = {"solid", "shell", "sheet", "mesh"};
+
+std::string nameOf(const Part& part, std::uint32_t name) {
+  return name == kNone ? "" : part.names[name];
+}
+
+Json countsOf(const std::map<std::string, std::size_t>& counts) {
+  Json json = Json::object();
+  for (const auto& [name, count] : counts) json[name] = count;
+  return json;
+}
+
+Json bodiesOf(const Part& part) {
+  Json bodies = Json::array();
+  for (const brep::Body& body : part.bodies)
+    bodies.push_back({{"name", nameOf(part, body.name)},
+                      {"kind", kBodyNames[static_cast<std::size_t>(body.kind)]},
+                      {"closed", (body.flags & brep::kClosed) != 0},
+                      {"faces", body.face_count},
+                      {"edges", body.edge_count},
+                      {"triangles", body.triangle_count}});
+  return bodies;
+}
+
+Json instancesOf(const Part& part) {
+  Json instances = Json::array();
+  std::size_t feature = 0;
+  for (const brep::Instance& instance : part.instances) {
+    Json entry = {{"name", nameOf(part, instance.name)}};
+    if (instance.parent != kNone) entry["parent"] = instance.parent;
+    if (instance.body != kNone) {
+      const brep::Body& body = part.bodies[instance.body];
+      entry["body"] = instance.body;
+      entry["first_feature"] = feature;
+      feature += std::size_t{body.face_count} + body.triangle_count;
+    }
+    entry["position_m"] = {instance.pose[3], instance.pose[7], instance.pose[11]};
+    instances.push_back(std::move(entry));
+  }
+  return instances;
+}
+
+Json describe(const Part& part, std::size_t bytes) {
+  std::map<std::string, std::size_t> faces, edges;
+  for (const brep::Face& face : part.faces)
+    ++faces[kSurfaceNames[static_cast<std::size_t>(part.surfaces[face.surface].kind)]];
+  for (const brep::Edge& edge : part.edges) ++edges[kEdgeNames[static_cast<std::size_t>(edge.kind)]];
+  Json losses = Json::array();
+  for (const brep::Loss& loss : part.losses)
+    losses.push_back({{"what", loss.what}, {"reason", loss.reason}, {"size_m", loss.size}});
+  return {{"format", "hapticd-part/1"},
+          {"bytes", bytes},
+          {"source", {{"file", part.source.file}, {"unit", part.source.unit}, {"sha256", part.source.sha256}}},
+          {"tolerance_m", part.tolerance},
+          {"faces", part.faces.size()},
+          {"face_kinds", countsOf(faces)},
+          {"edges", part.edges.size()},
+          {"edge_kinds", countsOf(edges)},
+          {"triangles", part.triangles.size()},
+          {"bodies", bodiesOf(part)},
+          {"instances", instancesOf(part)},
+          {"losses", losses},
+          {"warnings", part.warnings}};
+}
+
+std::string listed(const Json& counts) {
+  std::string text;
+  for (const auto& [name, count] : counts.items())
+    text += (text.empty() ? "" : ", ") + std::to_string(count.get<std::size_t>()) + " " + name;
+  return text;
+}
+
+void printBodies(const Json& info) {
+  for (const Json& body : info["bodies"]) {
+    const std::string name = body["name"].get<std::string>();
+    std::printf("  body %s: %s, %s, ", name.empty() ? "unnamed" : ("'" + name + "'").c_str(),
+                body["kind"].get<std::string>().c_str(), body["closed"].get<bool>() ? "closed" : "open");
+    if (body["triangles"].get<std::size_t>() > 0)
+      std::printf("%zu triangles\n", body["triangles"].get<std::size_t>());
+    else
+      std::printf("%zu faces, %zu edges\n", body["faces"].get<std::size_t>(), body["edges"].get<std::size_t>());
+  }
+}
+
+void printInstances(const Json& info) {
+  std::vector<int> depth;
+  for (const Json& instance : info["instances"]) {
+    depth.push_back(instance.contains("parent") ? depth[instance["parent"].get<std::size_t>()] + 1 : 0);
+    const std::string name = instance["name"].get<std::string>();
+    std::printf("  %*sinstance %s", 2 * depth.back(), "", name.empty() ? "unnamed" : ("'" + name + "'").c_str());
+    if (instance.contains("body"))
+      std::printf(": body %zu, features from %zu", instance["body"].get<std::size_t>(),
+                  instance["first_feature"].get<std::size_t>());
+    std::printf("\n");
+  }
+}
+
+void print(const std::string& file, const Json& info) {
+  std::printf("%s: %s, %zu bytes\n", file.c_str(), info["format"].get<std::string>().c_str(),
+              info["bytes"].get<std::size_t>());
+  const Json& source = info["source"];
+  std::printf("  from %s, unit %s, tolerance %.3g m\n", source["file"].get<std::string>().c_str(),
+              source["unit"].get<std::string>().c_str(), info["tolerance_m"].get<double>());
+  if (info["faces"].get<std::size_t>() > 0) {
+    std::printf("  faces: %s\n", listed(info["face_kinds"]).c_str());
+    std::printf("  edges: %s\n", listed(info["edge_kinds"]).c_str());
+  }
+  printBodies(info);
+  printInstances(info);
+  for (const Json& loss : info["losses"])
+    std::printf("  lost: %s: %s (%.3g m)\n", loss["what"].get<std::string>().c_str(),
+                loss["reason"].get<std::string>().c_str(), loss["size_m"].get<double>());
+  for (const Json& warning : info["warnings"]) std::printf("  %s\n", warning.get<std::string>().c_str());
+}
+
+int partInfo(const std::string& file, bool json) {
+  const auto bytes = readRegular(file, kMaxPartBytes);
+  if (!bytes) return fail(kBadInput, file + ": " + bytes.error());
+  try {
+    const Part part = brep::readPart(std::as_bytes(std::span(*bytes)), file);
+    const Json info = describe(part, bytes->size());
+    if (json)
+      std::printf("%s\n", info.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+    else
+      print(file, info);
+  } catch (const brep::PartError& error) {
+    return fail(kBadInput, error.what());
+  }
+  return kWorked;
+}
+
+}  // namespace
+
+void addPart(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("part", "Work with part files, which hapticd import makes from CAD and meshes.");
+  command->require_subcommand(1);
+  auto file = std::make_shared<std::string>();
+  auto json = std::make_shared<bool>(false);
+  CLI::App* info = command->add_subcommand("info", "Show what a part file holds: bodies, instances, faces, losses.");
+  info->add_option("part", *file, "a part file (.hpart)")->required();
+  info->add_flag("--json", *json, "as JSON");
+  info->footer("Example:\n  hapticd part info bracket.hpart");
+  info->callback([file, json, &exit_code] { exit_code = partInfo(*file, *json); });
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "cli/recorded_models.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "control/request.hpp"
+#include "control/server.hpp"
+#include "record/recording.hpp"
+#include "session/about.hpp"
+#include "session/geometry_answer.hpp"
+#include "session/world.hpp"
+
+namespace hapticd::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using control::Request;
+
+class RecordedModelsImpl final : public RecordedModels {
+ public:
+  ~RecordedModelsImpl() override {
+    server_.reset();
+    std::error_code error;
+    if (!folder_.empty()) std::filesystem::remove_all(folder_, error);
+  }
+
+  Result<void> open(const std::string& file) {
+    auto recording = record::Recording::open(file);
+    if (!recording) return Error{recording.error()};
+    auto run = servo::readAbout((*recording)->aboutJson());
+    if (!run) return Error{file + ": " + run.error()};
+    for (const scene::Model& model : run->scene.models) models_.push_back(build(run->scene, model, run->facts.rate));
+    std::string folder = (std::filesystem::temp_directory_path() / "hapticd-view-XXXXXX").string();
+    if (mkdtemp(folder.data()) == nullptr) return Error{folder + ": cannot be created"};
+    folder_ = folder;
+    socket_ = folder_ + "/models.sock";
+    auto server = control::Server::listen(socket_);
+    if (!server) return Error{server.error()};
+    server_ = std::move(*server);
+    control::Server::Service service;
+    service.answer = [this](const control::Peer&, const std::string& line) { return control::Reply(answer(line)); };
+    server_->start(std::move(service));
+    return {};
+  }
+
+  const std::string& socket() const override { return socket_; }
+
+ private:
+  struct Built {
+    std::string name, plugin, error;
+    std::unique_ptr<servo::World> world;
+  };
+
+  /// A scene of that model alone: one that fails leaves the others.
+  static Built build(const scene::Scene& scene, const scene::Model& model, double rate) {
+    Built built{model.name, model.plugin, "", nullptr};
+    auto found = catalog().shape(model.plugin);
+    if (!found) {
+      built.error = found.error();
+      return built;
+    }
+    scene::Scene alone = scene;
+    alone.models = {model};
+    alone.models[0].library = (*found)->file;
+    servo::WorldOptions options;
+    options.rate = rate;
+    auto world = servo::World::build(alone, options, [](int, const std::string&, const std::string&) {});
+    if (world)
+      built.world = std::move(*world);
+    else
+      built.error = world.error();
+    return built;
+  }
+
+  std::string answer(const std::string& line) {
+    const auto request = control::parseRequest(line);
+    if (!request) return control::refusal(request.error());
+    if (request->kind == Request::Kind::kList) return list();
+    if (request->kind != Request::Kind::kGeometry) return control::refusal("a recording cannot be changed");
+    const auto model =
+        std::find_if(models_.begin(), models_.end(), [&](const Built& built) { return built.name == request->model; });
+    if (model == models_.end()) return control::refusal("the recording has no model \"" + request->model + "\"");
+    if (!model->world) return control::refusal(model->error);
+    auto drawn = servo::geometryAnswer(*model->world->shapes()[0], request->tolerance);
+    return drawn ? *drawn : control::refusal(drawn.error());
+  }
+
+  std::string list() const {
+    Json models = Json::array();
+    for (const Built& built : models_)
+      models.push_back(
+          {{"name", built.name}, {"plugin", built.plugin}, {"enabled", true}, {"live_parameters", Json::array()}});
+    return Json({{"ok", true}, {"models", std::move(models)}}).dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
+
+  std::vector<Built> models_;
+  std::string folder_, socket_;
+  std::unique_ptr<control::Server> server_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<RecordedModels>> RecordedModels::serve(const std::string& recording) {
+  auto models = std::make_unique<RecordedModelsImpl>();
+  if (auto opened = models->open(recording); !opened) return Error{opened.error()};
+  return std::unique_ptr<RecordedModels>(std::move(models));
+}
+
+}  // namespace hapticd::cli

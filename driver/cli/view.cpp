@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd view`: shows a running daemon, or a recording, in a browser.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/os.hpp"
+#include "cli/command.hpp"
+#include "cli/recorded_models.hpp"
+#include "cli/view_process.hpp"
+
+namespace hapticd::cli {
+
+namespace {
+
+struct Options {
+  std::string name = "hapticd", file;
+  int port = 0;
+  bool control = false, open = false;
+};
+
+std::vector<std::string> argumentsOf(const Options& options) {
+  std::vector<std::string> arguments{"--name", options.name, "--port", std::to_string(options.port)};
+  if (options.control) arguments.emplace_back("--control");
+  if (options.open) arguments.emplace_back("--open");
+  return arguments;
+}
+
+volatile sig_atomic_t viewer = 0;  ///< for the signal handler
+
+void passOn(int signal) {
+  if (viewer > 0) kill(static_cast<pid_t>(viewer), signal);
+}
+
+/// This process draws the models, another serves the page.
+int viewRecording(const Options& options) {
+  auto models = RecordedModels::serve(options.file);
+  if (!models) return fail(kBadInput, models.error());
+  std::vector<std::string> arguments = argumentsOf(options);
+  arguments.insert(arguments.end(), {"--file", options.file, "--drawings", (*models)->socket()});
+  auto child = startView(arguments);
+  if (!child) return fail(kFailed, child.error());
+  viewer = *child;
+  os::onStopSignal(passOn);
+  int status = 0;
+  while (waitpid(*child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : kFailed;
+}
+
+int view(const Options& options) {
+  if (!options.file.empty()) return viewRecording(options);
+  return fail(kFailed, becomeView(argumentsOf(options)).error());
+}
+
+}  // namespace
+
+void addView(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("view", "Show a running daemon or a recording in a browser.");
+  command->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
+  command->add_option("--port", options->port, "port on 127.0.0.1; 0: a free one")->check(CLI::Range(0, 65535));
+  command->add_flag("--control", options->control, "allow the page to change the run and to lead a simulated hand");
+  command->add_flag("--open", options->open, "open the page in your browser");
+  command->add_option("--file", options->file, "show this recording or dump instead of a daemon");
+  command->footer(
+      "The command prints the address of the page with a token. Everybody who has the token may look.\nFrom another "
+      "computer: ssh -L PORT:127.0.0.1:PORT.\n\nExample:\n  hapticd view --control --open");
+  command->callback([options, &exit_code] { exit_code = view(*options); });
+}
+
+}  // namespace hapticd::cli

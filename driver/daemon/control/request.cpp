@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#include "control/request.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
+
+namespace hapticd::control {
+
+namespace {
+
+using Json = nlohmann::json;
+using Kind = Request::Kind;
+
+constexpr int kMaxDepth = 8;
+constexpr size_t kMaxText = 4096;
+constexpr double kMaxPlace = 10;         ///< [m] no arm reaches farther
+constexpr double kFinestDrawing = 1e-5;  ///< [m] no screen shows less
+constexpr double kMostFrames = 1e15;     ///< that are counted exactly
+
+/// What a request may and must say. Keys in the order: what it needs, then what it may have.
+struct Form {
+  const char* word;
+  Kind kind;
+  std::set<std::string> needs, may;
+};
+
+const std::array<Form, 21>& forms() {
+  static const std::array<Form, 21> all = {{{"status", Kind::kStatus, {}, {}},
+                                            {"list", Kind::kList, {}, {}},
+                                            {"snapshot", Kind::kSnapshot, {}, {}},
+                                            {"events", Kind::kEvents, {}, {"after"}},
+                                            {"subscribe", Kind::kSubscribe, {}, {}},
+                                            {"get", Kind::kGet, {"model"}, {"parameter"}},
+                                            {"enable", Kind::kEnable, {"model"}, {}},
+                                            {"disable", Kind::kDisable, {"model"}, {}},
+                                            {"move", Kind::kMove, {"model", "position"}, {"orientation", "seconds"}},
+                                            {"set", Kind::kSet, {"model", "parameter", "value"}, {"consent"}},
+                                            {"add", Kind::kAdd, {"file"}, {"model"}},
+                                            {"remove", Kind::kRemove, {"model"}, {}},
+                                            {"reload", Kind::kReload, {}, {"file"}},
+                                            {"hold", Kind::kHold, {}, {"device"}},
+                                            {"clear", Kind::kClear, {}, {"device"}},
+                                            {"dump", Kind::kDump, {}, {}},
+                                            {"geometry", Kind::kGeometry, {"model"}, {"tolerance"}},
+                                            {"vertices", Kind::kVertices, {"model"}, {"after"}},
+                                            {"lead", Kind::kLead, {}, {"model", "hand"}},
+                                            {"unlead", Kind::kUnlead, {}, {"model", "hand"}},
+                                            {"stop", Kind::kStop, {}, {}}}};
+  return all;
+}
+
+const Form* formOf(const std::string& word) {
+  for (const Form& form : forms())
+    if (word == form.word) return &form;
+  return nullptr;
+}
+
+std::string words() {
+  std::string list;
+  for (const Form& form : forms()) list += std::string(list.empty() ? "" : ", ") + form.word;
+  return list;
+}
+
+/// Takes values out of a request and keeps the first complaint.
+class Taker {
+ public:
+  explicit Taker(const Json& json) : json_(json) {}
+
+  void text(const char* key, std::string& to) {
+    const Json* value = find(key);
+    if (value == nullptr) return;
+    if (!value->is_string() || value->get_ref<const std::string&>().empty() ||
+        value->get_ref<const std::string&>().size() > kMaxText)
+      return complain(key, "a text of 1 to " + std::to_string(kMaxText) + " bytes");
+    to = value->get<std::string>();
+    if (to.find('\0') != std::string::npos) complain(key, "a text without zero bytes");
+  }
+  void number(const char* key, double low, double high, double& to) {
+    const Json* value = find(key);
+    if (value == nullptr) return;
+    const double given = value->is_number() ? value->get<double>() : NAN;
+    if (!(given >= low && given <= high))
+      return complain(key, "a number from " + Json(low).dump() + " to " + Json(high).dump());
+    to = given;
+  }
+  template <size_t N>
+  void numbers(const char* key, double bound, std::array<double, N>& to) {
+    const Json* value = find(key);
+    if (value == nullptr) return;
+    bool good = value->is_array() && value->size() == N;
+    for (size_t i = 0; i < N && good; ++i) {
+      to[i] = (*value)[i].is_number() ? (*value)[i].template get<double>() : NAN;
+      good = std::abs(to[i]) <= bound;
+    }
+    if (!good) complain(key, "a list of " + std::to_string(N) + " numbers within " + Json(bound).dump() + " of 0");
+  }
+  void flag(const char* key, bool& to) {
+    const Json* value = find(key);
+    if (value == nullptr) return;
+    if (!value->is_boolean()) return complain(key, "true or false");
+    to = value->get<bool>();
+  }
+  bool has(const char* key) const { return json_.contains(key); }
+  void complain(const std::string& key, const std::string& expected) {
+    if (complaint_.empty()) complaint_ = "\"" + key + "\": expected " + expected;
+  }
+  const std::string& complaint() const { return complaint_; }
+
+ private:
+  const Json* find(const char* key) const {
+    const auto it = json_.find(key);
+    return it == json_.end() ? nullptr : &*it;
+  }
+  const Json& json_;
+  std::string complaint_;
+};
+
+std::string wrongKeys(const Json& json, const Form& form) {
+  for (const std::string& key : form.needs)
+    if (!json.contains(key)) return "\"" + key + "\" is missing in \"" + form.word + "\"";
+  for (const auto& [key, value] : json.items())
+    if (key != "do" && key != "id" && form.needs.count(key) == 0 && form.may.count(key) == 0)
+      return Json(key.substr(0, 64)).dump(-1, ' ', true, Json::error_handler_t::replace) + " is not part of \"" +
+             form.word + "\"";
+  return "";
+}
+
+/// @return what is wrong with it
+std::string readId(const Json& json, std::string* id) {
+  constexpr size_t kLongest = 128;
+  const auto given = json.find("id");
+  if (given == json.end()) return "";
+  const std::string text = given->dump(-1, ' ', false, Json::error_handler_t::replace);
+  if ((!given->is_number() && !given->is_string()) || text.size() > kLongest)
+    return "\"id\": expected a number or a text of at most " + std::to_string(kLongest) + " bytes";
+  if (id != nullptr) *id = text;
+  return "";
+}
+
+void readOrientation(Taker& take, Request& request) {
+  request.turns = take.has("orientation");
+  take.numbers("orientation", 2, request.orientation);
+  double square = 0;
+  for (const double part : request.orientation) square += part * part;
+  const double length = std::sqrt(square);
+  constexpr double kRounding = 1e-3;
+  if (!(std::abs(length - 1) <= kRounding)) return take.complain("orientation", "a unit quaternion w,x,y,z");
+  for (double& part : request.orientation) part /= length;
+}
+
+}  // namespace
+
+Result<Request> parseRequest(std::string_view line, std::string* id) {
+  if (line.size() > kMaxRequestBytes)
+    return Error{"the request is longer than " + std::to_string(kMaxRequestBytes) + " bytes"};
+  bool deep = false;
+  const auto shallow = [&](int depth, Json::parse_event_t, Json&) {
+    deep = deep || depth > kMaxDepth;
+    return !deep;
+  };
+  const Json json = Json::parse(line.begin(), line.end(), shallow, false);
+  if (deep || !json.is_object()) return Error{"expected a JSON object in one line, as {\"do\": \"status\"}"};
+  if (const std::string wrong = readId(json, id); !wrong.empty()) return Error{wrong};
+  const auto word = json.find("do");
+  const Form* form = word != json.end() && word->is_string() ? formOf(word->get_ref<const std::string&>()) : nullptr;
+  if (form == nullptr) return Error{"\"do\": expected one of " + words()};
+  if (const std::string wrong = wrongKeys(json, *form); !wrong.empty()) return Error{wrong};
+  Request request;
+  request.kind = form->kind;
+  Taker take(json);
+  take.text("model", request.model);
+  take.text("device", request.device);
+  take.text("hand", request.hand);
+  take.text("parameter", request.parameter);
+  take.text("file", request.file);
+  take.number("value", -1e300, 1e300, request.value);
+  take.number("tolerance", kFinestDrawing, 1, request.tolerance);
+  take.number("after", 0, kMostFrames, request.after);
+  take.flag("consent", request.consent);
+  take.numbers("position", kMaxPlace, request.position);
+  readOrientation(take, request);
+  if (take.has("seconds")) take.number("seconds", 0.05, 600, request.seconds.emplace(0));
+  if (!request.file.empty() && request.file[0] != '/') take.complain("file", "an absolute path");
+  const bool leads = form->kind == Kind::kLead || form->kind == Kind::kUnlead;
+  if (leads && take.has("model") == take.has("hand")) take.complain(form->word, "either a \"model\" or a \"hand\"");
+  if (!take.complaint().empty()) return Error{take.complaint()};
+  return request;
+}
+
+std::string refusal(const std::string& why, const std::string& code) {
+  return Json{{"ok", false}, {"code", code}, {"error", why}}.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string withId(const std::string& answer, const std::string& id) {
+  return id.empty() || answer.empty() || answer[0] != '{' ? answer : "{\"id\":" + id + "," + answer.substr(1);
+}
+
+}  // namespace hapticd::control

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+/// One request to a running daemon: a line of JSON, checked before anything is done with it.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/result.hpp"
+
+namespace hapticd::control {
+
+constexpr size_t kMaxRequestBytes = 64 * 1024;
+
+struct Request {
+  enum class Kind {
+    kStatus,
+    kList,
+    kSnapshot,
+    kEvents,
+    kSubscribe,
+    kGet,
+    kEnable,
+    kDisable,
+    kMove,
+    kSet,
+    kAdd,
+    kRemove,
+    kReload,
+    kHold,
+    kClear,
+    kDump,
+    kGeometry,
+    kVertices,
+    kLead,
+    kUnlead,
+    kStop
+  };
+  Kind kind = Kind::kStatus;
+  std::string model, device, parameter, file;     ///< as the kind needs them
+  std::string hand;                               ///< kLead, kUnlead: the device whose simulated hand is led
+  double value = 0;                               ///< kSet
+  double tolerance = 0;                           ///< [m] kGeometry: chord error; 0: as the daemon chooses
+  double after = 0;                               ///< kVertices: frame that is known; kEvents: the first that is wanted
+  bool consent = false;                           ///< kSet: the operator agrees to change what is felt
+  std::array<double, 3> position{};               ///< [m] kMove, world frame
+  std::array<double, 4> orientation{1, 0, 0, 0};  ///< kMove: unit quaternion w,x,y,z
+  bool turns = false;                             ///< kMove: an orientation was given
+  std::optional<double> seconds;                  ///< kMove: how long it takes
+};
+
+/// [main] Parses and checks a line. An error says what is wrong and what was expected. @param id the request's "id" as
+/// JSON, also where the rest is wrong; "": it has none
+Result<Request> parseRequest(std::string_view line, std::string* id = nullptr);
+
+/// [main] {"ok":false,"code":CODE,"error":WHY}. @param code one word for programs
+std::string refusal(const std::string& why, const std::string& code = "bad_request");
+
+/// [main] An answer with the id of its request in front.
+std::string withId(const std::string& answer, const std::string& id);
+
+}  // namespace hapticd::control

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+/// A validated scene as plain data: what the files say, with every default filled in. Written by the loader (load.hpp),
+/// read by whoever sets up the daemon. Nothing here is used in the servo thread.
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "document/problem.hpp"
+
+namespace hapticd::scene {
+
+using document::Place;
+
+/// Position [m] and orientation of a frame in its parent.
+struct Pose {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+};
+
+/// One parameter that the file gives, ready for set(): checked against the table of the plugin or module.
+struct Value {
+  std::string id;
+  uint32_t index = 0;  ///< in the table
+  uint32_t kind = 0;   ///< HSP_REAL, ...
+  double number = 0;
+  std::string text;  ///< paths are absolute
+  std::vector<double> numbers;
+  Place place;
+};
+
+/// One point of a kinematic path; poses between are interpolated (linear, and slerp).
+struct PathPoint {
+  double t = 0;
+  Pose pose;
+};
+
+struct Model {
+  std::string name, plugin;
+  std::filesystem::path library;  ///< the .so that has the plugin
+  Pose pose;                      ///< of the model in the world at the start
+  bool kinematic = false;         ///< moved by `path`, not by its plugin
+  std::vector<PathPoint> path;
+  std::vector<Value> parameters;
+  Place place;
+};
+
+/// What lets forces through: a button of the device, held (dead-man switch) or pressed once for on and once for off.
+enum class EnableMode { kHold, kToggle };
+struct Enable {
+  std::optional<int> button;  ///< none: forces are always let through
+  EnableMode mode = EnableMode::kHold;
+};
+
+/// One motor for the model of its heat; numbers as data sheets give them.
+struct Motor {
+  double ratio = 1;                              ///< joint torque over motor torque
+  double torque_constant = 0, resistance = 0;    ///< [N m/A], [ohm] at 25 degC
+  double winding_housing = 1, housing_air = 10;  ///< [K/W]
+  double winding_time = 10, housing_time = 600;  ///< [s]
+  double max_temperature = 100, ambient = 25;    ///< [degC]
+};
+
+/// Limits of one device, applied between contact and motors whatever the plugins say.
+struct Limits {
+  double force = 0;               ///< [N] 0: the device's own maximum
+  double torque = 0;              ///< [N m] on the hand; 0: no limit but the motors'
+  double slew = 2000;             ///< [N/s] fastest growth of force; 0: none
+  double torque_slew = 0;         ///< [N m/s] fastest growth of torque; 0: none
+  double power = 0;               ///< [W] most that the arm gives to the hand; 0: none
+  double impulse = 0;             ///< [N s] most within a tenth of a second; 0: none
+  double velocity = 0;            ///< [m/s] faster than this latches a fault; 0: none
+  double workspace = 0;           ///< [m] radius about the world's origin of the device; outside forces fade; 0: none
+  std::optional<double> weight;   ///< [N] at the tip, most that carries the arm's own weight; none: as much as `force`
+  double ramp_in = 0.25;          ///< [s] from zero to full force at the start and after a fault
+  double ramp_out = 0.02;         ///< [s] from full force to zero at a fault
+  std::optional<bool> passivity;  ///< observer and controller; none: for arms never tried on hardware
+  Enable enable;
+  std::vector<Motor> motors;  ///< in the order of the joints; none: no model of their heat
+};
+
+/// Compliance control: measured joint torque drives a virtual mass and damper, rendered as positions.
+struct Admittance {
+  double mass = 1, damping = 10;  ///< [kg], [N s/m]
+};
+
+struct Device {
+  std::string name, module;
+  std::filesystem::path file, library;
+  Pose mount;  ///< the device frame in the world
+  Limits limits;
+  std::optional<Admittance> admittance;
+  std::vector<Value> parameters;
+  bool chosen_by_default = false;  ///< the scene named none
+  Place place;
+};
+
+enum class Pace { kClock, kDevice };
+
+struct Velocity {
+  std::string estimator = "window";  ///< window, butterworth, foaw, least_squares, kalman
+  double parameter = 3;              ///< samples, cut-off in Hz, or process noise: what the estimator takes
+};
+
+struct Servo {
+  double rate = 1000;                    ///< [Hz]
+  double activation_radius = 0.10;       ///< [m] surfaces nearer than this are traced
+  double hysteresis = 0.05;              ///< [m] beyond the radius until they are dropped again
+  Eigen::Vector3d gravity{0, -9.81, 0};  ///< [m/s^2] world
+  Pace pace = Pace::kClock;
+  Velocity velocity;
+  std::optional<double> spin_us;  ///< [us] busy wait before the deadline; none: chosen for the machine
+  double budget_us = 0;           ///< [us] of a tick for all shapes; 0: four fifths of the period
+};
+
+struct Scene {
+  std::filesystem::path file;
+  Servo servo;
+  std::vector<Model> models;
+  std::vector<Device> devices;  ///< at least one
+};
+
+}  // namespace hapticd::scene

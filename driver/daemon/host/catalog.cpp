@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "host/catalog.hpp"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+
+#include "document/suggestion.hpp"
+#include "host/library.hpp"
+
+namespace hapticd::host {
+namespace fs = std::filesystem;
+namespace {
+
+const char* noun(Kind kind) {
+  return kind == Kind::kShape ? "shape plugin" : "device module";
+}
+
+const ClassInfo* classIn(const CatalogFile& file, Kind kind, const std::string& name) {
+  for (const ClassInfo& info : file.classes)
+    if (info.kind == kind && (info.name == name || info.id == name)) return &info;
+  return nullptr;
+}
+
+std::vector<fs::path> sharedObjects(const fs::path& dir) {
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (fs::directory_iterator entry(dir, error), end; !error && entry != end; entry.increment(error))
+    if (entry->path().extension() == ".so") found.push_back(entry->path());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+std::optional<FileStamp> stampOf(const fs::path& file) {
+  struct stat about{};
+  if (stat(file.c_str(), &about) != 0) return std::nullopt;
+  return FileStamp{static_cast<int64_t>(about.st_dev), static_cast<int64_t>(about.st_ino), about.st_size,
+                   about.st_mtim.tv_sec, about.st_mtim.tv_nsec};
+}
+
+/// A name from a file must not walk out of the directories that are searched.
+bool plainName(const std::string& name) {
+  return !name.empty() && name.find('/') == std::string::npos && name.size() < 200 && name[0] != '.';
+}
+
+std::string textOf(const std::vector<fs::path>& dirs) {
+  std::string text;
+  for (const fs::path& dir : dirs) {
+    std::error_code error;
+    const bool there = fs::is_directory(dir, error);
+    text += "\n    " + dir.string() + (there ? "" : error ? " (" + error.message() + ")" : " (not a folder)");
+  }
+  return text;
+}
+
+}  // namespace
+
+fs::path executableDir() {
+  std::error_code error;
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  return error ? fs::current_path(error) : self.parent_path();
+}
+
+std::optional<fs::path> shippedFile(const fs::path& relative) {
+  std::error_code error;
+  for (const fs::path& root :
+       {executableDir() / ".." / "share" / "hapticd", fs::path(HAPTICD_INSTALL_DATA), fs::path(HAPTICD_SOURCE_CONFIG)})
+    if (fs::exists(root / relative, error)) return (root / relative).lexically_normal();
+  return std::nullopt;
+}
+
+SearchPath SearchPath::standard() {
+  SearchPath path;
+  if (const char* listed = std::getenv("HAPTICD_PLUGIN_PATH")) {
+    std::stringstream dirs(listed);
+    for (std::string dir; std::getline(dirs, dir, ':');)
+      if (!dir.empty()) path.plugins.emplace_back(dir), path.devices.emplace_back(dir);
+  }
+  const fs::path beside = executableDir() / "..";
+  for (const fs::path& root :
+       {beside / "lib" / "hapticd", beside / HAPTICD_INSTALL_LIBDIR / "hapticd", fs::path(HAPTICD_INSTALL_MODULES)}) {
+    const fs::path normal = root.lexically_normal();
+    if (std::find(path.plugins.begin(), path.plugins.end(), normal / "plugins") != path.plugins.end()) continue;
+    path.plugins.push_back(normal / "plugins");
+    path.devices.push_back(normal / "devices");
+  }
+  return path;
+}
+
+void SearchPath::prepend(const std::vector<fs::path>& dirs) {
+  plugins.insert(plugins.begin(), dirs.begin(), dirs.end());
+  devices.insert(devices.begin(), dirs.begin(), dirs.end());
+}
+
+const CatalogFile& Catalog::describeOnce(const fs::path& file) {
+  if (const auto known = files_.find(file); known != files_.end()) return known->second;
+  CatalogFile& entry = files_[file];
+  entry.path = file;
+  // What is loaded is what will be used, whatever the file holds by now; its constructors have run already.
+  const std::shared_ptr<Library> loaded = Library::loaded(file);
+  if (!loaded) entry.stamp = stampOf(file);
+  auto classes = loaded ? describe(file) : describe_(file);
+  if (classes)
+    entry.classes = *std::move(classes);
+  else
+    entry.error = classes.error();
+  return entry;
+}
+
+void Catalog::refresh() {
+  found_.clear();
+  std::erase_if(files_, [](const auto& entry) {
+    const CatalogFile& file = entry.second;
+    return !file.error.empty() || !file.stamp || file.stamp != stampOf(file.path);
+  });
+}
+
+std::vector<const CatalogFile*> Catalog::files(Kind kind) {
+  std::vector<const CatalogFile*> all;
+  for (const fs::path& dir : dirs(kind))
+    for (const fs::path& file : sharedObjects(dir)) all.push_back(&describeOnce(file));
+  return all;
+}
+
+std::vector<std::string> Catalog::names(Kind kind) {
+  std::vector<std::string> all;
+  for (const CatalogFile* file : files(kind))
+    for (const ClassInfo& info : file->classes)
+      if (info.kind == kind && std::find(all.begin(), all.end(), info.name) == all.end()) all.push_back(info.name);
+  return all;
+}
+
+Result<const ClassInfo*> Catalog::find(Kind kind, const std::string& name) {
+  const ClassInfo*& known = found_[{kind, name}];
+  if (known != nullptr) return known;
+  std::string reason;
+  std::error_code error;
+  if (plainName(name)) {
+    for (const fs::path& dir : dirs(kind)) {
+      const fs::path file = dir / (name + ".so");
+      if (!fs::exists(file, error)) continue;
+      const CatalogFile& entry = describeOnce(file);
+      if (const ClassInfo* info = classIn(entry, kind, name)) return known = info;
+      if (!entry.error.empty()) reason += "\n  " + entry.error;
+    }
+  }
+  for (const CatalogFile* file : files(kind))
+    if (const ClassInfo* info = classIn(*file, kind, name)) return known = info;
+  return Error{notFound(kind, name, reason)};
+}
+
+std::string Catalog::notFound(Kind kind, const std::string& name, const std::string& reason) {
+  const std::vector<std::string> known = names(kind);
+  std::string text =
+      std::string("there is no usable ") + noun(kind) + " \"" + name + "\"" + document::suggestion(name, known);
+  if (!known.empty()) text += ", expected one of " + document::listed(known);
+  text += reason;
+  if (reason.empty())
+    for (const CatalogFile* file : files(kind))
+      if (!file->error.empty()) text += "\n  not usable: " + file->error;
+  return text + "\n  searched:" + textOf(dirs(kind)) +
+         "\n  fix: name an existing one, or add its folder to HAPTICD_PLUGIN_PATH";
+}
+
+}  // namespace hapticd::host

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+#include "host/child.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <exception>
+#include <optional>
+#include <thread>
+
+namespace hapticd::host {
+namespace {
+
+using Deadline = std::chrono::steady_clock::time_point;
+
+constexpr size_t kLargestAnswer = 64u << 20;
+constexpr int kThrew = 113;   ///< exit code of a child that an exception ended
+constexpr int kAnswerFd = 3;  ///< where a program that was started answers: what it loads may print
+constexpr int kFatal[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM, SIGQUIT, SIGHUP};
+
+bool writeAll(int fd, const std::string& bytes) {
+  for (size_t done = 0; done < bytes.size();) {
+    const ssize_t written = write(fd, bytes.data() + done, bytes.size() - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    done += static_cast<size_t>(written);
+  }
+  return true;
+}
+
+/// The child's work: no core file, and never back into other code.
+[[noreturn]] void answer(const std::function<std::string()>& work, int fd) {
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  // An exception out of a constructor comes through dlopen() or ends there, as the compilers of plugin and host will.
+  std::set_terminate([] { _exit(kThrew); });
+  try {
+    _exit(writeAll(fd, work()) ? 0 : 1);
+  } catch (...) {
+    _exit(kThrew);
+  }
+}
+
+/// A fork of this process: the signals as a program finds them, and no output.
+[[noreturn]] void childMain(const std::function<std::string()>& work, int fd) {
+  for (const int signal : kFatal) ::signal(signal, SIG_DFL);
+  if (const int null = open("/dev/null", O_RDWR | O_CLOEXEC); null >= 0) {
+    dup2(null, STDOUT_FILENO);
+    dup2(null, STDERR_FILENO);
+  }
+  answer(work, fd);
+}
+
+/// What posix_spawn is told: default signals, none of them blocked, no output, `answer` as the only other file.
+class Surroundings {
+ public:
+  explicit Surroundings(int answer) {
+    posix_spawn_file_actions_init(&files_);
+    posix_spawn_file_actions_addopen(&files_, STDIN_FILENO, "/dev/null", O_RDWR, 0);
+    posix_spawn_file_actions_adddup2(&files_, STDIN_FILENO, STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&files_, STDIN_FILENO, STDERR_FILENO);
+    posix_spawn_file_actions_adddup2(&files_, answer, kAnswerFd);
+    posix_spawn_file_actions_addclosefrom_np(&files_, kAnswerFd + 1);
+    posix_spawnattr_init(&how_);
+    sigset_t signals;
+    sigemptyset(&signals);
+    posix_spawnattr_setsigmask(&how_, &signals);
+    for (const int signal : kFatal) sigaddset(&signals, signal);
+    posix_spawnattr_setsigdefault(&how_, &signals);
+    posix_spawnattr_setflags(&how_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  }
+  ~Surroundings() {
+    posix_spawn_file_actions_destroy(&files_);
+    posix_spawnattr_destroy(&how_);
+  }
+  Surroundings(const Surroundings&) = delete;
+  Surroundings& operator=(const Surroundings&) = delete;
+  int start(pid_t& child, char* const* arguments) const {
+    return posix_spawn(&child, arguments[0], &files_, &how_, arguments, environ);
+  }
+
+ private:
+  posix_spawn_file_actions_t files_;
+  posix_spawnattr_t how_;
+};
+
+/// Everything the child writes until it closes the pipe; nothing when the time is over first.
+std::optional<std::string> readAll(int fd, Deadline end) {
+  std::string bytes;
+  char buffer[16384];
+  while (bytes.size() < kLargestAnswer) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+    if (left.count() <= 0) return std::nullopt;
+    pollfd waiting{fd, POLLIN, 0};
+    const int ready = poll(&waiting, 1, static_cast<int>(left.count()));
+    if (ready == 0 || (ready < 0 && errno != EINTR)) return std::nullopt;
+    if (ready < 0) continue;
+    const ssize_t got = read(fd, buffer, sizeof buffer);
+    if (got == 0) return bytes;
+    if (got < 0 && errno != EINTR) return std::nullopt;
+    if (got > 0) bytes.append(buffer, static_cast<size_t>(got));
+  }
+  return std::nullopt;
+}
+
+/// How the child ended. One that has closed the pipe and lives on after `end` is ended; `in_time` says whether.
+int waitFor(pid_t child, Deadline end, bool& in_time) {
+  constexpr auto kPause = std::chrono::milliseconds(1);
+  int status = 0;
+  for (;;) {
+    const pid_t ended = waitpid(child, &status, in_time ? WNOHANG : 0);
+    if (ended == child || (ended < 0 && errno != EINTR)) return status;
+    if (in_time && std::chrono::steady_clock::now() >= end) {
+      in_time = false;
+      kill(child, SIGKILL);
+    } else if (in_time) {
+      std::this_thread::sleep_for(kPause);
+    }
+  }
+}
+
+/// The child's answer, or how it ended. Closes `fd`, the reading end.
+Result<std::string> hear(pid_t child, int fd, int limit_ms) {
+  const Deadline end = std::chrono::steady_clock::now() + std::chrono::milliseconds(limit_ms);
+  std::optional<std::string> told = readAll(fd, end);
+  close(fd);
+  bool in_time = told.has_value();
+  if (!in_time) kill(child, SIGKILL);
+  const int status = waitFor(child, end, in_time);
+  if (!in_time) return Error{"took longer than " + std::to_string(limit_ms / 1000.0).substr(0, 4) + " s"};
+  if (WIFSIGNALED(status)) return Error{std::string("crashed: ") + strsignal(WTERMSIG(status))};
+  if (WEXITSTATUS(status) == kThrew) return Error{"threw an exception"};
+  if (WEXITSTATUS(status) != 0 || told->empty())
+    return Error{"ended the process with code " + std::to_string(WEXITSTATUS(status))};
+  return *std::move(told);
+}
+
+Error notTried(const char* what, int code) {
+  return Error{std::string("could not be tried: ") + what + ": " + std::strerror(code)};
+}
+
+/// A pipe at descriptors that the child's own do not overwrite, in a process that was started without 0, 1 or 2 too.
+bool pipeBeyondStandard(int (&ends)[2]) {
+  int low[2];
+  if (pipe2(low, O_CLOEXEC) != 0) return false;
+  for (int i = 0; i < 2; ++i) ends[i] = fcntl(low[i], F_DUPFD_CLOEXEC, kAnswerFd + 1);
+  const int code = errno;
+  for (const int fd : low) close(fd);
+  if (ends[0] >= 0 && ends[1] >= 0) return true;
+  for (const int fd : ends)
+    if (fd >= 0) close(fd);
+  errno = code;
+  return false;
+}
+
+}  // namespace
+
+Result<std::string> runInChild(const std::function<std::string()>& work, int limit_ms) {
+  int ends[2];
+  if (!pipeBeyondStandard(ends)) return notTried("pipe", errno);
+  const pid_t child = fork();
+  const int code = errno;
+  if (child == 0) {
+    close(ends[0]);
+    childMain(work, ends[1]);
+  }
+  close(ends[1]);
+  if (child > 0) return hear(child, ends[0], limit_ms);
+  close(ends[0]);
+  return notTried("fork", code);
+}
+
+Result<std::string> runProgram(std::vector<std::string> arguments, int limit_ms) {
+  int ends[2];
+  if (!pipeBeyondStandard(ends)) return notTried("pipe", errno);
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  pid_t child = 0;
+  const int code = Surroundings(ends[1]).start(child, pointers.data());
+  close(ends[1]);
+  if (code == 0) return hear(child, ends[0], limit_ms);
+  close(ends[0]);
+  return notTried(arguments[0].c_str(), code);
+}
+
+void answerParent(const std::function<std::string()>& work) {
+  answer(work, kAnswerFd);
+}
+
+}  // namespace hapticd::host

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+/// Vertices of a deforming shape, on their way from its step to whoever draws it.
+#pragma once
+#include <atomic>
+#include <vector>
+
+#include "base/triple_buffer.hpp"
+#include "hapticd/shape.h"
+
+namespace hapticd::host {
+
+/// The shape writes straight into one of three buffers, 60 times a second while somebody looks; one other thread takes
+/// the newest. Neither waits. While nobody looks, nothing is written.
+class Contour {
+ public:
+  static constexpr double kRate = 60;  ///< [Hz]
+  struct Frame {
+    uint64_t number = 0;     ///< 1 is the first; 0: none has come yet
+    std::vector<float> xyz;  ///< [m] in the model's frame
+  };
+
+  /// [main] Memory is taken here.
+  explicit Contour(uint32_t vertices) : vertices_(vertices) {
+    for (int slot = 0; slot < 3; ++slot) {  // each comes round as the back one
+      frames_.back().xyz.resize(3 * std::size_t{vertices});
+      frames_.update();
+      frames_.publish();
+    }
+  }
+
+  /// [rt] Before a step of dt [s]: where it shall write vertices now; nullptr: nowhere.
+  float* offer(double dt) noexcept HSP_RT {
+    since_ += dt;
+    offered_ = since_ >= 1 / kRate && wanted_.load(std::memory_order_relaxed) > 0;
+    if (!offered_) return nullptr;
+    since_ = since_ < 2 / kRate ? since_ - 1 / kRate : 0;
+    return frames_.back().xyz.data();
+  }
+  /// [rt] After that step. `written`: it went well.
+  void close(bool written) noexcept HSP_RT {
+    if (!offered_ || !written) return;
+    frames_.back().number = ++number_;
+    frames_.publish();
+    wanted_.fetch_sub(1, std::memory_order_relaxed);
+  }
+
+  /// [any] One thread: the newest frame, valid until the next call. More come for as long as this is called.
+  const Frame& newest() noexcept {
+    wanted_.store(kPatience, std::memory_order_relaxed);
+    frames_.update();
+    return frames_.front();
+  }
+  uint32_t vertices() const noexcept { return vertices_; }
+
+ private:
+  static constexpr int kPatience = 60;  ///< frames that are made for one who does not ask again
+  uint32_t vertices_;
+  TripleBuffer<Frame> frames_;
+  std::atomic<int> wanted_{0};
+  double since_ = 1 / kRate;  ///< [s] since the last frame
+  uint64_t number_ = 0;
+  bool offered_ = false;
+};
+
+}  // namespace hapticd::host

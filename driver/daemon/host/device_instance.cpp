@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "host/device_instance.hpp"
+
+#include <cmath>
+
+#include "host/class_table.hpp"
+
+namespace hapticd::host {
+namespace {
+
+template <class Extension>
+const Extension* extensionOf(const hdv_class& device_class, hdv_device* device, const char* name) {
+  const auto* found = static_cast<const Extension*>(device_class.extension(device, name));
+  return found != nullptr && found->struct_size >= sizeof(Extension) ? found : nullptr;
+}
+
+/// What open() said about the hardware is used as limits: nothing in it may be nonsense.
+std::string wrongIn(const hdv_info& info, uint32_t kinematic_joints) {
+  if (info.joint_count == 0 || info.joint_count > HDV_MAX_JOINTS)
+    return "reports " + std::to_string(info.joint_count) + " joints, expected 1 to " + std::to_string(HDV_MAX_JOINTS);
+  if (info.joint_count != kinematic_joints)
+    return "reports " + std::to_string(info.joint_count) + " joints, but its kinematics have " +
+           std::to_string(kinematic_joints);
+  for (const double value : {info.rate_hz, info.max_force, info.continuous_force, info.max_stiffness, info.resolution_m,
+                             info.damping, info.mass_kg})
+    if (!std::isfinite(value) || value < 0)
+      return "reports " + std::to_string(value) +
+             " as a rate, force, stiffness, "
+             "resolution, damping or mass; expected 0 or more";
+  for (uint32_t i = 0; i < info.joint_count; ++i)
+    if (!std::isfinite(info.max_torque[i]) || info.max_torque[i] < 0 || std::isnan(info.position_min[i]) ||
+        std::isnan(info.position_max[i]) || info.position_min[i] > info.position_max[i])
+      return "reports a torque or position limit of joint " + std::to_string(i + 1) +
+             " that is not finite or has a minimum above its maximum";
+  return "";
+}
+
+}  // namespace
+
+DeviceInstance::DeviceInstance(std::shared_ptr<Library> library, const scene::Device& device, Services::Log log)
+    : library_(std::move(library)), name_(device.name), services_(device.name, std::move(log)) {}
+
+Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Device& device, Services::Log log) {
+  const std::string who = "device '" + device.name + "': ";
+  auto library = Library::open(device.library);
+  if (!library) return Error{who + library.error()};
+  auto entry = (*library)->devices();
+  if (!entry) return Error{who + entry.error()};
+
+  std::unique_ptr<DeviceInstance> instance(new DeviceInstance(*library, device, std::move(log)));
+  const hdv_class* found = findClass<hdv_class>(**entry, device.module);
+  if (found == nullptr) return Error{who + device.library.string() + " has no module named '" + device.module + "'"};
+  if (!complete(*found))
+    return Error{who + "module '" + device.module + "' of " + device.library.string() + " lacks a required function"};
+
+  instance->class_ = found;
+  instance->device_ = found->create(found, instance->services_.abi());
+  if (instance->device_ == nullptr)
+    return Error{who + "module '" + device.module +
+                 "' could not create an instance: " + reasonOf(HSP_E_NOMEM, instance->services_)};
+  const auto set =
+      setAll(device.parameters, found->param_count, instance->services_,
+             [&](uint32_t index, const hsp_value* value) { return found->set(instance->device_, index, value); });
+  if (!set) return Error{who + set.error()};
+
+  instance->services_.forgetError();
+  instance->kinematics_ = extensionOf<hdv_ext_kinematics>(*found, instance->device_, HDV_EXT_KINEMATICS);
+  instance->calibration_ = extensionOf<hdv_ext_calibration>(*found, instance->device_, HDV_EXT_CALIBRATION);
+  instance->cut_ = extensionOf<hdv_ext_cut>(*found, instance->device_, HDV_EXT_CUT);
+  instance->hand_ = extensionOf<hdv_ext_hand>(*found, instance->device_, HDV_EXT_HAND);
+  instance->pace_ = extensionOf<hdv_ext_pace>(*found, instance->device_, HDV_EXT_PACE);
+  instance->trouble_ = extensionOf<hdv_ext_trouble>(*found, instance->device_, HDV_EXT_TROUBLE);
+  if (instance->kinematics_ == nullptr) {
+    const std::string said = instance->services_.lastError();
+    return Error{who +
+                 (said.empty() ? "module '" + device.module + "' has no kinematics (" HDV_EXT_KINEMATICS ")" : said)};
+  }
+  return instance;
+}
+
+DeviceInstance::~DeviceInstance() {
+  stop();
+  if (open_ && playback_ == nullptr) class_->close(device_);
+  if (device_ != nullptr) class_->destroy(device_);
+}
+
+Result<void> DeviceInstance::open() {
+  if (open_) return {};
+  const std::string who = "device '" + name_ + "': ";
+  info_ = {};
+  info_.struct_size = sizeof info_;
+  services_.forgetError();
+  const hsp_status status = playback_ == nullptr ? class_->open(device_, &info_) : HSP_OK;
+  if (playback_ != nullptr) info_ = playback_->info;
+  if (status < 0) return Error{who + "cannot be opened: " + reasonOf(status, services_)};
+  open_ = true;
+  if (const std::string wrong = wrongIn(info_, kinematics_->joint_count); !wrong.empty()) {
+    if (playback_ == nullptr) class_->close(device_);
+    open_ = false;
+    return Error{who + "its module " + wrong};
+  }
+  return {};
+}
+
+Result<void> DeviceInstance::start(const hdv_start& how) {
+  const std::string who = "device '" + name_ + "': ";
+  if (!open_) return Error{who + "is not open"};
+  if (playback_ != nullptr) return {};
+  services_.forgetError();
+  const hsp_status status = class_->start(device_, &how);
+  if (status < 0) return Error{who + "cannot be started: " + reasonOf(status, services_)};
+  started_ = true;
+  return {};
+}
+
+void DeviceInstance::stop() {
+  if (started_) class_->stop(device_);
+  started_ = false;
+}
+
+}  // namespace hapticd::host

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+/// One instance of a device module, from create to destroy. Set-up calls may fail with a message; read and write are
+/// real time.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "base/result.hpp"
+#include "description/scene.hpp"
+#include "hapticd/device.h"
+#include "hapticd/device_pace.h"
+#include "hapticd/device_trouble.h"
+#include "host/library.hpp"
+#include "host/services.hpp"
+
+namespace hapticd::host {
+
+/// Samples from elsewhere than the hardware, which is never opened: a recording that is run again.
+struct Playback {
+  hdv_info info{};      ///< what the device said of itself
+  hdv_sample sample{};  ///< what the next read gives
+  hsp_status read_status = HSP_OK, write_status = HSP_OK;
+};
+
+class DeviceInstance {
+ public:
+  /// [main] Loads the library (once a process), creates the instance and sets the parameters of the device file.
+  static Result<std::unique_ptr<DeviceInstance>> create(const scene::Device& device, Services::Log log);
+  ~DeviceInstance();  ///< [main] stops, closes and destroys
+  DeviceInstance(const DeviceInstance&) = delete;
+  DeviceInstance& operator=(const DeviceInstance&) = delete;
+
+  /// [main] Instead of the hardware; before open(). The playback outlives the instance.
+  void playBack(const Playback* playback) { playback_ = playback; }
+
+  Result<void> open();                       ///< [main] finds the hardware
+  Result<void> start(const hdv_start& how);  ///< [main]
+  void stop();                               ///< [main] motors off
+
+  hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
+    if (playback_ == nullptr) return class_->read(device_, now_ns, &sample);
+    sample = playback_->sample;
+    return playback_->read_status;
+  }
+  hsp_status write(uint64_t now_ns, const hdv_command& command) noexcept HSP_RT {
+    return playback_ == nullptr ? class_->write(device_, now_ns, &command) : playback_->write_status;
+  }
+
+  /// [any] Motors free at once, by the module's own means; async-signal-safe. False: the module has none.
+  bool cut() noexcept {
+    if (cut_ == nullptr || playback_ != nullptr) return playback_ != nullptr;
+    cut_->cut(device_);
+    return true;
+  }
+
+  /// [any] Its samples can drive the loop: waitForSample() waits for them.
+  bool canPace() const { return pace_ != nullptr && (info_.capabilities & HDV_C_PACING) != 0; }
+  /// [rt] Between two ticks: sleeps until there is news of the arm, or until `until`. @return time of the next tick
+  uint64_t waitForSample(uint64_t until) noexcept { return playback_ == nullptr ? pace_->wait(device_, until) : until; }
+
+  /// [any] Why the arm is not well as of the last read, in words of static storage: "cause; cure". nullptr: unknown.
+  const char* trouble() const noexcept HSP_RT {
+    return trouble_ != nullptr && playback_ == nullptr ? trouble_->why(device_) : nullptr;
+  }
+
+  /// The hand of a simulated arm; nullptr: the arm has none, or is played back.
+  const hdv_ext_hand* hand() const {
+    const bool simulated = (info_.capabilities & HDV_C_SIMULATED) != 0;
+    return simulated && playback_ == nullptr ? hand_ : nullptr;
+  }
+
+  const std::string& name() const { return name_; }
+  const hdv_class& description() const { return *class_; }
+  const hdv_info& info() const { return info_; }                         ///< valid once open
+  const hdv_ext_kinematics& kinematics() const { return *kinematics_; }  ///< every module has it
+  const hdv_ext_calibration* calibration() const { return calibration_; }
+  hdv_device* handle() const { return device_; }
+
+ private:
+  DeviceInstance(std::shared_ptr<Library> library, const scene::Device& device, Services::Log log);
+  std::shared_ptr<Library> library_;
+  std::string name_;
+  Services services_;
+  const hdv_class* class_ = nullptr;
+  hdv_device* device_ = nullptr;
+  hdv_info info_{};
+  const hdv_ext_kinematics* kinematics_ = nullptr;
+  const hdv_ext_calibration* calibration_ = nullptr;
+  const hdv_ext_cut* cut_ = nullptr;
+  const hdv_ext_hand* hand_ = nullptr;
+  const hdv_ext_pace* pace_ = nullptr;
+  const hdv_ext_trouble* trouble_ = nullptr;
+  const Playback* playback_ = nullptr;
+  bool open_ = false, started_ = false;
+};
+
+}  // namespace hapticd::host

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "host/services.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <new>
+
+namespace hapticd::host {
+namespace {
+
+constexpr size_t kCacheLine = 64;          ///< blocks of two instances never share one
+constexpr size_t kLargestAlign = 1 << 21;  ///< a huge page
+constexpr size_t kLargestBlock = size_t{1} << 40;
+constexpr size_t kLongestMessage = 4096;  ///< a plugin that loses its terminator does not flood the log
+
+thread_local bool t_servo_thread = false;
+
+}  // namespace
+
+Services::Services(std::string who, Log log) : who_(std::move(who)), log_(std::move(log)) {
+  abi_.struct_size = sizeof abi_;
+  abi_.abi_minor = HSP_ABI_MINOR;
+  abi_.ctx = this;
+  abi_.log = [](const hsp_host* host, int32_t level, const char* utf8) { of(host).write(level, utf8); };
+  abi_.trace = [](const hsp_host* host, uint32_t event, double a, double b) noexcept HSP_RT {
+    of(host).events_.push({event, a, b});
+  };
+  abi_.alloc = [](const hsp_host* host, size_t bytes, size_t align) { return of(host).allocate(bytes, align); };
+  abi_.release = [](const hsp_host* host, void* block) { of(host).release(block); };
+  abi_.is_rt_thread = [](const hsp_host*) -> int32_t { return t_servo_thread ? 1 : 0; };
+  abi_.request_restart = [](const hsp_host* host) { of(host).restart_.store(true, std::memory_order_relaxed); };
+  abi_.extension = [](const hsp_host*, const char*) -> const void* { return nullptr; };
+}
+
+Services::~Services() {
+  for (const auto& [block, size] : blocks_) ::operator delete(block, std::align_val_t{size.align});
+}
+
+std::string Services::lastError() const {
+  const std::lock_guard lock(mutex_);
+  return last_error_;
+}
+
+void Services::forgetError() {
+  const std::lock_guard lock(mutex_);
+  last_error_.clear();
+}
+
+void Services::markServoThread() {
+  t_servo_thread = true;
+}
+
+void Services::write(int level, const char* utf8) {
+  if (utf8 == nullptr) return;
+  level = std::clamp<int>(level, HSP_LOG_DEBUG, HSP_LOG_ERROR);
+  const std::string text(utf8, strnlen(utf8, kLongestMessage));
+  const std::lock_guard lock(mutex_);
+  if (level == HSP_LOG_ERROR) last_error_ = text;
+  if (log_) log_(level, who_, text);
+}
+
+void* Services::allocate(size_t bytes, size_t align) {
+  align = std::max(align, kCacheLine);
+  if (bytes == 0 || bytes > kLargestBlock || align > kLargestAlign || !std::has_single_bit(align)) return nullptr;
+  const size_t rounded = (bytes + align - 1) / align * align;
+  void* block = ::operator new(rounded, std::align_val_t{align}, std::nothrow);
+  if (block == nullptr) return nullptr;
+  std::memset(block, 0, rounded);  // touches every page too: none faults in the servo thread
+  blocks_.emplace(block, Block{rounded, align});
+  locked_bytes_ += rounded;
+  return block;
+}
+
+void Services::release(void* block) {
+  const auto found = blocks_.find(block);
+  if (found == blocks_.end()) return;  // not ours, or given back before: freeing it would corrupt the heap
+  locked_bytes_ -= found->second.bytes;
+  ::operator delete(block, std::align_val_t{found->second.align});
+  blocks_.erase(found);
+}
+
+}  // namespace hapticd::host

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+/// What the host offers to plugins and modules (hsp_host): logging, locked memory, a lossy ring of trace events.
+#pragma once
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <unordered_map>
+
+#include "base/spsc_ring.hpp"
+#include "hapticd/abi.h"
+
+namespace hapticd::host {
+
+/// Something that a shape told from the servo thread; what the numbers mean is the shape's.
+struct TraceEvent {
+  uint32_t event = 0;
+  double a = 0, b = 0;
+};
+
+/// Services for one instance. Lives as long as the instance; not copied, because plugins keep the pointer.
+class Services {
+ public:
+  using Log = std::function<void(int level, const std::string& who, const std::string& text)>;
+
+  /// [main] @param who name of the model or device, put before each message
+  Services(std::string who, Log log);
+  ~Services();
+  Services(const Services&) = delete;
+  Services& operator=(const Services&) = delete;
+
+  const hsp_host* abi() const { return &abi_; }
+  /// [main] Newest message of level error, for set-up failures.
+  std::string lastError() const;
+  /// [main] Forgets it, so that the next call is not blamed for an older one.
+  void forgetError();
+  size_t lockedBytes() const { return locked_bytes_; }  ///< [main] given out by alloc
+
+  /// [any] One reader: the next event of the servo thread. False: none.
+  bool takeEvent(TraceEvent& event) noexcept { return events_.pop(event); }
+  /// [any] True once after the instance has asked to be activated again.
+  bool takeRestartRequest() noexcept { return restart_.exchange(false, std::memory_order_relaxed); }
+
+  /// [main] Marks the calling thread as the servo thread, for is_rt_thread.
+  static void markServoThread();
+
+ private:
+  static constexpr size_t kEvents = 64;  ///< a click or two a tick, read every 10 ms or so; the rest may be lost
+  struct Block {
+    size_t bytes, align;
+  };
+  static Services& of(const hsp_host* host) { return *static_cast<Services*>(host->ctx); }
+  void write(int level, const char* utf8);
+  void* allocate(size_t bytes, size_t align);
+  void release(void* block);
+
+  hsp_host abi_{};
+  std::string who_;
+  Log log_;
+  mutable std::mutex mutex_;  // log() comes from the main and the simulation thread
+  std::string last_error_;
+  std::unordered_map<void*, Block> blocks_;
+  size_t locked_bytes_ = 0;
+  SpscRing<TraceEvent> events_{kEvents};
+  std::atomic<bool> restart_{false};
+};
+
+}  // namespace hapticd::host

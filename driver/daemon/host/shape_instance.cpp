@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "host/shape_instance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/class_table.hpp"
+
+namespace hapticd::host {
+namespace {
+
+/// An extension whose struct reaches at least to its last member of revision 1.
+template <class Extension>
+const Extension* extensionOf(const hsp_class& shape_class, hsp_shape* shape, const char* name, size_t needed) {
+  if (!HSP_HAS(&shape_class, extension) || shape_class.extension == nullptr) return nullptr;
+  const auto* found = static_cast<const Extension*>(shape_class.extension(shape, name));
+  return found != nullptr && found->struct_size >= needed ? found : nullptr;
+}
+
+constexpr uint32_t kMostVertices = 1'000'000;  ///< of a drawing; three times 12 MB are kept for them
+
+/// Claims are bounds that the host works with: one that is no number would switch its checks off.
+std::string wrongIn(const hsp_report& report) {
+  for (const double claim : {report.max_stiffness, report.max_force, report.size_m})
+    if (!std::isfinite(claim) || claim < 0)
+      return "its report claims " + std::to_string(claim) + " as a stiffness, force or size; expected 0 or more";
+  if (report.viz_vertices > kMostVertices)
+    return "its report claims " + std::to_string(report.viz_vertices) + " vertices to draw; expected at most " +
+           std::to_string(kMostVertices);
+  return "";
+}
+
+/// The largest damping among the parameters, given or left at their defaults.
+double dampingOf(const hsp_class& shape, const std::vector<scene::Value>& given) {
+  double most = 0;
+  for (uint32_t i = 0; i < shape.param_count; ++i) {
+    if (!damps(shape, i)) continue;
+    double value = HSP_AT(const hsp_param, shape.params, shape.params[0].struct_size, i)->def;
+    for (const scene::Value& v : given)
+      if (v.index == i) value = v.number;
+    most = std::max(most, value);
+  }
+  return most;
+}
+
+}  // namespace
+
+ShapeInstance::ShapeInstance(std::shared_ptr<Library> library, const scene::Model& model, Services::Log log)
+    : library_(std::move(library)), name_(model.name), services_(model.name, std::move(log)) {}
+
+Result<std::unique_ptr<ShapeInstance>> ShapeInstance::create(const scene::Model& model, Services::Log log) {
+  auto library = Library::open(model.library);
+  const std::string who = "model '" + model.name + "': ";
+  if (!library) return Error{who + library.error()};
+  auto entry = (*library)->shapes();
+  if (!entry) return Error{who + entry.error()};
+
+  std::unique_ptr<ShapeInstance> instance(new ShapeInstance(*library, model, std::move(log)));
+  instance->class_ = findClass<hsp_class>(**entry, model.plugin);
+  if (instance->class_ == nullptr)
+    return Error{who + model.library.string() + " has no plugin named '" + model.plugin + "'"};
+  if (!complete(*instance->class_))
+    return Error{who + "plugin '" + model.plugin + "' of " + model.library.string() + " lacks a required function"};
+
+  instance->shape_ = instance->class_->create(instance->class_, instance->services_.abi());
+  if (instance->shape_ == nullptr)
+    return Error{who + "plugin '" + model.plugin +
+                 "' could not create an instance: " + reasonOf(HSP_E_NOMEM, instance->services_)};
+  const auto set = setAll(
+      model.parameters, instance->class_->param_count, instance->services_,
+      [&](uint32_t index, const hsp_value* value) { return instance->class_->set(instance->shape_, index, value); });
+  if (!set) return Error{who + set.error()};
+  instance->damping_ = dampingOf(*instance->class_, model.parameters);
+  return instance;
+}
+
+ShapeInstance::~ShapeInstance() {
+  deactivate();
+  if (shape_ != nullptr) class_->destroy(shape_);
+}
+
+Result<void> ShapeInstance::activate(const hsp_activation& activation) {
+  const std::string who = "model '" + name_ + "': ";
+  if (active_) return Error{who + "is active already"};
+  report_ = {};
+  report_.struct_size = sizeof report_;
+  services_.forgetError();
+  const hsp_status status = class_->activate(shape_, &activation, &report_);
+  if (status < 0) return Error{who + "cannot be set up: " + reasonOf(status, services_)};
+  active_ = true;
+  if (const std::string wrong = wrongIn(report_); !wrong.empty()) {
+    deactivate();
+    return Error{who + wrong};
+  }
+  surfaces_ = extensionOf<hsp_ext_surfaces>(*class_, shape_, HSP_EXT_SURFACES, sizeof(hsp_ext_surfaces));
+  geometry_ = extensionOf<hsp_ext_geometry>(*class_, shape_, HSP_EXT_GEOMETRY, sizeof(hsp_ext_geometry));
+  energy_ = extensionOf<hsp_ext_energy>(*class_, shape_, HSP_EXT_ENERGY, sizeof(hsp_ext_energy));
+  if (report_.viz_vertices > 0) contour_ = std::make_unique<Contour>(report_.viz_vertices);
+  return {};
+}
+
+void ShapeInstance::deactivate() {
+  if (!active_) return;
+  class_->deactivate(shape_);
+  surfaces_ = nullptr;
+  geometry_ = nullptr;
+  energy_ = nullptr;
+  contour_.reset();
+  active_ = false;
+}
+
+}  // namespace hapticd::host

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+/// The servo's end of a lead: memory that a program outside writes whenever it likes, and whatever it likes. Nothing
+/// that is read there is trusted, and no state of it can hold the servo up.
+#pragma once
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "hapticd/abi.h"
+#include "hapticd/client.h"
+
+namespace hapticd::link {
+
+/// A record behind a count that is odd while the record is written. Lives in shared memory, zeroed at first.
+template <class Record>
+class LeadSlot {
+  static constexpr size_t kWords = sizeof(Record) / 8;
+  static_assert(std::is_trivially_copyable_v<Record> && sizeof(Record) % 8 == 0);
+  static_assert(kWords <= std::size(hapticd_lead_page{}.words) && std::atomic<uint64_t>::is_always_lock_free);
+
+ public:
+  /// [rt] The record, if there is one with another count than `seen`, which it becomes. Tries once: a writer that was
+  /// killed inside, or that never stops writing, leaves the record of before in force.
+  bool take(uint64_t& seen, Record& record) const noexcept HSP_RT {
+    const uint64_t before = count_.load(std::memory_order_acquire);
+    if (before == seen || before % 2 != 0) return false;
+    std::array<uint64_t, kWords> words;
+    // acquire on each word: who sees one of a later record sees that record's odd count too
+    for (size_t i = 0; i < kWords; ++i) words[i] = words_[i].load(std::memory_order_acquire);
+    if (count_.load(std::memory_order_relaxed) != before) return false;
+    seen = before;
+    record = std::bit_cast<Record>(words);
+    return true;
+  }
+
+  /// [any] One writer.
+  void put(const Record& record) noexcept HSP_RT {
+    const auto words = std::bit_cast<std::array<uint64_t, kWords>>(record);
+    const uint64_t even = (count_.load(std::memory_order_relaxed) + 1) & ~uint64_t{1};  // also after one who was killed
+    count_.store(even + 1, std::memory_order_relaxed);
+    for (size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_release);
+    count_.store(even + 2, std::memory_order_release);
+  }
+
+ private:
+  std::atomic<uint64_t> count_{0};
+  std::array<std::atomic<uint64_t>, kWords> words_{};
+};
+
+using PoseSlot = LeadSlot<hapticd_target>;
+using PushSlot = LeadSlot<hapticd_push>;
+
+static_assert(sizeof(PoseSlot) == offsetof(hapticd_lead_page, words) + sizeof(hapticd_target));
+static_assert(sizeof(PushSlot) == offsetof(hapticd_lead_page, words) + sizeof(hapticd_push));
+
+}  // namespace hapticd::link

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+/// Depth, force and cost of one model over a run, gathered in the servo thread without allocation.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "hapticd/abi.h"
+#include "record/histogram.hpp"
+
+namespace hapticd::record {
+
+class ContactStatistics {
+ public:
+  static constexpr double kBuzzWindow = 0.02;  ///< [s] faster changes of depth than this are felt as buzz
+
+  /// [rt] One tick. @param depth_m, force_n count only in contact and if finite @param step_ns 0: not measured
+  void add(bool contact, double depth_m, double force_n, double dt, uint64_t step_ns) noexcept HSP_RT {
+    if (step_ns > 0) step_us_.add(static_cast<double>(step_ns) * 1e-3);
+    if (!contact || !std::isfinite(depth_m) || !std::isfinite(force_n)) {
+      closeWindow();
+      return;
+    }
+    ++ticks_;
+    const double delta = depth_m - mean_;  // Welford's recurrence: no cancellation over long runs
+    mean_ += delta / static_cast<double>(ticks_);
+    spread_ += delta * (depth_m - mean_);
+    max_depth_ = std::max(max_depth_, depth_m);
+    force_sum_ += force_n;
+    max_force_ = std::max(max_force_, force_n);
+    addToWindow(depth_m, dt);
+  }
+
+  uint64_t contactTicks() const noexcept { return ticks_; }
+  double meanDepth() const noexcept { return mean_; }  ///< [m]
+  double stdDepth() const noexcept { return ticks_ > 1 ? std::sqrt(spread_ / static_cast<double>(ticks_ - 1)) : 0; }
+  double maxDepth() const noexcept { return max_depth_; }
+  double meanForce() const noexcept { return ticks_ > 0 ? force_sum_ / static_cast<double>(ticks_) : 0; }  ///< [N]
+  double maxForce() const noexcept { return max_force_; }
+  /// [m] Root mean square of the depth about its mean inside windows of 20 ms.
+  double buzz() const noexcept { return buzz_ticks_ > 0 ? std::sqrt(buzz_sum_ / static_cast<double>(buzz_ticks_)) : 0; }
+  const Histogram& stepUs() const noexcept { return step_us_; }
+
+ private:
+  void addToWindow(double depth, double dt) noexcept HSP_RT {
+    ++window_ticks_;
+    const double delta = depth - window_mean_;
+    window_mean_ += delta / window_ticks_;
+    window_spread_ += delta * (depth - window_mean_);
+    window_time_ += dt;
+    if (window_time_ >= kBuzzWindow) closeWindow();
+  }
+  void closeWindow() noexcept HSP_RT {
+    if (window_time_ >= kBuzzWindow) {  // a broken-off window would count the impact itself as buzz
+      buzz_sum_ += window_spread_;
+      buzz_ticks_ += static_cast<uint64_t>(window_ticks_);
+    }
+    window_ticks_ = window_mean_ = window_spread_ = window_time_ = 0;
+  }
+
+  uint64_t ticks_ = 0, buzz_ticks_ = 0;
+  double mean_ = 0, spread_ = 0, max_depth_ = 0, force_sum_ = 0, max_force_ = 0, buzz_sum_ = 0;
+  double window_ticks_ = 0, window_mean_ = 0, window_spread_ = 0, window_time_ = 0;
+  Histogram step_us_;
+};
+
+}  // namespace hapticd::record

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+/// The part of the HDF5 file format (HDF Group, "File Format Specification Version 3.0") that a recording needs,
+/// written byte by byte: superblock 2, compact groups, one-dimensional chunked tables of compounds, fixed-length texts.
+/// Any HDF5 library from 1.8 on reads it. Written here because a library that keeps its index in memory leaves a file
+/// that cannot be opened when the process is killed; here every state of the file between two writes is a valid file.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "record/columns.hpp"
+
+namespace hapticd::record::hdf5 {
+
+constexpr uint64_t kNowhere = UINT64_MAX;  ///< the undefined address
+constexpr uint32_t kSuperblockBytes = 48;
+
+/// [any] Jenkins' lookup3 of the bytes, by which HDF5 guards its metadata.
+uint32_t checksum(const std::string& bytes);
+
+/// [main] The superblock: where the root group is and where the file ends.
+std::string superblock(uint64_t root_address, uint64_t end_of_file);
+
+struct Link {
+  std::string name;
+  uint64_t address;  ///< of the object header
+};
+
+/// [main] A group: its links and texts as attributes.
+std::string group(const std::vector<Link>& links, const std::vector<std::pair<std::string, std::string>>& attributes);
+
+/// [main] A dataset that is one text of fixed length at `address`.
+std::string textDataset(uint64_t address, uint64_t length);
+
+/// A table of rows in chunks. Its description is in a block of its own, so that the header, which changes as the table
+/// grows, fits into one page and one write.
+struct TableHeader {
+  uint64_t rows = 0, index_address = kNowhere;
+  uint32_t chunk_rows = 1, row_bytes = 8;
+  uint64_t description_address = 0, description_bytes = 0;
+
+  /// [main] Always of the same size.
+  std::string bytes() const;
+};
+std::string tableDescription(const RowLayout& layout);  ///< [main] for TableHeader::description_address
+
+/// The chunks of one table as a B-tree that grows at its right edge. Nodes keep their size and place; only the last of
+/// each level is ever written again, and a node is written before what points to it.
+class ChunkIndex {
+ public:
+  static constexpr uint32_t kFanOut = 64;  ///< entries a node, HDF5's default
+  static constexpr uint32_t kNodeBytes = 24 + (kFanOut + 1) * 24 + kFanOut * 8;
+
+  ChunkIndex(uint32_t chunk_rows, uint64_t chunk_bytes) : chunk_rows_(chunk_rows), chunk_bytes_(chunk_bytes) {}
+
+  /// A node to be written at an address.
+  struct Write {
+    uint64_t address;
+    std::string bytes;
+  };
+
+  /// [main] Adds the next chunk. @param newNode gives the address of a node of kNodeBytes
+  /// @return what to write, in this order
+  template <class NewNode>
+  std::vector<Write> add(uint64_t chunk_address, NewNode&& newNode) {
+    std::vector<Write> writes;
+    insert(0, chunks_ * chunk_rows_, chunk_address, newNode, writes);
+    ++chunks_;
+    for (size_t level = 0; level < levels_.size(); ++level) writes.push_back({levels_[level].address, bytes(level)});
+    return writes;
+  }
+
+  uint64_t root() const { return levels_.empty() ? kNowhere : levels_.back().address; }
+
+ private:
+  struct Node {
+    uint64_t address = kNowhere, left = kNowhere, right = kNowhere;
+    std::vector<std::pair<uint64_t, uint64_t>> entries;  ///< first row and address of the child
+  };
+
+  template <class NewNode>
+  void insert(size_t level, uint64_t first_row, uint64_t child, NewNode&& newNode, std::vector<Write>& writes) {
+    if (level == levels_.size()) {
+      Node root{newNode(), kNowhere, kNowhere, {}};
+      if (level > 0) root.entries.emplace_back(0, first_child_[level - 1]);
+      levels_.push_back(root);
+      first_child_.push_back(root.address);
+    }
+    if (levels_[level].entries.size() == kFanOut) {
+      const Node next{newNode(), levels_[level].address, kNowhere, {}};
+      levels_[level].right = next.address;
+      const Write full{levels_[level].address, bytes(level)};
+      levels_[level] = next;
+      levels_[level].entries.emplace_back(first_row, child);
+      writes.push_back({next.address, bytes(level)});
+      writes.push_back(full);
+      insert(level + 1, first_row, next.address, newNode, writes);
+      return;
+    }
+    levels_[level].entries.emplace_back(first_row, child);
+  }
+  std::string bytes(size_t level) const;
+  uint64_t fullChild(size_t level) const;  ///< rows below one entry of a full node
+
+  uint32_t chunk_rows_;
+  uint64_t chunk_bytes_, chunks_ = 0;
+  std::vector<Node> levels_;           ///< the rightmost node of each level, leaves first
+  std::vector<uint64_t> first_child_;  ///< the first node of each level
+};
+
+}  // namespace hapticd::record::hdf5

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "record/recording.hpp"
+
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "base/regular_file.hpp"
+#include "record/layout.hpp"
+
+namespace hapticd::record {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr uint64_t kMostAbout = 64u << 20;  ///< [bytes] a scene of ten thousand models is 2 MB
+
+template <class T>
+std::optional<T> at(std::span<const std::byte> bytes, uint64_t address) {
+  if (address > bytes.size() || bytes.size() - address < sizeof(T)) return std::nullopt;
+  T value;
+  std::memcpy(&value, bytes.data() + address, sizeof value);
+  return value;
+}
+
+std::optional<ColumnType> typeOf(const std::string& name) {
+  constexpr std::array<const char*, 5> kTypes = {"f8", "f4", "u8", "u4", "i4"};
+  for (size_t i = 0; i < kTypes.size(); ++i)
+    if (name == kTypes[i]) return static_cast<ColumnType>(i);
+  return std::nullopt;
+}
+
+template <class T>
+double as(const std::byte* from) {
+  T value;
+  std::memcpy(&value, from, sizeof value);
+  return static_cast<double>(value);
+}
+
+}  // namespace
+
+const Column* RecordedStream::find(const std::string& name) const {
+  const auto it = std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.name == name; });
+  return it == columns_.end() ? nullptr : &*it;
+}
+
+double RecordedStream::number(uint64_t index, const Column& column) const {
+  const std::byte* from = row(index) + column.offset;
+  switch (column.type) {
+    case ColumnType::kReal:
+      return as<double>(from);
+    case ColumnType::kReal32:
+      return as<float>(from);
+    case ColumnType::kCount:
+      return as<uint64_t>(from);
+    case ColumnType::kWord:
+      return as<uint32_t>(from);
+    case ColumnType::kInt:
+      return as<int32_t>(from);
+  }
+  return 0;
+}
+
+Result<std::unique_ptr<Recording>> Recording::open(const std::string& file) {
+  const auto fd = openRegular(file);
+  if (!fd) return Error{file + ": " + fd.error()};
+  struct stat info{};
+  const auto size = fstat(*fd, &info) == 0 ? static_cast<size_t>(info.st_size) : 0;
+  void* memory = size == 0 ? MAP_FAILED : mmap(nullptr, size, PROT_READ, MAP_SHARED, *fd, 0);
+  const int error = errno;
+  ::close(*fd);
+  if (size == 0) return Error{file + ": is not a recording, expected a file that --record wrote"};
+  if (memory == MAP_FAILED) return Error{file + ": cannot be mapped: " + std::strerror(error)};
+  std::unique_ptr<Recording> recording(new Recording);
+  recording->mapped_ = memory;
+  recording->mapped_bytes_ = size;
+  if (auto read = recording->read({static_cast<const std::byte*>(memory), size}); !read)
+    return Error{file + ": " + read.error()};
+  return recording;
+}
+
+Result<std::unique_ptr<Recording>> Recording::parse(std::span<const std::byte> bytes, const std::string& name) {
+  std::unique_ptr<Recording> recording(new Recording);
+  if (auto read = recording->read(bytes); !read) return Error{name + ": " + read.error()};
+  return recording;
+}
+
+Recording::~Recording() {
+  if (mapped_ != nullptr) munmap(mapped_, mapped_bytes_);
+}
+
+const RecordedStream* Recording::stream(const std::string& name) const {
+  const auto it = std::find_if(streams_.begin(), streams_.end(), [&](const auto& s) { return s.name_ == name; });
+  return it == streams_.end() ? nullptr : &*it;
+}
+
+Result<void> Recording::read(std::span<const std::byte> bytes) {
+  const auto header = at<FileHeader>(bytes, kHeaderAt);
+  const std::string magic = header ? std::string(header->magic, strnlen(header->magic, sizeof header->magic)) : "";
+  if (magic != kRecordingFormat) {
+    const bool other = magic.rfind("hapticd-recording/", 0) == 0;
+    return Error{other ? "has the format " + magic + ", expected " + kRecordingFormat
+                       : std::string("is not a recording, expected a file that --record wrote")};
+  }
+  if (header->stream_count > kMaxStreams) return Error{"names more streams than possible: it is damaged"};
+  closed_ = header->closed != 0;
+  black_box_ = header->ring != 0;
+  for (uint32_t i = 0; i < header->stream_count; ++i) {
+    const StreamHeader& from = header->streams[i];
+    if (from.row_bytes == 0 || from.row_bytes > kMaxRowBytes || from.row_bytes % 8 != 0 || from.chunk_rows == 0)
+      return Error{"has a stream with rows of an impossible size: it is damaged"};
+    RecordedStream& stream = streams_.emplace_back();
+    stream.name_.assign(from.name, strnlen(from.name, sizeof from.name));
+    stream.row_bytes_ = from.row_bytes;
+    stream.chunk_rows_ = from.chunk_rows;
+    stream.rows_ = from.rows;
+    stream.lost_ = from.lost;
+  }
+  const uint64_t about_bytes = header->about_bytes;
+  if (about_bytes > kMostAbout || header->about_address > bytes.size() ||
+      about_bytes > bytes.size() - header->about_address)
+    return Error{"ends inside its description: it is damaged"};
+  about_.assign(reinterpret_cast<const char*>(bytes.data() + header->about_address), about_bytes);
+  if (auto blocks = readBlocks(bytes, header->blocks_address); !blocks) return blocks;
+  return readColumns();
+}
+
+Result<void> Recording::readBlocks(std::span<const std::byte> bytes, uint64_t address) {
+  while (const auto block = at<BlockHeader>(bytes, address)) {
+    const uint64_t from = address + sizeof *block;
+    if (block->magic != BlockHeader::kMagic || block->bytes > bytes.size() - from)
+      break;  // the writer was cut off here
+    address = from + block->bytes;
+    if (block->stream == BlockHeader::kIndex || block->stream >= streams_.size()) continue;
+    RecordedStream& stream = streams_[block->stream];
+    if (block->bytes / stream.row_bytes_ < stream.chunk_rows_) return Error{"has a short block: it is damaged"};
+    stream.chunks_.push_back(bytes.data() + from);
+  }
+  for (RecordedStream& stream : streams_) {
+    const uint64_t space = uint64_t{stream.chunks_.size()} * stream.chunk_rows_;
+    if (black_box_) {
+      stream.ring_rows_ = space;
+      // the slot after the newest row may have been half written when the process ended
+      const uint64_t kept = space > 0 ? std::min(stream.rows_, space - 1) : 0;
+      stream.first_ = stream.rows_ - kept;
+      stream.rows_ = kept;
+    } else {
+      stream.rows_ = std::min(stream.rows_, space);
+    }
+  }
+  return {};
+}
+
+Result<void> Recording::readColumns() {
+  const Json about = Json::parse(about_, nullptr, false);
+  if (!about.is_object() || !about.contains("columns") || !about["columns"].is_object())
+    return Error{"does not describe its columns: it is damaged"};
+  for (RecordedStream& stream : streams_) {
+    const Json list = about["columns"].value(stream.name_, Json::array());
+    if (!list.is_array()) return Error{"does not describe the columns of " + stream.name_ + ": it is damaged"};
+    for (const Json& entry : list) {
+      const auto text = [&](const char* key) {
+        return entry.is_object() && entry.contains(key) && entry[key].is_string() ? entry[key].get<std::string>() : "";
+      };
+      const auto type = typeOf(text("type"));
+      const bool has_offset = entry.is_object() && entry.contains("offset") && entry["offset"].is_number_unsigned();
+      const uint64_t offset = has_offset ? entry["offset"].get<uint64_t>() : UINT64_MAX;
+      if (!type || offset > stream.row_bytes_ || bytesOf(*type) > stream.row_bytes_ - offset)
+        return Error{"has a column of " + stream.name_ + " that is not in its rows: it is damaged"};
+      stream.columns_.push_back({text("name"), text("unit"), text("doc"), *type, static_cast<uint32_t>(offset)});
+    }
+  }
+  return {};
+}
+
+}  // namespace hapticd::record

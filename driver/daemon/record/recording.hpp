@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+/// Reads a recording or a black box, whatever state its writer left it in. Nothing in the file is trusted: sizes,
+/// places and numbers are checked before they are used.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "record/columns.hpp"
+
+namespace hapticd::record {
+
+/// The rows of one stream.
+class RecordedStream {
+ public:
+  const std::string& name() const { return name_; }
+  const std::vector<Column>& columns() const { return columns_; }
+  uint32_t rowBytes() const { return row_bytes_; }
+  uint64_t rows() const { return rows_; }
+  uint64_t lost() const { return lost_; }       ///< rows that its writer could not keep
+  const std::byte* row(uint64_t index) const {  ///< [any] index < rows()
+    const uint64_t at = first_ + index, in_ring = ring_rows_ == 0 ? at : at % ring_rows_;
+    return chunks_[in_ring / chunk_rows_] + (in_ring % chunk_rows_) * row_bytes_;
+  }
+  const Column* find(const std::string& name) const;
+
+  /// [any] A number of a row as a double; counts beyond 2^53 are rounded.
+  double number(uint64_t index, const Column& column) const;
+
+ private:
+  friend class Recording;
+  std::string name_;
+  std::vector<Column> columns_;
+  uint32_t row_bytes_ = 8, chunk_rows_ = 1;
+  uint64_t rows_ = 0, first_ = 0, ring_rows_ = 0, lost_ = 0;
+  std::vector<const std::byte*> chunks_;
+};
+
+class Recording {
+ public:
+  /// [main] Maps the file and checks it.
+  static Result<std::unique_ptr<Recording>> open(const std::string& file);
+  /// [main] The same over memory that outlives the object. @param name for messages
+  static Result<std::unique_ptr<Recording>> parse(std::span<const std::byte> bytes, const std::string& name);
+  ~Recording();
+  Recording(const Recording&) = delete;
+  Recording& operator=(const Recording&) = delete;
+
+  const std::string& aboutJson() const { return about_; }
+  const std::vector<RecordedStream>& streams() const { return streams_; }
+  const RecordedStream* stream(const std::string& name) const;
+  bool closed() const { return closed_; }       ///< its writer ended in order
+  bool blackBox() const { return black_box_; }  ///< the newest rows in a circle, not a whole run
+
+ private:
+  Recording() = default;
+  Result<void> read(std::span<const std::byte> bytes);
+  Result<void> readBlocks(std::span<const std::byte> bytes, uint64_t address);
+  Result<void> readColumns();
+
+  std::string about_;
+  std::vector<RecordedStream> streams_;
+  bool closed_ = false, black_box_ = false;
+  void* mapped_ = nullptr;
+  size_t mapped_bytes_ = 0;
+};
+
+}  // namespace hapticd::record

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "record/recording_file.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+
+namespace hapticd::record {
+
+Result<std::unique_ptr<RecordingFile>> RecordingFile::create(const std::string& file,
+                                                             const std::vector<StreamSpec>& streams, const About& about,
+                                                             uint64_t chunk_bytes) {
+  const int fd = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (fd < 0) return Error{file + ": cannot be written: " + std::strerror(errno)};
+  std::unique_ptr<RecordingFile> recording(new RecordingFile(file, fd));
+  // Held as long as the file is open: two writers would leave a file that nobody can read.
+  if (flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    return Error{file + ": another run records into it, expected another file"};
+  if (ftruncate(fd, 0) != 0 && errno != EINVAL) return Error{file + ": cannot be written: " + std::strerror(errno)};
+  std::vector<uint32_t> chunk_rows;
+  for (const StreamSpec& stream : streams) {
+    const uint32_t bytes = stream.layout.rowBytes();
+    const auto rows = static_cast<uint32_t>(std::max<uint64_t>(chunk_bytes / bytes, 1));
+    chunk_rows.push_back(rows);
+    recording->streams_.push_back({bytes, rows, hdf5::ChunkIndex(rows, uint64_t{rows} * bytes)});
+  }
+  recording->skeleton_ = makeSkeleton(streams, chunk_rows, about, false);
+  recording->write(0, recording->skeleton_.bytes);
+  recording->end_ = recording->skeleton_.bytes.size();
+  recording->skeleton_.bytes.clear();
+  if (auto good = recording->state(); !good) return Error{good.error()};
+  return recording;
+}
+
+RecordingFile::~RecordingFile() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+Result<void> RecordingFile::append(size_t number, const std::byte* rows, uint64_t count) {
+  Stream& stream = streams_[number];
+  while (count > 0) {
+    const uint64_t in_chunk = stream.rows % stream.chunk_rows;
+    if (in_chunk == 0)
+      if (auto begun = beginChunk(stream, static_cast<uint32_t>(number)); !begun) return begun;
+    const uint64_t now = std::min<uint64_t>(count, stream.chunk_rows - in_chunk);
+    write(stream.chunk_address + in_chunk * stream.row_bytes, rows, now * stream.row_bytes);
+    if (error_ != 0) return state();
+    stream.rows += now;
+    rows += now * stream.row_bytes;
+    count -= now;
+  }
+  return {};
+}
+
+/// Space first, then the end of the file in the superblock, then the index: each state between is a valid file.
+Result<void> RecordingFile::beginChunk(Stream& stream, uint32_t number) {
+  stream.chunk_address = newBlock(number, uint64_t{stream.chunk_rows} * stream.row_bytes);
+  const auto writes = stream.index.add(stream.chunk_address,
+                                       [&] { return newBlock(BlockHeader::kIndex, hdf5::ChunkIndex::kNodeBytes); });
+  if (error_ == 0 && ftruncate(fd_, static_cast<off_t>(end_)) != 0) error_ = errno;
+  write(0, hdf5::superblock(skeleton_.root, end_));
+  for (const auto& node : writes) write(node.address, node.bytes);
+  return state();
+}
+
+uint64_t RecordingFile::newBlock(uint32_t stream, uint64_t bytes) {
+  BlockHeader block;
+  block.stream = stream;
+  block.bytes = (bytes + 7) / 8 * 8;
+  write(end_, &block, sizeof block);
+  const uint64_t address = end_ + sizeof block;
+  end_ = address + block.bytes;
+  return address;
+}
+
+Result<void> RecordingFile::publish() {
+  for (size_t i = 0; i < streams_.size() && error_ == 0; ++i) {
+    Stream& stream = streams_[i];
+    const uint64_t at = kHeaderAt + offsetof(FileHeader, streams) + i * sizeof(StreamHeader);
+    write(at + offsetof(StreamHeader, lost), &stream.lost, sizeof stream.lost);
+    if (stream.rows == stream.published) continue;
+    hdf5::TableHeader table;
+    table.rows = stream.rows;
+    table.index_address = stream.index.root();
+    table.chunk_rows = stream.chunk_rows;
+    table.row_bytes = stream.row_bytes;
+    table.description_address = skeleton_.descriptions[i];
+    table.description_bytes = skeleton_.description_bytes[i];
+    write(skeleton_.tables[i], table.bytes());
+    write(at + offsetof(StreamHeader, rows), &stream.rows, sizeof stream.rows);
+    stream.published = stream.rows;
+  }
+  return state();
+}
+
+Result<void> RecordingFile::close() {
+  if (auto published = publish(); !published) return published;
+  const uint32_t closed = 1;
+  write(kHeaderAt + offsetof(FileHeader, closed), &closed, sizeof closed);
+  if (::close(fd_) != 0 && error_ == 0) error_ = errno;
+  fd_ = -1;
+  return state();
+}
+
+void RecordingFile::write(uint64_t address, const void* bytes, size_t size) {
+  const char* from = static_cast<const char*>(bytes);
+  while (size > 0 && error_ == 0) {
+    const ssize_t done = pwrite(fd_, from, size, static_cast<off_t>(address));
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0) {
+      error_ = done < 0 ? errno : ENOSPC;
+      return;
+    }
+    from += done;
+    address += static_cast<uint64_t>(done);
+    size -= static_cast<size_t>(done);
+  }
+}
+
+Result<void> RecordingFile::state() const {
+  if (error_ == 0) return {};
+  return Error{file_ + ": cannot be written: " + std::strerror(error_) + "; the file ends with its last complete row"};
+}
+
+}  // namespace hapticd::record

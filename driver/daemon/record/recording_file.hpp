@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+/// Writes a recording that grows, by an ordinary thread. Killed at any time, it leaves a file with all rows up to the
+/// last publish().
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "record/hdf5.hpp"
+#include "record/layout.hpp"
+
+namespace hapticd::record {
+
+class RecordingFile {
+ public:
+  static constexpr uint64_t kChunkBytes = 256 * 1024;
+
+  /// [main] Replaces the file. @param chunk_bytes of rows that are stored together, about
+  static Result<std::unique_ptr<RecordingFile>> create(const std::string& file, const std::vector<StreamSpec>& streams,
+                                                       const About& about, uint64_t chunk_bytes = kChunkBytes);
+  ~RecordingFile();  ///< [main] closes without saying that all is well
+  RecordingFile(const RecordingFile&) = delete;
+  RecordingFile& operator=(const RecordingFile&) = delete;
+
+  /// [main] Appends rows; they count from the next publish() on. After an error nothing more is written.
+  Result<void> append(size_t stream, const std::byte* rows, uint64_t count);
+
+  /// [main] Rows that are missing between the last and the next.
+  void lost(size_t stream, uint64_t count) { streams_[stream].lost += count; }
+
+  Result<void> publish();  ///< [main] makes what was appended part of the file
+  Result<void> close();    ///< [main] publishes, marks the file as whole and closes it
+
+  uint64_t rows(size_t stream) const { return streams_[stream].rows; }
+  uint64_t lostRows(size_t stream) const { return streams_[stream].lost; }
+
+ private:
+  struct Stream {
+    uint32_t row_bytes, chunk_rows;
+    hdf5::ChunkIndex index;
+    uint64_t rows = 0, published = 0, lost = 0, chunk_address = 0;
+  };
+  RecordingFile(std::string file, int fd) : file_(std::move(file)), fd_(fd) {}
+  Result<void> beginChunk(Stream& stream, uint32_t number);
+  uint64_t newBlock(uint32_t stream, uint64_t bytes);
+  void write(uint64_t address, const void* bytes, size_t size);
+  void write(uint64_t address, const std::string& bytes) { write(address, bytes.data(), bytes.size()); }
+  Result<void> state() const;
+
+  std::string file_;
+  int fd_;
+  int error_ = 0;
+  uint64_t end_ = 0;
+  Skeleton skeleton_;
+  std::vector<Stream> streams_;
+};
+
+}  // namespace hapticd::record

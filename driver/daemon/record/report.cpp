@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "record/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/regular_file.hpp"
+
+namespace hapticd::record {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json quantiles(const Histogram& h) {
+  return {{"p50", h.quantile(0.5)}, {"p99", h.quantile(0.99)}, {"p999", h.quantile(0.999)}, {"max", h.max()}};
+}
+
+Json modelJson(const ModelReport& model) {
+  constexpr double kMm = 1e3, kNs = 1e3;
+  const ContactStatistics& c = model.contact;
+  const Histogram& step = c.stepUs();
+  return {
+      {"plugin", model.plugin},
+      {"degraded",
+       {{"ticks", model.degraded_ticks}, {"level", model.coarsest}, {"residual_um", model.residual_m * 1e6}}},
+      {"contact_ticks", c.contactTicks()},
+      {"penetration_mm", {{"mean", c.meanDepth() * kMm}, {"std", c.stdDepth() * kMm}, {"max", c.maxDepth() * kMm}}},
+      {"force_n", {{"mean", c.meanForce()}, {"max", c.maxForce()}}},
+      {"buzz_mm", c.buzz() * kMm},
+      {"step_ns", {{"p50", step.quantile(0.5) * kNs}, {"p99", step.quantile(0.99) * kNs}, {"max", step.max() * kNs}}}};
+}
+
+std::string timeLine(const char* name, const Histogram& h) {
+  return fmt::format("  {:<9} p50 {:8.1f} us   p99 {:8.1f} us   p99.9 {:8.1f} us   max {:9.1f} us\n", name,
+                     h.quantile(0.5), h.quantile(0.99), h.quantile(0.999), h.max());
+}
+
+std::string modelText(const ModelReport& model, const RunReport& report) {
+  const ContactStatistics& c = model.contact;
+  const double seconds = report.rate_hz > 0 ? static_cast<double>(c.contactTicks()) / report.rate_hz : 0;
+  std::string text = fmt::format("{} ({})\n", model.name, model.plugin);
+  text += fmt::format("  contact   {:.2f} s ({} ticks)\n", seconds, c.contactTicks());
+  if (c.contactTicks() > 0) {
+    text += fmt::format("  depth     mean {:.3f} mm   std {:.3f} mm   max {:.3f} mm   buzz {:.4f} mm\n",
+                        c.meanDepth() * 1e3, c.stdDepth() * 1e3, c.maxDepth() * 1e3, c.buzz() * 1e3);
+    text += fmt::format("  force     mean {:.2f} N   max {:.2f} N\n", c.meanForce(), c.maxForce());
+  }
+  if (model.degraded_ticks > 0)
+    text += fmt::format(
+        "  degraded  {} ticks, to level {} of 3, so that the tick's budget holds; residual up to {:.3g} um\n",
+        model.degraded_ticks, model.coarsest, model.residual_m * 1e6);
+  const Histogram& step = c.stepUs();
+  if (step.total() > 0)
+    text += fmt::format("  step      p50 {:.0f} ns   p99 {:.0f} ns   max {:.0f} ns\n", step.quantile(0.5) * 1e3,
+                        step.quantile(0.99) * 1e3, step.max() * 1e3);
+  return text;
+}
+
+/// Models that answered coarser than they were asked to, those without contact too.
+std::string degradedText(const RunReport& report) {
+  uint64_t models = 0, most = 0;
+  for (const ModelReport& model : report.models) {
+    models += model.degraded_ticks > 0 ? 1 : 0;
+    most = std::max(most, model.degraded_ticks);
+  }
+  if (models == 0 || report.ticks == 0) return "";
+  return fmt::format(
+      "  accuracy  lowered for {} of {} models, in up to {:.0f} % of the ticks, to keep the tick's budget\n", models,
+      report.models.size(), 100.0 * static_cast<double>(most) / static_cast<double>(report.ticks));
+}
+
+/// For whoever wonders why nothing was felt.
+std::string untouchedText(const RunReport& report) {
+  const bool touched = std::any_of(report.models.begin(), report.models.end(),
+                                   [](const ModelReport& model) { return model.contact.contactTicks() > 0; });
+  if (touched || report.ticks == 0) return "";
+  return "  contact   none: the tip touched no model\n";
+}
+
+std::string limitText(const LimitReport& device, uint64_t ticks) {
+  if (device.any == 0 || ticks == 0) return "";
+  std::string text = fmt::format("limits of {}: the force was cut in {:.2g} % of the ticks (", device.device,
+                                 100.0 * static_cast<double>(device.any) / static_cast<double>(ticks));
+  for (size_t i = 0; i < device.ticks.size(); ++i)
+    text += fmt::format("{}{}: {}", i > 0 ? ", " : "", device.ticks[i].first, device.ticks[i].second);
+  return text + ")\n";
+}
+
+}  // namespace
+
+Result<void> writeJson(const RunReport& report, const std::string& file) {
+  Json json = {{"ticks", report.ticks},
+               {"rate_hz", report.rate_hz},
+               {"overruns", report.overruns},
+               {"missed_ticks", report.missed_ticks},
+               {"lateness_us", quantiles(report.lateness_us)},
+               {"compute_us", quantiles(report.compute_us)},
+               {"page_faults", report.page_faults},
+               {"servo_allocations", report.servo_allocations},
+               {"models", Json::object()},
+               {"faults", report.faults},
+               {"scene", report.scene},
+               {"seconds", report.seconds},
+               {"wall_seconds", report.wall_seconds},
+               {"virtual_time", report.virtual_time},
+               {"resident_bytes", report.resident_bytes},
+               {"start_ms", report.start_ms}};
+  json["limits"] = Json::object();
+  for (const LimitReport& device : report.limits) {
+    Json& ticks = json["limits"][device.device];
+    ticks = {{"clipped_ticks", device.any}};
+    for (const auto& [limit, count] : device.ticks) ticks["by_limit"][limit] = count;
+  }
+  for (const ModelReport& model : report.models) json["models"][model.name] = modelJson(model);
+  return writeWhole(file, json.dump(2) + "\n");
+}
+
+std::string summary(const RunReport& report) {
+  std::string text = fmt::format("{} ticks in {:.2f} s{}: {:.1f} Hz held, {} overruns, {} ticks missed\n", report.ticks,
+                                 report.seconds, report.virtual_time ? " of virtual time" : "", report.rate_hz,
+                                 report.overruns, report.missed_ticks);
+  if (report.virtual_time && report.wall_seconds > 0) {
+    text += fmt::format("  {:.2f} s on the wall: {:.0f} times faster than real time\n", report.wall_seconds,
+                        report.seconds / report.wall_seconds);
+  } else {
+    text += timeLine("lateness", report.lateness_us);
+  }
+  text += timeLine("compute", report.compute_us);
+  text += fmt::format("  servo     {} page faults, {} allocations after warm-up\n", report.page_faults,
+                      report.servo_allocations);
+  text += fmt::format("  process   {:.1f} MB resident, first tick {:.0f} ms after the start\n",
+                      static_cast<double>(report.resident_bytes) / 1e6, report.start_ms);
+  text += degradedText(report);
+  text += untouchedText(report);
+  constexpr size_t kMostModels = 12;
+  size_t shown = 0;
+  for (const ModelReport& model : report.models)
+    if ((model.contact.contactTicks() > 0 || report.models.size() <= kMostModels) && shown++ < kMostModels)
+      text += modelText(model, report);
+  for (const LimitReport& device : report.limits) text += limitText(device, report.ticks);
+  for (const std::string& fault : report.faults) text += "fault: " + fault + "\n";
+  return text;
+}
+
+}  // namespace hapticd::record

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+/// What a run was like: the numbers of `--report`, and the same for people.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/result.hpp"
+#include "record/contact_statistics.hpp"
+#include "record/histogram.hpp"
+
+namespace hapticd::record {
+
+struct ModelReport {
+  std::string name, plugin;
+  ContactStatistics contact;
+  uint64_t degraded_ticks = 0;  ///< in which it answered coarser than asked, for a tick's budget
+  uint32_t coarsest = 0;        ///< level of accuracy, 0: as asked
+  double residual_m = 0;        ///< largest error that a coarser answer told
+};
+
+/// In how many ticks limits made the force of one device smaller than the scene asked for.
+struct LimitReport {
+  std::string device;
+  uint64_t any = 0;                                     ///< ticks in which at least one limit did
+  std::vector<std::pair<std::string, uint64_t>> ticks;  ///< by limit, those that did
+};
+
+struct RunReport {
+  std::string scene;
+  double seconds = 0, rate_hz = 0;  ///< simulated or real time of the run; ticks a second that were held
+  double wall_seconds = 0;          ///< time that passed on the wall
+  bool virtual_time = false;
+  uint64_t ticks = 0, overruns = 0, missed_ticks = 0;
+  Histogram lateness_us, compute_us;
+  long page_faults = 0;            ///< of the servo thread after its warm-up
+  uint64_t servo_allocations = 0;  ///< the same
+  uint64_t resident_bytes = 0;
+  double start_ms = 0;  ///< from the start of the program to the first tick
+  std::vector<ModelReport> models;
+  std::vector<LimitReport> limits;  ///< a line a device
+  std::vector<std::string> faults;
+};
+
+/// [main] Writes the report as JSON, whole or not at all.
+Result<void> writeJson(const RunReport& report, const std::string& file);
+
+/// [main] The report as text for a terminal.
+std::string summary(const RunReport& report);
+
+}  // namespace hapticd::record

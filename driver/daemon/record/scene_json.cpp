@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+#include "record/scene_json.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace hapticd::record {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no infinity and no not-a-number; texts stand for them.
+Json real(double value) {
+  if (std::isfinite(value)) return value;
+  return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
+}
+
+double toReal(const Json& json) {
+  return json.is_string() ? std::strtod(json.get_ref<const std::string&>().c_str(), nullptr) : json.get<double>();
+}
+
+Json vector(const Eigen::Vector3d& v) {
+  return {real(v[0]), real(v[1]), real(v[2])};
+}
+
+Eigen::Vector3d toVector(const Json& json) {
+  return {toReal(json.at(0)), toReal(json.at(1)), toReal(json.at(2))};
+}
+
+Json pose(const scene::Pose& p) {
+  const Eigen::Quaterniond& q = p.orientation;
+  return {{"position", vector(p.position)}, {"orientation", {real(q.w()), real(q.x()), real(q.y()), real(q.z())}}};
+}
+
+scene::Pose toPose(const Json& json) {
+  const Json& q = json.at("orientation");
+  return {toVector(json.at("position")), {toReal(q.at(0)), toReal(q.at(1)), toReal(q.at(2)), toReal(q.at(3))}};
+}
+
+Json values(const std::vector<scene::Value>& all) {
+  Json list = Json::array();
+  for (const scene::Value& value : all) {
+    Json numbers = Json::array();
+    for (const double number : value.numbers) numbers.push_back(real(number));
+    list.push_back({{"id", value.id},
+                    {"index", value.index},
+                    {"kind", value.kind},
+                    {"number", real(value.number)},
+                    {"text", value.text},
+                    {"numbers", std::move(numbers)}});
+  }
+  return list;
+}
+
+std::vector<scene::Value> toValues(const Json& list) {
+  std::vector<scene::Value> all;
+  for (const Json& json : list) {
+    scene::Value& value = all.emplace_back();
+    value.id = json.at("id");
+    value.index = json.at("index");
+    value.kind = json.at("kind");
+    value.number = toReal(json.at("number"));
+    value.text = json.at("text");
+    for (const Json& number : json.at("numbers")) value.numbers.push_back(toReal(number));
+  }
+  return all;
+}
+
+Json modelJson(const scene::Model& model) {
+  Json path = Json::array();
+  for (const scene::PathPoint& point : model.path) path.push_back({{"t", real(point.t)}, {"pose", pose(point.pose)}});
+  return {{"name", model.name},
+          {"plugin", model.plugin},
+          {"library", model.library.string()},
+          {"pose", pose(model.pose)},
+          {"kinematic", model.kinematic},
+          {"path", std::move(path)},
+          {"parameters", values(model.parameters)}};
+}
+
+scene::Model toModel(const Json& json) {
+  scene::Model model;
+  model.name = json.at("name");
+  model.plugin = json.at("plugin");
+  model.library = json.at("library").get<std::string>();
+  model.pose = toPose(json.at("pose"));
+  model.kinematic = json.at("kinematic");
+  for (const Json& point : json.at("path")) model.path.push_back({toReal(point.at("t")), toPose(point.at("pose"))});
+  model.parameters = toValues(json.at("parameters"));
+  return model;
+}
+
+/// The numbers of each motor in the order of scene::Motor.
+Json motorsJson(const std::vector<scene::Motor>& motors) {
+  Json json = Json::array();
+  for (const scene::Motor& m : motors)
+    json.push_back({real(m.ratio), real(m.torque_constant), real(m.resistance), real(m.winding_housing),
+                    real(m.housing_air), real(m.winding_time), real(m.housing_time), real(m.max_temperature),
+                    real(m.ambient)});
+  return json;
+}
+
+Json limitsJson(const scene::Limits& limits) {
+  const scene::Enable& enable = limits.enable;
+  return {
+      {"force", real(limits.force)},
+      {"torque", real(limits.torque)},
+      {"slew", real(limits.slew)},
+      {"velocity", real(limits.velocity)},
+      {"workspace", real(limits.workspace)},
+      {"ramp_in", real(limits.ramp_in)},
+      {"ramp_out", real(limits.ramp_out)},
+      {"passivity", limits.passivity ? Json(*limits.passivity) : Json()},
+      {"torque_slew", real(limits.torque_slew)},
+      {"power", real(limits.power)},
+      {"impulse", real(limits.impulse)},
+      {"enable", enable.button ? Json{{"button", *enable.button}, {"toggle", enable.mode == scene::EnableMode::kToggle}}
+                               : Json()},
+      {"motors", motorsJson(limits.motors)},
+      {"weight", limits.weight ? real(*limits.weight) : Json()}};
+}
+
+scene::Limits toLimits(const Json& json) {
+  scene::Limits limits;
+  limits.force = toReal(json.at("force"));
+  limits.torque = toReal(json.at("torque"));
+  limits.slew = toReal(json.at("slew"));
+  limits.velocity = toReal(json.at("velocity"));
+  limits.workspace = toReal(json.at("workspace"));
+  limits.ramp_in = toReal(json.at("ramp_in"));
+  limits.ramp_out = toReal(json.at("ramp_out"));
+  if (const Json& passivity = json.at("passivity"); !passivity.is_null()) limits.passivity = passivity.get<bool>();
+  // Recordings older than these limits were made without them.
+  const auto later = [&](const char* key) { return json.contains(key) ? json.at(key) : Json(); };
+  const auto bound = [&](const char* key) { return json.contains(key) ? toReal(json.at(key)) : 0.0; };
+  limits.torque_slew = bound("torque_slew");
+  limits.power = bound("power");
+  limits.impulse = bound("impulse");
+  if (const Json weight = later("weight"); !weight.is_null()) limits.weight = toReal(weight);
+  if (const Json enable = later("enable"); !enable.is_null())
+    limits.enable = {enable.at("button").get<int>(),
+                     enable.at("toggle") ? scene::EnableMode::kToggle : scene::EnableMode::kHold};
+  for (const Json& motor : later("motors")) {
+    scene::Motor& m = limits.motors.emplace_back();
+    size_t i = 0;
+    for (double* value : {&m.ratio, &m.torque_constant, &m.resistance, &m.winding_housing, &m.housing_air,
+                          &m.winding_time, &m.housing_time, &m.max_temperature, &m.ambient})
+      *value = toReal(motor.at(i++));
+  }
+  return limits;
+}
+
+Json deviceJson(const scene::Device& device) {
+  Json json = {{"name", device.name},
+               {"module", device.module},
+               {"file", device.file.string()},
+               {"library", device.library.string()},
+               {"mount", pose(device.mount)},
+               {"limits", limitsJson(device.limits)},
+               {"parameters", values(device.parameters)}};
+  if (device.admittance)
+    json["admittance"] = {{"mass", real(device.admittance->mass)}, {"damping", real(device.admittance->damping)}};
+  return json;
+}
+
+scene::Device toDevice(const Json& json) {
+  scene::Device device;
+  device.name = json.at("name");
+  device.module = json.at("module");
+  device.file = json.at("file").get<std::string>();
+  device.library = json.at("library").get<std::string>();
+  device.mount = toPose(json.at("mount"));
+  device.limits = toLimits(json.at("limits"));
+  device.parameters = toValues(json.at("parameters"));
+  if (json.contains("admittance"))
+    device.admittance = {toReal(json["admittance"].at("mass")), toReal(json["admittance"].at("damping"))};
+  return device;
+}
+
+Json servoJson(const scene::Servo& servo) {
+  Json json = {{"rate", real(servo.rate)},
+               {"activation_radius", real(servo.activation_radius)},
+               {"hysteresis", real(servo.hysteresis)},
+               {"gravity", vector(servo.gravity)},
+               {"pace", servo.pace == scene::Pace::kClock ? "clock" : "device"},
+               {"velocity", {{"estimator", servo.velocity.estimator}, {"parameter", real(servo.velocity.parameter)}}},
+               {"budget_us", real(servo.budget_us)}};
+  if (servo.spin_us) json["spin_us"] = real(*servo.spin_us);
+  return json;
+}
+
+scene::Servo toServo(const Json& json) {
+  scene::Servo servo;
+  servo.rate = toReal(json.at("rate"));
+  servo.activation_radius = toReal(json.at("activation_radius"));
+  servo.hysteresis = toReal(json.at("hysteresis"));
+  servo.gravity = toVector(json.at("gravity"));
+  servo.pace = json.at("pace") == "device" ? scene::Pace::kDevice : scene::Pace::kClock;
+  servo.velocity.estimator = json.at("velocity").at("estimator");
+  servo.velocity.parameter = toReal(json.at("velocity").at("parameter"));
+  servo.budget_us = toReal(json.at("budget_us"));
+  if (json.contains("spin_us")) servo.spin_us = toReal(json["spin_us"]);
+  return servo;
+}
+
+}  // namespace
+
+std::string sceneToJson(const scene::Scene& scene) {
+  Json models = Json::array(), devices = Json::array();
+  for (const scene::Model& model : scene.models) models.push_back(modelJson(model));
+  for (const scene::Device& device : scene.devices) devices.push_back(deviceJson(device));
+  const Json json = {{"file", scene.file.string()},
+                     {"servo", servoJson(scene.servo)},
+                     {"models", std::move(models)},
+                     {"devices", std::move(devices)}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Result<scene::Scene> sceneFromJson(const std::string& json_text) {
+  try {
+    const Json json = Json::parse(json_text);
+    scene::Scene scene;
+    scene.file = json.at("file").get<std::string>();
+    scene.servo = toServo(json.at("servo"));
+    for (const Json& model : json.at("models")) scene.models.push_back(toModel(model));
+    for (const Json& device : json.at("devices")) scene.devices.push_back(toDevice(device));
+    return scene;
+  } catch (const std::exception& error) {
+    return Error{std::string("its scene cannot be read: ") + error.what()};
+  }
+}
+
+}  // namespace hapticd::record

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "scene/kinematic_path.hpp"
+
+#include "document/csv.hpp"
+#include "document/reader.hpp"
+
+namespace hapticd::scene {
+
+using namespace document;
+namespace {
+
+constexpr size_t kMaxPathBytes = 256u << 20;  ///< an hour at 1 kHz and more
+constexpr double kFarthest = 1e6;             ///< [m]
+constexpr size_t kPoseColumns = 8;
+
+const CsvRules kRules{{"t,x,y,z,qw,qx,qy,qz", "t,x,y,z"}, true, true, kFarthest};
+
+std::vector<PathPoint> pointsOf(const CsvTable& table, const std::string& file, Problems& problems) {
+  std::vector<PathPoint> points(table.rows());
+  for (size_t i = 0; i < table.rows(); ++i) {
+    const double* v = table.row(i);
+    points[i].t = v[0];
+    points[i].pose.position = {v[1], v[2], v[3]};
+    if (table.columns < kPoseColumns) continue;
+    Eigen::Quaterniond& q = points[i].pose.orientation = {v[4], v[5], v[6], v[7]};
+    if (normalise(q)) continue;
+    report(problems, file, table.lines[i], 1, "qw",
+           "the quaternion has length " + numberText(q.norm()) + ", expected 1 within 0.001 (order w, x, y, z)");
+    return {};
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<PathPoint> parseKinematicPath(const std::string& text, const std::string& file, Problems& problems) {
+  const auto table = parseCsv(text, file, kRules, problems);
+  return table ? pointsOf(*table, file, problems) : std::vector<PathPoint>{};
+}
+
+std::vector<PathPoint> readKinematicPath(const std::filesystem::path& file, Problems& problems) {
+  const auto table = readCsv(file, kMaxPathBytes, kRules, problems);
+  return table ? pointsOf(*table, file.string(), problems) : std::vector<PathPoint>{};
+}
+
+}  // namespace hapticd::scene

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include "scene/load.hpp"
+
+#include "document/suggestion.hpp"
+#include "scene/loader.hpp"
+
+namespace hapticd::scene {
+
+using namespace document;
+namespace {
+
+void checkRoot(const Node& root, Reader& in, host::Catalog& catalog, std::optional<Scene>* scene) {
+  const Format* format = detail::formatOf(root);
+  if (format == nullptr) {
+    detail::hasFormat(root, nullptr, in);
+  } else if (format->table == &kSceneTable) {
+    std::optional<Scene> loaded = detail::loadScene(root, in, catalog, {.default_device = false, .device_file = {}});
+    if (scene != nullptr) *scene = std::move(loaded);
+  } else if (format->table == &kDeviceTable) {
+    detail::loadDevice(root, in, {in.file(), "", {}, nullptr}, catalog, nullptr, nullptr, nullptr);
+  } else {
+    detail::loadDaemon(root, in);
+  }
+}
+
+}  // namespace
+
+const Format* detail::formatOf(const Node& root) {
+  for (const Format& format : kFormats)
+    if (root.isMap() && root.find(format.key) != nullptr) return &format;
+  return nullptr;
+}
+
+bool detail::hasFormat(const Node& root, const char* wanted, Reader& in) {
+  if (!root.isMap()) {
+    in.problem(root, "",
+               describe(root) + ", expected a mapping that begins with " + (wanted ? wanted : "hapticd") + ": 1");
+    return false;
+  }
+  const Format* format = formatOf(root);
+  if (format != nullptr && (wanted == nullptr || std::string_view(format->key) == wanted)) return true;
+  std::string expected, name = "scene";
+  for (const Format& known : kFormats) {
+    if (wanted != nullptr && std::string_view(known.key) == wanted) name = known.name;
+    expected += std::string(expected.empty() ? "" : ", ") + "\"" + known.key + ": 1\" (a " + known.name + ")";
+  }
+  if (format != nullptr) {
+    in.problem(root, format->key, std::string("this is a ") + format->name + " file, expected a " + name + " file");
+  } else if (root.find("format") != nullptr) {
+    in.problem(root, "format",
+               "this looks like a model file, which the plugin reads; expected a " +
+                   (wanted ? name : "scene, device or daemon") + " file that names it");
+  } else {
+    std::vector<std::string> keys;
+    for (const Format& known : kFormats) keys.emplace_back(known.key);
+    std::string meant;
+    for (const Entry& entry : root.entries)
+      if (meant.empty()) meant = document::suggestion(entry.key.scalar, keys);
+    const std::string line = wanted ? "\"" + std::string(wanted) + ": 1\"" : "one of " + expected;
+    in.problem(root, wanted ? wanted : "hapticd",
+               "missing: the kind of this file is unknown, expected " + line + meant);
+  }
+  return false;
+}
+
+Loaded load(const std::filesystem::path& file, host::Catalog& catalog, const LoadOptions& options) {
+  Loaded loaded;
+  Reader in(file, loaded.problems);
+  const auto root = parseFile(file, loaded.problems);
+  if (root && detail::hasFormat(*root, "hapticd", in)) loaded.scene = detail::loadScene(*root, in, catalog, options);
+  if (!loaded.problems.empty()) loaded.scene.reset();
+  sortByPlace(loaded.problems);
+  return loaded;
+}
+
+LoadedDevice loadDevice(const std::filesystem::path& file, host::Catalog& catalog) {
+  LoadedDevice loaded;
+  loaded.device = detail::loadDeviceFile({file, "", {}, nullptr}, catalog, loaded.problems, nullptr, nullptr, nullptr);
+  if (!loaded.problems.empty()) loaded.device.reset();
+  sortByPlace(loaded.problems);
+  return loaded;
+}
+
+LoadedDaemon loadDaemon(const std::filesystem::path& file) {
+  LoadedDaemon loaded;
+  Reader in(file, loaded.problems);
+  const auto root = parseFile(file, loaded.problems);
+  if (root && detail::hasFormat(*root, "hapticd-daemon", in)) loaded.daemon = detail::loadDaemon(*root, in);
+  if (!loaded.problems.empty()) loaded.daemon.reset();
+  sortByPlace(loaded.problems);
+  return loaded;
+}
+
+Problems checkFile(const std::filesystem::path& file, host::Catalog& catalog, std::optional<Scene>* scene) {
+  Problems problems;
+  const auto text = readFile(file, kMaxFileBytes, problems);
+  return text ? checkText(*text, file, catalog, scene) : problems;
+}
+
+Problems checkText(const std::string& text, const std::filesystem::path& file, host::Catalog& catalog,
+                   std::optional<Scene>* scene) {
+  Problems problems;
+  Reader in(file, problems);
+  const auto root = parseText(text, file.string(), problems);
+  if (root) checkRoot(*root, in, catalog, scene);
+  if (scene != nullptr && !problems.empty()) scene->reset();
+  sortByPlace(problems);
+  return problems;
+}
+
+}  // namespace hapticd::scene

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include "document/suggestion.hpp"
+#include "scene/loader.hpp"
+#include "scene/parameters.hpp"
+
+namespace hapticd::scene::detail {
+
+using namespace document;
+namespace {
+
+constexpr std::string_view kHand = "hand.";
+
+bool hasHand(const host::ClassInfo& info) {
+  return std::any_of(info.params.begin(), info.params.end(),
+                     [](const host::ParamInfo& p) { return p.id.compare(0, kHand.size(), kHand) == 0; });
+}
+
+void readHand(const Node& node, const std::string& key, const host::ClassInfo& info, Reader& in,
+              ParameterReader& reader) {
+  if (hasHand(info))
+    reader.read(node, key, "hand");
+  else
+    in.problem(node, key,
+               "module " + info.name + " has no simulated hand, expected this key only with a module that has one");
+}
+
+}  // namespace
+
+std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceReference& reference, host::Catalog& catalog,
+                                 Reader* scene_in, const Node* hand, bool* has_hand) {
+  DeviceText text;
+  in.object(root, "", kDeviceTable, &text);
+  Device device;
+  device.file = in.file();
+  device.place = in.place(root);
+  device.module = text.module;
+  device.name = !reference.name.empty() ? reference.name : !text.name.empty() ? text.name : in.file().stem().string();
+  device.mount = reference.mount.value_or(text.mount);
+  device.limits = text.limits;
+  device.admittance = reference.admittance ? reference.admittance : text.admittance;
+  if (text.module.empty()) return std::nullopt;
+
+  auto found = catalog.device(text.module);
+  if (!found) {
+    in.problem(*root.find("module"), "module", found.error());
+    return std::nullopt;
+  }
+  const host::ClassInfo& info = **found;
+  device.library = info.file;
+  if (has_hand != nullptr) *has_hand = hasHand(info);
+  ParameterReader reader(in, info);
+  if (text.parameters != nullptr) reader.read(*text.parameters, "parameters");
+  if (text.hand != nullptr) readHand(*text.hand, "hand", info, in, reader);
+  if (scene_in != nullptr && hand != nullptr && hasHand(info)) {
+    reader.overrideFrom(*scene_in);
+    reader.read(*hand, "hand", "hand");
+  }
+  if (scene_in != nullptr && reference.hand != nullptr) {
+    reader.overrideFrom(*scene_in);
+    readHand(*reference.hand, "hand", info, *scene_in, reader);
+  }
+  reader.requireAll(text.parameters != nullptr ? *text.parameters : root, "parameters");
+  device.parameters = reader.take();
+  return device;
+}
+
+std::optional<Device> loadDeviceFile(const DeviceReference& reference, host::Catalog& catalog, Problems& problems,
+                                     Reader* scene_in, const Node* hand, bool* has_hand) {
+  Reader in(reference.file, problems);
+  const auto root = parseFile(reference.file, problems);
+  if (!root || !hasFormat(*root, "hapticd-device", in)) return std::nullopt;
+  return loadDevice(*root, in, reference, catalog, scene_in, hand, has_hand);
+}
+
+std::optional<Daemon> loadDaemon(const Node& root, Reader& in) {
+  DaemonText text;
+  in.object(root, "", kDaemonTable, &text);
+  text.daemon.file = in.file();
+  if (text.plugin_path == nullptr) return text.daemon;
+  if (!text.plugin_path->isSequence()) {
+    in.problem(*text.plugin_path, "plugin_path", describe(*text.plugin_path) + ", expected a list of folders");
+    return text.daemon;
+  }
+  for (size_t i = 0; i < text.plugin_path->items.size(); ++i) {
+    const Node& item = text.plugin_path->items[i];
+    std::error_code error;
+    const auto full = std::filesystem::absolute(in.file().parent_path() / item.scalar, error).lexically_normal();
+    if (!item.isScalar() || !std::filesystem::is_directory(full, error))
+      in.problem(
+          item, "plugin_path[" + std::to_string(i) + "]",
+          (item.isScalar() ? full.string() + " is not a folder" : describe(item)) + ", expected the path of a folder");
+    else
+      text.daemon.plugin_path.push_back(full);
+  }
+  return text.daemon;
+}
+
+}  // namespace hapticd::scene::detail

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+#include <map>
+#include <string_view>
+#include <unordered_map>
+
+#include "document/suggestion.hpp"
+#include "hapticd/shape.h"
+#include "scene/kinematic_path.hpp"
+#include "scene/loader.hpp"
+#include "scene/parameters.hpp"
+
+namespace hapticd::scene::detail {
+
+using namespace document;
+namespace {
+
+const std::vector<std::string> kMotions = {"static", "kinematic", "dynamic"};
+
+class SceneLoader {
+ public:
+  SceneLoader(Reader& in, host::Catalog& catalog, const LoadOptions& options)
+      : in_(in), catalog_(catalog), options_(options) {}
+
+  std::optional<Scene> load(const Node& root) {
+    in_.object(root, "", kSceneTable, &text_);
+    scene_.file = in_.file();
+    scene_.servo = text_.servo;
+    scene_.models.reserve(text_.models.size());
+    for (size_t i = 0; i < text_.models.size(); ++i)
+      if (text_.models[i].node->isMap()) addModel(text_.models[i], "models[" + std::to_string(i) + "]");
+    addDevices(root);
+    return std::move(scene_);
+  }
+
+ private:
+  void addModel(const ModelText& text, const std::string& key) {
+    Model model;
+    model.name = text.name;
+    model.plugin = text.plugin;
+    model.pose = text.pose;
+    model.place = in_.place(*text.node);
+    checkName(text, key);
+    if (const host::ClassInfo* info = pluginOf(text, key)) {
+      model.library = info->file;
+      addParameters(text, key, *info, model);
+    }
+    scene_.models.push_back(std::move(model));
+  }
+
+  void checkName(const ModelText& text, const std::string& key) {
+    if (text.name.empty()) return;
+    const Node* at = text.node->find("name");
+    const auto [first, is_new] = names_.emplace(text.name, at->line);
+    if (!is_new)
+      in_.problem(*at, key + ".name",
+                  "\"" + text.name + "\" is the name of another model (line " + std::to_string(first->second) +
+                      "), expected each name once");
+  }
+
+  /// The plugin's table, asked for once a name: ten thousand models of an unknown plugin give one long message.
+  const host::ClassInfo* pluginOf(const ModelText& text, const std::string& key) {
+    if (text.plugin.empty()) return nullptr;
+    const Node* at = text.node->find("plugin");
+    const auto [known, is_new] = plugins_.try_emplace(text.plugin);
+    if (is_new) {
+      known->second.line = at->line;
+      auto found = catalog_.shape(text.plugin);
+      if (found) known->second.info = *found;
+      if (!found) in_.problem(*at, key + ".plugin", found.error());
+    } else if (known->second.info == nullptr) {
+      in_.problem(*at, key + ".plugin",
+                  "there is no usable shape plugin \"" + text.plugin + "\" (see line " +
+                      std::to_string(known->second.line) + ")");
+    }
+    return known->second.info;
+  }
+
+  void addParameters(const ModelText& text, const std::string& key, const host::ClassInfo& info, Model& model) {
+    const std::string params_key = key + ".parameters";
+    const Node* params = text.parameters != nullptr && text.parameters->isMap() ? text.parameters : nullptr;
+    const int motion_index = info.indexOf("motion");
+    const bool takes_path = motion_index >= 0 && info.indexOf("path") < 0;
+    ParameterReader reader(in_, info);
+    if (text.parameters != nullptr) reader.read(*text.parameters, params_key, "", takes_path ? "path" : "");
+    if (text.motion != nullptr) readMotion(*text.motion, key + ".motion", info, reader);
+    reader.requireAll(text.parameters != nullptr ? *text.parameters : *text.node, params_key);
+    model.parameters = reader.take();
+
+    const Node* motion = text.motion;
+    if (motion == nullptr && params != nullptr && motion_index >= 0) motion = params->find("motion");
+    const Node* path = text.path;
+    if (path == nullptr && params != nullptr && motion_index >= 0) path = params->find("path");
+    model.kinematic = motion != nullptr && motion->isScalar() && motion->scalar == "kinematic";
+    addPath(text, key, path, model);
+  }
+
+  /// `motion:` beside `plugin:` is for the host and, where the plugin has such a parameter, for the plugin too.
+  void readMotion(const Node& node, const std::string& key, const host::ClassInfo& info, ParameterReader& reader) {
+    const int index = info.indexOf("motion");
+    if (index >= 0) return reader.readOne(node, key, static_cast<uint32_t>(index));
+    const auto choice = in_.choice(node, key, kMotions);
+    if (choice && kMotions[*choice] == "dynamic" && (info.flags & HSP_C_MOVES) == 0)
+      in_.problem(node, key, "plugin " + info.name + " cannot be dynamic, expected static or kinematic");
+  }
+
+  void addPath(const ModelText& text, const std::string& key, const Node* path, Model& model) {
+    if (path != nullptr && !model.kinematic)
+      return in_.problem(*path, key + ".path",
+                         "the model does not follow its path, expected motion: kinematic beside it");
+    if (!model.kinematic) return;
+    if (path == nullptr)
+      return in_.problem(*text.node, key + ".path",
+                         "missing, expected the CSV file (t,x,y,z,qw,qx,qy,qz) that the kinematic model follows");
+    if (const auto file = in_.existingFile(*path, key + ".path")) model.path = readKinematicPath(*file, in_.problems());
+  }
+
+  void addDevices(const Node& root) {
+    if (!options_.device_file.empty()) {
+      addDevice({options_.device_file, "", {}, nullptr});
+      return;
+    }
+    if (text_.device != nullptr && text_.devices != nullptr)
+      return in_.problem(*text_.device, "device", "both device and devices are given, expected one of them");
+    if (text_.device != nullptr) addNamed(*text_.device, "device");
+    if (text_.devices != nullptr) addList(*text_.devices);
+    if (text_.device == nullptr && text_.devices == nullptr && options_.default_device) addDefault(root);
+    if (text_.hand != nullptr && !scene_.devices.empty() && !hand_used_)
+      in_.problem(*text_.hand, "hand",
+                  "none of the scene's devices has a simulated hand, expected one whose module has hand.* parameters");
+  }
+
+  void addList(const Node& list) {
+    if (!list.isSequence() || list.items.empty() || list.items.size() > kMaxDevices)
+      return in_.problem(list, "devices",
+                         (list.isSequence() ? "a list of " + std::to_string(list.items.size()) : describe(list)) +
+                             ", expected a list of 1 to " + numberText(kMaxDevices) + " device files");
+    for (size_t i = 0; i < list.items.size(); ++i) addNamed(list.items[i], "devices[" + std::to_string(i) + "]");
+  }
+
+  /// A path, or a mapping with a path and what this scene says otherwise.
+  void addNamed(const Node& node, const std::string& key) {
+    DeviceReference reference;
+    const size_t before = in_.problems().size();
+    if (node.isMap())
+      in_.object(node, key, kDeviceReferenceTable, &reference);
+    else if (const auto file = in_.existingFile(node, key))
+      reference.file = *file;
+    if (in_.problems().size() != before) return;
+    if (const std::string name = addDevice(reference); !name.empty()) checkDeviceName(name, node, key);
+  }
+
+  void checkDeviceName(const std::string& name, const Node& node, const std::string& key) {
+    size_t same = 0;
+    for (const Device& device : scene_.devices) same += device.name == name ? 1 : 0;
+    if (same > 1)
+      in_.problem(
+          node, key,
+          "another device is named \"" + name + "\" too, expected different names: write {file: ..., name: ...}");
+  }
+
+  void addDefault(const Node& root) {
+    const auto file = host::shippedFile(kDefaultDevice);
+    if (!file)
+      return in_.problem(root, "device",
+                         std::string("no device is named, and the simulated one (") + kDefaultDevice +
+                             ") is not installed; expected device: FILE");
+    addDevice({*file, "", {}, nullptr});
+    if (!scene_.devices.empty()) scene_.devices.back().chosen_by_default = true;
+  }
+
+  /// The name of the new device; "" if its file has problems.
+  std::string addDevice(const DeviceReference& reference) {
+    bool has_hand = false;
+    auto device = loadDeviceFile(reference, catalog_, in_.problems(), &in_, text_.hand, &has_hand);
+    hand_used_ = hand_used_ || has_hand;
+    if (!device) return "";
+    scene_.devices.push_back(*std::move(device));
+    return scene_.devices.back().name;
+  }
+
+  struct Known {
+    const host::ClassInfo* info = nullptr;
+    int line = 0;
+  };
+  Reader& in_;
+  host::Catalog& catalog_;
+  const LoadOptions& options_;
+  SceneText text_;
+  Scene scene_;
+  std::unordered_map<std::string, int> names_;
+  std::map<std::string, Known> plugins_;
+  bool hand_used_ = false;
+};
+
+}  // namespace
+
+std::optional<Scene> loadScene(const Node& root, Reader& in, host::Catalog& catalog, const LoadOptions& options) {
+  return SceneLoader(in, catalog, options).load(root);
+}
+
+}  // namespace hapticd::scene::detail

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "scene/parameters.hpp"
+
+#include "document/suggestion.hpp"
+#include "hapticd/abi.h"
+
+namespace hapticd::scene {
+
+using namespace document;
+namespace {
+
+constexpr size_t kShownProblems = 8;  ///< of one array: the rest say the same
+
+/// True if some id begins with "id.".
+bool isGroup(const host::ClassInfo& info, const std::string& id) {
+  for (const host::ParamInfo& param : info.params)
+    if (param.id.size() > id.size() && param.id.compare(0, id.size(), id) == 0 && param.id[id.size()] == '.')
+      return true;
+  return false;
+}
+
+std::string countText(const host::ParamInfo& p) {
+  std::string text = p.min_count == p.max_count ? std::to_string(p.min_count) + " numbers"
+                     : p.max_count == UINT32_MAX
+                         ? "at least " + std::to_string(p.min_count) + " numbers"
+                         : std::to_string(p.min_count) + " to " + std::to_string(p.max_count) + " numbers";
+  if (p.columns > 1) text += " in rows of " + std::to_string(p.columns);
+  return text;
+}
+
+}  // namespace
+
+void ParameterReader::overrideFrom(Reader& in) {
+  in_ = &in;
+  given_.assign(given_.size(), 0);
+}
+
+void ParameterReader::read(const Node& node, const std::string& key, const std::string& prefix,
+                           const std::string& skip) {
+  if (!node.isMap())
+    return in_->problem(node, key, describe(node) + ", expected a mapping with " + document::listed(info_.paramIds()));
+  for (const Entry& entry : node.entries) {
+    if (!skip.empty() && entry.key.scalar == skip) continue;
+    const std::string id = joined(prefix, entry.key.scalar), path = joined(key, entry.key.scalar);
+    const int index = info_.indexOf(id);
+    if (index >= 0)
+      readOne(entry.value.isNull() ? entry.key : entry.value, path, static_cast<uint32_t>(index));
+    else if (isGroup(info_, id))
+      read(entry.value, path, id);
+    else
+      unknown(entry, path, id);
+  }
+}
+
+void ParameterReader::unknown(const Entry& entry, const std::string& key, const std::string& id) {
+  std::vector<std::string> ids = info_.paramIds();
+  if (ids.empty()) return in_->problem(entry.key, key, "unknown key: " + info_.name + " has no parameters");
+  in_->problem(entry.key, key,
+               "unknown parameter of " + info_.name + ", expected one of " + document::listed(ids, 24) +
+                   document::suggestion(id, ids));
+}
+
+void ParameterReader::readOne(const Node& node, const std::string& key, uint32_t index) {
+  const host::ParamInfo& param = info_.params[index];
+  if (given_[index] != 0)
+    return in_->problem(node, key, "given twice (first in line " + std::to_string(given_[index]) + "), expected once");
+  given_[index] = node.line;
+  seen_[index] = true;
+  Value value;
+  value.id = param.id;
+  value.index = index;
+  value.kind = param.kind;
+  value.place = in_->place(node);
+  if (!readValue(node, key, param, value)) return;
+  for (Value& before : values_)
+    if (before.index == index) return (void)(before = std::move(value));
+  values_.push_back(std::move(value));
+}
+
+bool ParameterReader::readValue(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value) {
+  const Range range{param.min, param.max, param.unit.c_str()};
+  std::optional<double> number;
+  switch (param.kind) {
+    case HSP_REAL:
+      number = in_->number(node, key, range);
+      break;
+    case HSP_INT:
+      number = in_->whole(node, key, range);
+      break;
+    case HSP_BOOL:
+      if (const auto flag = in_->boolean(node, key)) number = *flag ? 1 : 0;
+      break;
+    case HSP_ENUM:
+      if (const auto index = in_->choice(node, key, param.choices)) number = static_cast<double>(*index);
+      break;
+    case HSP_PATH:
+      return readPath(node, key, value);
+    case HSP_TEXT:
+      if (const auto text = in_->text(node, key)) return value.text = *text, true;
+      return false;
+    case HSP_ARRAY:
+      return readArray(node, key, param, value);
+    case HSP_DATA:
+      return value.text = toJson(node), true;
+    default:
+      in_->problem(node, key, "has a kind that this hapticd does not know; a newer one is needed");
+      return false;
+  }
+  value.number = number.value_or(0);
+  return number.has_value();
+}
+
+bool ParameterReader::readPath(const Node& node, const std::string& key, Value& value) {
+  // A device node appears when the device is plugged in, which is checked when it is opened.
+  if (info_.kind == host::Kind::kDevice && node.isScalar() && node.scalar.rfind("/dev/", 0) == 0)
+    return value.text = node.scalar, true;
+  const auto file = in_->existingFile(node, key);
+  if (file) value.text = file->string();
+  return file.has_value();
+}
+
+bool ParameterReader::readArray(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value) {
+  const Range range{param.min, param.max, param.unit.c_str()};
+  const size_t before = in_->problems().size();
+  const auto add = [&](const Node& item, const std::string& path) {
+    if (in_->problems().size() - before >= kShownProblems) return;
+    if (const auto number = in_->number(item, path, range)) value.numbers.push_back(*number);
+  };
+  if (node.isScalar()) {
+    add(node, key);
+  } else if (node.isSequence()) {
+    for (size_t i = 0; i < node.items.size(); ++i) {
+      const Node& item = node.items[i];
+      const std::string path = key + "[" + std::to_string(i) + "]";
+      if (item.isSequence() && param.columns > 1 && item.items.size() != param.columns)
+        in_->problem(item, path,
+                     "a row of " + std::to_string(item.items.size()) + ", expected " + std::to_string(param.columns));
+      else if (item.isSequence())
+        for (size_t j = 0; j < item.items.size(); ++j) add(item.items[j], path + "[" + std::to_string(j) + "]");
+      else
+        add(item, path);
+    }
+  } else {
+    in_->problem(node, key, describe(node) + ", expected a list of " + countText(param));
+  }
+  if (in_->problems().size() != before) return false;
+  const size_t count = value.numbers.size();
+  const bool ragged = param.columns > 1 && count % param.columns != 0;
+  if (!ragged && count >= param.min_count && count <= param.max_count) return true;
+  in_->problem(node, key,
+               std::to_string(count) + (count == 1 ? " number" : " numbers") + ", expected " + countText(param));
+  return false;
+}
+
+void ParameterReader::requireAll(const Node& at, const std::string& key) {
+  for (uint32_t i = 0; i < info_.params.size(); ++i) {
+    const host::ParamInfo& param = info_.params[i];
+    if ((param.flags & HSP_P_REQUIRED) == 0) continue;
+    if (!seen_[i]) in_->problem(at, joined(key, param.id), "missing, " + info_.name + " needs it: " + param.doc);
+  }
+}
+
+}  // namespace hapticd::scene

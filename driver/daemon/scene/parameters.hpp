@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+/// The parameters of a model or device, checked against the table of its plugin or module.
+#pragma once
+#include <vector>
+
+#include "description/class_info.hpp"
+#include "description/scene.hpp"
+#include "document/reader.hpp"
+
+namespace hapticd::scene {
+
+using document::Entry;
+using document::Node;
+using document::Reader;
+
+class ParameterReader {
+ public:
+  ParameterReader(Reader& in, const host::ClassInfo& info)
+      : in_(&in), info_(info), given_(info.params.size()), seen_(info.params.size()) {}
+
+  /// Continues with nodes of another file: what it gives replaces what came before.
+  void overrideFrom(Reader& in);
+
+  /// Reads a mapping; nested mappings flatten to dotted ids. @param key where it stands, "models[2].parameters"
+  /// @param prefix put before each id, "hand" for a mapping that holds the hand.* parameters
+  /// @param skip an entry of the mapping that is not a parameter
+  void read(const Node& node, const std::string& key, const std::string& prefix = "", const std::string& skip = "");
+
+  /// Reads one parameter that stands by itself.
+  void readOne(const Node& node, const std::string& key, uint32_t index);
+
+  /// Reports required parameters that nobody gave. @param at where they should stand
+  void requireAll(const Node& at, const std::string& key);
+
+  std::vector<Value> take() { return std::move(values_); }
+
+ private:
+  void unknown(const Entry& entry, const std::string& key, const std::string& id);
+  bool readValue(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value);
+  bool readArray(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value);
+  bool readPath(const Node& node, const std::string& key, Value& value);
+
+  Reader* in_;
+  const host::ClassInfo& info_;
+  std::vector<Value> values_;
+  std::vector<int> given_;  // line of each parameter in the file being read, good or not; 0: not given
+  std::vector<bool> seen_;  // in any file
+};
+
+}  // namespace hapticd::scene

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+/// Compliance control, the other response model of Thompson et al. 1999 (after Yoshikawa et al. 1995): the hand's force
+/// moves a virtual mass with a damper, contacts push the virtual mass, and the arm is made to follow by its own
+/// position loop. For arms that measure torques and are too heavy or too stiff to be pushed about.
+#pragma once
+#include <Eigen/Core>
+#include <string>
+
+#include "description/scene.hpp"
+#include "host/device_instance.hpp"
+#include "servo/arm/tip_force.hpp"
+
+namespace hapticd::servo {
+
+class Admittance {
+ public:
+  static constexpr double kMaxLead = 0.02;  ///< [m] the virtual mass waits for an arm that cannot follow
+  static constexpr double kHoming = 1;  ///< [1/s] at which joints that the tip leaves free return to where they began
+
+  /// [main] Why this device cannot do it, in words; "": it can.
+  static std::string refusal(const hdv_info& info);
+
+  /// [main] @param device opened; stays where it is
+  Admittance(const scene::Admittance& settings, const host::DeviceInstance& device);
+
+  /// [rt] Puts the virtual mass at rest where the joints are. False: they are nowhere.
+  bool start(const double* joints) noexcept HSP_RT;
+  bool started() const noexcept { return started_; }
+  void stop() noexcept { started_ = false; }  ///< [rt]
+
+  /// [rt] Moves the virtual mass by dt [s] under a force [N], and the joints with it. @param measured tip of the arm
+  /// [m] All in the device frame. The force of a tick is held over it, the motion under it exact.
+  void step(const Eigen::Vector3d& force, const Eigen::Vector3d& measured, double dt) noexcept HSP_RT;
+
+  const JointVector& joints() const noexcept { return q_; }              ///< reference for the arm
+  const Eigen::Vector3d& position() const noexcept { return x_; }        ///< of the virtual mass [m]
+  const Eigen::Vector3d& velocity() const noexcept { return v_; }        ///< [m/s]
+  const Eigen::Vector4d& orientation() const noexcept { return turn_; }  ///< of the tip at the reference: w, x, y, z
+
+ private:
+  bool locate() noexcept HSP_RT;
+  void follow(double dt) noexcept HSP_RT;
+  void keepTo(const Eigen::Vector3d& where) noexcept HSP_RT;
+
+  double mass_, damping_;
+  const host::DeviceInstance* device_;
+  JointVector q_, home_;
+  Eigen::Vector3d x_{0, 0, 0}, v_{0, 0, 0};
+  Eigen::Vector3d tip_{0, 0, 0};  ///< of the joints q_
+  Eigen::Vector4d turn_{1, 0, 0, 0};
+  bool started_ = false;
+};
+
+}  // namespace hapticd::servo

@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: MIT
+#include "servo/arm/arm.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace hapticd::servo {
+
+namespace {
+
+constexpr double kCalmFor = 0.5;      ///< [s] that a device must be well before its force comes back by itself
+constexpr double kCalmTravel = 0.02;  ///< [m] and its tip may move meanwhile, while something pushes on it
+constexpr double kStaleAfter = 0.05;  ///< [s] without a new sample: no force on yesterday's position
+constexpr double kPairWithin = 2e-3;  ///< [s] two samples may come so close together that were measured farther apart
+
+/// As the kinematics extension writes it.
+using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HDV_MAX_JOINTS>;
+
+constexpr double kAssumedMass =
+    0.05;  ///< [kg] of a light arm: the damping that the passivity controller may add stays small
+
+}  // namespace
+
+Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter)
+    : device_(std::move(device)),
+      R_world_device_(described.mount.orientation.toRotationMatrix()),
+      q_world_device_(described.mount.orientation),
+      origin_world_(described.mount.position),
+      hand_(device_->hand(), device_->handle(), R_world_device_, origin_world_),
+      limiter_(std::move(limiter)),
+      heat_(described.limits.motors),
+      weight_(described.limits, limiter_.maxForce()),
+      watches_jumps_(described.limits.velocity > 0) {}
+
+Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const scene::Servo& servo,
+                                       const ArmOptions& options, const host::Services::Log& log) {
+  auto device = host::DeviceInstance::create(described, log);
+  if (!device) return Error{device.error()};
+  (*device)->playBack(options.playback);
+  if (auto opened = (*device)->open(); !opened) return Error{opened.error()};
+  const Limiter limiter(described.limits, (*device)->info().max_force);
+  std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter));
+  arm->watches_jumps_ |= !arm->simulated();
+  if (described.admittance) {
+    if (const std::string no = Admittance::refusal(arm->info()); !no.empty())
+      return Error{"device '" + described.name + "': " + no};
+    arm->admittance_.emplace(*described.admittance, *arm->device_);
+  }
+  if (described.limits.passivity.value_or((arm->info().capabilities & HDV_C_UNVERIFIED) != 0)) {
+    const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
+    arm->passivity_.emplace(passivity::stableDamping(mass, 1 / options.rate), arm->info().damping,
+                            arm->info().resolution_m);
+  }
+  const auto& button = described.limits.enable.button;
+  if (button && static_cast<uint32_t>(*button) >= arm->info().buttons && options.playback == nullptr)
+    return Error{"device '" + described.name + "': limits.enable.button is " + std::to_string(*button) +
+                 ", but the device has " + std::to_string(arm->info().buttons) +
+                 " buttons; forces could never be enabled; expected a button of the device, counted from 0"};
+  if (options.needs_velocity || described.limits.velocity > 0 || described.limits.power > 0) {
+    auto estimator = makeEstimator(servo.velocity, options.rate, arm->info().resolution_m);
+    if (!estimator) return Error{estimator.error()};
+    arm->velocity_.emplace(*estimator);
+  }
+  return arm;
+}
+
+Result<void> Arm::start(Nanoseconds now, const Eigen::Vector3d& gravity_world) {
+  gravity_device_ = R_world_device_.transpose() * gravity_world;
+  hdv_start how{};
+  how.struct_size = sizeof how;
+  how.rate_hz = device_->info().rate_hz;
+  how.time_ns = now;
+  Eigen::Map<Eigen::Vector3d>(how.gravity) = gravity_device_;
+  fresh_at_ = now;
+  return device_->start(how);
+}
+
+void Arm::exchangeDry(Nanoseconds now) noexcept HSP_RT {
+  if (taken_.exchange(true)) return;
+  hdv_sample sample{};
+  (void)device_->read(now, sample);  // what is wrong with it, the first tick will find too
+  (void)device_->write(now, {sizeof(hdv_command), HDV_OFF, {}, {}});
+  fresh_at_ = now;
+  taken_.store(false);
+}
+
+const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
+  if (cut_.load()) {
+    findCut(CutFound::kInRead);
+    limiter_.cut(Fault::kStuck, cut_after_.load());
+  }
+  if (taken_.exchange(true)) {  // the watchdog is writing its zero force
+    probe_.valid = tip_known_ = well_ = false;
+    if (velocity_) velocity_->reset();
+    return probe_;
+  }
+  read_status_ = device_->read(now, sample_);
+  taken_.store(false);
+  const bool sampled = read_status_ >= 0 && (sample_.flags & HDV_S_LOST) == 0;
+  limiter_.watchButtons(sampled ? std::optional(sample_.buttons) : std::nullopt);
+  probe_.valid = judge(read_status_, now) && locate();
+  if (!probe_.valid) {
+    tip_known_ = false;
+    if (velocity_) velocity_->reset();
+    return probe_;
+  }
+  watchJump();
+  if (admittance_) takeVirtualProbe();
+  // A device slower than the servo repeats its sample: a difference to itself is no speed, and one taken for a tick's
+  // way would be several times the hand's. A virtual mass moves in every tick.
+  if (velocity_ && (fresh_ || admittance_)) {
+    probe_.velocity = velocity_->update(probe_.position, admittance_ ? dt : fresh_after_);
+    limiter_.watchVelocity(probe_.velocity);
+    if (velocity_->speed() > kMaxProbeSpeed) limiter_.watchSpeed(velocity_->speed());
+  }
+  return probe_;
+}
+
+bool Arm::judge(hsp_status status, Nanoseconds now) noexcept HSP_RT {
+  well_ = false;
+  if (status < 0 || (sample_.flags & HDV_S_LOST) != 0) {
+    trip(Fault::kDeviceLost);
+    return false;
+  }
+  const bool at_fault = (sample_.flags & HDV_S_FAULT) != 0;
+  if (at_fault) trip(Fault::kDeviceFault);
+  const bool lacks_zero =
+      (device_->info().capabilities & HDV_C_CALIBRATION) != 0 && (sample_.flags & HDV_S_CALIBRATED) == 0;
+  if (lacks_zero) limiter_.trip(Fault::kNotCalibrated);
+  fresh_ = sample_.sequence != last_sequence_;
+  if (fresh_) {
+    last_sequence_ = sample_.sequence;
+    fresh_after_ = static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond;
+    fresh_at_ = now;
+  } else if (static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond > kStaleAfter) {
+    trip(Fault::kStale, static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond);
+    return false;
+  }
+  for (uint32_t i = 0; i < device_->info().joint_count; ++i) {
+    if (std::isfinite(sample_.position[i])) continue;
+    limiter_.trip(Fault::kNotFinite);
+    return false;
+  }
+  well_ = !at_fault && !lacks_zero;
+  return true;
+}
+
+void Arm::trip(Fault fault, double measured) noexcept HSP_RT {
+  if (limiter_.fault() == Fault::kNone) trouble_.store(device_->trouble(), std::memory_order_release);
+  limiter_.trip(fault, measured);
+}
+
+/// A device that was unplugged, silent or at fault gets its force back once it has been well for a while and nobody is
+/// surprised by it: its tip rests, or nothing would push on it now.
+void Arm::recover(double dt, bool pushes) noexcept HSP_RT {
+  const bool moved = pushes && !((probe_.position - calm_at_).norm() <= kCalmTravel);
+  if (!well_ || !probe_.valid || moved || !limiter_.silent()) {
+    calm_ = 0;
+    calm_at_ = probe_.position;
+    return;
+  }
+  calm_ += dt;
+  if (calm_ >= kCalmFor) limiter_.recover();
+}
+
+bool Arm::locate() noexcept HSP_RT {
+  Eigen::Vector3d p_device;
+  std::array<double, 4> q{1, 0, 0, 0};
+  const hdv_ext_kinematics& kinematics = device_->kinematics();
+  const bool known = kinematics.forward(device_->handle(), sample_.position, p_device.data(), q.data()) >= 0;
+  if (!known || !p_device.allFinite() || !Eigen::Map<const Eigen::Vector4d>(q.data()).allFinite()) {
+    limiter_.trip(Fault::kNotFinite);
+    return false;
+  }
+  probe_.position = R_world_device_ * p_device + origin_world_;
+  probe_.orientation = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  return true;
+}
+
+/// An encoder that lost its count, or a packet that was misread, must not choose the force: no hand moves a tip so far.
+/// Where there is no force anyway, a device may find its zero or itself anew.
+void Arm::watchJump() noexcept HSP_RT {
+  if (!watches_jumps_ || !fresh_) return;
+  const double speed = (probe_.position - tip_).norm() / std::max(fresh_after_, kPairWithin);
+  const bool felt = limiter_.fault() == Fault::kNone;
+  if (felt && tip_known_ && !(speed <= kMaxProbeSpeed)) limiter_.trip(Fault::kJumped, speed);
+  tip_known_ = felt;
+  tip_ = probe_.position;
+}
+
+std::optional<Eigen::Vector3d> Arm::handForce() const noexcept HSP_RT {
+  if ((sample_.flags & HDV_S_TORQUE) == 0) return std::nullopt;
+  const auto joints = static_cast<Eigen::Index>(device_->info().joint_count);
+  const hdv_ext_kinematics& kinematics = device_->kinematics();
+  Jacobian J(6, joints);
+  JointVector weight(joints);
+  if (kinematics.jacobian(device_->handle(), sample_.position, J.data()) != HSP_OK) return std::nullopt;
+  if (kinematics.gravity(device_->handle(), sample_.position, gravity_device_.data(), weight.data()) != HSP_OK)
+    return std::nullopt;
+  const JointVector torque = Eigen::Map<const Eigen::VectorXd>(sample_.torque, joints) - weight;
+  const Eigen::Vector3d force_device = -TipInverse(J.topRows<3>()).force(torque);
+  if (!force_device.allFinite()) return std::nullopt;
+  return R_world_device_ * force_device;
+}
+
+/// Under compliance control shapes meet the virtual mass, not the arm that is on its way there.
+void Arm::takeVirtualProbe() noexcept HSP_RT {
+  if (limiter_.fault() != Fault::kNone) return admittance_->stop();  // force alone from now on: it can be faded
+  if (!admittance_->started() && !admittance_->start(sample_.position)) return;
+  const Eigen::Vector4d& q = admittance_->orientation();
+  probe_.position = R_world_device_ * admittance_->position() + origin_world_;
+  probe_.orientation = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  probe_.velocity = R_world_device_ * admittance_->velocity();
+}
+
+/// Compliance control: `force` of the contacts and the hand's push move the virtual mass; the arm shall follow. False:
+/// not now, and the force goes to the motors.
+bool Arm::comply(double dt, const Eigen::Vector3d& force, const Weight::Torques& weight) noexcept HSP_RT {
+  if (!admittance_ || !admittance_->started()) return false;
+  const auto hand = handForce();
+  Eigen::Vector3d tip;
+  std::array<double, 4> turn{};
+  const bool measured =
+      device_->kinematics().forward(device_->handle(), sample_.position, tip.data(), turn.data()) >= 0;
+  if (!hand || !measured) return false;
+  admittance_->step(R_world_device_.transpose() * (force + *hand), tip, dt);
+  command_.mode = HDV_POSITION;
+  for (uint32_t i = 0; i < device_->info().joint_count; ++i) command_.position[i] = admittance_->joints()[i];
+  // The arm adds it to its own loop, which then need not sag to carry it.
+  std::copy(weight.begin(), weight.end(), command_.torque);
+  return true;
+}
+
+void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque,
+                const passivity::Exchange& exchange) noexcept HSP_RT {
+  if (endsByItself(limiter_.fault())) recover(dt, !force.isZero(0) || !torque.isZero(0));
+  if (passivity_ && probe_.valid) force = passivity_->update(probe_.position, force, dt, exchange);
+  limiter_.apply(force, torque, probe_.position - origin_world_, dt);
+  if (passivity_) passivity_->applied(force);
+  force_ = force;
+  const uint32_t joints = device_->info().joint_count;
+  const hdv_ext_kinematics& kinematics = device_->kinematics();
+  Jacobian J(6, joints);
+  hdv_command& command = command_;
+  command = hdv_command{};
+  command.struct_size = sizeof command;
+  command.mode = HDV_OFF;
+  const bool located = std::isfinite(sample_.position[0]) &&
+                       kinematics.jacobian(device_->handle(), sample_.position, J.data()) == HSP_OK && J.allFinite();
+  const Weight::Torques weight = located ? weightTorques(J.topRows<3>(), dt) : Weight::Torques{};
+  if (located && !limiter_.silent() && !comply(dt, force, weight)) {
+    command.mode = HDV_TORQUE;
+    Eigen::Map<Eigen::VectorXd> tau(command.torque, joints);
+    const Eigen::Vector3d force_device = R_world_device_.transpose() * force;
+    tau.noalias() = J.topRows<3>().transpose() * force_device;  // Thompson et al. 1999, Eq. 9
+    if (turns()) tau.noalias() += J.bottomRows<3>().transpose() * (R_world_device_.transpose() * torque);
+    scaleToMotors(weight, command);
+  }
+  if (!heat_.empty()) heatMotors(dt);
+  send(now);
+  if (write_status_ < 0) trip(Fault::kDeviceLost);
+}
+
+void Arm::send(Nanoseconds now) noexcept HSP_RT {
+  if (taken_.exchange(true)) return;  // the watchdog is writing its zero force
+  if (cut_in_write_) cut_.store(true);
+  cut_in_write_ = false;
+  if (cut_.load()) {  // the module waits for this tick's acknowledgement: motors off
+    findCut(CutFound::kInWrite);
+    command_ = {sizeof command_, HDV_OFF, {}, {}};
+  }
+  write_status_ = device_->write(now, command_);
+  taken_.store(false);
+}
+
+void Arm::heatMotors(double dt) noexcept HSP_RT {
+  static constexpr std::array<double, HDV_MAX_JOINTS> kNone{};
+  heat_.heat(command_.mode == HDV_OFF ? kNone.data() : command_.torque, dt);
+  limiter_.spareMotors(heat_.factor());
+  if (heat_.overheated()) limiter_.trip(Fault::kOverheated, heat_.hottest());
+}
+
+void Arm::cut(double after) noexcept {
+  if (cut_.exchange(true)) return;
+  cut_after_.store(after);
+  if (device_->cut()) return;
+  // Without a cut of its own the module may be called by one thread at a time: if the servo is inside it, the
+  // hardware's own watchdog is what is left.
+  if (taken_.exchange(true)) return;
+  hdv_command off{};
+  off.struct_size = sizeof off;
+  off.mode = HDV_OFF;
+  device_->write(monotonicNow(), off);
+  taken_.store(false);
+}
+
+void Arm::findCut(CutFound when) noexcept HSP_RT {
+  if (!cut_known_) cut_found_ = when;
+  cut_known_ = true;
+}
+
+void Arm::cutAsThen(CutFound when, double after) noexcept HSP_RT {
+  cut_known_ = true;  // the recording has it already
+  cut_after_.store(after);
+  cut_in_write_ = when == CutFound::kInWrite;
+  if (when == CutFound::kInRead) cut_.store(true);
+}
+
+void Arm::clear() noexcept HSP_RT {
+  cut_.store(false);
+  cut_known_ = cut_in_write_ = false;
+  limiter_.clear();
+}
+
+Weight::Torques Arm::weightTorques(const TipJacobian& J, double dt) noexcept HSP_RT {
+  Weight::Torques gravity{};
+  const bool known = device_->kinematics().gravity(device_->handle(), sample_.position, gravity_device_.data(),
+                                                   gravity.data()) == HSP_OK;
+  const bool finite = std::all_of(gravity.begin(), gravity.end(), [](double torque) { return std::isfinite(torque); });
+  if (known && !finite) limiter_.trip(Fault::kNotFinite);
+  if (!known || !finite) return {};
+  if (weight_.bound(gravity, J, limiter_.allowed(), dt)) limiter_.clippedWeight();
+  return gravity;
+}
+
+void Arm::scaleToMotors(const Weight::Torques& gravity, hdv_command& command) noexcept HSP_RT {
+  // All joints by one factor: the direction of the force on the hand stays true when a motor is at its limit. What
+  // carries the arm's own weight comes first, or the arm would fall on the hand.
+  double factor = 1;
+  for (uint32_t i = 0; i < device_->info().joint_count; ++i) {
+    const double most = device_->info().max_torque[i], asked = command.torque[i];
+    if (most <= 0 || asked == 0) continue;
+    const double held = std::clamp(gravity[i], -most, most);
+    const double room = asked > 0 ? most - held : most + held;
+    if (std::abs(asked) > room) factor = std::min(factor, room / std::abs(asked));
+  }
+  if (factor < 1) limiter_.clippedByMotors();
+  for (uint32_t i = 0; i < device_->info().joint_count; ++i) {
+    const double most = device_->info().max_torque[i], sum = gravity[i] + factor * command.torque[i];
+    command.torque[i] = most > 0 ? std::clamp(sum, -most, most) : sum;
+  }
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+/// One arm: its device, kinematics, velocity estimate and limits. Turns samples into probes and forces into torques.
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "base/clock.hpp"
+#include "base/result.hpp"
+#include "description/scene.hpp"
+#include "host/device_instance.hpp"
+#include "servo/arm/admittance.hpp"
+#include "servo/arm/led_hand.hpp"
+#include "servo/arm/tip_force.hpp"
+#include "servo/arm/weight.hpp"
+#include "servo/core/core.hpp"
+#include "servo/safety/limiter.hpp"
+#include "servo/safety/motor_heat.hpp"
+#include "servo/safety/passivity/controller.hpp"
+#include "servo/velocity/probe_velocity.hpp"
+
+namespace hapticd::servo {
+
+struct ArmOptions {
+  double rate = 1000;                        ///< [Hz]
+  bool needs_velocity = false;               ///< run the estimator
+  const host::Playback* playback = nullptr;  ///< samples from a recording instead of the hardware
+};
+
+class Arm {
+ public:
+  /// [main] Loads the module and opens the device.
+  static Result<std::unique_ptr<Arm>> open(const scene::Device& device, const scene::Servo& servo,
+                                           const ArmOptions& options, const host::Services::Log& log);
+
+  /// [main] Starts reading and writing. @param now time of the first read
+  Result<void> start(Nanoseconds now, const Eigen::Vector3d& gravity_world);
+  void stop() { device_->stop(); }  ///< [main] motors off
+
+  /// [rt] One exchange with the device before the first tick: motors off, and nothing of it is kept.
+  void exchangeDry(Nanoseconds now) noexcept HSP_RT;
+
+  /// [rt] The newest sample as a probe in the world frame. A bad sample gives an invalid probe and a fault.
+  const Probe& read(Nanoseconds now, double dt) noexcept HSP_RT;
+
+  /// [rt] Limits a wrench (N, N m, world frame), maps it to torques (tau = J^T W + gravity) and hands it to the device.
+  /// @param exchange what the scene says of its energy, for the passivity controller
+  void write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque,
+             const passivity::Exchange& exchange = {}) noexcept HSP_RT;
+
+  /// [any] Motors free at once, while the servo is stuck or dying; async-signal-safe. They stay so until clear().
+  /// @param after [s] that the servo was stuck
+  void cut(double after) noexcept;
+  /// [rt] Whether something in the scene can be felt: without it not even the arm's weight is carried.
+  void carryWeight(bool wanted) noexcept HSP_RT { weight_.carry(wanted); }
+  /// [rt] Clears the latched fault, and a cut, by the user's order.
+  void clear() noexcept HSP_RT;
+
+  /// When the servo finds that its motors were cut: a replay must find it then too.
+  enum class CutFound : uint8_t { kNo, kInWrite, kInRead };
+  /// [rt] Since the last call.
+  CutFound takeCutFound() noexcept HSP_RT { return std::exchange(cut_found_, CutFound::kNo); }
+  double cutAfter() const noexcept { return cut_after_.load(); }  ///< [s] that the servo was stuck
+  /// [rt] Before a tick of a replay: the cut will be found in it, as it was then.
+  void cutAsThen(CutFound when, double after) noexcept HSP_RT;
+
+  const hdv_info& info() const { return device_->info(); }
+  host::DeviceInstance& device() { return *device_; }
+  Limiter& limiter() noexcept { return limiter_; }
+  /// [any] What the device said of its last fault, "cause; cure"; nullptr: nothing.
+  const char* trouble() const noexcept { return trouble_.load(std::memory_order_acquire); }
+  const Limiter& limiter() const noexcept { return limiter_; }
+  const Eigen::Vector3d& force() const noexcept { return force_; }  ///< [N] world, as sent
+  const Probe& probe() const noexcept { return probe_; }
+  const hdv_sample& sample() const noexcept { return sample_; }     ///< as read() got it
+  const hdv_command& command() const noexcept { return command_; }  ///< as write() gave it
+  LedHand& hand() noexcept { return hand_; }                        ///< of a simulated arm
+  const LedHand& hand() const noexcept { return hand_; }
+  hsp_status readStatus() const noexcept { return read_status_; }    ///< of the last read
+  hsp_status writeStatus() const noexcept { return write_status_; }  ///< of the last write
+  /// [rt] Force [N] of the hand on the arm, world frame, from the joint torques of the newest sample less what carries
+  /// the arm's own weight: -pinv(J^T) (tau - gravity). Nothing: the device measures no torque. In motion it has the
+  /// inertia of what lies beyond the load cells in it.
+  std::optional<Eigen::Vector3d> handForce() const noexcept HSP_RT;
+  /// Compliance control; nullptr: this arm is driven by force.
+  const Admittance* admittance() const noexcept { return admittance_ ? &*admittance_ : nullptr; }
+  /// The passivity controller; nullptr: this arm needs none.
+  const passivity::PassivityController* passivity() const noexcept { return passivity_ ? &*passivity_ : nullptr; }
+  /// It can turn the hand; an arm of three joints only pushes.
+  bool turns() const { return device_->info().joint_count > 3; }
+  bool estimatesVelocity() const { return velocity_.has_value(); }
+  bool simulated() const noexcept { return (device_->info().capabilities & HDV_C_SIMULATED) != 0; }
+  double rampOut() const noexcept { return limiter_.rampOut(); }  ///< [s]
+
+ private:
+  Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter);
+  bool judge(hsp_status status, Nanoseconds now) noexcept HSP_RT;
+  void trip(Fault fault, double measured = 0) noexcept HSP_RT;
+  void findCut(CutFound when) noexcept HSP_RT;
+  void recover(double dt, bool pushes) noexcept HSP_RT;
+  bool locate() noexcept HSP_RT;
+  void watchJump() noexcept HSP_RT;
+  bool comply(double dt, const Eigen::Vector3d& force, const Weight::Torques& weight) noexcept HSP_RT;
+  void takeVirtualProbe() noexcept HSP_RT;
+  /// What carries the arm's own weight in this tick; zeros where the module does not know, or answers what is no
+  /// number.
+  Weight::Torques weightTorques(const TipJacobian& J, double dt) noexcept HSP_RT;
+  void scaleToMotors(const Weight::Torques& gravity, hdv_command& command) noexcept HSP_RT;
+  void heatMotors(double dt) noexcept HSP_RT;
+  void send(Nanoseconds now) noexcept HSP_RT;
+
+  std::unique_ptr<host::DeviceInstance> device_;
+  Eigen::Matrix3d R_world_device_;
+  Eigen::Quaterniond q_world_device_;
+  Eigen::Vector3d origin_world_;
+  Eigen::Vector3d gravity_device_ = Eigen::Vector3d::Zero();
+  std::optional<ProbeVelocity> velocity_;
+  std::optional<passivity::PassivityController> passivity_;
+  std::optional<Admittance> admittance_;
+  LedHand hand_;
+  Limiter limiter_;
+  MotorHeat heat_;
+  Weight weight_;
+  std::atomic<bool> cut_{false}, taken_{false};  // taken: a thread is inside the module
+  std::atomic<double> cut_after_{0};
+  CutFound cut_found_ = CutFound::kNo;
+  bool cut_known_ = false, cut_in_write_ = false;
+  hdv_sample sample_{};
+  hdv_command command_{};
+  hsp_status read_status_ = HSP_OK, write_status_ = HSP_OK;
+  std::atomic<const char*> trouble_{nullptr};
+  bool well_ = false;  // nothing was wrong with the device in this tick
+  double calm_ = 0;    // [s] that it has been well, and still or free
+  Eigen::Vector3d calm_at_ = Eigen::Vector3d::Zero();
+  uint64_t last_sequence_ = 0;
+  Nanoseconds fresh_at_ = 0;
+  double fresh_after_ = 0;  // [s] between the last two new samples
+  bool fresh_ = false;      // the sample of this tick is new
+  bool watches_jumps_, tip_known_ = false;
+  Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();  // of the last good sample, world
+  Probe probe_;
+  Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace hapticd::servo

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+/// The hand of a simulated arm, led by a program: it wants to be where the program says, and its own mass, spring and
+/// damper do the rest.
+#pragma once
+#include <Eigen/Geometry>
+
+#include "hapticd/device.h"
+#include "servo/core/led_pose.hpp"
+
+namespace hapticd::servo {
+
+class LedHand {
+ public:
+  /// [main] @param hand of the device; nullptr: it has none, and only the books of a lead are kept, as in a replay
+  LedHand(const hdv_ext_hand* hand, hdv_device* device, const Eigen::Matrix3d& R_world_device,
+          const Eigen::Vector3d& origin_world)
+      : hand_(hand), device_(device), R_world_device_(R_world_device), origin_world_(origin_world) {}
+
+  /// [any] It does what a leader says.
+  bool guided() const noexcept { return hand_ != nullptr && hand_->guided(device_) != 0; }
+  bool led() const noexcept { return lead_.led(); }
+
+  /// [rt] A leader begins. @param tip world frame: where the hand is if nobody has led it before
+  void begin(const link::PoseSlot& slot, const Eigen::Vector3d& tip) noexcept HSP_RT {
+    if (!lead_.active()) {
+      Eigen::Map<Eigen::Vector3d>(pose_.position) = tip;
+      pose_.orientation[0] = 1;
+    }
+    lead_.begin(slot, pose_);
+  }
+  void end() noexcept HSP_RT { lead_.end(); }  ///< [rt] it stays where it is then
+
+  /// [rt] Before the arm is read at t [s], dt [s] after the last; epoch: CLOCK_MONOTONIC [s] at t = 0.
+  void step(double t, double dt, double epoch) noexcept HSP_RT {
+    if (!lead_.active()) return;
+    lead_.step(t, dt, epoch, pose_);
+    if (hand_ == nullptr) return;
+    const Eigen::Map<const Eigen::Vector3d> p_world(pose_.position), v_world(pose_.linear);
+    const Eigen::Vector3d p_device = R_world_device_.transpose() * (p_world - origin_world_);
+    const Eigen::Vector3d v_device = R_world_device_.transpose() * v_world;
+    constexpr double kNoForce[3] = {};
+    hand_->guide(device_, p_device.data(), v_device.data(), kNoForce);
+  }
+
+  const hapticd_target* taken() const noexcept { return lead_.taken(); }  ///< in the last step; nullptr: none
+  uint64_t refused() const noexcept { return lead_.refused(); }
+
+ private:
+  const hdv_ext_hand* hand_;
+  hdv_device* device_;
+  Eigen::Matrix3d R_world_device_;
+  Eigen::Vector3d origin_world_;
+  LedPose lead_;
+  hsp_pose pose_{};
+};
+
+}  // namespace hapticd::servo

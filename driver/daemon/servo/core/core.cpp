@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: MIT
+#include "servo/core/core.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/clock.hpp"
+
+namespace hapticd::servo {
+
+namespace {
+
+using Map = Eigen::Map<Vector3d>;
+using ConstMap = Eigen::Map<const Vector3d>;
+
+/// Also false for numbers whose squares overflow: a length of them would be none, and a ratio of two such.
+bool finite(const double* values, size_t count) noexcept HSP_RT {
+  constexpr double kLargest = 1e100;
+  for (size_t i = 0; i < count; ++i)
+    if (!(std::abs(values[i]) <= kLargest)) return false;
+  return true;
+}
+
+bool finite(const hsp_contact& c) noexcept HSP_RT {
+  return finite(c.force, 3) && finite(c.torque, 3) && ((c.flags & HSP_OUT_TRACED) == 0 || finite(c.point, 7));
+}
+
+}  // namespace
+
+Core::Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& scene, uint32_t probe_count,
+           const CoreSettings& settings, link::Link& link)
+    : settings_(settings),
+      link_(link),
+      probe_count_(probe_count),
+      models_(models.size() + settings.spare_models),
+      claims_(models_.size() * probe_count),
+      contacts_(models_.size() * probe_count),
+      inputs_(probe_count),
+      outputs_(probe_count),
+      last_position_(probe_count, Vector3d::Zero()),
+      jumped_(probe_count),
+      seen_(probe_count),
+      forces_(probe_count, Vector3d::Zero()),
+      torques_(probe_count, Vector3d::Zero()),
+      exchanges_(probe_count),
+      present_(static_cast<uint32_t>(models.size())) {
+  for (size_t i = 0; i < models.size(); ++i) models_[i] = stateOf(*models[i], scene.models[i]);
+  live_.reserve(models_.size());
+  loads_.reserve(models_.size());
+  listLive();
+}
+
+ModelState Core::stateOf(host::ShapeInstance& shape, const scene::Model& described) {
+  ModelState model;
+  model.shape = &shape;
+  Map(model.pose.position) = described.pose.position;
+  const Eigen::Quaterniond& q = described.pose.orientation;
+  model.pose.orientation[0] = q.w(), model.pose.orientation[1] = q.x();
+  model.pose.orientation[2] = q.y(), model.pose.orientation[3] = q.z();
+  model.frame = Frame::of(model.pose);
+  const bool moves_itself = (shape.report().flags & HSP_R_MOVES) != 0;
+  model.kinematic = described.kinematic;
+  if (described.kinematic) model.path = Path(described.path);
+  model.moves = moves_itself || described.kinematic;
+  model.always = moves_itself || shape.surfaces() == nullptr;
+  model.stiffness = shape.report().max_stiffness;
+  model.damping = shape.claimedDamping();
+  return model;
+}
+
+void Core::publish(double t, std::span<const Probe> probes) noexcept HSP_RT {
+  link::ArmState& arm = link_.arm.back();
+  arm.time_ns = static_cast<Nanoseconds>(t * 1e9);
+  arm.probe_count = probe_count_;
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    arm.valid[i] = probes[i].valid;
+    Map(arm.position[i].data()) = probes[i].position;
+  }
+  link_.arm.publish();
+}
+
+void Core::tick(double t, double dt, std::span<const Probe> probes) noexcept HSP_RT {
+  receiveRecords();
+  wants_search_ = false;
+  preempted_ = false;
+  transforms_ = 0;
+  budget_left_ns_ = settings_.budget_ns;
+  findJumps(dt, probes);
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    forces_[i].setZero();
+    torques_[i].setZero();
+    exchanges_[i] = {0, 0};
+  }
+  for (const uint32_t i : live_) {
+    ModelState& model = models_[i];
+    model.overran = false;
+    if (model.moves) model.before = model.frame;
+    if (model.kinematic) moveKinematic(model, t, dt);
+    if (model.level == Accuracy::kCoarsest && mayRest(model, i, dt)) {
+      model.rested += dt;
+      model.step_ns = 0;
+      ++model.degraded_ticks;
+      continue;
+    }
+    if (model.always || model.active_surfaces > 0) stepModel(i, t, dt, probes);
+    if (model.moves) sendTransform(model, i);
+  }
+  releaseLeaving();
+  ++tick_;
+}
+
+void Core::moveKinematic(ModelState& model, double t, double dt) noexcept HSP_RT {
+  if (model.lead.active())
+    model.lead.step(t, dt, epoch_, model.pose);
+  else if (model.glide.active())
+    model.glide.at(t, model.pose);
+  else
+    model.path.at(t, model.pose);
+  model.frame = Frame::of(model.pose);
+}
+
+void Core::listLive() noexcept HSP_RT {
+  live_.clear();
+  for (uint32_t i = 0; i < models_.size(); ++i) {
+    if (models_[i].moves || models_[i].always || models_[i].active_surfaces > 0) {
+      live_.push_back(i);  // reserved for all of them: never allocates
+    } else {
+      clearContacts(i);
+    }
+  }
+}
+
+void Core::receiveRecords() noexcept HSP_RT {
+  bool changed = false;
+  for (received_count_ = 0; received_count_ < received_.size() && link_.records.pop(received_[received_count_]);
+       ++received_count_) {
+    const link::ActivationRecord& record = received_[received_count_];
+    ModelState& model = models_[record.model];
+    if (model.shape == nullptr) continue;  // it has left
+    const hsp_ext_surfaces& surfaces = *model.shape->surfaces();
+    if (record.order == link::ActivationRecord::Order::kStop) {
+      surfaces.deactivate(model.shape->handle(), record.near.probe, record.near.surface);
+      changed |= --model.active_surfaces == 0;
+    } else {
+      surfaces.activate(model.shape->handle(), &record.near);
+      if (record.order == link::ActivationRecord::Order::kStart) changed |= model.active_surfaces++ == 0;
+    }
+  }
+  if (changed) listLive();
+}
+
+void Core::findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT {
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    jumped_[i] = 0;
+    if (!probes[i].valid) {
+      wants_search_ = true;  // whatever comes next may be elsewhere
+      continue;
+    }
+    const double travel = (probes[i].position - last_position_[i]).norm();
+    if (seen_[i] != 0 && travel > settings_.max_probe_speed * dt) {
+      jumped_[i] = 1;
+      wants_search_ = true;
+    }
+    seen_[i] = 1;
+    last_position_[i] = probes[i].position;
+  }
+}
+
+void Core::fillProbe(const ModelState& model, const Probe& probe, uint32_t index, double t) noexcept HSP_RT {
+  hsp_probe& in = inputs_[index];
+  in = hsp_probe{};
+  in.orientation[0] = 1;
+  in.time_ns = static_cast<uint64_t>(t * 1e9);
+  if (jumped_[index] != 0) in.flags |= HSP_IN_JUMP;
+  if (!probe.valid) in.flags |= HSP_IN_INVALID;
+  const Vector3d& p_world = last_position_[index];  // the last good one
+  Map(in.position) = model.frame.pointToModel(p_world);
+  if (!model.frame.identity) ++transforms_;
+  const uint32_t needs = model.shape->report().flags;
+  if ((needs & HSP_R_VELOCITY) != 0 && probe.valid) {
+    const Vector3d arm = p_world - ConstMap(model.pose.position);
+    const Vector3d surface = ConstMap(model.pose.linear) + ConstMap(model.pose.angular).cross(arm);
+    Map(in.velocity) = model.frame.vectorToModel(probe.velocity - surface);
+  }
+  if ((needs & HSP_R_ORIENTATION) != 0) {
+    const double* q = model.pose.orientation;
+    const Eigen::Quaterniond relative = Eigen::Quaterniond(q[0], -q[1], -q[2], -q[3]) * probe.orientation;
+    in.orientation[0] = relative.w(), in.orientation[1] = relative.x();
+    in.orientation[2] = relative.y(), in.orientation[3] = relative.z();
+  }
+}
+
+void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT {
+  ModelState& model = models_[index];
+  if (model.guard.quarantined() && model.guard.gain(false, dt) == 0) return clearContacts(index);
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    fillProbe(model, probes[i], i, t);
+    outputs_[i] = hsp_contact{};
+  }
+  hsp_pose pose = model.pose;
+  callShape(model, index, dt, pose);
+  const Trouble trouble = judge(model, index, dt, pose);
+  const double gain_before = model.guard.gain();
+  const double gain = model.guard.gain(trouble == Trouble::kNone && model.enabled, dt);
+  const double fade = gain_before > 0 ? gain / gain_before : 0;
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    if (trouble == Trouble::kNone) {
+      takeContact(model, index, i, gain);
+    } else {
+      fadeContact(index, i, fade);
+    }
+    Contact& contact = contacts_[size_t{index} * probe_count_ + i];
+    if (!probes[i].valid) {
+      contact = Contact{};
+      continue;
+    }
+    forces_[i] += ConstMap(contact.world.force);
+    if (uses_.torque) torques_[i] += ConstMap(contact.world.torque);
+    if (uses_.exchange) bookContact(model, contact, i);
+  }
+}
+
+/// Runs the plugin over inputs_ and outputs_, with the time it takes where that is measured.
+void Core::callShape(ModelState& model, uint32_t index, double dt, hsp_pose& pose) noexcept HSP_RT {
+  hsp_step step{};
+  step.struct_size = sizeof step;
+  step.count = probe_count_;
+  step.in = inputs_.data();
+  step.in_stride = sizeof(hsp_probe);
+  step.out = outputs_.data();
+  step.out_stride = sizeof(hsp_contact);
+  step.dt_s = dt + model.rested;
+  model.rested = 0;
+  step.budget_ns = budget_left_ns_;
+  const Accuracy accuracy = Accuracy::of(model.level);
+  step.max_iterations = accuracy.max_iterations;
+  step.order = accuracy.order;
+  step.pose = &pose;
+  step.changes = model.changes.data();
+  step.change_count = model.change_count;
+  model.change_count = 0;
+
+  const Nanoseconds before = settings_.measure ? monotonicNow() : 0;
+  stepping_.store(static_cast<int32_t>(index), std::memory_order_relaxed);
+  model.status = model.guard.quarantined() ? HSP_E_STATE : model.shape->step(step);
+  stepping_.store(-1, std::memory_order_relaxed);
+  if (model.level > 0) {
+    ++model.degraded_ticks;
+    if (model.status == HSP_OK) model.status = HSP_DEGRADED;
+  }
+  if (settings_.measure) takeCost(model, before);
+}
+
+/// Whether the answers may be felt; a model that moves itself goes to its new pose.
+Trouble Core::judge(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT {
+  bool answers_finite = true;
+  for (const hsp_contact& out : outputs_) answers_finite &= finite(out);
+  const bool moves_itself = (model.shape->report().flags & HSP_R_MOVES) != 0;
+  if (moves_itself && answers_finite) answers_finite = takePose(model, pose);
+  if (uses_.exchange && model.moves && dt > 0) bookMotion(model, index);
+  Trouble trouble = model.guard.judge(model.status, answers_finite);
+  if (trouble == Trouble::kNone) trouble = holdToClaims(model, index, dt);
+  if (trouble == Trouble::kBadStatus && model.failed_status == HSP_OK) model.failed_status = model.status;
+  if (trouble == Trouble::kLost) {
+    model.shape->reset();
+    wants_search_ = true;
+  }
+  return trouble;
+}
+
+/// The last good force, a part of it: what a model in trouble is still felt by.
+void Core::fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP_RT {
+  Contact& last = contacts_[size_t{index} * probe_count_ + probe];
+  last.traced = false;
+  Map(last.world.force) *= part;
+  Map(last.world.torque) *= part;
+}
+
+/// What a healthy answer may still break: the time it was given, and the stiffness that was claimed for it.
+Trouble Core::holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
+  constexpr int kJumps = 3;
+  Trouble trouble = Trouble::kNone;
+  const bool moves_itself = (model.shape->report().flags & HSP_R_MOVES) != 0;
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    const Vector3d p_model =
+        moves_itself ? model.frame.pointToModel(last_position_[i]) : Vector3d(ConstMap(inputs_[i].position));
+    const double part = claims_[size_t{index} * probe_count_ + i].judge(inputs_[i], outputs_[i], p_model,
+                                                                        model.stiffness, model.damping, dt);
+    if (part >= 1) continue;
+    Map(outputs_[i].force) *= part;
+    Map(outputs_[i].torque) *= part;
+    trouble = model.guard.strike(Trouble::kJump, kJumps);
+  }
+  return trouble == Trouble::kNone ? holdToTime(model) : trouble;
+}
+
+/// The force of the last tick was held while the model's surface moved on: that work is the model's.
+void Core::bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT {
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    const Contact& held = contacts_[size_t{index} * probe_count_ + i];
+    const ConstMap force(held.world.force);
+    if (force.isZero(0)) continue;
+    const Vector3d from = held.traced ? Vector3d(ConstMap(held.world.point)) : last_position_[i];
+    const Vector3d in_model = model.before.R_world_model.transpose() * (from - model.before.origin_world);
+    const Vector3d to = model.frame.R_world_model * in_model + model.frame.origin_world;
+    exchanges_[i].supplied += force.dot(to - from);
+  }
+}
+
+/// A wall whose force grows with depth stores less than force times depth. What deforms says itself what it stores.
+void Core::bookContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT {
+  const ConstMap force(contact.world.force);
+  if (force.isZero(0)) return;
+  double recoverable = HUGE_VAL;
+  const bool deforms = (model.shape->description().flags & HSP_C_DEFORMS) != 0;
+  const double stored = model.shape->energy() != nullptr ? model.shape->energy()->stored(model.shape->handle()) : 0;
+  if (contact.traced && (!deforms || model.shape->energy() != nullptr))
+    recoverable = std::max(force.norm() * std::max(contact.world.depth_m, 0.0), stored);
+  exchanges_[probe].recoverable += std::isfinite(recoverable) ? recoverable : HUGE_VAL;
+}
+
+bool Core::takePose(ModelState& model, const hsp_pose& pose) noexcept HSP_RT {
+  if (!finite(pose.position, 13)) return false;
+  model.pose = pose;
+  model.frame = Frame::of(pose);
+  return true;
+}
+
+void Core::takeContact(ModelState& model, uint32_t index, uint32_t probe, double gain) noexcept HSP_RT {
+  const hsp_contact& out = outputs_[probe];
+  Contact& contact = contacts_[size_t{index} * probe_count_ + probe];
+  contact.world = out;
+  contact.traced = (out.flags & HSP_OUT_TRACED) != 0;
+  if (model.level > 0 && std::isfinite(out.residual_m))
+    model.degraded_residual = std::max(model.degraded_residual, out.residual_m);
+  const Frame& frame = model.frame;
+  Map(contact.world.force) = gain * frame.vectorToWorld(ConstMap(out.force));
+  Map(contact.world.torque).setZero();
+  if (uses_.torque) Map(contact.world.torque) = gain * frame.vectorToWorld(ConstMap(out.torque));
+  if (!contact.traced) return;
+  Map(contact.world.point) = frame.pointToWorld(ConstMap(out.point));
+  Map(contact.world.normal) = frame.vectorToWorld(ConstMap(out.normal));
+  if (!frame.identity) transforms_ += 2;
+}
+
+void Core::clearContacts(uint32_t index) noexcept HSP_RT {
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    contacts_[size_t{index} * probe_count_ + i] = Contact{};
+    claims_[size_t{index} * probe_count_ + i].forget();
+  }
+}
+
+void Core::sendTransform(ModelState& model, uint32_t index) noexcept HSP_RT {
+  link::ModelTransform transform;
+  transform.model = index;
+  for (size_t i = 0; i < 3; ++i) transform.position[i] = model.pose.position[i];
+  for (size_t i = 0; i < 4; ++i) transform.orientation[i] = model.pose.orientation[i];
+  link_.transforms.push(transform);  // full: the next tick sends a newer one
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+/// The heart of the servo: a function of (state, probes, dt). The same core runs on a real clock, in virtual time and
+/// over a recorded path; same input gives the same bits.
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <atomic>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "description/scene.hpp"
+#include "host/shape_instance.hpp"
+#include "link/link.hpp"
+#include "servo/core/frame.hpp"
+#include "servo/core/led_pose.hpp"
+#include "servo/core/load_shedding.hpp"
+#include "servo/core/minimum_jerk.hpp"
+#include "servo/core/order.hpp"
+#include "servo/core/path.hpp"
+#include "servo/safety/claim.hpp"
+#include "servo/safety/guard.hpp"
+#include "servo/safety/passivity/controller.hpp"
+
+namespace hapticd::servo {
+
+/// One arm's tip, in the world frame.
+struct Probe {
+  Vector3d position = Vector3d::Zero();  ///< [m]
+  Vector3d velocity = Vector3d::Zero();  ///< [m/s] zero unless something in the scene uses it
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+  bool valid = false;  ///< a good sample; otherwise no shape pushes
+};
+
+/// What one model answered to one probe in the last tick; vectors in the world frame.
+struct Contact {
+  hsp_contact world{};
+  bool traced = false;
+};
+
+/// A model as the servo sees it.
+struct ModelState {
+  host::ShapeInstance* shape = nullptr;
+  hsp_pose pose{};
+  Frame frame;
+  Frame before;       ///< a tick ago; kept where the model moves
+  Path path;          ///< kinematic models
+  MinimumJerk glide;  ///< where a person moved a kinematic model; goes before its path
+  bool kinematic = false;
+  bool enabled = true;                  ///< felt; otherwise faded out and only traced
+  bool leaving = false;                 ///< fades out and then leaves its place
+  std::array<hsp_change, 8> changes{};  ///< live parameters for the next step
+  uint32_t change_count = 0;
+  uint32_t active_surfaces = 0;  ///< over all probes
+  bool always = false;           ///< stepped every tick: it traces itself, or moves by itself
+  bool moves = false;            ///< its pose may change
+  hsp_status status = HSP_OK;
+  hsp_status failed_status = HSP_OK;  ///< the first that was no status of a step
+  Guard guard;
+  double stiffness = 0;       ///< [N/m] that it claims; 0: nothing
+  double damping = 0;         ///< [N s/m] that it claims
+  bool overran = false;       ///< its last step was held against it for the time it took
+  bool overran_then = false;  ///< it was in the run of which this is a replay
+  uint64_t step_ns = 0;       ///< CPU time of the last step; 0 when not measured
+  // How exactly it answers: lowered while a tick takes too long, see load_shedding.hpp.
+  uint32_t level = 0, coarsest = 0;  ///< now, and at most so far
+  uint64_t finer_ns = 0;             ///< what a step took before the level was lowered
+  double rested = 0;                 ///< [s] since its last step
+  uint64_t degraded_ticks = 0;
+  double degraded_residual = 0;  ///< [m] largest error that a degraded answer told
+  LedPose lead;                  ///< of a kinematic model: goes before its glide and its path
+};
+
+struct CoreSettings {
+  uint64_t budget_ns = 0;       ///< of all shapes in a tick; 0: none
+  double max_probe_speed = 20;  ///< [m/s] faster between two samples is a jump, not a motion
+  uint32_t spare_models = 0;    ///< empty places for models that come while it runs
+  bool measure = false;         ///< take the CPU time of each step
+  double evaluation_ns = 0;     ///< > 0: a step costs so much for each evaluation, instead of what it takes
+};
+
+/// What the arms make of a tick's answers; settled before the first. What nobody uses is not computed.
+struct Uses {
+  bool torque = true;    ///< an arm can turn the hand, or somebody writes torques down
+  bool exchange = true;  ///< an arm has a passivity controller
+};
+
+class Core {
+ public:
+  /// [main] @param models active instances in the order of the scene, with the poses they were activated at
+  Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& scene, uint32_t probe_count,
+       const CoreSettings& settings, link::Link& link);
+
+  /// [main] Before the first tick; without it everything is computed.
+  void serve(const Uses& uses) { uses_ = uses; }
+
+  /// [rt] Before the first tick: CLOCK_MONOTONIC [s] at t = 0, the clock of those who lead models.
+  void startAt(double epoch) noexcept HSP_RT { epoch_ = epoch; }
+
+  /// [rt] One tick at time t [s], dt [s] after the last (0: the first). Fills contacts() and force().
+  void tick(double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
+
+  /// [main] What the servo must know of an active shape before its first tick.
+  static ModelState stateOf(host::ShapeInstance& shape, const scene::Model& described);
+
+  /// [rt] Before tick(): settles how exactly each model answers, from what the last tick took. What was changed.
+  std::span<const LoadShedding::Change> shedLoad() noexcept HSP_RT;
+
+  /// [rt] Obeys an order to a model, before tick(). False: it cannot be.
+  bool obey(const Order& order, double t) noexcept HSP_RT;
+
+  /// [any] One reader: a place whose model has left, so that its shape may be destroyed.
+  bool takeReleased(uint32_t& model) noexcept { return released_.pop(model); }
+
+  /// [rt] Tells the simulation side where the probes are; before tick(), so that a search in lockstep sees them.
+  void publish(double t, std::span<const Probe> probes) noexcept HSP_RT;
+
+  /// Force [N] and torque [N m] of all models on a probe, world frame.
+  const Vector3d& force(uint32_t probe) const noexcept { return forces_[probe]; }
+  const Vector3d& torque(uint32_t probe) const noexcept { return torques_[probe]; }
+  /// What moving models did to a probe since the last tick, and what its contacts can give back.
+  const passivity::Exchange& exchange(uint32_t probe) const noexcept { return exchanges_[probe]; }
+  std::span<const ModelState> models() const noexcept { return models_; }
+  const Contact& contact(uint32_t model, uint32_t probe) const noexcept {
+    return contacts_[size_t{model} * probe_count_ + probe];
+  }
+  /// A jump or a lost track in the last tick: the simulation side should search at once.
+  bool wantsSearch() const noexcept { return wants_search_; }
+  /// Transforms done in the last tick: n inverse ones of probes, m points and m normals; none of models that stand at
+  /// the world's origin.
+  uint32_t transforms() const noexcept { return transforms_; }
+  /// Models that have something to do in this tick, in scene order.
+  std::span<const uint32_t> live() const noexcept { return live_; }
+  /// Activation records that the last tick took, for the recording.
+  std::span<const link::ActivationRecord> received() const noexcept { return {received_.data(), received_count_}; }
+  /// [any] The model whose plugin runs now; -1: none.
+  int32_t stepping() const noexcept { return stepping_.load(std::memory_order_relaxed); }
+  uint32_t probeCount() const noexcept { return probe_count_; }
+  /// [rt] Models that are there, felt or not.
+  uint32_t present() const noexcept { return present_; }
+
+ private:
+  bool adopt(ModelState& place, const Order& order) noexcept HSP_RT;
+  bool change(ModelState& model, const Order& order) noexcept HSP_RT;
+  void releaseLeaving() noexcept HSP_RT;
+  void receiveRecords() noexcept HSP_RT;
+  void moveKinematic(ModelState& model, double t, double dt) noexcept HSP_RT;
+  void findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT;
+  void stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
+  bool mayRest(const ModelState& model, uint32_t index, double dt) const noexcept HSP_RT;
+  void takeCost(ModelState& model, Nanoseconds begun) noexcept HSP_RT;
+  bool setLevel(ModelState& model, uint32_t level) noexcept HSP_RT;
+  void fillProbe(const ModelState& model, const Probe& probe, uint32_t index, double t) noexcept HSP_RT;
+  void callShape(ModelState& model, uint32_t index, double dt, hsp_pose& pose) noexcept HSP_RT;
+  Trouble judge(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT;
+  void fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP_RT;
+  Trouble holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT;
+  Trouble holdToTime(ModelState& model) noexcept HSP_RT;
+  bool takePose(ModelState& model, const hsp_pose& pose) noexcept HSP_RT;
+  void bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT;
+  void bookContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT;
+  void takeContact(ModelState& model, uint32_t index, uint32_t probe, double gain) noexcept HSP_RT;
+  void clearContacts(uint32_t index) noexcept HSP_RT;
+  void listLive() noexcept HSP_RT;
+  void sendTransform(ModelState& model, uint32_t index) noexcept HSP_RT;
+
+  CoreSettings settings_;
+  Uses uses_;
+  link::Link& link_;
+  uint32_t probe_count_;
+  std::vector<ModelState> models_;
+  std::vector<uint32_t> live_;  // models with something to do, in scene order: the sum is always the same
+  std::vector<Load> loads_;     // of the models that were stepped
+  LoadShedding shedding_;
+  std::vector<Claim> claims_;  // [model * probe_count + probe]
+  std::atomic<int32_t> stepping_{-1};
+  std::vector<Contact> contacts_;  // [model * probe_count + probe]
+  std::vector<hsp_probe> inputs_;  // of the model being stepped
+  std::vector<hsp_contact> outputs_;
+  // Bounded: a flood of records must not make a tick late; the rest waits for the next.
+  std::array<link::ActivationRecord, 1024> received_;
+  size_t received_count_ = 0;
+  std::vector<Vector3d> last_position_;  // of the last good sample
+  std::vector<uint8_t> jumped_, seen_;
+  std::vector<Vector3d> forces_, torques_;
+  std::vector<passivity::Exchange> exchanges_;
+  SpscRing<uint32_t> released_{256};
+  uint32_t leaving_ = 0, present_ = 0;
+  bool wants_search_ = true;
+  uint32_t transforms_ = 0;
+  double epoch_ = 0;
+  uint64_t tick_ = 0;
+  uint64_t budget_left_ns_ = 0;
+  bool preempted_ = false;  // in this tick, as far as anybody asked
+};
+
+}  // namespace hapticd::servo

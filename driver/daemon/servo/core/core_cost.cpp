@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+/// What an answer may cost: how exactly each shape answers, and what happens to one that takes too long.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/clock.hpp"
+#include "base/os.hpp"
+#include "servo/core/core.hpp"
+
+namespace hapticd::servo {
+
+/// A coarsest shape that no probe can reach before its turn comes again answers in every fourth tick alone: it stands
+/// still, and its foot and distance are those of a moment ago. Turns are spread over the ticks.
+bool Core::mayRest(const ModelState& model, uint32_t index, double dt) const noexcept HSP_RT {
+  if (model.always || model.moves || model.change_count > 0) return false;
+  if ((tick_ + index) % Accuracy::kTurns == 0) return false;
+  const double reach = settings_.max_probe_speed * dt * Accuracy::kTurns;
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    const Contact& last = contact(index, i);
+    if (jumped_[i] != 0 || !last.traced || last.world.depth_m > -reach) return false;
+  }
+  return true;
+}
+
+void Core::takeCost(ModelState& model, Nanoseconds begun) noexcept HSP_RT {
+  model.step_ns = monotonicNow() - begun;
+  if (settings_.evaluation_ns > 0) {
+    uint64_t evaluations = 0;
+    for (const hsp_contact& out : outputs_) evaluations += out.iterations;
+    model.step_ns = static_cast<uint64_t>(settings_.evaluation_ns * static_cast<double>(evaluations));
+  }
+  // a spent budget stays at 1: the next shape may still answer, but must be quick
+  if (budget_left_ns_ > 0) budget_left_ns_ = budget_left_ns_ > model.step_ns ? budget_left_ns_ - model.step_ns : 1;
+}
+
+std::span<const LoadShedding::Change> Core::shedLoad() noexcept HSP_RT {
+  if (settings_.budget_ns == 0 || !settings_.measure) return {};
+  loads_.clear();
+  uint64_t spent = 0;
+  for (const uint32_t index : live_) {
+    const ModelState& model = models_[index];
+    double importance = -HUGE_VAL;
+    for (uint32_t i = 0; i < probe_count_; ++i)
+      if (contact(index, i).traced) importance = std::max(importance, contact(index, i).world.depth_m);
+    loads_.push_back({index, model.level, model.step_ns, model.finer_ns, importance});  // reserved: never allocates
+    spent += model.step_ns;
+  }
+  // A tick that the kernel interrupted took long for no fault of a shape.
+  if (spent > settings_.budget_ns && settings_.evaluation_ns == 0 && (os::wasPreempted() || preempted_)) return {};
+  const auto changes = shedding_.judge(loads_, settings_.budget_ns);
+  for (const LoadShedding::Change& change : changes) setLevel(models_[change.model], change.level);
+  return changes;
+}
+
+bool Core::setLevel(ModelState& model, uint32_t level) noexcept HSP_RT {
+  if (level > Accuracy::kCoarsest) return false;
+  if (level > model.level) model.finer_ns = model.step_ns;
+  model.level = level;
+  model.coarsest = std::max(model.coarsest, level);
+  return true;
+}
+
+Trouble Core::holdToTime(ModelState& model) noexcept HSP_RT {
+  constexpr int kOverruns = 4;
+  if (std::exchange(model.overran_then, false)) return model.guard.strike(Trouble::kOverrun, kOverruns);
+  const bool overran = settings_.budget_ns > 0 && settings_.measure && model.step_ns > settings_.budget_ns;
+  const bool may_hasten = settings_.evaluation_ns > 0 || model.level < Accuracy::kCoarsest;
+  if (!overran || may_hasten) return Trouble::kNone;
+  preempted_ |= os::wasPreempted();
+  if (preempted_) return Trouble::kNone;
+  model.overran = true;
+  return model.guard.strike(Trouble::kOverrun, kOverruns);
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <utility>
+
+#include "host/class_table.hpp"
+#include "servo/core/core.hpp"
+
+namespace hapticd::servo {
+
+bool Core::obey(const Order& order, double t) noexcept HSP_RT {
+  if (order.target >= models_.size()) return false;
+  ModelState& model = models_[order.target];
+  if (order.kind == Order::Kind::kAdopt) return adopt(model, order);
+  if (model.shape == nullptr) return false;
+  switch (order.kind) {
+    case Order::Kind::kEnable:
+      model.enabled = !model.leaving;
+      return !model.leaving;
+    case Order::Kind::kDisable:
+      model.enabled = false;
+      return true;
+    case Order::Kind::kMove:
+      if (!model.kinematic || model.lead.led()) return false;
+      model.lead.forget();
+      model.glide.begin(t, order.seconds, model.pose, order.position, order.orientation);
+      return true;
+    case Order::Kind::kSet:
+      return change(model, order);
+    case Order::Kind::kAccuracy:
+      return order.value >= 0 && setLevel(model, static_cast<uint32_t>(order.value));
+    case Order::Kind::kOverran:
+      return model.overran_then = true;
+    case Order::Kind::kRelease:
+      model.enabled = false;
+      if (!model.leaving) ++leaving_;
+      model.leaving = true;
+      return true;
+    case Order::Kind::kLead:
+      if (!model.kinematic || model.lead.led() || order.slot == nullptr) return false;
+      model.lead.begin(*order.slot, model.pose);
+      return true;
+    case Order::Kind::kUnlead:
+      model.lead.end();
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool Core::adopt(ModelState& place, const Order& order) noexcept HSP_RT {
+  if (place.shape != nullptr || order.model == nullptr) return false;
+  std::swap(place, *order.model);
+  ++present_;
+  place.guard.silence();  // fades in
+  listLive();
+  return true;
+}
+
+bool Core::change(ModelState& model, const Order& order) noexcept HSP_RT {
+  auto* const end = model.changes.data() + model.change_count;
+  auto* found = std::find_if(model.changes.data(), end, [&](const hsp_change& c) { return c.param == order.param; });
+  if (found == model.changes.data() + model.changes.size()) return false;
+  if (found == end) ++model.change_count;
+  *found = {order.param, 0, order.value};
+  const hsp_class& plugin = model.shape->description();
+  if (host::damps(plugin, order.param)) model.damping = std::max(model.damping, order.value);
+  if (host::stiffens(plugin, order.param) && model.stiffness > 0)
+    model.stiffness = std::max(model.stiffness, order.value);
+  // What was asked for may change the force under a probe that rests: no jump of the plugin's own making.
+  for (uint32_t i = 0; i < probe_count_; ++i) claims_[size_t{order.target} * probe_count_ + i].forget();
+  return true;
+}
+
+void Core::releaseLeaving() noexcept HSP_RT {
+  // Records that still name the model must be gone first: the simulation side was told before the order came.
+  if (leaving_ == 0 || received_count_ == received_.size()) return;
+  for (uint32_t i = 0; i < models_.size() && leaving_ > 0; ++i) {
+    ModelState& model = models_[i];
+    const bool stepped = model.always || model.active_surfaces > 0;
+    if (!model.leaving || (stepped && model.guard.gain() > 0)) continue;
+    if (!released_.push(i)) return;
+    model.leaving = false;
+    model.shape = nullptr;
+    model.guard = Guard();
+    model.moves = model.always = false;
+    model.active_surfaces = 0;
+    --leaving_;
+    --present_;
+    listLive();
+  }
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "servo/core/follow.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hapticd::servo {
+
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr double kThere = 1e-9;  ///< [m], [rad] nearer than this to a target at rest it is there: no encoder sees less
+
+bool finite(const double* values, int count) noexcept HSP_RT {
+  for (int i = 0; i < count; ++i)
+    if (!std::isfinite(values[i])) return false;
+  return true;
+}
+
+/// Also of a vector whose squares overflow.
+Vector3d capped(Vector3d v, double most) noexcept HSP_RT {
+  const double largest = v.cwiseAbs().maxCoeff();
+  if (largest > most) v *= most / largest;
+  const double norm = v.norm();
+  return norm > most ? Vector3d(v * (most / norm)) : v;
+}
+
+Quaterniond quaternion(const double* q) noexcept HSP_RT {
+  return Quaterniond(q[0], q[1], q[2], q[3]).normalized();
+}
+
+/// Rotation vector of a turn by the shorter way.
+Vector3d rotationVector(const Quaterniond& turn) noexcept HSP_RT {
+  const double sine = turn.vec().norm();
+  if (sine == 0) return Vector3d::Zero();
+  const double sign = turn.w() < 0 ? -1 : 1;
+  return turn.vec() * (sign * 2 * std::atan2(sine, std::abs(turn.w())) / sine);
+}
+
+Quaterniond turnBy(const Vector3d& rotation) noexcept HSP_RT {
+  const double angle = rotation.norm();
+  if (angle == 0) return Quaterniond::Identity();
+  Quaterniond turn;
+  turn.w() = std::cos(0.5 * angle);
+  turn.vec() = rotation * (std::sin(0.5 * angle) / angle);
+  return turn;
+}
+
+/// How far a target has gone on, in seconds of its twist, `age` [s] after its time.
+double reachOf(double age) noexcept HSP_RT {
+  const double fading = std::clamp(age - Follow::kTwistHolds, 0.0, Follow::kTwistFades);
+  return std::min(age, Follow::kTwistHolds) + fading * (1 - 0.5 * fading / Follow::kTwistFades);
+}
+
+struct Bounds {
+  double speed, acceleration;
+};
+
+/// What moves a position, or turns a frame, to its target.
+struct Motion {
+  Vector3d velocity;   ///< now
+  Vector3d of_target;  ///< over this tick
+  Vector3d error;      ///< from here to where the target is after this tick
+};
+
+/// At rest at a target at rest: no longer followed, or it would take for ever.
+bool arrived(const Motion& motion, const Bounds& most, double dt) noexcept HSP_RT {
+  return motion.of_target.isZero(0) && motion.error.norm() <= kThere &&
+         motion.velocity.norm() <= most.acceleration * dt;
+}
+
+/// The velocity over the tick: that of the target and what closes the error, as fast as can be braked again: sqrt(a e)
+/// leaves half of the acceleration for a target that moves meanwhile.
+Vector3d nextVelocity(const Motion& motion, const Bounds& most, double dt) noexcept HSP_RT {
+  const Vector3d behind = motion.error - dt * motion.of_target;
+  const double distance = behind.norm();
+  Vector3d wanted = motion.of_target;
+  if (distance > 0) {
+    const double close_in = std::max(Follow::kCloseIn, 2 * dt);  // no tick may go past the target
+    wanted += behind * (std::min(distance / close_in, std::sqrt(most.acceleration * distance)) / distance);
+  }
+  return motion.velocity + capped(capped(wanted, most.speed) - motion.velocity, most.acceleration * dt);
+}
+
+constexpr Bounds kLinear{Follow::kMostSpeed, Follow::kMostAcceleration};
+constexpr Bounds kAngular{Follow::kMostTurn, Follow::kMostTurnAcceleration};
+
+}  // namespace
+
+bool Follow::sound(const hapticd_target& target, double now) noexcept HSP_RT {
+  const bool numbers = finite(target.position, 3) && finite(target.orientation, 4) && finite(target.linear, 3) &&
+                       finite(target.angular, 3) && std::isfinite(target.time);
+  if (!numbers || target.time < 0 || target.time > now + kAhead) return false;
+  const Eigen::Map<const Vector3d> position(target.position);
+  if (position.cwiseAbs().maxCoeff() > kFarthest || position.norm() > kFarthest) return false;
+  const Eigen::Map<const Eigen::Vector4d> q(target.orientation);
+  return q.cwiseAbs().maxCoeff() < 2 && std::abs(q.norm() - 1) <= kUnitWithin;
+}
+
+void Follow::begin(const hsp_pose& pose) noexcept HSP_RT {
+  p_ = Vector3d(pose.position);
+  v_ = Vector3d(pose.linear);
+  w_ = Vector3d(pose.angular);
+  q_ = quaternion(pose.orientation);
+  led_ = rests_ = false;
+}
+
+bool Follow::aim(const hapticd_target& target, double t) noexcept HSP_RT {
+  if (led_ && t < t_target_) return false;
+  p_target_ = Vector3d(target.position);
+  v_target_ = capped(Vector3d(target.linear), kMostSpeed);
+  w_target_ = capped(Vector3d(target.angular), kMostTurn);
+  q_target_ = quaternion(target.orientation);
+  t_target_ = t;
+  led_ = true;
+  rests_ = false;
+  return true;
+}
+
+void Follow::step(double t, double dt, hsp_pose& pose) noexcept HSP_RT {
+  if (rests_) return;
+  const double reach = reachOf(t - t_target_);
+  // Not the twist of this moment but its mean over the tick: so a leader that keeps its velocity is met exactly.
+  const double trust = dt > 0 ? (reach - reachOf(t - t_target_ - dt)) / dt : 0;
+  stepPosition(trust, reach, dt);
+  stepOrientation(trust, reach, dt);
+  Eigen::Map<Vector3d>(pose.position) = p_;
+  Eigen::Map<Vector3d>(pose.linear) = v_;
+  Eigen::Map<Vector3d>(pose.angular) = w_;
+  pose.orientation[0] = q_.w(), pose.orientation[1] = q_.x();
+  pose.orientation[2] = q_.y(), pose.orientation[3] = q_.z();
+  const bool still = v_.isZero(0) && w_.isZero(0);
+  const bool target_still = trust == 0 || (v_target_.isZero(0) && w_target_.isZero(0));
+  rests_ = dt > 0 && still && (!led_ || target_still);
+}
+
+void Follow::stepPosition(double trust, double reach, double dt) noexcept HSP_RT {
+  Motion motion{v_, Vector3d::Zero(), Vector3d::Zero()};
+  if (led_) {
+    motion.of_target = trust * v_target_;
+    motion.error = p_target_ + reach * v_target_ - p_;
+  }
+  if (arrived(motion, kLinear, dt)) {
+    p_ += motion.error;
+    v_.setZero();
+    return;
+  }
+  v_ = nextVelocity(motion, kLinear, dt);
+  p_ += dt * v_;
+}
+
+void Follow::stepOrientation(double trust, double reach, double dt) noexcept HSP_RT {
+  Motion motion{w_, Vector3d::Zero(), Vector3d::Zero()};
+  const Quaterniond goal = led_ ? turnBy(reach * w_target_) * q_target_ : q_;
+  if (led_) {
+    motion.of_target = trust * w_target_;
+    motion.error = rotationVector(goal * q_.conjugate());
+  }
+  if (arrived(motion, kAngular, dt)) {
+    q_ = goal;
+    w_.setZero();
+    return;
+  }
+  w_ = nextVelocity(motion, kAngular, dt);
+  q_ = (turnBy(dt * w_) * q_).normalized();
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+/// A pose that follows a leader outside the process: never faster than a hand behind it can bear, whatever the leader
+/// says, and at rest soon after the leader has fallen silent. There is no buffer and no added delay: between two
+/// records the target goes on with the leader's own twist.
+#pragma once
+#include <Eigen/Geometry>
+
+#include "hapticd/client.h"
+#include "hapticd/shape.h"
+
+namespace hapticd::servo {
+
+class Follow {
+ public:
+  static constexpr double kMostSpeed = 1.0;            ///< [m/s]
+  static constexpr double kMostAcceleration = 20;      ///< [m/s^2]
+  static constexpr double kMostTurn = 3.141593;        ///< [rad/s] 0.3 m from its origin a surface keeps kMostSpeed
+  static constexpr double kMostTurnAcceleration = 60;  ///< [rad/s^2]
+  static constexpr double kCloseIn = 0.02;             ///< [s] time constant with which an error goes
+  static constexpr double kTwistHolds = 0.1;           ///< [s] a record's twist is believed for so long,
+  static constexpr double kTwistFades = 0.05;  ///< [s] and fades over this: two lost frames of 60 Hz are bridged
+  static constexpr double kFarthest = 10;      ///< [m] no arm reaches farther
+  static constexpr double kAhead = 0.1;        ///< [s] a late tick may see records that were written after it
+  static constexpr double kUnitWithin = 1e-3;  ///< of the length of a quaternion
+
+  /// [rt] What may be followed; see hapticd_target. @param now [s] on the clock of its time
+  static bool sound(const hapticd_target& target, double now) noexcept HSP_RT;
+
+  /// [rt] From a pose and its velocities on; with no target yet it comes to rest.
+  void begin(const hsp_pose& pose) noexcept HSP_RT;
+
+  /// [rt] A sound target, true at `t` [s] on the clock of step(). An older one than the last is ignored: false.
+  bool aim(const hapticd_target& target, double t) noexcept HSP_RT;
+
+  /// [rt] The leader has gone: brakes and rests where that ends.
+  void release() noexcept HSP_RT { led_ = false; }
+
+  /// [rt] One tick at t [s], dt [s] after the last: moves on and fills in pose and velocities.
+  void step(double t, double dt, hsp_pose& pose) noexcept HSP_RT;
+
+  /// [rt] It stands still, and will until there is another target.
+  bool rests() const noexcept { return rests_; }
+
+ private:
+  using Vector3d = Eigen::Vector3d;
+  void stepPosition(double trust, double reach, double dt) noexcept HSP_RT;
+  void stepOrientation(double trust, double reach, double dt) noexcept HSP_RT;
+
+  Vector3d p_ = Vector3d::Zero(), v_ = Vector3d::Zero(), w_ = Vector3d::Zero();  // world frame
+  Eigen::Quaterniond q_ = Eigen::Quaterniond::Identity();
+  Vector3d p_target_ = Vector3d::Zero(), v_target_ = Vector3d::Zero(), w_target_ = Vector3d::Zero();
+  Eigen::Quaterniond q_target_ = Eigen::Quaterniond::Identity();
+  double t_target_ = 0;
+  bool led_ = false, rests_ = true;
+};
+
+}  // namespace hapticd::servo

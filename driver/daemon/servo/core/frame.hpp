@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+/// Rigid frames and the transforms of one tick. Shapes never move in memory: the probe goes through the inverse of each
+/// model's pose, and only foot points and normals come back (Thompson et al. 1999, section 5.2.2: n + 2m transforms).
+#pragma once
+#include <Eigen/Geometry>
+
+#include "hapticd/shape.h"
+
+namespace hapticd::servo {
+
+using Eigen::Vector3d;
+
+/// Pose of a model in the world, as a rotation matrix for use within a tick; poses are stored as quaternions.
+struct Frame {
+  Eigen::Matrix3d R_world_model = Eigen::Matrix3d::Identity();
+  Vector3d origin_world = Vector3d::Zero();
+  bool identity = true;  ///< a model at the world's origin costs no transform
+
+  static Frame of(const hsp_pose& pose) noexcept {
+    Frame frame;
+    const Eigen::Quaterniond q(pose.orientation[0], pose.orientation[1], pose.orientation[2], pose.orientation[3]);
+    frame.R_world_model = q.toRotationMatrix();
+    frame.origin_world = Vector3d(pose.position);
+    frame.identity = frame.origin_world.isZero(0) && q.vec().isZero(0);
+    return frame;
+  }
+  /// World position to model frame: the inverse transform.
+  Vector3d pointToModel(const Vector3d& p_world) const noexcept {
+    return identity ? p_world : Vector3d(R_world_model.transpose() * (p_world - origin_world));
+  }
+  Vector3d pointToWorld(const Vector3d& p_model) const noexcept {
+    return identity ? p_model : Vector3d(R_world_model * p_model + origin_world);
+  }
+  Vector3d vectorToModel(const Vector3d& v_world) const noexcept {
+    return identity ? v_world : Vector3d(R_world_model.transpose() * v_world);
+  }
+  Vector3d vectorToWorld(const Vector3d& v_model) const noexcept {
+    return identity ? v_model : Vector3d(R_world_model * v_model);
+  }
+};
+
+}  // namespace hapticd::servo

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "servo/core/load_shedding.hpp"
+
+#include <algorithm>
+
+namespace hapticd::servo {
+
+namespace {
+
+constexpr uint32_t kWeight = 4;  ///< of a tick that was too long against one that was not: every fifth is forgiven
+
+}  // namespace
+
+std::span<const LoadShedding::Change> LoadShedding::judge(std::span<const Load> loads,
+                                                          uint64_t budget_ns) noexcept HSP_RT {
+  count_ = 0;
+  uint64_t spent = 0;
+  for (const Load& load : loads) spent += load.step_ns;
+  if (since_raise_ < kLongest) ++since_raise_;
+  if (spent > budget_ns) {
+    // What was given back did not fit: the next attempt waits longer, so that accuracy does not flap.
+    patience_ = since_raise_ < patience_ ? std::min(2 * patience_, kLongest) : patience_;
+    calm_ = 0;
+    over_ = std::min(over_ + kWeight, 2 * kWeight * kLasting);
+    lower(loads, spent, budget_ns);
+    return {changes_.data(), count_};
+  }
+  if (over_ > 0) --over_;
+  if (static_cast<double>(spent) > kComfort * static_cast<double>(budget_ns)) {
+    calm_ = 0;
+  } else if (++calm_ >= kPatience) {
+    raise(loads, spent, budget_ns);
+  }
+  return {changes_.data(), count_};
+}
+
+/// What is touched stays as it is through a tick that was merely interrupted.
+bool LoadShedding::mayLower(const Load& load) const noexcept HSP_RT {
+  return load.step_ns > 0 && load.level < Accuracy::kCoarsest && (load.importance <= 0 || over_ >= kWeight * kLasting);
+}
+
+bool LoadShedding::changed(uint32_t model) const noexcept HSP_RT {
+  return std::any_of(changes_.begin(), changes_.begin() + static_cast<long>(count_),
+                     [&](const Change& c) { return c.model == model; });
+}
+
+/// The least important first; a shape that takes more than all may together goes down at once.
+void LoadShedding::lower(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT {
+  for (const Load& load : loads)
+    if (load.step_ns > budget_ns && mayLower(load) && count_ < kMostChanges)
+      changes_[count_++] = {load.model, Accuracy::kCoarsest};
+  while (count_ < kMostChanges && spent > budget_ns) {
+    const Load* least = nullptr;
+    for (const Load& load : loads)
+      if (mayLower(load) && !changed(load.model) && (least == nullptr || load.importance < least->importance))
+        least = &load;
+    if (least == nullptr) return;  // nothing is left to lower: ticks will be late, and are counted
+    changes_[count_++] = {least->model, least->level + 1};
+    spent -= std::min(spent, least->step_ns / 2);  // what a level may save
+  }
+}
+
+/// The most important first, if what it took before still fits; after long patience even so, for it may be cheaper now.
+void LoadShedding::raise(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT {
+  const Load* best = nullptr;
+  for (const Load& load : loads)
+    if (load.level > 0 && (best == nullptr || load.importance > best->importance)) best = &load;
+  if (best == nullptr) return;
+  const uint64_t with = spent - best->step_ns + std::max(best->finer_ns, best->step_ns);
+  const bool fits = static_cast<double>(with) <= kComfort * static_cast<double>(budget_ns);
+  if (calm_ < (fits ? patience_ : kLongest)) return;
+  if (since_raise_ >= 2 * patience_) patience_ = kPatience;  // the last one held
+  changes_[count_++] = {best->model, best->level - 1};
+  calm_ = 0;
+  since_raise_ = 0;
+}
+
+}  // namespace hapticd::servo

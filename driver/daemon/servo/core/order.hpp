@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+/// What a person asks of the running servo. Ordinary threads prepare it, a ring carries it, and the servo obeys at the
+/// start of a tick; a recording keeps it, because it changes forces.
+#pragma once
+#include <cstdint>
+
+#include "hapticd/shape.h"
+#include "link/lead.hpp"
+
+namespace hapticd::servo {
+
+struct ModelState;
+
+struct Order {
+  enum class Kind : uint32_t {
+    kNone,
+    kEnable,   ///< the model is felt: its force fades in
+    kDisable,  ///< the model is not felt: its force fades out, it is traced on
+    kMove,     ///< a kinematic model goes to a pose and stays
+    kSet,      ///< a live parameter
+    kClear,    ///< the arm's latched fault is forgiven; the force ramps in
+    kHold,     ///< the arm's force ramps out until it is cleared
+    kAdopt,    ///< a prepared model takes an empty place
+    kRelease,  ///< the model fades out and leaves its place
+    // What the servo does by itself, because of times that a replay cannot measure again; kept as orders are.
+    kAccuracy,  ///< how exactly a model answers
+    kOverran,   ///< the model's step took longer than it may, and was held against it
+    kCut,       ///< the watchdog cut the arm's motors
+    // Programs outside.
+    kLead,   ///< a leader begins; what is led: param
+    kUnlead  ///< it has gone
+  };
+  /// What a lead moves: `param` of kLead and kUnlead.
+  enum class Led : uint32_t {
+    kModel,  ///< the pose of a kinematic model
+    kHand    ///< where the hand of a simulated arm wants to be
+  };
+  Kind kind = Kind::kNone;
+  uint32_t target = 0;  ///< model or arm
+  uint32_t param = 0;   ///< kSet; of leads: Led
+  uint32_t ticket = 0;  ///< of the request, for the answer
+  double value = 0;     ///< kSet; kAccuracy: the level; kCut: 1 found before the tick's read, 0 at its write
+  double seconds = 0;  ///< kMove: how long it takes at least, 0: the servo's choice; kCut: how long the servo was stuck
+  double position[3] = {}, orientation[4] = {1, 0, 0, 0};  ///< kMove: world frame; no orientation (zeros): as it is
+  ModelState* model = nullptr;                             ///< kAdopt: swapped with the empty place
+  const link::PoseSlot* slot = nullptr;                    ///< kLead: its memory, valid until kUnlead was obeyed
+};
+
+}  // namespace hapticd::servo

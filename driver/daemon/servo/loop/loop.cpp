@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: MIT
+#include "servo/loop/loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/allocation_count.hpp"
+#include "base/not_real_time.hpp"
+#include "base/os.hpp"
+
+namespace hapticd::servo {
+
+namespace {
+
+constexpr uint64_t kWarmUpTicks = 200;  ///< first touches of code and tables; faults and allocations count after them
+constexpr double kLateFault = 0.1;      ///< [s] without a tick: a hand must not be held by a force of then
+
+bool isToArm(const Order& order) noexcept HSP_RT {
+  switch (order.kind) {
+    case Order::Kind::kClear:
+    case Order::Kind::kHold:
+    case Order::Kind::kCut:
+      return true;
+    case Order::Kind::kLead:
+    case Order::Kind::kUnlead:
+      return order.param != static_cast<uint32_t>(Order::Led::kModel);
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+Arm* pacingArm(const scene::Servo& servo, const Arms& arms) {
+  if (servo.pace != scene::Pace::kDevice) return nullptr;
+  const auto found = std::find_if(arms.begin(), arms.end(), [](const auto& arm) { return arm->device().canPace(); });
+  return found != arms.end() ? found->get() : nullptr;
+}
+
+Uses usesOf(const Arms& arms) {
+  Uses uses{false, false};
+  for (const auto& arm : arms) {
+    uses.torque |= arm->turns();
+    uses.exchange |= arm->passivity() != nullptr;
+  }
+  return uses;
+}
+
+Loop::Loop(Core& core, Lockstep lockstep, Arms& arms, Clock& clock, const LoopSettings& settings, TickLog& log)
+    : core_(core),
+      arms_(arms),
+      clock_(clock),
+      settings_(settings),
+      log_(log),
+      lockstep_(std::move(lockstep)),
+      probes_(arms.size()) {
+  core_.serve(usesOf(arms_));
+  double ramp = 0;
+  for (const auto& arm : arms_) ramp = std::max(ramp, arm->rampOut());
+  ramp_ticks_ = static_cast<uint64_t>(std::ceil(ramp * 1e9 / static_cast<double>(settings_.period_ns))) + 1;
+}
+
+/// Nothing of these cycles is kept: what follows is the same with and without them.
+void Loop::runDry() noexcept HSP_RT {
+  Nanoseconds deadline = clock_.now();
+  for (uint64_t n = 0; n < settings_.dry_cycles && !stop_; ++n) {
+    const Nanoseconds woke = clock_.waitUntil(deadline);
+    for (const auto& arm : arms_) arm->exchangeDry(woke);
+    if (woke >= deadline + settings_.period_ns) {
+      late_dry_cycles_.store(late_dry_cycles_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+      deadline = woke;
+    }
+    deadline = (settings_.paced ? woke : deadline) + settings_.period_ns;
+  }
+}
+
+void Loop::run() noexcept {
+  runDry();
+  Nanoseconds start = clock_.now(), deadline = start, last = start;
+  const long faults_before = os::pageFaultsOfThread();
+  first_tick_ = monotonicNow();
+  cpu_clock_ = os::cpuClockOfThread();
+  long faults_warm = faults_before;
+  uint64_t allocations_warm = allocationsOfThread();
+  for (uint64_t n = 0, done = 0;; ++n) {
+    if (stop_ || (settings_.ticks != 0 && done + ramp_ticks_ >= settings_.ticks)) rampOut();
+    const Nanoseconds woke = clock_.waitUntil(deadline);
+    const Nanoseconds due = std::min(deadline, woke);
+    deadline = timeOfTick(deadline, woke);
+    if (n == 0) {
+      start = last = deadline;
+      epoch_ = static_cast<double>(start) * kSecondsPerNanosecond;
+      core_.startAt(epoch_);
+    }
+    const Nanoseconds begun = monotonicNow();
+    tick_begun_.store(begun, std::memory_order_relaxed);
+    search_time_ = 0;
+    const double dt = static_cast<double>(deadline - last) * kSecondsPerNanosecond;
+    if (dt > kLateFault && !simulated()) trip(Fault::kLate, dt);
+    const double t = static_cast<double>(deadline - start) * kSecondsPerNanosecond;
+    log_.begin(deadline, arms_);
+    tick(deadline, t, dt);
+    log_.tick(t, dt, woke - due, monotonicNow() - begun - search_time_, core_, arms_);
+    last = deadline;
+    deadline += settings_.period_ns;
+    tick_count_.store(n + 1, std::memory_order_relaxed);
+    tick_begun_.store(0, std::memory_order_relaxed);
+    if (n == kWarmUpTicks) {
+      search_allocations_ = 0;
+      faults_warm = os::pageFaultsOfThread();
+      allocations_warm = allocationsOfThread();
+    }
+    done = (last - start) / settings_.period_ns + 1;
+    if ((settings_.ticks != 0 && done >= settings_.ticks) || (stop_ && allSilent())) break;
+  }
+  log_.finish(tick_count_, clock_.now() - start, os::pageFaultsOfThread() - faults_warm,
+              allocationsOfThread() - allocations_warm - search_allocations_);
+  finished_.store(true, std::memory_order_release);
+}
+
+void Loop::trip(Fault fault, double measured) noexcept HSP_RT {
+  for (const auto& arm : arms_) arm->limiter().trip(fault, measured);
+}
+
+/// The end of the run. What failed before keeps its name: it is what the user must know.
+void Loop::rampOut() noexcept HSP_RT {
+  for (const auto& arm : arms_)
+    if (arm->limiter().fault() == Fault::kNone) arm->limiter().trip(Fault::kStopped);
+}
+
+bool Loop::allSilent() const noexcept HSP_RT {
+  return std::all_of(arms_.begin(), arms_.end(), [](const auto& arm) { return arm->limiter().silent(); });
+}
+
+bool Loop::simulated() const noexcept HSP_RT {
+  return std::all_of(arms_.begin(), arms_.end(), [](const auto& arm) { return arm->simulated(); });
+}
+
+void Loop::obey(double t) noexcept HSP_RT {
+  constexpr int kOrdersPerTick = 16;
+  Order order;
+  for (int i = 0; i < kOrdersPerTick && orders_.pop(order); ++i) {
+    if (!isToArm(order)) {
+      core_.obey(order, t);
+    } else if (order.target < arms_.size()) {
+      obey(order, *arms_[order.target]);
+    }
+    log_.order(order);
+    orders_done_.store(orders_done_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+  }
+}
+
+void Loop::obey(const Order& order, Arm& arm) noexcept HSP_RT {
+  switch (order.kind) {
+    case Order::Kind::kClear:
+      return arm.clear();
+    case Order::Kind::kHold:
+      return arm.limiter().trip(Fault::kStopped);
+    case Order::Kind::kLead:
+      if (order.slot != nullptr) arm.hand().begin(*order.slot, arm.probe().position);
+      return;
+    case Order::Kind::kUnlead:
+      return arm.hand().end();
+    default:
+      return arm.cutAsThen(order.value > 0 ? Arm::CutFound::kInRead : Arm::CutFound::kInWrite, order.seconds);
+  }
+}
+
+/// After a tick: what came of times that were measured in it.
+void Loop::noteDeeds() noexcept HSP_RT {
+  Order order;
+  order.kind = Order::Kind::kOverran;
+  for (const uint32_t index : core_.live()) {
+    if (!core_.models()[index].overran) continue;
+    order.target = index;
+    log_.order(order);
+  }
+  order.kind = Order::Kind::kCut;
+  for (uint32_t i = 0; i < arms_.size(); ++i) {
+    const Arm::CutFound found = arms_[i]->takeCutFound();
+    if (found == Arm::CutFound::kNo) continue;
+    order.target = i;
+    order.value = found == Arm::CutFound::kInRead ? 1 : 0;
+    order.seconds = arms_[i]->cutAfter();
+    log_.order(order);
+  }
+}
+
+/// What the servo does by itself to keep its deadline changes forces, so it is written down as an order is.
+void Loop::shedLoad() noexcept HSP_RT {
+  for (const LoadShedding::Change& change : core_.shedLoad()) {
+    Order order;
+    order.kind = Order::Kind::kAccuracy;
+    order.target = change.model;
+    order.value = change.level;
+    log_.order(order);
+  }
+}
+
+void Loop::search(double t) noexcept {
+  const Nanoseconds begun = monotonicNow();
+  const uint64_t allocations = allocationsOfThread();
+  const NotRealTime virtual_time_only;
+  lockstep_.before(t);
+  search_allocations_ += allocationsOfThread() - allocations;
+  search_time_ = monotonicNow() - begun;
+}
+
+/// Samples come when they come: a tick that follows them is at the time it woke.
+Nanoseconds Loop::timeOfTick(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT {
+  const Nanoseconds by_clock = skipMissed(deadline, woke);
+  return settings_.paced ? woke : by_clock;
+}
+
+Nanoseconds Loop::skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT {
+  if (woke < deadline + settings_.period_ns) return deadline;
+  // Whole periods are skipped and the phase kept: running late ticks back to back would only make the next ones late.
+  const uint64_t missed = (woke - deadline) / settings_.period_ns;
+  log_.overrun(missed);
+  return deadline + missed * settings_.period_ns;
+}
+
+void Loop::tick(Nanoseconds now, double t, double dt) noexcept HSP_RT {
+  obey(t);
+  shedLoad();
+  for (const auto& arm : arms_) arm->hand().step(t, dt, epoch_);
+  for (size_t i = 0; i < arms_.size(); ++i) probes_[i] = arms_[i]->read(now, dt);
+  core_.publish(t, probes_);
+  if (settings_.lockstep) search(t);
+  core_.tick(t, dt, probes_);
+  for (uint32_t i = 0; i < arms_.size(); ++i) {
+    arms_[i]->carryWeight(core_.present() > 0);
+    arms_[i]->write(now, dt, core_.force(i), core_.torque(i), core_.exchange(i));
+  }
+  noteDeeds();
+  wants_search_.store(core_.wantsSearch(), std::memory_order_relaxed);
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+/// The servo loop: waits for a deadline, reads the arms, runs the core, writes the arms, keeps the books. The clock is
+/// an argument: the same loop runs under SCHED_FIFO and in virtual time.
+#pragma once
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "base/clock.hpp"
+#include "base/os.hpp"
+#include "servo/arm/arm.hpp"
+#include "servo/loop/lockstep.hpp"
+#include "servo/loop/tick_log.hpp"
+
+namespace hapticd::servo {
+
+struct LoopSettings {
+  Nanoseconds period_ns = 1'000'000;
+  uint64_t ticks = 0;       ///< length of the run in periods; 0: until stopped
+  bool lockstep = false;    ///< search in step with the ticks (virtual time) instead of from a thread of its own
+  bool paced = false;       ///< the clock follows an arm's samples: a tick is when it says, not when the deadline was
+  uint64_t dry_cycles = 0;  ///< before the first tick: wake-ups and traffic with motors off, to judge the machine
+};
+
+/// [main] The arm whose samples drive the loop: the first that can, if the scene wants one to. nullptr: the clock does.
+Arm* pacingArm(const scene::Servo& servo, const Arms& arms);
+
+/// [main] What these arms make of a tick's answers.
+Uses usesOf(const Arms& arms);
+
+class Loop {
+ public:
+  /// [main] Everything that is given by reference outlives the loop.
+  /// @param lockstep runs the simulation side where the settings ask for it
+  Loop(Core& core, Lockstep lockstep, Arms& arms, Clock& clock, const LoopSettings& settings, TickLog& log);
+
+  /// [rt] Runs until the ticks are done or a stop has ramped the forces down. Call once.
+  void run() noexcept;
+
+  /// [any] One writer: what a person asks for; obeyed at the start of a tick, in order. False: too many wait.
+  bool give(const Order& order) noexcept { return orders_.push(order); }
+  /// [any] Orders obeyed or refused so far.
+  uint64_t ordersDone() const noexcept { return orders_done_.load(std::memory_order_acquire); }
+
+  /// [any] Asks for an end: forces ramp to zero first. Async-signal-safe.
+  void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+
+  /// [any] Dry cycles that woke a period late or more; final once there were ticks.
+  uint64_t lateDryCycles() const noexcept { return late_dry_cycles_.load(std::memory_order_relaxed); }
+
+  /// [any] Ticks done so far, for watchdogs and status lines.
+  uint64_t ticks() const noexcept { return tick_count_.load(std::memory_order_relaxed); }
+  /// [any] The core lost a track or saw a jump: search now.
+  bool wantsSearch() const noexcept { return wants_search_.load(std::memory_order_relaxed); }
+  /// [any] CLOCK_MONOTONIC of the tick going on; 0: it waits for one.
+  Nanoseconds tickBegun() const noexcept { return tick_begun_.load(std::memory_order_relaxed); }
+  /// [any] CPU time that the thread of run() has used; async-signal-safe.
+  Nanoseconds cpuTime() const noexcept { return os::cpuTime(cpu_clock_.load(std::memory_order_relaxed)); }
+  /// [any] CLOCK_MONOTONIC of the first tick, once there was one.
+  Nanoseconds firstTick() const noexcept { return first_tick_.load(std::memory_order_relaxed); }
+  bool finished() const noexcept { return finished_.load(std::memory_order_acquire); }
+
+ private:
+  void tick(Nanoseconds now, double t, double dt) noexcept HSP_RT;
+  void runDry() noexcept HSP_RT;
+  void obey(double t) noexcept HSP_RT;
+  void obey(const Order& order, Arm& arm) noexcept HSP_RT;
+  void noteDeeds() noexcept HSP_RT;
+  void shedLoad() noexcept HSP_RT;
+  void search(double t) noexcept;
+  void trip(Fault fault, double measured = 0) noexcept HSP_RT;
+  void rampOut() noexcept HSP_RT;
+  bool allSilent() const noexcept HSP_RT;
+  bool simulated() const noexcept HSP_RT;
+  Nanoseconds timeOfTick(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT;
+  Nanoseconds skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT;
+
+  Core& core_;
+  Arms& arms_;
+  Clock& clock_;
+  LoopSettings settings_;
+  TickLog& log_;
+  Lockstep lockstep_;
+  std::vector<Probe> probes_;
+  uint64_t ramp_ticks_ = 0;
+  double epoch_ = 0;  ///< [s] CLOCK_MONOTONIC of the first tick, in a run on the real clock
+  // In virtual time the simulation side works in this thread too; what it takes is not the servo's.
+  Nanoseconds search_time_ = 0;
+  uint64_t search_allocations_ = 0;
+  SpscRing<Order> orders_{256};
+  std::atomic<uint64_t> orders_done_{0};
+  std::atomic<bool> stop_{false}, wants_search_{true}, finished_{false};
+  std::atomic<uint64_t> tick_count_{0}, late_dry_cycles_{0};
+  std::atomic<Nanoseconds> first_tick_{0}, tick_begun_{0};
+  std::atomic<clockid_t> cpu_clock_{CLOCK_MONOTONIC};
+};
+
+}  // namespace hapticd::servo

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+/// Who keeps the books of a loop: the loop tells every tick and every order, and knows nothing of files or pages.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/clock.hpp"
+#include "servo/arm/arm.hpp"
+#include "servo/core/core.hpp"
+#include "servo/core/order.hpp"
+
+namespace hapticd::servo {
+
+using Arms = std::vector<std::unique_ptr<Arm>>;
+
+/// Every function is [rt] and called by the servo thread, in this order within a tick: begin, order (any number),
+/// overrun (seldom), tick.
+class TickLog {
+ public:
+  virtual ~TickLog() = default;
+
+  /// Before a tick at time `now`.
+  virtual void begin(Nanoseconds now, const Arms& arms) noexcept HSP_RT = 0;
+  /// An order was obeyed in this tick, or a decision that depends on measured times was taken.
+  virtual void order(const Order& order) noexcept HSP_RT = 0;
+  /// `missed` whole periods were skipped.
+  virtual void overrun(uint64_t missed) noexcept HSP_RT = 0;
+  /// The tick at t [s], dt [s] after the last one, woke `late` after its deadline and took `spent`.
+  virtual void tick(double t, double dt, Nanoseconds late, Nanoseconds spent, const Core& core,
+                    const Arms& arms) noexcept HSP_RT = 0;
+  /// The run ended. Page faults and allocations count from the end of the warm-up.
+  virtual void finish(uint64_t ticks, Nanoseconds elapsed, long page_faults, uint64_t allocations) noexcept = 0;
+};
+
+}  // namespace hapticd::servo

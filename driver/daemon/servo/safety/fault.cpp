@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "servo/safety/fault.hpp"
+
+#include <cstdio>
+
+namespace hapticd::servo {
+
+bool endsByItself(Fault fault) noexcept {
+  return fault == Fault::kDeviceLost || fault == Fault::kDeviceFault || fault == Fault::kStale ||
+         fault == Fault::kNotCalibrated;
+}
+
+const char* describe(Fault fault) {
+  switch (fault) {
+    case Fault::kNone:
+      return "no fault";
+    case Fault::kNotFinite:
+      return "a force or position was not a number; check the plugin or device named, then restart";
+    case Fault::kDeviceLost:
+      return "the device is lost; plug it in again, then: hapticd device list";
+    case Fault::kDeviceFault:
+      return "the device reports a hardware fault; switch it off and on, then: hapticd device info FILE";
+    case Fault::kStale:
+      return "the device sent no new sample; check its cable and rate: hapticd device info FILE";
+    case Fault::kTooFast:
+      return "the tip moved faster than limits.velocity; hold the arm, then start again";
+    case Fault::kLate:
+      return "too many ticks in a row were missed; find the cause with: hapticd doctor";
+    case Fault::kNotCalibrated:
+      return "the device is not calibrated; run: hapticd device calibrate FILE";
+    case Fault::kStopped:
+      return "stopped by the user";
+    case Fault::kStuck:
+      return "a tick did not end, and the watchdog cut the motors; find the cause with: hapticd doctor";
+    case Fault::kOverheated:
+      return "a motor is hotter than limits.motors allow; let it cool down, then start again";
+    case Fault::kJumped:
+      return "the position jumped farther than a hand can move; check the encoders and their cables, then: hapticd "
+             "device info FILE";
+  }
+  return "unknown fault";
+}
+
+std::string faultMessage(const std::string& device, Fault fault, double measured, const char* why) {
+  const std::string words = why != nullptr ? why : describe(fault);
+  const size_t cure = words.find("; ");
+  const char* unit = fault == Fault::kTooFast || fault == Fault::kJumped                         ? "m/s"
+                     : fault == Fault::kOverheated                                               ? "degC"
+                     : fault == Fault::kStale || fault == Fault::kLate || fault == Fault::kStuck ? "s"
+                                                                                                 : nullptr;
+  std::string text = "device " + device + ": " + words.substr(0, cure);
+  if (unit != nullptr) {
+    char state[64];
+    std::snprintf(state, sizeof state, " (measured: %.3g %s)", measured, unit);
+    text += state;
+  }
+  text += endsByItself(fault) ? "; its forces ended and come back in a ramp once it is well"
+                              : "; its forces ended and stay off until the fault is cleared";
+  if (cure != std::string::npos) text += words.substr(cure);
+  return text;
+}
+
+}  // namespace hapticd::servo

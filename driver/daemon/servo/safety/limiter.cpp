@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include "servo/safety/limiter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hapticd::servo {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// A part of a ramp smaller than this is rounding: a fade must end in zero, and in time.
+constexpr double kRounding = 1e-9;
+
+double rampedUp(double now, double dt, double seconds) noexcept HSP_RT {
+  return seconds > dt ? std::min(1.0, now + dt / seconds) : 1.0;
+}
+
+double rampedDown(double now, double dt, double seconds) noexcept HSP_RT {
+  const double next = seconds > dt ? now - dt / seconds : 0.0;
+  return next > kRounding ? next : 0.0;
+}
+
+bool cap(Vector3d& v, double most) noexcept HSP_RT {
+  const double norm = v.norm();
+  if (norm <= most) return false;
+  v *= most / norm;
+  return true;
+}
+
+/// A force may grow and turn only so fast; it may always shrink, because what a shape no longer gives is never held.
+/// @param slow the force as it would be if it never changed faster than the limit
+bool limitSlew(Vector3d& v, const Vector3d& slow, double most) noexcept HSP_RT {
+  const double asked = v.norm();
+  const Vector3d change = v - slow;
+  const double size = change.norm();
+  if (size <= most) return false;
+  v = slow + change * (most / size);
+  return !cap(v, asked);
+}
+
+/// Moves `slow` toward the last force, and never leaves it farther behind than the rest of the window.
+void follow(Vector3d& slow, const Vector3d& last, double slew, double dt) noexcept HSP_RT {
+  const Vector3d behind = slow - last;
+  const double size = behind.norm(), rest = slew * std::max(0.0, Limiter::kSlewWindow - dt);
+  const double kept = std::clamp(size - slew * dt, 0.0, rest);
+  slow = last;
+  if (kept > 0) slow += behind * (kept / size);
+}
+
+}  // namespace
+
+const char* nameOf(Limit limit) {
+  static constexpr const char* kNames[kLimitCount] = {
+      "workspace", "motors (heat)", "force", "torque", "power", "impulse", "slew", "motors (torque)", "weight"};
+  return kNames[static_cast<size_t>(limit)];
+}
+
+Limiter::Limiter(const scene::Limits& limits, double device_max_force)
+    : limits_(limits), max_force_(limits.force > 0 ? limits.force : device_max_force), enabled_(!limits.enable.button) {
+  if (limits.force > 0 && device_max_force > 0) max_force_ = std::min(limits.force, device_max_force);
+}
+
+void Limiter::apply(Vector3d& force, Vector3d& torque, const Vector3d& position, double dt) noexcept HSP_RT {
+  if (!force.allFinite() || !torque.allFinite() || !position.allFinite()) {
+    trip(Fault::kNotFinite);
+    force.setZero();
+    torque.setZero();
+  }
+  clipped_ = false;
+  follow(slow_force_, last_force_, limits_.slew, dt);
+  follow(slow_torque_, last_torque_, limits_.torque_slew, dt);
+  if (fault() != Fault::kNone) {
+    // Fade along the last force: the new one may be the fault itself.
+    fade_ = rampedDown(fade_, dt, limits_.ramp_out);
+    force = fade_ * fault_force_;
+    torque = fade_ * fault_torque_;
+    if (fade_ == 0 && cleared_) clear();
+  } else {
+    ramp(force, torque, dt);
+    limit(force, torque, position, dt);
+  }
+  impulse_ = std::max(0.0, impulse_ + (force.norm() - impulse_ / kImpulseWindow) * std::min(dt, kImpulseWindow));
+  last_force_ = force;
+  last_torque_ = torque;
+}
+
+void Limiter::ramp(Vector3d& force, Vector3d& torque, double dt) noexcept HSP_RT {
+  ramp_ = enabled_ ? rampedUp(ramp_, dt, limits_.ramp_in) : rampedDown(ramp_, dt, limits_.ramp_out);
+  force *= ramp_;
+  torque *= ramp_;
+  if (enabled_) return;
+  cap(force, last_force_.norm());  // a switch let go lets nothing grow
+  cap(torque, last_torque_.norm());
+}
+
+void Limiter::limit(Vector3d& force, Vector3d& torque, const Vector3d& position, double dt) noexcept HSP_RT {
+  const bool pushes = !force.isZero(0) || !torque.isZero(0);
+  const double near = workspaceFade(position);
+  force *= near * heat_factor_;
+  torque *= near * heat_factor_;
+  if (pushes && near < 1) count(Limit::kWorkspace);
+  if (pushes && heat_factor_ < 1) count(Limit::kHeat);
+  if (max_force_ > 0 && cap(force, max_force_)) count(Limit::kForce);
+  if (limits_.torque > 0 && cap(torque, limits_.torque)) count(Limit::kTorque);
+  if (limits_.impulse > 0) limitImpulse(force, dt);
+  const double window = std::max(dt, kSlewWindow);
+  if (limits_.slew > 0 && limitSlew(force, slow_force_, limits_.slew * window)) count(Limit::kSlew);
+  if (limits_.torque_slew > 0 && limitSlew(torque, slow_torque_, limits_.torque_slew * window)) count(Limit::kSlew);
+  if (limits_.power > 0) limitPower(force);  // after slew, which may keep a direction that the hand no longer moves in
+}
+
+void Limiter::limitPower(Vector3d& force) noexcept HSP_RT {
+  const double power = force.dot(velocity_);  // what the arm does on the hand; what the hand does is its own
+  if (power <= limits_.power) return;
+  force *= limits_.power / power;
+  count(Limit::kPower);
+}
+
+void Limiter::limitImpulse(Vector3d& force, double dt) noexcept HSP_RT {
+  // The cap falls as the window fills, so that a held force ends at impulse / window without a step.
+  constexpr double kApproach = 0.01;  // [s]
+  const double left = std::max(0.0, limits_.impulse - impulse_);
+  const double most = left / std::max(kApproach, dt) + impulse_ / kImpulseWindow;
+  if (cap(force, most)) count(Limit::kImpulse);
+}
+
+double Limiter::workspaceFade(const Vector3d& position) const noexcept HSP_RT {
+  constexpr double kFadeWidth = 0.02;  // [m] over which the force fades beyond the limit
+  if (limits_.workspace <= 0) return 1;
+  return std::clamp(1 - (position.norm() - limits_.workspace) / kFadeWidth, 0.0, 1.0);
+}
+
+void Limiter::count(Limit limit) noexcept HSP_RT {
+  ++clips_.ticks[static_cast<size_t>(limit)];
+  if (!clipped_) ++clips_.any;
+  clipped_ = true;
+}
+
+void Limiter::watchSpeed(double speed) noexcept HSP_RT {
+  if (limits_.velocity > 0 && !(speed <= limits_.velocity)) trip(Fault::kTooFast, speed);
+}
+
+void Limiter::watchVelocity(const Vector3d& velocity) noexcept HSP_RT {
+  watchSpeed(velocity.norm());
+  velocity_ = velocity.allFinite() ? velocity : Vector3d(Vector3d::Zero());
+}
+
+void Limiter::watchButtons(std::optional<uint32_t> buttons) noexcept HSP_RT {
+  if (!limits_.enable.button) return;
+  if (!buttons) {  // a toggle is as it was: a button that is held through this is not pressed anew
+    if (limits_.enable.mode == scene::EnableMode::kHold) enabled_ = false;
+    return;
+  }
+  const bool down = ((*buttons >> *limits_.enable.button) & 1u) != 0;
+  if (limits_.enable.mode == scene::EnableMode::kHold) {
+    enabled_ = down;
+  } else if (down && !button_was_down_) {
+    enabled_ = !enabled_;
+  }
+  button_was_down_ = down;
+}
+
+void Limiter::trip(Fault fault, double measured) noexcept HSP_RT {
+  const Fault before = fault_.get();
+  if (fault != Fault::kNone) cleared_ = false;  // there is more to clear
+  if (fault == Fault::kNone || (before != Fault::kNone && (endsByItself(fault) || !endsByItself(before)))) return;
+  measured_ = measured;
+  if (before != Fault::kNone) return fault_.set(fault);  // the force is on its way down already
+  fade_ = 1;
+  fault_force_ = last_force_;
+  fault_torque_ = last_torque_;
+  fault_.set(fault);
+}
+
+void Limiter::cut(Fault fault, double measured) noexcept HSP_RT {
+  trip(fault, measured);
+  fade_ = 0;
+  last_force_.setZero();
+  last_torque_.setZero();
+}
+
+void Limiter::recover() noexcept HSP_RT {
+  if (!endsByItself(fault())) return;
+  recovered_.set(fault());
+  clear();
+}
+
+void Limiter::clear() noexcept HSP_RT {
+  cleared_ = fade_ > 0;
+  if (cleared_) return;  // a force that is on its way down gets there first
+  fault_.set(Fault::kNone);
+  ramp_ = 0;
+}
+
+}  // namespace hapticd::servo

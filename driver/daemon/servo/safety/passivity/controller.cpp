@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "servo/safety/passivity/controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hapticd::passivity {
+
+namespace {
+
+constexpr double kSmoothing = 2.5e-3;  ///< [s] of each of two stages: a count of an encoder in one tick is no speed
+constexpr double kRepayment = 5e-3;    ///< [s] in which a debt of energy shall be paid back
+constexpr double kRise = 5e-3;         ///< [s] of the damping, when a debt asks for it
+constexpr double kFall = 0.1;          ///< [s] of the damping, when it is paid: longer than a turn of what a hand feels
+constexpr double kMemory = 0.1;        ///< [s] that a debt outlives its contact
+
+double part(double dt, double time) noexcept {
+  return std::min(1.0, dt / time);
+}
+
+}  // namespace
+
+double stableDamping(double mass, double period) noexcept {
+  return mass / (4 * std::max(period, 0.4 * kSmoothing));
+}
+
+void PassivityController::reset() noexcept {
+  started_ = false;
+  energy_ = damping_ = 0;
+  smoothed_.setZero();
+  velocity_.setZero();
+  share_ = 1;
+  held_.setZero();
+  added_.setZero();
+}
+
+Eigen::Vector3d PassivityController::update(const Eigen::Vector3d& position, const Eigen::Vector3d& force, double dt,
+                                            const Exchange& exchange) noexcept {
+  if (!position.allFinite() || !force.allFinite() || !(dt > 0)) {
+    if (position.allFinite()) position_ = position;
+    held_ = force.allFinite() ? force : Eigen::Vector3d::Zero();
+    added_.setZero();
+    started_ = position.allFinite();
+    return force;  // also one that is no number: the limiter knows how to end that
+  }
+  const Eigen::Vector3d way = started_ ? Eigen::Vector3d(position - position_) : Eigen::Vector3d::Zero();
+  position_ = position;
+  started_ = true;
+  energy_ += device_damping_ * way.squaredNorm() / dt - held_.dot(way);
+  dissipated_ -= added_.dot(way);
+  if (std::isfinite(exchange.supplied)) energy_ += share_ * exchange.supplied;
+  if (exchange.recoverable >= 0) energy_ = std::min(energy_, exchange.recoverable);
+  follow(way, dt);
+  if (!std::isfinite(energy_) || !velocity_.allFinite()) reset();
+  if (force.squaredNorm() == 0) leaveContact(dt);
+  settle(force, dt);
+  added_ = resistance(force);
+  const Eigen::Vector3d result = force + added_;
+  held_ = result;
+  share_ = 1;
+  return result;
+}
+
+void PassivityController::follow(const Eigen::Vector3d& way, double dt) noexcept {
+  const double share = part(dt, kSmoothing);
+  smoothed_ += share * (way / dt - smoothed_);
+  velocity_ += share * (smoothed_ - velocity_);
+}
+
+/// What a contact left is nobody's credit. A debt is remembered for a while: a wall that throws the hand off and is met
+/// again at once is the vibration that shall end.
+void PassivityController::leaveContact(double dt) noexcept {
+  energy_ = std::min(0.0, energy_) * (1 - part(dt, kMemory));
+}
+
+/// The damping rises while there is a debt and falls slowly once it is paid. A debt paid in one tick would be a blow of
+/// force each time the book is a count of an encoder below zero.
+void PassivityController::settle(const Eigen::Vector3d& force, double dt) noexcept {
+  const double debt = -energy_ - resolution_ * force.norm(), rate = kRepayment * velocity_.squaredNorm();
+  const double wanted = debt <= 0 ? 0 : debt < max_damping_ * rate ? debt / rate : max_damping_;
+  damping_ += part(dt, wanted > damping_ ? kRise : kFall) * (wanted - damping_);
+}
+
+/// Never more than the part of the force along the way: it may end a push and double a resistance, and turns no force
+/// round. It begins and ends with the force, so that the edge of a contact is no step.
+Eigen::Vector3d PassivityController::resistance(const Eigen::Vector3d& force) const noexcept {
+  const double speed2 = velocity_.squaredNorm();
+  if (!(speed2 > 0)) return Eigen::Vector3d::Zero();
+  return -std::min(damping_, std::abs(force.dot(velocity_)) / speed2) * velocity_;
+}
+
+void PassivityController::applied(const Eigen::Vector3d& force) noexcept {
+  if (!force.allFinite()) return;
+  const double wanted = held_.norm();
+  share_ = wanted > 0 ? std::min(1.0, force.norm() / wanted) : 1;
+  added_ *= share_;
+  held_ = force;
+}
+
+}  // namespace hapticd::passivity

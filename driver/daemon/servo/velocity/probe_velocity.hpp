@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+/// The velocity of a probe, by the estimator that a scene asks for.
+#pragma once
+#include <Eigen/Core>
+#include <stdexcept>
+
+#include "base/result.hpp"
+#include "description/scene.hpp"
+#include "servo/velocity/estimator.hpp"
+
+namespace hapticd::servo {
+
+using velocity::VelocityEstimator;
+
+inline constexpr double kMaxProbeSpeed = 20;  ///< [m/s] twice what a hand can do; beyond it the sample is a jump
+
+/// [main] @param rate [Hz] of the samples  @param resolution [m] of a position; 0: unknown
+inline Result<VelocityEstimator> makeEstimator(const scene::Velocity& how, double rate, double resolution = 0) {
+  try {
+    return velocity::make(how.estimator, how.parameter, rate, resolution > 0 ? resolution : velocity::kResolution);
+  } catch (const std::invalid_argument& e) {
+    return Error{std::string("servo.velocity: ") + e.what()};
+  }
+}
+
+/// Estimates over samples that belong together: differences across a gap or a jump mean nothing, and a damper would
+/// push with them for as long as the estimator remembers.
+class ProbeVelocity {
+ public:
+  explicit ProbeVelocity(const VelocityEstimator& estimator) : estimator_(estimator) {}
+
+  /// [rt] @param position [m]  @param dt [s] since the last sample  @return [m/s]; zero after a gap or a jump
+  Eigen::Vector3d update(const Eigen::Vector3d& position, double dt) noexcept {
+    const double way = known_ ? (position - last_).norm() : 0;
+    speed_ = dt > 0 ? way / dt : 0;
+    if (!(way <= kMaxProbeSpeed * dt)) estimator_.reset();
+    known_ = true;
+    last_ = position;
+    return estimator_.update(position, dt);
+  }
+
+  void reset() noexcept {  ///< [rt] a gap: there is no good sample
+    known_ = false;
+    estimator_.reset();
+  }
+
+  double speed() const noexcept { return speed_; }  ///< [rt] [m/s] from the last sample to this one, a jump's too
+
+ private:
+  VelocityEstimator estimator_;
+  Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
+  double speed_ = 0;
+  bool known_ = false;
+};
+
+}  // namespace hapticd::servo

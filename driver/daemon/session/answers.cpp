@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+#include "session/answers.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "session/event_finder.hpp"
+#include "session/silence_reason.hpp"
+
+namespace hapticd::servo {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+const hsp_param& paramAt(const hsp_class& plugin, uint32_t index) {
+  return *HSP_AT(const hsp_param, plugin.params, plugin.params[0].struct_size, index);
+}
+
+const scene::Value* given(const scene::Model& model, uint32_t index) {
+  const auto found = std::find_if(model.parameters.begin(), model.parameters.end(),
+                                  [&](const scene::Value& value) { return value.index == index; });
+  return found != model.parameters.end() ? &*found : nullptr;
+}
+
+/// A parameter as JSON has it: choices and switches by their names.
+Json valueJson(const scene::Model& model, const hsp_param& param, uint32_t index) {
+  const scene::Value* value = given(model, index);
+  switch (param.kind) {
+    case HSP_BOOL:
+      return valueOf(model, param, index) != 0;
+    case HSP_ENUM: {
+      const auto choice = static_cast<uint32_t>(valueOf(model, param, index));
+      return choice < param.choice_count ? Json(param.choices[choice]) : Json(choice);
+    }
+    case HSP_REAL:
+    case HSP_INT:
+      return valueOf(model, param, index);
+    case HSP_ARRAY:
+      return value != nullptr ? Json(value->numbers) : Json();
+    default:
+      return value != nullptr ? Json(value->text) : param.def_text != nullptr ? Json(param.def_text) : Json();
+  }
+}
+
+Json liveParameters(const Session& session, uint32_t place) {
+  Json live = Json::array();
+  const hsp_class& plugin = session.runner.world().shapes()[place]->description();
+  for (uint32_t i = 0; i < plugin.param_count; ++i) {
+    const hsp_param& param = paramAt(plugin, i);
+    if ((param.flags & HSP_P_LIVE) == 0) continue;
+    live.push_back({{"id", param.id},
+                    {"unit", param.unit},
+                    {"min", param.min},
+                    {"max", param.max},
+                    {"safety", (param.flags & HSP_P_SAFETY) != 0},
+                    {"value", valueOf(session.places[place].model, param, i)},
+                    {"whole", param.kind != HSP_REAL},
+                    {"doc", param.doc}});
+  }
+  return live;
+}
+
+/// Where a model is: what moves has rows, what stands has the place that it came to.
+Json poseJson(const Session& session, uint32_t place) {
+  PoseRow row;
+  if (session.runner.telemetry().flight()->newestPose(place, row))
+    return {{"position", row.position}, {"orientation", row.orientation}};
+  const scene::Pose& pose = session.places[place].model.pose;
+  const Eigen::Vector3d& p = pose.position;
+  const Eigen::Quaterniond& q = pose.orientation;
+  return {{"position", {p.x(), p.y(), p.z()}}, {"orientation", {q.w(), q.x(), q.y(), q.z()}}};
+}
+
+Json modelJson(const Session& session, uint32_t place) {
+  const ModelPlace& taken = session.places[place];
+  const auto leader = session.leads.leader(Order::Led::kModel, place);
+  return {{"name", taken.model.name},           {"number", place},
+          {"plugin", taken.model.plugin},       {"enabled", taken.enabled},
+          {"kinematic", taken.model.kinematic}, {"leader", leader ? Json(*leader) : Json()},
+          {"pose", poseJson(session, place)}};
+}
+
+status::ModelNow nowOf(const Session& session, uint32_t place) {
+  const status::Page& page = session.runner.telemetry().statusWriter()->page();
+  return place < status::kMaxModels ? page.model[place].now.read().value_or(status::ModelNow{}) : status::ModelNow{};
+}
+
+Json silencedJson(const Session& session) {
+  Json models = Json::array();
+  for (uint32_t i = 0; i < session.places.size(); ++i) {
+    if (!session.places[i].taken) continue;
+    const status::ModelNow now = nowOf(session, i);
+    const std::string why =
+        silenceReason(session.places[i].model.name, static_cast<Trouble>(now.trouble), now.failed_status);
+    if (!why.empty()) models.push_back({{"model", session.places[i].model.name}, {"why", why}});
+  }
+  return models;
+}
+
+}  // namespace
+
+double valueOf(const scene::Model& model, const hsp_param& param, uint32_t index) {
+  const scene::Value* value = given(model, index);
+  return value != nullptr ? value->number : param.def;
+}
+
+std::string statusAnswer(const Session& session) {
+  const status::Page& page = session.runner.telemetry().statusWriter()->page();
+  const auto now = page.now.read().value_or(status::Now{});
+  Json devices = Json::array();
+  for (size_t i = 0; i < session.runner.arms().size(); ++i) {
+    const auto arm = page.arm[i].now.read().value_or(status::ArmNow{});
+    const auto fault = static_cast<Fault>(arm.fault);
+    devices.push_back({{"name", session.runner.scene().devices[i].name},
+                       {"fault", fault == Fault::kNone ? Json() : Json(describe(fault))},
+                       {"force_n", {arm.force[0], arm.force[1], arm.force[2]}},
+                       {"position_m", {arm.position[0], arm.position[1], arm.position[2]}}});
+  }
+  return text({{"ok", true},
+               {"scene", session.scene_file},
+               {"seconds", now.t},
+               {"tick", now.tick},
+               {"rate_hz", page.rate},
+               {"missed_ticks", now.missed},
+               {"lateness_us", {{"p50", page.lateness_us.quantile(0.5)}, {"p99", page.lateness_us.quantile(0.99)}}},
+               {"devices", devices},
+               {"silenced", silencedJson(session)}});
+}
+
+std::string listAnswer(const Session& session) {
+  Json models = Json::array();
+  for (uint32_t i = 0; i < session.places.size(); ++i) {
+    if (!session.places[i].taken) continue;
+    models.push_back(modelJson(session, i));
+    models.back()["live_parameters"] = liveParameters(session, i);
+  }
+  return text({{"ok", true}, {"models", models}});
+}
+
+std::string snapshotAnswer(const Session& session) {
+  const record::FlightRing& ring = session.runner.telemetry().flight()->ring();
+  Json next = Json::object(), models = Json::array(), devices = Json::array();
+  // Before the poses: who reads from there on misses no motion of what it is told here.
+  for (size_t i = 0; i < ring.specs().size(); ++i) next[ring.specs()[i].name] = ring.written(i);
+  for (uint32_t i = 0; i < session.places.size(); ++i)
+    if (session.places[i].taken) models.push_back(modelJson(session, i));
+  for (uint32_t i = 0; i < session.runner.arms().size(); ++i) {
+    const Arm& arm = *session.runner.arms()[i];
+    const auto leader = session.leads.leader(Order::Led::kHand, i);
+    devices.push_back({{"name", session.runner.scene().devices[i].name},
+                       {"number", i},
+                       {"module", session.runner.scene().devices[i].module},
+                       {"joints", arm.info().joint_count},
+                       {"buttons", arm.info().buttons},
+                       {"simulated", arm.simulated()},
+                       {"guided", arm.hand().guided()},
+                       {"leader", leader ? Json(*leader) : Json()}});
+  }
+  return text({{"ok", true}, {"scene", session.scene_file}, {"next", next}, {"models", models}, {"devices", devices}});
+}
+
+Result<std::string> valuesAnswer(const Session& session, uint32_t place, const std::string& parameter) {
+  const hsp_class& plugin = session.runner.world().shapes()[place]->description();
+  const scene::Model& model = session.places[place].model;
+  Json values = Json::object();
+  for (uint32_t i = 0; i < plugin.param_count; ++i) {
+    const hsp_param& param = paramAt(plugin, i);
+    if (parameter == param.id) return text({{"ok", true}, {"value", valueJson(model, param, i)}, {"unit", param.unit}});
+    values[param.id] = valueJson(model, param, i);
+  }
+  if (parameter.empty()) return text({{"ok", true}, {"values", values}});
+  return Error{"parameter \"" + parameter.substr(0, 100) + "\" of " + plugin.name +
+               ": there is no live parameter of that name; see list"};
+}
+
+std::string eventText(const Session& session, const hapticd_event& event) {
+  Json json = {{"event", nameOfEvent(event.kind)}, {"tick", event.tick}, {"t", event.t}};
+  const auto model = static_cast<size_t>(event.model), arm = static_cast<size_t>(event.probe);
+  if (event.model >= 0) json["number"] = event.model;
+  if (event.model >= 0 && model < session.places.size() && !session.places[model].model.name.empty())
+    json["model"] = session.places[model].model.name;
+  if (event.probe >= 0 && arm < session.runner.scene().devices.size())
+    json["device"] = session.runner.scene().devices[arm].name;
+  json["code"] = event.code;
+  json["value"] = event.value;
+  if (event.kind == HAPTICD_FAULT) json["why"] = describe(static_cast<Fault>(event.code));
+  if (event.kind == HAPTICD_SILENCED)
+    json["why"] =
+        silenceReason(json.value("model", ""), static_cast<Trouble>(event.code), static_cast<int32_t>(event.value));
+  return text(json);
+}
+
+}  // namespace hapticd::servo

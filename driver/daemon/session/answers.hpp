@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+/// What a running daemon answers about itself, one line of JSON each. Control thread only: the servo goes on meanwhile,
+/// so all of it comes from pages and rings that may be read beside it.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "description/scene.hpp"
+#include "session/leads.hpp"
+#include "session/runner.hpp"
+
+namespace hapticd::servo {
+
+/// A place that a model may have, as the control thread knows it. Its number is that of the model in every row.
+struct ModelPlace {
+  scene::Model model;  ///< parameters as they are now
+  bool taken = false, enabled = true;
+};
+
+struct Session {
+  const Runner& runner;
+  const std::vector<ModelPlace>& places;
+  const Leads& leads;
+  const std::string& scene_file;
+};
+
+/// [main] Times, devices, and models that are not felt.
+std::string statusAnswer(const Session& session);
+
+/// [main] Models: names, numbers, poses, leaders, and live parameters with their values.
+std::string listAnswer(const Session& session);
+
+/// [main] What a program needs that begins to read rows now: the next row of each stream, every model with its pose,
+/// also of those at rest, and every device.
+std::string snapshotAnswer(const Session& session);
+
+/// [main] The value of one parameter, or of all.
+Result<std::string> valuesAnswer(const Session& session, uint32_t place, const std::string& parameter);
+
+/// [main] One event as an object of JSON, without the end of a line.
+std::string eventText(const Session& session, const hapticd_event& event);
+
+/// [main] The value of a numeric parameter of the plugin's table, as given or by default.
+double valueOf(const scene::Model& model, const hsp_param& param, uint32_t index);
+
+}  // namespace hapticd::servo

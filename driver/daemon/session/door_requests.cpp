@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+/// Requests of programs that read along or lead: events, subscriptions, leads.
+#include <fmt/format.h>
+
+#include <set>
+
+#include "document/suggestion.hpp"
+#include "session/request_handler.hpp"
+
+namespace hapticd::servo {
+
+using control::Request;
+
+Result<uint32_t> RequestHandler::armOf(const std::string& device) const {
+  std::vector<std::string> names;
+  for (uint32_t i = 0; i < runner_.scene().devices.size(); ++i) {
+    if (runner_.scene().devices[i].name == device) return i;
+    names.push_back(runner_.scene().devices[i].name);
+  }
+  return refuse("unknown", "there is no device \"" + device.substr(0, 100) + "\"" +
+                               document::suggestion(device.substr(0, 100), names));
+}
+
+/// What a request wants to lead, if it can be led at all.
+Result<Leads::Target> RequestHandler::leadOf(const Request& request) const {
+  if (request.hand.empty()) {
+    const auto place = placeOf(request.model);
+    if (!place) return Error{place.error()};
+    if (!places_[*place].model.kinematic)
+      return refuse("unsupported", "model \"" + request.model +
+                                       "\" is not kinematic: only such can be led\n"
+                                       "  fix: motion: kinematic, and a path, in the scene");
+    return Leads::Target{Order::Led::kModel, *place, "model \"" + request.model + "\""};
+  }
+  const auto arm = armOf(request.hand);
+  if (!arm) return Error{arm.error()};
+  const std::string name = "device \"" + request.hand + "\"";
+  if (!runner_.arms()[*arm]->simulated())
+    return refuse("unsupported", name + " is no simulation: its hand is a person's");
+  if (!runner_.arms()[*arm]->hand().guided())
+    return refuse("unsupported",
+                  "the hand of " + name + " follows a script\n  fix: hand: {script: guided} in the scene");
+  return Leads::Target{Order::Led::kHand, *arm, "the hand of " + name};
+}
+
+Result<std::string> RequestHandler::lead(const control::Peer& peer, const Request& request) {
+  if (runner_.virtualTime())
+    return refuse("unsupported",
+                  "the run is in virtual time, which no program outside keeps\n  fix: start it without --virtual-time");
+  const auto target = leadOf(request);
+  if (!target) return Error{target.error()};
+  if (!stays(peer) && staying() >= control::Server::kMaxStaying)
+    return refuse("too_many", "too many programs lead or listen already: " + std::to_string(staying()));
+  auto memory = leads_.begin(*target, peer);
+  if (!memory) return refuse("busy", memory.error());
+  attached_ = std::move(*memory);
+  return fmt::format(R"({{"ok":true,"bytes":{},"record":"hapticd_target"}})", HAPTICD_LEAD_BYTES);
+}
+
+Result<void> RequestHandler::unlead(const control::Peer& peer, const Request& request) {
+  const auto target = leadOf(request);
+  if (!target) return Error{target.error()};
+  return leads_.end(*target, peer);
+}
+
+Result<std::string> RequestHandler::eventsAfter(double after) const {
+  constexpr size_t kMost = 256;
+  const Flight& flight = *runner_.telemetry().flight();
+  uint64_t first = static_cast<uint64_t>(after);
+  const uint64_t end = flight.ring().written(kEvents);
+  if (after == 0 && end > kMost) first = end - kMost;  // the newest
+  const auto events = flight.events(first, kMost);
+  std::string list;
+  for (const hapticd_event& event : events) list += (list.empty() ? "" : ",") + eventText(session(), event);
+  return fmt::format(R"({{"ok":true,"first":{},"next":{},"events":[{}]}})", first, first + events.size(), list);
+}
+
+Result<std::string> RequestHandler::subscribe(const control::Peer& peer) {
+  if (!stays(peer) && staying() >= control::Server::kMaxStaying)
+    return refuse("too_many", "too many programs lead or listen already: " + std::to_string(staying()));
+  const uint64_t next = runner_.telemetry().flight()->ring().written(kEvents);
+  listeners_[peer.id] = next;
+  return fmt::format(R"({{"ok":true,"next":{}}})", next);
+}
+
+std::string RequestHandler::news(const control::Peer& peer) {
+  constexpr size_t kMostAtOnce = 64;
+  const auto listener = listeners_.find(peer.id);
+  if (listener == listeners_.end()) return "";
+  uint64_t first = listener->second;
+  const auto events = runner_.telemetry().flight()->events(first, kMostAtOnce);
+  std::string lines;
+  if (first > listener->second)
+    lines = fmt::format(R"({{"event":"missed","value":{}}})", first - listener->second) + "\n";
+  for (const hapticd_event& event : events) lines += eventText(session(), event) + "\n";
+  listener->second = first + events.size();
+  return lines;
+}
+
+void RequestHandler::left(const control::Peer& peer) {
+  listeners_.erase(peer.id);
+  leads_.left(peer);
+}
+
+bool RequestHandler::stays(const control::Peer& peer) const {
+  return listeners_.count(peer.id) > 0 || leads_.holds(peer);
+}
+
+size_t RequestHandler::staying() const {
+  std::set<uint64_t> peers = leads_.holders();
+  for (const auto& listener : listeners_) peers.insert(listener.first);
+  return peers.size();
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "session/event_finder.hpp"
+
+#include <iterator>
+
+namespace hapticd::servo {
+
+void EventFinder::add(uint32_t kind, int32_t model, int32_t probe, uint32_t code, double value) noexcept HSP_RT {
+  if (count_ == found_.size()) return;
+  found_[count_++] = {0, 0, kind, model, probe, code, value};
+}
+
+void EventFinder::order(const Order& order) noexcept HSP_RT {
+  const auto target = static_cast<int32_t>(order.target);
+  switch (order.kind) {
+    case Order::Kind::kAdopt:
+      if (order.target < models_.size()) models_[order.target] = ModelNote();
+      return add(HAPTICD_CAME, target, -1, 0, 0);
+    case Order::Kind::kRelease:
+      if (order.target >= models_.size() || models_[order.target].leaving) return;
+      models_[order.target].leaving = true;
+      ++leaving_;
+      return;
+    case Order::Kind::kLead:
+    case Order::Kind::kUnlead: {
+      const bool of_model = order.param == static_cast<uint32_t>(Order::Led::kModel);
+      const uint32_t kind = order.kind == Order::Kind::kLead ? HAPTICD_JOINED : HAPTICD_LOST;
+      return add(kind, of_model ? target : -1, of_model ? -1 : target, order.param, order.value);
+    }
+    default:
+      return;
+  }
+}
+
+void EventFinder::tick(double t, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+  if (leaving_ > 0) lookForLeft(core);
+  for (const uint32_t index : core.live())
+    if (index < models_.size()) look(t, index, core);
+  for (uint32_t i = 0; i < arms.size() && i < arms_.size(); ++i) look(t, i, *arms[i]);
+  for (size_t i = 0; i < count_; ++i) found_[i].t = t;
+}
+
+void EventFinder::lookForLeft(const Core& core) noexcept HSP_RT {
+  for (uint32_t i = 0; i < models_.size() && i < core.models().size(); ++i) {
+    if (!models_[i].leaving || core.models()[i].shape != nullptr) continue;
+    models_[i] = ModelNote();
+    --leaving_;
+    add(HAPTICD_LEFT, static_cast<int32_t>(i), -1, 0, 0);
+  }
+}
+
+template <class Note>
+bool EventFinder::refused(double t, uint64_t now, Note& note) noexcept HSP_RT {
+  if (now == note.refused || t - note.refused_told < kRefusedPeriod) return false;
+  note.refused = now;
+  note.refused_told = t;
+  return now > 0;
+}
+
+void EventFinder::look(double t, uint32_t index, const Core& core) noexcept HSP_RT {
+  const ModelState& model = core.models()[index];
+  const auto number = static_cast<int32_t>(index);
+  ModelNote& note = models_[index];
+  const bool stepped = model.rested == 0;
+  for (uint32_t probe = 0; probe < core.probeCount() && stepped; ++probe) {
+    const Contact& contact = core.contact(index, probe);
+    if (!contact.traced) continue;
+    const auto by = static_cast<int32_t>(probe);
+    if ((contact.world.flags & HSP_OUT_EVENT) != 0) add(HAPTICD_CLICK, number, by, 0, 0);
+    if (!(contact.world.depth_m > 0)) continue;
+    if (t - note.touched[probe] >= kFreeFor)
+      add(HAPTICD_TOUCH, number, by, 0, Eigen::Map<const Vector3d>(contact.world.force).norm());
+    note.touched[probe] = t;
+  }
+  if (model.guard.quarantined() && note.trouble != model.guard.trouble()) {
+    note.trouble = model.guard.trouble();
+    add(HAPTICD_SILENCED, number, -1, static_cast<uint32_t>(note.trouble), model.failed_status);
+  }
+  if (model.level != note.level) {
+    add(model.level > 0 ? HAPTICD_DEGRADED : HAPTICD_RESTORED, number, -1, 0, model.level);
+    note.level = model.level;
+  }
+  if (const uint64_t count = model.lead.refused(); refused(t, count, note))
+    add(HAPTICD_REFUSED, number, -1, static_cast<uint32_t>(Order::Led::kModel), static_cast<double>(count));
+}
+
+void EventFinder::look(double t, uint32_t index, const Arm& arm) noexcept HSP_RT {
+  ArmNote& note = arms_[index];
+  const auto number = static_cast<int32_t>(index);
+  if (const Fault fault = arm.limiter().fault(); fault != note.fault) {
+    note.fault = fault;
+    add(fault != Fault::kNone ? HAPTICD_FAULT : HAPTICD_CLEARED, -1, number, static_cast<uint32_t>(fault),
+        fault != Fault::kNone ? arm.limiter().measured() : 0);
+  }
+  if (const uint64_t count = arm.hand().refused(); refused(t, count, note))
+    add(HAPTICD_REFUSED, -1, number, static_cast<uint32_t>(Order::Led::kHand), static_cast<double>(count));
+}
+
+const char* nameOfEvent(uint32_t kind) {
+  static constexpr const char* kNames[] = {"",         "click",    "touch",    "fault",      "cleared",
+                                           "silenced", "degraded", "restored", "came",       "left",
+                                           "joined",   "lost",     "refused",  "quarantined"};
+  static_assert(std::size(kNames) == HAPTICD_EVENT_KINDS);
+  return kind < std::size(kNames) ? kNames[kind] : "";
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+/// Fills the black box: one row a tick with what came in and what went out, and a row for each contact, moving model,
+/// activation record and order of that tick. What is here is enough to run the servo again bit for bit.
+#pragma once
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "record/flight_ring.hpp"
+#include "servo/arm/arm.hpp"
+#include "servo/core/core.hpp"
+#include "servo/core/order.hpp"
+#include "session/event_finder.hpp"
+
+namespace hapticd::servo {
+
+/// The streams of a recording, in the order of the file.
+enum FlightStream : size_t { kTicks, kContacts, kPoses, kActivations, kOrders, kLeads, kEvents, kFlightStreams };
+
+/// Columns of every tick, before those of the arms.
+struct TickRow {
+  uint64_t tick = 0, time_ns = 0;
+  double t = 0, dt = 0, depth = 0;
+  float lateness_us = 0, compute_us = 0;
+  int32_t model = -1, status = 0;
+};
+
+/// Columns of one arm in a tick, before those of its joints.
+struct ArmRow {
+  uint64_t sequence = 0, sample_ns = 0;
+  int32_t read_status = 0, write_status = 0;
+  uint32_t flags = 0, buttons = 0, fault_before = 0, fault = 0, mode = 0, valid = 0;
+  double position[3] = {}, orientation[4] = {}, velocity[3] = {}, force[3] = {}, torque[3] = {}, sent[3] = {};
+};
+
+struct ContactRow {
+  uint64_t tick = 0;
+  uint32_t model = 0, probe = 0, feature = 0, iterations = 0, flags = 0;
+  int32_t status = 0;
+  double depth = 0, u = 0, v = 0, point[3] = {}, normal[3] = {}, force[3] = {}, torque[3] = {};
+  float step_us = 0, gain = 0;
+};
+
+struct PoseRow {
+  uint64_t tick = 0;
+  uint32_t model = 0, reserved = 0;
+  double position[3] = {}, orientation[4] = {}, linear[3] = {}, angular[3] = {};
+};
+
+struct ActivationRow {
+  uint64_t tick = 0;
+  uint32_t model = 0, order = 0, surface = 0, probe = 0;
+  double u = 0, v = 0, distance = 0;
+};
+
+struct OrderRow {
+  uint64_t tick = 0;
+  uint32_t kind = 0, target = 0, param = 0, reserved = 0;
+  double value = 0, seconds = 0, position[3] = {}, orientation[4] = {};
+};
+
+/// A record of a leader that the tick took.
+struct LeadRow {
+  uint64_t tick = 0;
+  uint32_t led = 0, target = 0;  ///< Order::Led; model or arm
+  hapticd_target wanted{};
+};
+
+/// [main] The streams of a run. @param rate [Hz] @param seconds that the black box keeps @param moving models that move
+std::vector<record::StreamSpec> flightStreams(const scene::Scene& scene, const std::vector<std::unique_ptr<Arm>>& arms,
+                                              double rate, double seconds, size_t moving);
+
+class Flight {
+ public:
+  /// [main] @param ring of the streams that flightStreams gave for these arms @param places models that there may be
+  Flight(std::unique_ptr<record::FlightRing> ring, const std::vector<std::unique_ptr<Arm>>& arms, size_t places);
+
+  /// [rt] Before a tick: its time, and the faults that hold already.
+  void begin(Nanoseconds now, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+
+  /// [rt] An order that the tick obeys.
+  void order(const Order& order) noexcept HSP_RT;
+
+  /// [rt] After it.
+  void tick(double t, double dt, Nanoseconds late, Nanoseconds spent, const Core& core,
+            const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+
+  record::FlightRing& ring() { return *ring_; }
+  const record::FlightRing& ring() const { return *ring_; }
+  uint64_t ticks() const noexcept { return ring_->written(kTicks); }  ///< [any]
+
+  /// [main] The oldest tick that is kept.
+  uint64_t oldest() const noexcept;
+  /// [main] One tick and its first arm. False: it is not kept any more, or was not yet.
+  bool read(uint64_t tick, TickRow& row, ArmRow& arm) const;
+  /// [any] The newest pose of a model that moves. False: none is kept.
+  bool newestPose(uint32_t model, PoseRow& row) const;
+  /// [any] Events from number `first` on, at most `most`; `first` becomes the number of the first that is given. Those
+  /// that are not kept any more are left out.
+  std::vector<hapticd_event> events(uint64_t& first, size_t most) const;
+
+ private:
+  /// Where the columns of one arm begin in a row, and how many joints it has.
+  struct ArmColumns {
+    uint32_t arm = 0, position = 0, velocity = 0, measured = 0, command = 0, joints = 0;  ///< 0: no such column
+  };
+  void tickArm(const ArmColumns& columns, const Arm& arm, const Core& core, uint32_t index,
+               std::byte* row) noexcept HSP_RT;
+  void contacts(const Core& core, TickRow& tick) noexcept HSP_RT;
+  void poses(const Core& core) noexcept HSP_RT;
+  void lead(Order::Led led, uint32_t target, const hapticd_target* taken) noexcept HSP_RT;
+  void events(double t, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+  void activations(const Core& core) noexcept HSP_RT;
+  template <class Row>
+  void push(FlightStream stream, const Row& row) noexcept HSP_RT;
+
+  std::unique_ptr<record::FlightRing> ring_;
+  std::vector<ArmColumns> columns_;
+  std::vector<uint32_t> faults_before_;
+  Nanoseconds now_ = 0;
+  uint64_t tick_ = 0;
+  EventFinder events_;
+};
+
+}  // namespace hapticd::servo

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "session/leads.hpp"
+
+#include <algorithm>
+#include <new>
+
+namespace hapticd::servo {
+
+namespace {
+
+Order orderOf(Order::Kind kind, const Leads::Target& target) {
+  Order order;
+  order.kind = kind;
+  order.target = target.index;
+  order.param = static_cast<uint32_t>(target.led);
+  return order;
+}
+
+bool same(const Leads::Target& a, const Leads::Target& b) {
+  return a.led == b.led && a.index == b.index;
+}
+
+}  // namespace
+
+Result<Descriptor> Leads::begin(const Target& target, const control::Peer& peer) {
+  if (const auto pid = leader(target.led, target.index))
+    return Error{target.name + " is led by process " + std::to_string(*pid) +
+                 " already; a lead ends with unlead, or with the connection that asked for it"};
+  auto memory = SealedMemory::create("hapticd-lead", HAPTICD_LEAD_BYTES, SealedMemory::Writers::kAll);
+  if (!memory) return Error{memory.error()};
+  auto shared = (*memory)->share();
+  if (!shared) return Error{shared.error()};
+  Order order = orderOf(Order::Kind::kLead, target);
+  order.value = peer.pid;
+  order.slot = new ((*memory)->data()) link::PoseSlot;  // all zeros as it is
+  const auto given = give_(order);
+  leads_.push_back({target, peer, std::move(*memory)});  // also where the servo was late: it may obey yet
+  if (given) return std::move(*shared);
+  (void)end(target, peer);
+  return Error{given.error()};
+}
+
+Result<void> Leads::end(const Target& target, const control::Peer& peer) {
+  const auto found = std::find_if(leads_.begin(), leads_.end(), [&](const Lead& lead) {
+    return same(lead.target, target) && lead.peer.id == peer.id;
+  });
+  if (found == leads_.end()) return Error{target.name + " is not led by this connection"};
+  Lead lead = std::move(*found);
+  leads_.erase(found);
+  return finish(std::move(lead));
+}
+
+Result<void> Leads::finish(Lead lead) {
+  Order order = orderOf(Order::Kind::kUnlead, lead.target);
+  order.value = lead.peer.pid;
+  auto done = give_(order);
+  if (!done) kept_.push_back(std::move(lead.memory));
+  return done;
+}
+
+Result<void> Leads::endOfModel(uint32_t model) {
+  const auto found = std::find_if(leads_.begin(), leads_.end(), [&](const Lead& lead) {
+    return lead.target.led == Order::Led::kModel && lead.target.index == model;
+  });
+  return found == leads_.end() ? Result<void>() : end(found->target, found->peer);
+}
+
+void Leads::left(const control::Peer& peer) {
+  while (holds(peer)) {
+    const auto found =
+        std::find_if(leads_.begin(), leads_.end(), [&](const Lead& lead) { return lead.peer.id == peer.id; });
+    (void)end(found->target, peer);  // nobody is there to be told
+  }
+}
+
+std::optional<pid_t> Leads::leader(Order::Led led, uint32_t index) const {
+  for (const Lead& lead : leads_)
+    if (lead.target.led == led && lead.target.index == index) return lead.peer.pid;
+  return std::nullopt;
+}
+
+bool Leads::holds(const control::Peer& peer) const {
+  return std::any_of(leads_.begin(), leads_.end(), [&](const Lead& lead) { return lead.peer.id == peer.id; });
+}
+
+std::set<uint64_t> Leads::holders() const {
+  std::set<uint64_t> peers;
+  for (const Lead& lead : leads_) peers.insert(lead.peer.id);
+  return peers;
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+/// Who leads what: hands out the memory of leads, one leader a target, and ends a lead with the connection that asked
+/// for it. Control thread only.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "base/sealed_memory.hpp"
+#include "control/server.hpp"
+#include "servo/core/order.hpp"
+
+namespace hapticd::servo {
+
+class Leads {
+ public:
+  /// Gives an order to the servo and waits until it is obeyed.
+  using Give = std::function<Result<void>(const Order&)>;
+
+  /// What is led, and by which name its leader knows it.
+  struct Target {
+    Order::Led led = Order::Led::kModel;
+    uint32_t index = 0;  ///< model or arm
+    std::string name;    ///< "model door", for messages
+  };
+
+  explicit Leads(Give give) : give_(std::move(give)) {}
+
+  /// [main] Begins a lead. @return a descriptor of its memory. An error names the leader that is there already.
+  Result<Descriptor> begin(const Target& target, const control::Peer& peer);
+  /// [main] Ends the lead of this peer.
+  Result<void> end(const Target& target, const control::Peer& peer);
+  /// [main] Ends whatever leads a model: it moves otherwise, or leaves.
+  Result<void> endOfModel(uint32_t model);
+  /// [main] Ends all leads of a peer that is gone.
+  void left(const control::Peer& peer);
+
+  /// [main] The process that leads a model or a hand, if one does.
+  std::optional<pid_t> leader(Order::Led led, uint32_t index) const;
+  /// [main] Something lives as long as the peer's connection.
+  bool holds(const control::Peer& peer) const;
+  /// [main] Numbers of the peers that hold something.
+  std::set<uint64_t> holders() const;
+
+ private:
+  struct Lead {
+    Target target;
+    control::Peer peer;
+    std::unique_ptr<SealedMemory> memory;
+  };
+  Result<void> finish(Lead lead);
+
+  Give give_;
+  std::vector<Lead> leads_;
+  std::vector<std::unique_ptr<SealedMemory>> kept_;  ///< of leads that the servo did not end: it may look there yet
+};
+
+}  // namespace hapticd::servo

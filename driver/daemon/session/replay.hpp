@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+/// Runs a recording again: the same loop, arms, limits and models, fed with the samples, activation records, orders and
+/// times of then, and compares everything it gives to the last bit.
+#pragma once
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "record/recording.hpp"
+#include "servo/loop/loop.hpp"
+#include "session/about.hpp"
+#include "session/telemetry.hpp"
+#include "session/world.hpp"
+
+namespace hapticd::servo {
+
+/// A number that is not what it was.
+struct Difference {
+  uint64_t tick = 0;
+  double t = 0;      ///< [s]
+  std::string what;  ///< "contacts: fx of model teapot"
+  double recorded = 0, replayed = 0;
+};
+
+struct ReplayOutcome {
+  uint64_t ticks = 0, recorded_ticks = 0;
+  std::optional<Difference> first;
+  double largest_force_error = 0;  ///< [N] of what is sent to a device, over all ticks
+  std::string note;                ///< why it ended before the recording did; "" if it did not
+};
+
+class Replay {
+ public:
+  /// [main] Builds the world of the recording. @param run what readAbout gave, changed where a change is to be tried
+  static Result<std::unique_ptr<Replay>> prepare(const record::Recording& recording, RecordedRun run,
+                                                 const host::Services::Log& log);
+  ~Replay();
+
+  ReplayOutcome run();  ///< [main] call once
+
+ private:
+  class Player;
+  Replay(const record::Recording& recording, RecordedRun run);
+
+  const record::Recording& recording_;
+  RecordedRun run_;
+  std::vector<std::unique_ptr<host::Playback>> playbacks_;
+  bool paced_ = false;  ///< then, by the samples of an arm
+  std::unique_ptr<World> world_;
+  std::vector<std::unique_ptr<Arm>> arms_;
+  std::unique_ptr<Telemetry> telemetry_;
+  std::unique_ptr<Player> player_;
+  std::unique_ptr<Loop> loop_;
+};
+
+}  // namespace hapticd::servo

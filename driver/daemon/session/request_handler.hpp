@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+/// Carries out requests from the control socket: looks up, prepares on its own thread, gives orders to the servo, waits
+/// until they are obeyed. Nothing here runs in the servo thread.
+#pragma once
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "control/request.hpp"
+#include "control/server.hpp"
+#include "session/answers.hpp"
+#include "session/leads.hpp"
+#include "session/runner.hpp"
+
+namespace hapticd::servo {
+
+class RequestHandler {
+ public:
+  /// Loads a scene file with everything it names.
+  using LoadScene = std::function<Result<scene::Scene>(const std::string& file)>;
+
+  /// [main] @param dump_folder where black boxes are written
+  RequestHandler(Runner& runner, LoadScene load, host::Services::Log log, std::string dump_folder);
+
+  /// [any] One thread at a time. A line of JSON for a line of JSON.
+  control::Reply answer(const control::Peer& peer, const std::string& line);
+  /// [any] The same thread. What the peer's connection holds.
+  control::Standing standing(const control::Peer& peer) const { return {stays(peer), listeners_.count(peer.id) > 0}; }
+  /// [any] The same thread. Events for one that subscribed, a line each; "": none.
+  std::string news(const control::Peer& peer);
+  /// [any] The same thread. The connection is gone, and with it what it held.
+  void left(const control::Peer& peer);
+
+  /// [any] The same thread. Writes the black box. @return the file
+  Result<std::string> dump(const std::string& why);
+
+ private:
+  /// An error with a word for programs.
+  Error refuse(const char* code, std::string why) const {
+    code_ = code;
+    return Error{std::move(why)};
+  }
+  Result<std::string> obey(const control::Peer& peer, const control::Request& request);
+  Session session() const { return {runner_, places_, leads_, scene_file_}; }
+  Result<std::string> eventsAfter(double after) const;
+  Result<std::string> subscribe(const control::Peer& peer);
+  bool stays(const control::Peer& peer) const;
+  size_t staying() const;
+  static void remember(scene::Model& model, const hsp_param& param, const Order& order);
+  Result<uint32_t> placeOf(const std::string& model) const;
+  Result<uint32_t> armOf(const std::string& device) const;
+  Result<Leads::Target> leadOf(const control::Request& request) const;
+  Result<std::string> lead(const control::Peer& peer, const control::Request& request);
+  Result<void> unlead(const control::Peer& peer, const control::Request& request);
+  Result<void> give(const Order& order);
+  Result<void> able(const std::string& model, bool enabled);
+  Result<void> set(const control::Request& request);
+  Result<std::string> move(const control::Request& request);
+  Result<void> arms(const std::string& device, Order::Kind kind);
+  Result<std::string> add(const control::Request& request);
+  Result<void> adopt(const std::vector<scene::Model>& models);
+  Result<void> release(uint32_t place);
+  Result<std::string> reload(const std::string& file);
+  void sweep();
+
+  Runner& runner_;
+  LoadScene load_;
+  host::Services::Log log_;
+  std::string dump_folder_, scene_file_;
+  std::vector<ModelPlace> places_;
+  std::vector<std::unique_ptr<ModelState>> prepared_;  ///< given to the servo and not yet taken
+  uint64_t given_ = 0;
+  Leads leads_;
+  std::map<uint64_t, uint64_t> listeners_;  ///< by peer: the next event
+  Descriptor attached_;                     ///< to the answer that is being made
+  mutable const char* code_ = "failed";     ///< of its error
+};
+
+}  // namespace hapticd::servo

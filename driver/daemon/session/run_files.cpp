@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "session/run_files.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "scene/load.hpp"
+#include "status/page_file.hpp"
+#include "watch/quarantine.hpp"
+
+namespace hapticd::servo {
+
+namespace {
+
+constexpr uint32_t kSpareModels = 64;
+constexpr const char* kGroup = "haptic";
+
+/// Where black boxes are kept: the state folder, or beside what the run shows.
+std::string stateFolder(const std::string& runtime_folder) {
+  const std::string folder = watch::stateFolder().string();
+  return folder.empty() ? runtime_folder : folder;
+}
+
+/// A run that ended in order removes its black box: one that is still there was left by a crash.
+void keepCrashed(const std::string& file, const std::string& name, const std::string& runtime_folder) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return;
+  const std::string folder = stateFolder(runtime_folder);
+  std::filesystem::create_directories(folder, error);
+  std::string kept;
+  for (int i = 1; i < 1000; ++i) {
+    kept = folder + "/blackbox-" + name + "-crash-" + std::to_string(i) + ".h5";
+    if (!std::filesystem::exists(kept, error)) break;
+  }
+  if (std::filesystem::copy_file(file, kept, error))
+    std::fprintf(stderr, "warning: the last run was killed or crashed; its last seconds are in %s\n", kept.c_str());
+  std::filesystem::remove(file, error);
+}
+
+}  // namespace
+
+/// @return false: a run that lives has it. The lock file goes with its holder, so one that was locked after it went is
+/// not the one that others see, and is taken anew.
+Result<bool> RunFiles::take(const std::string& name) {
+  lock_file_ = folder_ + "/" + name + ".lock";
+  for (;;) {
+    lock_ = ::open(lock_file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+    const bool locked = lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) == 0;
+    const int code = errno;
+    struct stat mine{}, seen{};
+    if (locked && fstat(lock_, &mine) == 0 && stat(lock_file_.c_str(), &seen) == 0 && mine.st_ino == seen.st_ino) {
+      name_ = name;
+      return true;
+    }
+    if (lock_ >= 0) close(lock_);
+    lock_ = -1;
+    if (!locked && code == EWOULDBLOCK) return false;
+    if (!locked) return Error{lock_file_ + ": cannot be written: " + std::strerror(code)};
+  }
+}
+
+Result<std::unique_ptr<RunFiles>> RunFiles::open(const std::string& name, RunOptions& how) {
+  std::unique_ptr<RunFiles> outside(new RunFiles);
+  outside->folder_ = status::runtimeFolder(true);
+  if (outside->folder_.empty()) {
+    std::fprintf(stderr,
+                 "warning: /dev/shm/hapticd-%u does not belong to you: no other program can watch or change this run, "
+                 "and a crash leaves no black box\n  fix: remove it, or set RUNTIME_DIRECTORY to a folder in memory "
+                 "that only you may write to\n",
+                 geteuid());
+    return outside;
+  }
+  auto taken = outside->take(name.empty() ? "hapticd" : name);
+  if (taken && !*taken && !name.empty())
+    return Error{"--name " + name + ": another daemon runs as " + name + ", expected another name"};
+  if (taken && !*taken) {
+    taken = outside->take("hapticd-" + std::to_string(getpid()));
+    std::fprintf(stderr, "another daemon runs as hapticd; this one has the name %s\n", outside->name_.c_str());
+  }
+  if (!taken) return Error{taken.error()};
+  const std::string base = outside->folder_ + "/" + outside->name_;
+  how.status = base + ".status";
+  how.black_box = base + ".blackbox.h5";
+  how.spare_models = kSpareModels;
+  keepCrashed(how.black_box, outside->name_, outside->folder_);
+  return outside;
+}
+
+RunFiles::~RunFiles() {
+  end();
+  if (lock_ < 0) return;
+  unlink(lock_file_.c_str());
+  close(lock_);
+}
+
+void RunFiles::serve(Runner& runner, const std::string& device_file, host::Catalog& catalog,
+                     const host::Services::Log& log) {
+  if (folder_.empty()) return;
+  runner_ = &runner;
+  // A fork would make every page of the servo's memory one that is copied at the next write: a page fault in a tick.
+  catalog.describeBy([](const auto& file) { return host::describeByProgram("/proc/self/exe", file); });
+  const auto load = [device_file, &catalog](const std::string& file) -> Result<scene::Scene> {
+    catalog.refresh();
+    scene::Loaded loaded = scene::load(file, catalog, {true, device_file});
+    if (loaded.scene) return std::move(*loaded.scene);
+    std::string text;
+    for (const document::Problem& problem : loaded.problems) text += (text.empty() ? "" : "\n") + problem.text();
+    return Error{text};
+  };
+  handler_ = std::make_unique<RequestHandler>(runner, load, log, stateFolder(folder_));
+  auto server = control::Server::listen(folder_ + "/" + name_ + ".sock", kGroup);
+  if (!server) {
+    std::fprintf(stderr, "warning: %s\n", server.error().c_str());
+    return;
+  }
+  server_ = std::move(*server);
+  control::Server::Service service;
+  service.answer = [this](const control::Peer& peer, const std::string& line) { return handler_->answer(peer, line); };
+  service.standing = [this](const control::Peer& peer) { return handler_->standing(peer); };
+  service.news = [this](const control::Peer& peer) { return handler_->news(peer); };
+  service.left = [this](const control::Peer& peer) { handler_->left(peer); };
+  server_->start(std::move(service));
+}
+
+bool RunFiles::faulty() const {
+  for (const auto& arm : runner_->arms()) {
+    const Fault fault = arm->limiter().fault();
+    if (fault != Fault::kNone && fault != Fault::kStopped) return true;
+  }
+  return false;
+}
+
+void RunFiles::look() {
+  if (!handler_) return;
+  const bool faulty_now = faulty();
+  if (faulty_now && !dumped_)
+    if (const auto file = handler_->dump("a fault"); !file) std::fprintf(stderr, "warning: %s\n", file.error().c_str());
+  dumped_ = faulty_now;
+}
+
+void RunFiles::end() {
+  if (runner_ == nullptr) return;
+  look();
+  server_.reset();
+  handler_.reset();
+  runner_->endBlackBox();
+  runner_ = nullptr;
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: MIT
+#include "session/runner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
+
+#include "base/os.hpp"
+#include "servo/loop/paced_clock.hpp"
+#include "session/about.hpp"
+#include "session/silence_reason.hpp"
+#include "session/watched_servo.hpp"
+#include "sim/proximity_thread.hpp"
+#include "watch/crash.hpp"
+#include "watch/notify.hpp"
+#include "watch/watchdog.hpp"
+
+namespace hapticd::servo {
+
+namespace {
+
+constexpr Nanoseconds kStatusPeriod = 200'000'000;
+constexpr Nanoseconds kReadyPoll = 1'000'000;
+constexpr uint64_t kReadyTicks = 2;          ///< the servo lives: the service manager may say so
+constexpr uint64_t kDryCycles = 2000;        ///< with motors off, to judge the machine before a hand relies on it
+constexpr uint64_t kLongestRunUs = 100'000;  ///< of CPU time without sleep; a tick takes a hundredth of it
+
+/// Handles crashes of plugins while one lives. The sanitizers have handlers of their own.
+class CrashGuard {
+ public:
+  CrashGuard(watch::Watched& watched, const std::filesystem::path& dir) {
+#ifndef HAPTICD_SANITIZED
+    watch::guardAgainstCrash(watched, dir);
+#else
+    (void)watched, (void)dir;
+#endif
+  }
+  ~CrashGuard() {
+#ifndef HAPTICD_SANITIZED
+    watch::forgetCrash();
+#endif
+  }
+  CrashGuard(const CrashGuard&) = delete;
+  CrashGuard& operator=(const CrashGuard&) = delete;
+};
+
+Nanoseconds spinFor(const scene::Servo& servo) {
+  // Spinning buys regularity on bare metal; in a virtual machine the pauses come from outside.
+  constexpr double kBareMetalSpinUs = 50;
+  const double us = servo.spin_us.value_or(os::inVirtualMachine() ? 0 : kBareMetalSpinUs);
+  return static_cast<Nanoseconds>(us * 1e3);
+}
+
+/// Virtual time that waits for the recording: it runs hundreds of times faster than the disk was asked to follow.
+class RecordedClock final : public Clock {
+ public:
+  explicit RecordedClock(const record::Recorder& recorder) : recorder_(recorder) {}
+  Nanoseconds now() noexcept HSP_RT override { return clock_.now(); }
+  Nanoseconds waitUntil(Nanoseconds deadline) noexcept HSP_RT override {
+    constexpr Nanoseconds kPause = 1'000'000;
+    while (recorder_.behind()) pause_.waitUntil(pause_.now() + kPause);
+    return clock_.waitUntil(deadline);
+  }
+
+ private:
+  const record::Recorder& recorder_;
+  VirtualClock clock_;
+  RealClock pause_{0};
+};
+
+std::string readyMessage(const Loop& loop) {
+  return "READY=1\nSTATUS=the servo ticks; " + std::to_string(loop.lateDryCycles()) + " of " +
+         std::to_string(kDryCycles) + " dry cycles woke a period late";
+}
+
+std::string noFifo(int priority, const std::error_code& code, bool hardware) {
+  return "cannot run the servo thread at FIFO " + std::to_string(priority) + ": " + code.message() + "\n  " +
+         os::realTimeRights() + "\n  " +
+         (hardware ? "without this priority the loop misses deadlines, and the hand feels it\n"
+                   : "the run goes on at normal priority; expect late ticks when the machine is busy\n") +
+         "  fix: sudo usermod -aG haptic $USER, log in again (limits: rtprio 80, memlock 524288)";
+}
+
+}  // namespace
+
+Result<std::unique_ptr<World>> Runner::buildWorld(const scene::Scene& scene, const RunOptions& options,
+                                                  const host::Services::Log& log) {
+  WorldOptions world_options;
+  world_options.rate = options.rate;
+  world_options.probe_count = static_cast<uint32_t>(scene.devices.size());
+  world_options.measure = true;
+  world_options.spare_models = options.spare_models;
+  world_options.budgets = !options.virtual_time;  // a budget of real time would make virtual runs differ
+  return World::build(scene, world_options, log);
+}
+
+Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const RunOptions& options,
+                                                std::unique_ptr<World> world, const host::Services::Log& log) {
+  std::unique_ptr<Runner> runner(new Runner(scene, options));
+  runner->world_ = std::move(world);
+  if (auto opened = runner->openArms(log); !opened)
+    return Error{opened.error() +
+                 (options.virtual_time ? "\n  note: --virtual-time allows simulated devices only" : "")};
+  if (options.virtual_time && !runner->onlySimulated())
+    return Error{
+        "--virtual-time runs faster than any clock, and the scene names real hardware; expected simulated devices "
+        "only"};
+  runner->telemetry_ = std::make_unique<Telemetry>(runner->scene_, options.rate, runner->world_->places());
+
+  LoopSettings settings;
+  settings.period_ns = static_cast<Nanoseconds>(std::llround(1e9 / options.rate));
+  settings.ticks = options.duration ? static_cast<uint64_t>(std::llround(*options.duration * options.rate)) : 0;
+  settings.lockstep = options.virtual_time;
+  // A simulation at a terminal starts at once: there is no hand, and nobody waits for READY.
+  const bool watched = std::getenv("NOTIFY_SOCKET") != nullptr;
+  settings.dry_cycles = !options.virtual_time && (watched || !runner->onlySimulated()) ? kDryCycles : 0;
+  if (auto opened = runner->openBlackBox(settings); !opened) return Error{opened.error()};
+  if (options.virtual_time && runner->recorder_) {
+    runner->clock_ = std::make_unique<RecordedClock>(*runner->recorder_);
+  } else if (options.virtual_time) {
+    runner->clock_ = std::make_unique<VirtualClock>();
+  } else {
+    runner->clock_ = std::make_unique<RealClock>(spinFor(scene.servo));
+  }
+  if (Arm* pacing = pacingArm(runner->scene_.servo, runner->arms_)) {
+    settings.paced = true;
+    runner->clock_ = std::make_unique<PacedClock>(std::move(runner->clock_), pacing->device(), settings.period_ns);
+  }
+  runner->loop_ = std::make_unique<Loop>(runner->world_->core(), runner->world_->lockstep(), runner->arms_,
+                                         *runner->clock_, settings, *runner->telemetry_);
+  return runner;
+}
+
+Result<void> Runner::openBlackBox(const LoopSettings& settings) {
+  const auto models = world_->core().models();
+  const auto moving = std::count_if(models.begin(), models.end(), [](const ModelState& m) { return m.moves; });
+  const auto streams =
+      flightStreams(scene_, arms_, options_.rate, Telemetry::kBlackBoxSeconds, static_cast<size_t>(moving));
+  const RunFacts facts{options_.rate, settings.period_ns, settings.ticks, options_.virtual_time};
+  auto ring = record::FlightRing::create(streams, aboutRun(scene_, *world_, arms_, facts, streams), options_.black_box);
+  if (!ring) return Error{ring.error()};
+  telemetry_->attach(std::make_unique<Flight>(std::move(*ring), arms_, world_->places()));
+  if (!options_.status.empty()) {
+    auto page = status::PageFile::create(options_.status);
+    if (!page) return Error{page.error()};
+    telemetry_->attach(std::make_unique<StatusWriter>(std::move(*page), scene_, arms_, options_.rate));
+  }
+  if (options_.record.empty()) return {};
+  auto recorder = record::Recorder::create(telemetry_->flight()->ring(), options_.record);
+  if (!recorder) return Error{recorder.error()};
+  recorder_ = std::move(*recorder);
+  return {};
+}
+
+Result<void> Runner::openArms(const host::Services::Log& log) {
+  for (const scene::Device& device : scene_.devices) {
+    auto arm = Arm::open(device, scene_.servo, {options_.rate, world_->needsVelocity()}, log);
+    if (!arm) return Error{arm.error()};
+    arms_.push_back(std::move(*arm));
+  }
+  return {};
+}
+
+Result<void> Runner::run(const std::function<void(const Runner&)>& every) {
+  const Nanoseconds now = clock_->now();
+  for (const auto& arm : arms_)
+    if (auto started = arm->start(now, scene_.servo.gravity); !started) return started;
+  Result<void> done;
+  if (recorder_)
+    if (const auto code = recorder_->start()) return Error{"cannot start the recording thread: " + code.message()};
+  const Nanoseconds begun = monotonicNow();
+  WatchedServo watched(*loop_, *world_, arms_, *telemetry_);
+  const CrashGuard crash(watched, options_.state_dir);
+  os::prepareSignalStack();  // this thread may search, which runs plugins
+  if (options_.virtual_time) {
+    loop_->run();
+  } else {
+    done = runReal(watched, every);
+  }
+  wall_time_ = monotonicNow() - begun;
+  resident_bytes_ = os::residentBytes();
+  for (const auto& arm : arms_) arm->stop();
+  if (recorder_)
+    if (auto recorded = recorder_->finish(); !recorded && done) done = recorded;
+  return done;
+}
+
+Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every) {
+  sim::ProximityThread proximity(world_->proximity(), [this] { return loop_->wantsSearch(); });
+  if (const auto code = proximity.start()) return Error{"cannot start the proximity thread: " + code.message()};
+  lockMemory();
+  const os::DmaLatencyHold awake;
+  std::atomic<bool> ready{false};
+  watch::Watchdog watchdog(watched, [] { watch::dieOf("a step that did not come back"); });
+  if (const auto code = watchdog.start(options_.priority + 1))
+    return Error{"cannot start the watchdog thread: " + code.message()};
+  std::vector<std::string> refused;  // the servo thread's until `ready`, then this thread's
+  const bool anyhow = onlySimulated() || options_.allow_non_rt, locked = warnings_.empty();
+  os::Thread servo;
+  const auto code = servo.start("hapticd-servo", [this, &ready, &refused, anyhow, locked] {
+    host::Services::markServoThread();
+    refused = enterRealTime();
+    os::prepareSignalStack();
+    os::prefaultStack();
+    const bool runs = anyhow || (locked && refused.empty());
+    ready = true;
+    if (runs) loop_->run();
+  });
+  if (code) return Error{"cannot start the servo thread: " + code.message() + "\n  " + os::realTimeRights()};
+  RealClock clock(0);
+  while (!ready) clock.waitUntil(clock.now() + kReadyPoll);
+  std::move(refused.begin(), refused.end(), std::back_inserter(warnings_));
+  watch::Feeder feeder;
+  bool told = false;
+  for (Nanoseconds status_due = 0; !loop_->finished();) {
+    if (clock.now() >= status_due) {
+      status_due = clock.now() + kStatusPeriod;
+      if (!told && loop_->ticks() > kReadyTicks) told = watch::notify(readyMessage(*loop_)) || true;
+      feeder.feed(clock.now(), loop_->ticks());
+      if (!warnings_.empty() && !anyhow) break;
+      every(*this);
+    }
+    clock.waitUntil(clock.now() + proximity.turn(kStatusPeriod));
+  }
+  watch::notify("STOPPING=1");
+  servo.join();
+  watchdog.stop();
+  proximity.stop();
+  if (!loop_->finished()) return Error{warnings_.back() + "\n  forces stay off (--allow-non-rt allows them)"};
+  return {};
+}
+
+void Runner::lockMemory() {
+  os::calmAllocator();
+  if (const auto code = os::lockMemory())
+    warnings_.push_back("cannot lock memory: " + code.message() + "\n  " + os::realTimeRights() +
+                        "\n  a page fault can delay a tick by milliseconds\n  fix: raise memlock to 524288 for the "
+                        "group haptic in /etc/security/limits.d");
+}
+
+std::vector<std::string> Runner::enterRealTime() const {
+  std::vector<std::string> refused;
+  if (options_.cpu)
+    if (const auto code = os::pinTo(*options_.cpu))
+      refused.push_back("cannot pin the servo thread to CPU " + std::to_string(*options_.cpu) + ": " + code.message());
+  if (const auto code = os::setFifo(options_.priority))
+    refused.push_back(noFifo(options_.priority, code, !onlySimulated()));
+  (void)os::limitRealTimeRun(kLongestRunUs);  // refused: the limit is lower already
+  return refused;
+}
+
+void Runner::nameModel(uint32_t place, const std::string& name, const std::string& plugin) {
+  telemetry_->name(place, name, plugin);
+  if (telemetry_->statusWriter() != nullptr) telemetry_->statusWriter()->name(place, name, plugin);
+}
+
+bool Runner::onlySimulated() const {
+  for (const auto& arm : arms_)
+    if (!arm->simulated()) return false;
+  return true;
+}
+
+std::string Runner::faultOf(size_t arm) const {
+  const Limiter& limiter = arms_[arm]->limiter();
+  const Fault fault = limiter.fault();
+  if (fault == Fault::kNone || fault == Fault::kStopped) return "";
+  const bool own_words = fault == Fault::kDeviceLost || fault == Fault::kDeviceFault || fault == Fault::kStale;
+  return faultMessage(scene_.devices[arm].name, fault, limiter.measured(), own_words ? arms_[arm]->trouble() : nullptr);
+}
+
+std::vector<std::string> Runner::recovered() const {
+  std::vector<std::string> texts;
+  for (size_t i = 0; i < arms_.size(); ++i) {
+    const Fault fault = arms_[i]->limiter().recovered();
+    if (fault == Fault::kNone) continue;
+    const std::string words = arms_[i]->trouble() != nullptr ? arms_[i]->trouble() : describe(fault);
+    texts.push_back("device " + scene_.devices[i].name + ": " + words.substr(0, words.find("; ")) +
+                    "; its forces ended and came back once it was well");
+  }
+  return texts;
+}
+
+std::vector<std::string> Runner::faults() const {
+  std::vector<std::string> faults;
+  for (size_t i = 0; i < arms_.size(); ++i)
+    if (std::string text = faultOf(i); !text.empty()) faults.push_back(std::move(text));
+  for (const ModelState& model : world_->core().models())
+    if (std::string text = silenceReason(model); !text.empty()) faults.push_back(std::move(text));
+  return faults;
+}
+
+}  // namespace hapticd::servo

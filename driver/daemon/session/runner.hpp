@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+/// A whole run of the daemon: threads, real-time rights, the loop, and an orderly end. Called by `hapticd run`.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/os.hpp"
+#include "base/result.hpp"
+#include "description/scene.hpp"
+#include "record/recorder.hpp"
+#include "servo/loop/loop.hpp"
+#include "session/telemetry.hpp"
+#include "session/world.hpp"
+#include "watch/watched.hpp"
+
+namespace hapticd::servo {
+
+struct RunOptions {
+  double rate = 1000;              ///< [Hz]
+  std::optional<double> duration;  ///< [s] none: until stopped
+  bool virtual_time = false;
+  std::optional<int> cpu;  ///< pins the servo thread
+  int priority = os::kServoPriority;
+  uint32_t spare_models = 0;  ///< places for models that come while it runs
+  std::string status;         ///< file of the status page; empty: none
+  std::string record;         ///< file that takes every tick; empty: none
+  std::string black_box;      ///< file in memory that keeps the last seconds; empty: memory of the process
+  std::string state_dir;      ///< for what a crash leaves behind; empty: nothing is written
+  bool allow_non_rt = false;  ///< run real hardware without real-time rights all the same
+};
+
+class Runner {
+ public:
+  /// [main] Sets up the models. A failure is the fault of what the scene names: its files and parameters.
+  static Result<std::unique_ptr<World>> buildWorld(const scene::Scene& scene, const RunOptions& options,
+                                                   const host::Services::Log& log);
+
+  /// [main] Opens the devices. A failure is that of the hardware, or of a virtual run that names some.
+  static Result<std::unique_ptr<Runner>> prepare(const scene::Scene& scene, const RunOptions& options,
+                                                 std::unique_ptr<World> world, const host::Services::Log& log);
+
+  /// [main] Runs to the end; `every` is called about five times a second from this thread.
+  Result<void> run(const std::function<void(const Runner&)>& every);
+
+  /// [any] Asks for an end: forces ramp to zero first. Async-signal-safe.
+  void stop() noexcept { loop_->stop(); }
+
+  World& world() { return *world_; }
+  const World& world() const { return *world_; }
+  /// [any] One thread: an order for the servo.
+  bool giveOrder(const Order& order) { return loop_->give(order); }
+  /// [main] After the run: nothing is left behind.
+  void endBlackBox() { telemetry_->flight()->ring().removeFile(); }
+  /// [any] The same thread: a model takes a place; "": it has left.
+  void nameModel(uint32_t place, const std::string& name, const std::string& plugin);
+
+  bool virtualTime() const { return options_.virtual_time; }
+  const Telemetry& telemetry() const { return *telemetry_; }
+  const Loop& loop() const { return *loop_; }
+  Nanoseconds wallTime() const { return wall_time_; }       ///< [main] that the loop took
+  size_t residentBytes() const { return resident_bytes_; }  ///< [main] at the end of the loop
+  const std::vector<std::unique_ptr<Arm>>& arms() const { return arms_; }
+  const scene::Scene& scene() const { return scene_; }
+  const record::Recorder* recorder() const { return recorder_.get(); }  ///< nullptr: nothing is recorded
+
+  /// Real time could not be had in full: four-part messages for the user.
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+  /// [main] What took the force of an arm away, in words; "": nothing.
+  std::string faultOf(size_t arm) const;
+
+  /// [main] After the run: what took a force away for a while, in words.
+  std::vector<std::string> recovered() const;
+
+  /// [main] After the run: what ended it early or took the force away, in words.
+  std::vector<std::string> faults() const;
+
+ private:
+  Runner(const scene::Scene& scene, const RunOptions& options) : scene_(scene), options_(options) {}
+  Result<void> openBlackBox(const LoopSettings& settings);
+  Result<void> openArms(const host::Services::Log& log);
+  Result<void> runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every);
+  void lockMemory();
+  std::vector<std::string> enterRealTime() const;  ///< servo thread. @return what was refused
+  bool onlySimulated() const;
+
+  scene::Scene scene_;
+  RunOptions options_;
+  std::unique_ptr<World> world_;
+  std::vector<std::unique_ptr<Arm>> arms_;
+  std::unique_ptr<Telemetry> telemetry_;
+  std::unique_ptr<Clock> clock_;
+  std::unique_ptr<Loop> loop_;
+  std::unique_ptr<record::Recorder> recorder_;
+  std::vector<std::string> warnings_;
+  Nanoseconds wall_time_ = 0;
+  size_t resident_bytes_ = 0;
+};
+
+}  // namespace hapticd::servo

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "session/status_writer.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+namespace hapticd::servo {
+
+namespace {
+
+status::Name named(const std::string& name, const std::string& kind) {
+  status::Name result;
+  std::strncpy(result.text, name.c_str(), sizeof result.text - 1);
+  std::strncpy(result.kind, kind.c_str(), sizeof result.kind - 1);
+  return result;
+}
+
+}  // namespace
+
+StatusWriter::StatusWriter(std::unique_ptr<status::PageFile> file, const scene::Scene& scene,
+                           const std::vector<std::unique_ptr<Arm>>& arms, double rate)
+    : file_(std::move(file)) {
+  status::Page& page = file_->page();
+  page.arms = static_cast<uint32_t>(std::min<size_t>(arms.size(), status::kMaxArms));
+  page.models = status::kMaxModels;
+  page.rate = rate;
+  for (uint32_t i = 0; i < page.arms; ++i)
+    page.arm[i].name.write(named(scene.devices[i].name, scene.devices[i].module));
+  for (uint32_t i = 0; i < scene.models.size(); ++i) name(i, scene.models[i].name, scene.models[i].plugin);
+  page.magic.store(status::kPageMagic, std::memory_order_release);
+}
+
+void StatusWriter::name(uint32_t place, const std::string& name, const std::string& plugin) {
+  if (place >= status::kMaxModels) return;
+  auto& model = file_->page().model[place];
+  model.step_us.clear();  // of the one before
+  model.name.write(named(name, plugin));
+}
+
+void StatusWriter::tick(const status::Now& now, Nanoseconds late, Nanoseconds spent, const Core& core,
+                        const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+  status::Page& page = file_->page();
+  page.now.write(now);
+  page.lateness_us.add(static_cast<double>(late) * 1e-3);
+  page.compute_us.add(static_cast<double>(spent) * 1e-3);
+  for (uint32_t i = 0; i < page.arms; ++i) {
+    status::ArmNow arm;
+    for (int axis = 0; axis < 3; ++axis) {
+      arm.position[axis] = arms[i]->probe().position[axis];
+      arm.force[axis] = arms[i]->force()[axis];
+    }
+    arm.sequence = arms[i]->sample().sequence;
+    arm.fault = static_cast<uint32_t>(arms[i]->limiter().fault());
+    arm.valid = arms[i]->probe().valid ? 1 : 0;
+    page.arm[i].now.write(arm);
+  }
+  models(now.tick, core);
+}
+
+void StatusWriter::models(uint64_t tick, const Core& core) noexcept HSP_RT {
+  status::Page& page = file_->page();
+  for (const uint32_t place : core.live()) {
+    if (place >= status::kMaxModels) break;  // in the order of the scene: all others come later
+    const ModelState& model = core.models()[place];
+    status::ModelNow now;
+    now.depth = std::numeric_limits<double>::quiet_NaN();
+    for (uint32_t probe = 0; probe < core.probeCount(); ++probe) {
+      const Contact& contact = core.contact(place, probe);
+      now.force = std::max(now.force, Eigen::Map<const Vector3d>(contact.world.force).norm());
+      now.iterations += contact.world.iterations;
+      if (contact.traced && !(contact.world.depth_m <= now.depth)) now.depth = contact.world.depth_m;
+    }
+    now.gain = model.guard.gain();
+    now.tick = tick;
+    now.status = model.status;
+    now.trouble = static_cast<uint32_t>(model.guard.trouble());
+    now.failed_status = model.failed_status;
+    page.model[place].now.write(now);
+    if (model.step_ns > 0) page.model[place].step_us.add(static_cast<double>(model.step_ns) * 1e-3);
+  }
+}
+
+}  // namespace hapticd::servo

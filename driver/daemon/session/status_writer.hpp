@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+/// Puts each tick onto the status page.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "servo/arm/arm.hpp"
+#include "servo/core/core.hpp"
+#include "status/page_file.hpp"
+
+namespace hapticd::servo {
+
+class StatusWriter {
+ public:
+  /// [main] Names everything and shows the page to readers.
+  StatusWriter(std::unique_ptr<status::PageFile> file, const scene::Scene& scene,
+               const std::vector<std::unique_ptr<Arm>>& arms, double rate);
+
+  /// [main] A model takes a place, or "" leaves it.
+  void name(uint32_t place, const std::string& name, const std::string& plugin);
+
+  /// [rt] After a tick. Copies what lives alone: its cost does not grow with models that are far away.
+  void tick(const status::Now& now, Nanoseconds late, Nanoseconds spent, const Core& core,
+            const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+
+  const status::Page& page() const { return file_->page(); }
+
+ private:
+  void models(uint64_t tick, const Core& core) noexcept HSP_RT;
+  std::unique_ptr<status::PageFile> file_;
+};
+
+}  // namespace hapticd::servo

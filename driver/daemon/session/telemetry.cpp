@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "session/telemetry.hpp"
+
+#include <cmath>
+#include <map>
+
+namespace hapticd::servo {
+
+Telemetry::Telemetry(const scene::Scene& scene, double rate, uint32_t places)
+    : rate_(rate),
+      models_(std::max<size_t>(scene.models.size(), places)),
+      rows_(static_cast<size_t>(std::ceil(kBlackBoxSeconds * rate))) {
+  for (const scene::Model& model : scene.models) {
+    names_.push_back(model.name);
+    plugins_.push_back(model.plugin);
+  }
+  names_.resize(models_.size());
+  plugins_.resize(models_.size());
+}
+
+void Telemetry::attach(std::unique_ptr<Flight> flight) {
+  flight_ = std::move(flight);
+  rows_ = {};
+}
+
+void Telemetry::name(uint32_t place, const std::string& name, const std::string& plugin) {
+  if (!names_[place].empty()) {
+    if (left_.size() == kMostLeft) left_.erase(left_.begin());
+    left_.push_back({names_[place], plugins_[place], models_[place]});
+  }
+  models_[place] = {};
+  names_[place] = name;
+  plugins_[place] = plugin;
+}
+
+void Telemetry::tick(double t, double dt, Nanoseconds late, Nanoseconds spent, const Core& core,
+                     const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+  BlackBoxRow row;
+  row.t = t;
+  simulated_seconds_ = t + 1 / rate_;
+  row.lateness_us = static_cast<float>(static_cast<double>(late) * 1e-3);
+  row.compute_us = static_cast<float>(static_cast<double>(spent) * 1e-3);
+  lateness_us_.add(row.lateness_us);
+  compute_us_.add(row.compute_us);
+  bookModels(dt, core, row);
+  if (flight_) flight_->tick(t, dt, late, spent, core, arms);
+  if (status_) status_->tick({booked_, overruns_, missed_, t}, late, spent, core, arms);
+  ++booked_;
+  if (!arms.empty()) {
+    const Arm& arm = *arms.front();
+    for (int i = 0; i < 3; ++i) {
+      row.position[static_cast<size_t>(i)] = static_cast<float>(arm.probe().position[i]);
+      row.force[static_cast<size_t>(i)] = static_cast<float>(arm.force()[i]);
+    }
+    row.fault = static_cast<uint32_t>(arm.limiter().fault());
+  }
+  newest_ = row;
+  if (!rows_.empty()) keep(row);
+}
+
+void Telemetry::keep(const BlackBoxRow& row) noexcept HSP_RT {
+  rows_[next_] = row;
+  next_ = next_ + 1 == rows_.size() ? 0 : next_ + 1;
+  if (row_count_ < rows_.size()) ++row_count_;
+}
+
+void Telemetry::bookModels(double dt, const Core& core, BlackBoxRow& row) noexcept HSP_RT {
+  for (const uint32_t index : core.live()) {
+    const ModelState& model = core.models()[index];
+    if (model.status < row.status) row.status = model.status;
+    double depth = -HUGE_VAL, force = 0;
+    for (uint32_t probe = 0; probe < core.probeCount(); ++probe) {
+      const Contact& contact = core.contact(index, probe);
+      if (!contact.traced) continue;
+      depth = std::max(depth, contact.world.depth_m);
+      force = std::max(force, Eigen::Map<const Vector3d>(contact.world.force).norm());
+    }
+    models_[index].add(depth > 0, depth, force, dt, model.step_ns);
+    if (depth > -HUGE_VAL && (row.model == UINT32_MAX || depth > row.depth_m)) {
+      row.depth_m = static_cast<float>(depth);
+      row.model = index;
+    }
+  }
+}
+
+void Telemetry::finish(uint64_t ticks, Nanoseconds elapsed, long page_faults, uint64_t allocations) noexcept {
+  ticks_ = ticks;
+  elapsed_ = elapsed;
+  page_faults_ = page_faults;
+  allocations_ = allocations;
+}
+
+record::RunReport Telemetry::report(const std::vector<std::string>& faults) const {
+  record::RunReport report;
+  report.ticks = ticks_;
+  report.wall_seconds = static_cast<double>(elapsed_) * kSecondsPerNanosecond;
+  report.seconds = simulated_seconds_;
+  report.rate_hz = simulated_seconds_ > 0 ? static_cast<double>(ticks_) / simulated_seconds_ : 0;
+  report.overruns = overruns_;
+  report.missed_ticks = missed_;
+  report.lateness_us = lateness_us_;
+  report.compute_us = compute_us_;
+  report.page_faults = page_faults_;
+  report.servo_allocations = allocations_;
+  for (size_t i = 0; i < models_.size(); ++i)
+    if (!names_[i].empty()) report.models.push_back({names_[i], plugins_[i], models_[i]});
+  // Names are keys in the report, and a model often takes the place of one of its name.
+  std::map<std::string, int> times;
+  for (record::ModelReport left : left_) {
+    const int before = times[left.name]++;
+    left.name += before == 0 ? " (removed)" : " (removed " + std::to_string(before + 1) + ")";
+    report.models.push_back(std::move(left));
+  }
+  report.faults = faults;
+  return report;
+}
+
+std::vector<BlackBoxRow> Telemetry::fromFlight() const {
+  std::vector<BlackBoxRow> rows;
+  TickRow tick;
+  ArmRow arm;
+  for (uint64_t n = flight_->oldest(); flight_->read(n, tick, arm); ++n) {
+    BlackBoxRow row;
+    row.t = tick.t;
+    row.lateness_us = tick.lateness_us, row.compute_us = tick.compute_us;
+    for (size_t i = 0; i < 3; ++i) {
+      row.position[i] = static_cast<float>(arm.position[i]);
+      row.force[i] = static_cast<float>(arm.sent[i]);
+    }
+    row.depth_m = tick.model >= 0 ? static_cast<float>(tick.depth) : 0;
+    row.model = tick.model >= 0 ? static_cast<uint32_t>(tick.model) : UINT32_MAX;
+    row.status = tick.status;
+    row.fault = arm.fault;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+std::vector<BlackBoxRow> Telemetry::blackBox() const {
+  if (flight_) return fromFlight();
+  std::vector<BlackBoxRow> ordered;
+  ordered.reserve(row_count_);
+  const size_t oldest = row_count_ < rows_.size() ? 0 : next_;
+  for (size_t i = 0; i < row_count_; ++i) ordered.push_back(rows_[(oldest + i) % rows_.size()]);
+  return ordered;
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+/// The books of a run, kept in the servo thread without allocation: histograms of time, contact statistics of every
+/// model, and the black box of the last ten seconds.
+#pragma once
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/clock.hpp"
+#include "record/contact_statistics.hpp"
+#include "record/histogram.hpp"
+#include "record/report.hpp"
+#include "servo/loop/tick_log.hpp"
+#include "session/flight.hpp"
+#include "session/status_writer.hpp"
+
+namespace hapticd::servo {
+
+/// One tick in the black box.
+struct BlackBoxRow {
+  double t = 0;  ///< [s] since the start
+  float lateness_us = 0, compute_us = 0;
+  std::array<float, 3> position{};  ///< [m] first arm, world
+  std::array<float, 3> force{};     ///< [N] first arm, world, as sent
+  float depth_m = 0;                ///< deepest contact; negative: distance of the nearest foot; 0: nothing traced
+  uint32_t model = UINT32_MAX;      ///< of that foot
+  int32_t status = 0;               ///< worst status of the tick
+  uint32_t fault = 0;               ///< servo::Fault of the first arm
+};
+
+class Telemetry final : public TickLog {
+ public:
+  static constexpr double kBlackBoxSeconds = 10;
+  static constexpr size_t kMostLeft = 64;
+
+  /// [main] Allocates and touches everything.
+  /// @param places models that there may be; 0: those of the scene
+  Telemetry(const scene::Scene& scene, double rate, uint32_t places = 0);
+
+  /// [main] A model takes an empty place; before the servo adopts it. What was counted of the one that left stays in
+  /// the report, for the newest `kMostLeft` of them.
+  void name(uint32_t place, const std::string& name, const std::string& plugin);
+
+  /// [main] Keeps every tick in a black box, with all that came in and went out; the short rows kept until now are not
+  /// needed any more.
+  void attach(std::unique_ptr<Flight> flight);
+  /// [main] Shows every tick on a page for others too.
+  void attach(std::unique_ptr<StatusWriter> status) { status_ = std::move(status); }
+  StatusWriter* statusWriter() { return status_.get(); }
+  const StatusWriter* statusWriter() const { return status_.get(); }
+  Flight* flight() { return flight_.get(); }
+  const Flight* flight() const { return flight_.get(); }
+
+  /// [rt] Before a tick at time `now`.
+  void begin(Nanoseconds now, const Arms& arms) noexcept HSP_RT override {
+    if (flight_) flight_->begin(now, arms);
+  }
+
+  /// [rt] An order of a person, obeyed in this tick.
+  void order(const Order& order) noexcept HSP_RT override {
+    if (flight_) flight_->order(order);
+  }
+
+  /// [rt] Books one tick.
+  void tick(double t, double dt, Nanoseconds late, Nanoseconds spent, const Core& core,
+            const Arms& arms) noexcept HSP_RT override;
+
+  /// [rt] `missed` whole periods were skipped.
+  void overrun(uint64_t missed) noexcept HSP_RT override {
+    ++overruns_;
+    missed_ += missed;
+  }
+
+  /// [rt] The end of the run, with what was counted after the warm-up.
+  void finish(uint64_t ticks, Nanoseconds elapsed, long page_faults, uint64_t allocations) noexcept override;
+
+  /// [main] Everything as the report that --report writes. @param faults words for what went wrong
+  record::RunReport report(const std::vector<std::string>& faults) const;
+
+  /// [main] The black box, oldest row first.
+  std::vector<BlackBoxRow> blackBox() const;
+
+  /// [any] Newest row, for the status line; may be torn, so for eyes only.
+  const BlackBoxRow& newest() const noexcept { return newest_; }
+
+ private:
+  std::vector<BlackBoxRow> fromFlight() const;
+  void keep(const BlackBoxRow& row) noexcept HSP_RT;
+  void bookModels(double dt, const Core& core, BlackBoxRow& row) noexcept HSP_RT;
+
+  std::vector<std::string> names_, plugins_;
+  std::vector<record::ModelReport> left_;  ///< models that are not there any more
+  double rate_, simulated_seconds_ = 0;
+  record::Histogram lateness_us_, compute_us_;
+  std::vector<record::ContactStatistics> models_;
+  std::vector<BlackBoxRow> rows_;  // where there is no flight
+  BlackBoxRow newest_;
+  size_t next_ = 0, row_count_ = 0;
+  uint64_t ticks_ = 0, overruns_ = 0, missed_ = 0, allocations_ = 0;
+  long page_faults_ = 0;
+  Nanoseconds elapsed_ = 0;
+  std::unique_ptr<Flight> flight_;
+  std::unique_ptr<StatusWriter> status_;
+  uint64_t booked_ = 0;
+};
+
+}  // namespace hapticd::servo

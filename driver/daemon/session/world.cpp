@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+#include "session/world.hpp"
+
+#include <algorithm>
+
+#include "servo/velocity/probe_velocity.hpp"
+
+namespace hapticd::servo {
+
+namespace {
+
+hsp_pose startPose(const scene::Model& model) {
+  hsp_pose pose{};
+  Eigen::Map<Eigen::Vector3d>(pose.position) = model.pose.position;
+  const Eigen::Quaterniond& q = model.pose.orientation;
+  pose.orientation[0] = q.w(), pose.orientation[1] = q.x(), pose.orientation[2] = q.y(), pose.orientation[3] = q.z();
+  return pose;
+}
+
+uint64_t budgetNs(const scene::Servo& servo, double rate) {
+  constexpr double kShareOfPeriod = 0.8;  // the rest is for the device, limits and the way back to sleep
+  return static_cast<uint64_t>(servo.budget_us > 0 ? servo.budget_us * 1e3 : kShareOfPeriod * 1e9 / rate);
+}
+
+hsp_activation activationFor(const scene::Scene& scene, const WorldOptions& options, uint64_t budget_ns) {
+  hsp_activation activation{};
+  activation.struct_size = sizeof activation;
+  activation.max_probes = options.probe_count;
+  activation.rate_hz = options.rate;
+  activation.max_probe_speed = kMaxProbeSpeed;
+  activation.budget_ns = budget_ns;
+  Eigen::Map<Eigen::Vector3d>(activation.gravity) = scene.servo.gravity;
+  return activation;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const WorldOptions& options,
+                                            const host::Services::Log& log) {
+  std::unique_ptr<World> world(new World);
+  const uint64_t budget_ns = options.budgets ? budgetNs(scene.servo, options.rate) : 0;
+  hsp_activation& activation = world->activation_;
+  activation = activationFor(scene, options, budget_ns);
+  std::vector<host::ShapeInstance*> models;
+  std::vector<hsp_pose> poses;
+  for (const scene::Model& described : scene.models) {
+    auto shape = host::ShapeInstance::create(described, log);
+    if (!shape) return Error{shape.error()};
+    activation.pose = startPose(described);
+    if (auto done = (*shape)->activate(activation); !done) return Error{done.error()};
+    const hsp_report& report = (*shape)->report();
+    world->needs_ |= report.flags;
+    world->max_stiffness_ = std::max(world->max_stiffness_, report.max_stiffness);
+    world->locked_bytes_ += report.locked_bytes;
+    models.push_back(shape->get());
+    poses.push_back(activation.pose);
+    world->shapes_.push_back(std::move(*shape));
+  }
+  world->link_ = std::make_unique<link::Link>();
+  world->proximity_ = std::make_unique<sim::Proximity>(
+      models, poses, options.probe_count, sim::ProximitySettings{scene.servo.activation_radius, scene.servo.hysteresis},
+      *world->link_);
+  CoreSettings settings;
+  settings.budget_ns = budget_ns;
+  settings.max_probe_speed = kMaxProbeSpeed;
+  settings.measure = options.measure;
+  settings.evaluation_ns = options.evaluation_ns;
+  settings.spare_models = options.spare_models;
+  world->core_ = std::make_unique<Core>(models, scene, options.probe_count, settings, *world->link_);
+  world->shapes_.resize(models.size() + options.spare_models);
+  return world;
+}
+
+Result<std::unique_ptr<host::ShapeInstance>> World::prepare(const scene::Model& model,
+                                                            const host::Services::Log& log) const {
+  auto shape = host::ShapeInstance::create(model, log);
+  if (!shape) return Error{shape.error()};
+  hsp_activation activation = activation_;
+  activation.pose = startPose(model);
+  if (auto done = (*shape)->activate(activation); !done) return Error{done.error()};
+  const uint32_t needs = (*shape)->report().flags;
+  if ((needs & HSP_R_VELOCITY) != 0 && !needsVelocity())
+    return Error{"model '" + model.name +
+                 "': needs the velocity of the probe, which this run does not estimate because "
+                 "no model needed it at the start\n  fix: start the daemon with a scene that has such a model"};
+  return shape;
+}
+
+void World::keep(uint32_t place, std::unique_ptr<host::ShapeInstance> shape, const scene::Model& model) {
+  shapes_[place] = std::move(shape);
+  proximity_->add(place, *shapes_[place], startPose(model), activation_.max_probes);
+}
+
+}  // namespace hapticd::servo

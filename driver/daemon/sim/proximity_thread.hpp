@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+/// Who searches in runs on a real clock: nobody where no model has surfaces; the main thread, which waits anyway, where
+/// one small surface is all; otherwise a thread of its own.
+#pragma once
+#include <algorithm>
+#include <atomic>
+#include <functional>
+
+#include "base/clock.hpp"
+#include "base/os.hpp"
+#include "sim/proximity.hpp"
+
+namespace hapticd::sim {
+
+class ProximityThread {
+ public:
+  /// @param wants_search [any] true: search now, without waiting for the period
+  ProximityThread(Proximity& proximity, std::function<bool()> wants_search)
+      : proximity_(proximity), wants_search_(std::move(wants_search)) {}
+  ~ProximityThread() { stop(); }
+
+  /// [main] Searches once, so that tracing starts with the first tick.
+  std::error_code start() {
+    const Searching amount = proximity_.amount();
+    if (amount == Searching::kNone) return {};
+    proximity_.search();
+    return amount == Searching::kLarge ? startThread() : std::error_code();
+  }
+
+  /// [main] Does what there is to do now: a small search, or starting the thread when models have come that need it.
+  /// Where no thread can be had, this one searches on. @return how long to rest until the next turn [ns]: at most
+  /// `rest`
+  Nanoseconds turn(Nanoseconds rest) {
+    if (thread_.running()) return rest;
+    const Searching amount = proximity_.amount();
+    if (amount == Searching::kNone || (amount == Searching::kLarge && !startThread())) return rest;
+    proximity_.search();
+    return std::min(rest, link::kSearchPeriod);
+  }
+
+  void stop() {  ///< [main]
+    stop_ = true;
+    thread_.join();
+  }
+
+ private:
+  std::error_code startThread() {
+    return thread_.start("hapticd-sim", [this] { loop(); });
+  }
+
+  void loop() {
+    constexpr Nanoseconds kPoll = 1'000'000;  // an urgent search waits no longer than this
+    RealClock clock(0);
+    for (Nanoseconds next = clock.now(); !stop_;) {
+      const Nanoseconds now = clock.waitUntil(clock.now() + kPoll);
+      if (now < next && !wants_search_()) continue;
+      next = now + link::kSearchPeriod;
+      proximity_.search();
+    }
+  }
+
+  Proximity& proximity_;
+  std::function<bool()> wants_search_;
+  std::atomic<bool> stop_{false};
+  os::Thread thread_;
+};
+
+}  // namespace hapticd::sim

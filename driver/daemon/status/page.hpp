@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+/// The status page: what a running daemon tells everybody who may read it. Plain memory of fixed layout, mapped from a
+/// file; readers map it read-only.
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "record/histogram.hpp"
+#include "status/slot.hpp"
+
+namespace hapticd::status {
+
+constexpr uint64_t kPageMagic = 0x31544154535448;  ///< "HTSTAT1"
+constexpr uint32_t kMaxArms = 8;
+constexpr uint32_t kMaxModels = 96;  ///< that are told of one by one
+
+/// record::Histogram for one writing and many reading threads.
+class SharedHistogram {
+ public:
+  /// [rt] Counts one value.
+  void add(double value) noexcept HSP_RT {
+    bump(counts_[static_cast<size_t>(record::Histogram::bucketOf(value))]);
+    bump(total_);
+    if (value > max_.load(std::memory_order_relaxed)) max_.store(value, std::memory_order_relaxed);
+  }
+  /// [any] The value below which a share q of all lies; 0 when empty.
+  double quantile(double q) const noexcept {
+    const auto total = static_cast<double>(total_.load(std::memory_order_relaxed));
+    double seen = 0;
+    for (int i = 0; i < record::Histogram::kBuckets && total > 0; ++i) {
+      seen += static_cast<double>(counts_[static_cast<size_t>(i)].load(std::memory_order_relaxed));
+      const double middle = 0.5 * (record::Histogram::edgeOf(i) + record::Histogram::edgeOf(i + 1));
+      if (seen >= (q * total > 1 ? q * total : 1)) return middle < max() ? middle : max();
+    }
+    return 0;
+  }
+  double max() const noexcept { return max_.load(std::memory_order_relaxed); }
+  /// [main] Forgets everything, while nobody adds.
+  void clear() noexcept {
+    for (auto& count : counts_) count.store(0, std::memory_order_relaxed);
+    total_.store(0, std::memory_order_relaxed);
+    max_.store(0, std::memory_order_relaxed);
+  }
+
+ private:
+  static void bump(std::atomic<uint64_t>& count) noexcept HSP_RT {
+    count.store(count.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);  // one writer: no locked add
+  }
+  std::array<std::atomic<uint64_t>, record::Histogram::kBuckets> counts_{};
+  std::atomic<uint64_t> total_{0};
+  std::atomic<double> max_{0};
+};
+
+/// The last tick.
+struct Now {
+  uint64_t tick = 0, overruns = 0, missed = 0;
+  double t = 0;  ///< [s]
+};
+
+struct ArmNow {
+  double position[3] = {}, force[3] = {};  ///< [m], [N] as sent; world frame
+  uint64_t sequence = 0;                   ///< of the sample
+  uint32_t fault = 0, valid = 0;
+};
+
+struct ModelNow {
+  double depth = 0, force = 0, gain = 0;  ///< [m] nan: not traced; [N]
+  uint64_t tick = 0;                      ///< when it was stepped last
+  int32_t status = 0;
+  uint32_t iterations = 0;
+  uint32_t trouble = 0;       ///< servo::Trouble: why it is not felt
+  int32_t failed_status = 0;  ///< the first status that was no status of a step
+};
+
+struct Name {
+  char text[56] = {}, kind[56] = {};  ///< of a model and its plugin, or a device and its module; "": an empty place
+};
+
+struct Page {
+  std::atomic<uint64_t> magic{0};
+  uint32_t bytes = 0, arms = 0, models = 0, pid = 0;
+  double rate = 0;  ///< [Hz] asked for
+  Slot<Now> now;
+  SharedHistogram lateness_us, compute_us;
+  struct {
+    Slot<Name> name;
+    Slot<ArmNow> now;
+  } arm[kMaxArms];
+  struct {
+    Slot<Name> name;
+    Slot<ModelNow> now;
+    SharedHistogram step_us;
+  } model[kMaxModels];
+};
+
+}  // namespace hapticd::status

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+/// One small record between a writer that never waits and any number of readers, in this process or another: a sequence
+/// lock whose words are atomic, so that a reader sees a whole record or tries again, and a reader that is killed
+/// changes nothing.
+#pragma once
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstdint>
+#include <optional>
+#include <type_traits>
+
+#include "hapticd/abi.h"
+
+namespace hapticd::status {
+
+template <class T>
+class Slot {
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % 8 == 0);
+
+ public:
+  /// [rt] Only one thread writes.
+  void write(const T& value) noexcept HSP_RT {
+    const auto words = std::bit_cast<std::array<uint64_t, kWords>>(value);
+    const uint64_t sequence = sequence_.load(std::memory_order_relaxed);
+    sequence_.store(sequence + 1, std::memory_order_relaxed);
+    // release on each word: whoever sees one of them sees the odd number too
+    for (size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_release);
+    sequence_.store(sequence + 2, std::memory_order_release);
+  }
+
+  /// [any] Nothing: the writer was in it each time, or died in it.
+  std::optional<T> read() const noexcept {
+    constexpr int kTries = 1000;
+    for (int i = 0; i < kTries; ++i) {
+      const uint64_t before = sequence_.load(std::memory_order_acquire);
+      std::array<uint64_t, kWords> words;
+      for (size_t w = 0; w < kWords; ++w) words[w] = words_[w].load(std::memory_order_acquire);
+      if (before % 2 != 0 || sequence_.load(std::memory_order_relaxed) != before) continue;
+      return std::bit_cast<T>(words);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr size_t kWords = sizeof(T) / 8;
+  std::atomic<uint64_t> sequence_{0};
+  std::array<std::atomic<uint64_t>, kWords> words_{};
+};
+
+}  // namespace hapticd::status

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "watch/quarantine.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+
+namespace hapticd::watch {
+
+namespace fs = std::filesystem;
+
+fs::path stateFolder() {
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::string(value != nullptr ? value : "");
+  };
+  fs::path dir = variable("STATE_DIRECTORY");
+  if (dir.empty() && !variable("XDG_STATE_HOME").empty()) dir = fs::path(variable("XDG_STATE_HOME")) / "hapticd";
+  if (dir.empty() && !variable("HOME").empty()) dir = fs::path(variable("HOME")) / ".local/state/hapticd";
+  return dir;
+}
+
+fs::path stateDir() {
+  const fs::path dir = stateFolder();
+  std::error_code code;
+  fs::create_directories(dir, code);
+  return !dir.empty() && access(dir.c_str(), W_OK) == 0 ? dir : fs::path();
+}
+
+std::vector<QuarantinedPlugin> quarantined(const fs::path& dir) {
+  std::vector<QuarantinedPlugin> list;
+  std::ifstream in(dir / kQuarantineFile);
+  for (std::string line; std::getline(in, line);) {
+    const size_t tab = line.find('\t');
+    const std::string plugin = line.substr(0, tab);
+    const bool known = std::any_of(list.begin(), list.end(), [&](const auto& entry) { return entry.plugin == plugin; });
+    if (plugin.empty() || known) continue;
+    list.push_back({plugin, tab == std::string::npos ? "" : line.substr(tab + 1)});
+  }
+  return list;
+}
+
+Result<bool> clearQuarantine(const fs::path& dir, const std::string& plugin) {
+  const std::vector<QuarantinedPlugin> before = quarantined(dir);
+  const fs::path file = dir / kQuarantineFile, part = dir / (std::string(kQuarantineFile) + ".part");
+  std::ofstream out(part);
+  size_t kept = 0;
+  for (const QuarantinedPlugin& entry : before)
+    if (entry.plugin != plugin) {
+      out << entry.plugin << '\t' << entry.reason << '\n';
+      ++kept;
+    }
+  out.close();
+  std::error_code code;
+  if (out) fs::rename(part, file, code);
+  if (!out || code) return Error{file.string() + ": cannot be written" + (code ? ": " + code.message() : "")};
+  return kept < before.size();
+}
+
+}  // namespace hapticd::watch

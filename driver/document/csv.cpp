@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+#include "document/csv.hpp"
+
+#include <algorithm>
+
+#include "document/node.hpp"
+#include "document/reader.hpp"
+
+namespace hapticd::document {
+namespace {
+
+constexpr size_t kShownProblems = 20;  ///< a file of another format is wrong in every line
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r";
+  const size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+/// A number as YAML writes it, or what printf writes for one that is not finite.
+std::optional<double> numberIn(std::string_view text) {
+  if (text == "nan" || text == "-nan") return std::nan("");
+  if (text == "inf" || text == "-inf") return text.front() == '-' ? -HUGE_VAL : HUGE_VAL;
+  return toNumber(text);
+}
+
+/// The fields of a line, and where each begins.
+struct Field {
+  std::string_view text;
+  size_t offset;
+};
+std::vector<Field> fieldsOf(std::string_view line) {
+  std::vector<Field> fields;
+  for (size_t start = 0; start <= line.size();) {
+    const size_t comma = std::min(line.find(',', start), line.size());
+    fields.push_back({trimmed(line.substr(start, comma - start)), start});
+    start = comma + 1;
+  }
+  return fields;
+}
+
+class Parser {
+ public:
+  Parser(const std::string& file, const CsvRules& rules, Problems& problems)
+      : file_(file), rules_(rules), problems_(problems) {}
+
+  void line(std::string_view text) {
+    ++line_;
+    const std::string_view content = trimmed(text);
+    if (content.empty() || content.front() == '#') return;
+    const std::vector<Field> fields = fieldsOf(text);
+    if (table_.columns == 0 && header(fields)) return;
+    if (wrong_ == 0 || table_.columns > 0) row(fields);
+  }
+  bool tooWrong() const { return wrong_ >= kShownProblems; }
+
+  std::optional<CsvTable> take() {
+    line_ = std::max(line_, 1);
+    if (wrong_ == 0 && table_.lines.empty())
+      problem(0, "", "no rows, expected a header " + expected() + " and at least one row");
+    return wrong_ == 0 ? std::optional(std::move(table_)) : std::nullopt;
+  }
+
+ private:
+  std::string expected() const {
+    std::string text;
+    for (const std::string& header : rules_.headers) text += (text.empty() ? "" : " or ") + header;
+    return text;
+  }
+  void problem(size_t offset, const std::string& column, const std::string& what) {
+    ++wrong_;
+    report(problems_, file_, line_, static_cast<int>(offset) + 1, column, what);
+  }
+
+  /// Settles the columns. True: the line was a header.
+  bool header(const std::vector<Field>& fields) {
+    std::string names;
+    for (const Field& field : fields) names.append(names.empty() ? "" : ",").append(field.text);
+    const bool numbers = numberIn(fields.front().text).has_value();
+    for (const std::string& header : rules_.headers) {
+      const auto columns = static_cast<size_t>(std::count(header.begin(), header.end(), ',')) + 1;
+      if (numbers ? columns != fields.size() : header != names) continue;
+      names_ = header;
+      table_.columns = columns;
+      return !numbers;
+    }
+    problem(0, "",
+            numbers ? std::to_string(fields.size()) + " columns, expected " + expected()
+                    : "the header is \"" + names.substr(0, 60) + "\", expected " + expected());
+    wrong_ = kShownProblems;  // no row can be judged
+    return true;
+  }
+
+  std::string nameOf(size_t column) const { return std::string(fieldsOf(names_)[column].text); }
+
+  void row(const std::vector<Field>& fields) {
+    if (fields.size() != table_.columns)
+      return problem(0, "", std::to_string(fields.size()) + " columns, expected " + std::to_string(table_.columns));
+    for (size_t i = 0; i < fields.size(); ++i)
+      if (!take(fields[i], i)) return table_.values.resize(table_.lines.size() * table_.columns);
+    const double* now = table_.values.data() + table_.lines.size() * table_.columns;
+    if (rules_.growing && !table_.lines.empty() && *now <= *(now - table_.columns)) {
+      problem(0, nameOf(0),
+              numberText(*now) + " does not grow, expected more than " + numberText(*(now - table_.columns)));
+      return table_.values.resize(table_.lines.size() * table_.columns);
+    }
+    table_.lines.push_back(line_);
+  }
+
+  bool take(const Field& field, size_t column) {
+    const std::optional<double> value = numberIn(field.text);
+    const bool finite = rules_.finite || (rules_.growing && column == 0);
+    const bool good = value && (finite ? std::isfinite(*value) && std::abs(*value) <= rules_.largest : true);
+    if (!good)
+      problem(field.offset, nameOf(column),
+              "\"" + std::string(field.text.substr(0, 40)) + "\" is not valid, expected a " +
+                  (finite ? "finite number" : "number") +
+                  (value && std::isfinite(*value) ? " of at most " + numberText(rules_.largest) : ""));
+    else
+      table_.values.push_back(*value);
+    return good;
+  }
+
+  const std::string& file_;
+  const CsvRules& rules_;
+  Problems& problems_;
+  CsvTable table_;
+  std::string names_;
+  size_t wrong_ = 0;
+  int line_ = 0;
+};
+
+}  // namespace
+
+std::optional<CsvTable> parseCsv(std::string_view text, const std::string& file, const CsvRules& rules,
+                                 Problems& problems) {
+  Parser parser(file, rules, problems);
+  for (size_t start = 0; start < text.size() && !parser.tooWrong();) {
+    const size_t end = std::min(text.find('\n', start), text.size());
+    parser.line(text.substr(start, end - start));
+    start = end + 1;
+  }
+  return parser.take();
+}
+
+std::optional<CsvTable> readCsv(const std::filesystem::path& file, size_t max_bytes, const CsvRules& rules,
+                                Problems& problems) {
+  const auto text = readFile(file, max_bytes, problems);
+  return text ? parseCsv(*text, file.string(), rules, problems) : std::nullopt;
+}
+
+}  // namespace hapticd::document

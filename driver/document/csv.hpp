@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+/// Tables of numbers from CSV files, in one dialect: fields between commas, blanks around them ignored, empty lines and
+/// lines that begin with # skipped, and a header line. A file may leave the header out.
+#pragma once
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "document/problem.hpp"
+
+namespace hapticd::document {
+
+/// What a table must be like.
+struct CsvRules {
+  std::vector<std::string> headers;  ///< those that are accepted, "t,x,y,z"; their lengths differ
+  bool finite = true;                ///< refuse nan and inf; the first column of a growing table is always finite
+  bool growing = false;              ///< the first column grows from row to row
+  double largest = HUGE_VAL;         ///< magnitude of a finite number
+};
+
+struct CsvTable {
+  size_t columns = 0;
+  std::vector<double> values;  ///< row by row
+  std::vector<int> lines;      ///< of each row in the file, from 1
+
+  size_t rows() const { return lines.size(); }
+  const double* row(size_t i) const { return values.data() + i * columns; }
+};
+
+/// [main] Parses a text. Whatever breaks the rules becomes a problem with line and column, at most twenty of them; then
+/// nothing is returned.
+std::optional<CsvTable> parseCsv(std::string_view text, const std::string& file, const CsvRules& rules,
+                                 Problems& problems);
+
+/// [main] Reads and parses a file of at most `max_bytes`.
+std::optional<CsvTable> readCsv(const std::filesystem::path& file, size_t max_bytes, const CsvRules& rules,
+                                Problems& problems);
+
+}  // namespace hapticd::document

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <sstream>
+#include <unordered_set>
+
+#include "base/regular_file.hpp"
+#include "document/node.hpp"
+
+namespace hapticd::document {
+namespace {
+
+/// Why reading stops at once.
+struct Refused {
+  YAML::Mark mark;
+  std::string what;
+};
+
+/// Builds the tree from the parser's events. Anchors are kept as copies; an alias copies again and is counted.
+class Builder final : public YAML::EventHandler {
+ public:
+  Builder(const std::string& file, size_t most_nodes, Problems& problems)
+      : file_(file), problems_(problems), most_nodes_(most_nodes) {}
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    add(make(mark, Node::Kind::kNull), mark, anchor);
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    Node node = make(mark, Node::Kind::kScalar);
+    node.scalar = value;
+    node.quoted = tag != "?" && tag != "";  // "!" is the parser's mark of a quoted or block scalar
+    if (!node.quoted && (value == "~" || value == "null" || value == "Null" || value == "NULL"))
+      node.kind = Node::Kind::kNull;
+    add(std::move(node), mark, anchor);
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    for (const Open& open : open_)
+      if (open.anchor == anchor) throw Refused{mark, "an alias inside the node that it names, which would never end"};
+    const auto found = std::find_if(anchors_.begin(), anchors_.end(), [&](const auto& a) { return a.first == anchor; });
+    if (found == anchors_.end()) throw Refused{mark, "an alias without an anchor before it"};
+    count(sizeOf(found->second), mark);
+    add(found->second, mark, 0);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open(mark, Node::Kind::kSequence, anchor);
+  }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open(mark, Node::Kind::kMap, anchor);
+  }
+  void OnSequenceEnd() override { closeLast(); }
+  void OnMapEnd() override { closeLast(); }
+
+  std::optional<Node> take() { return std::move(root_); }
+
+ private:
+  struct Open {
+    Node node;
+    YAML::anchor_t anchor;
+    std::optional<Node> key;                // of a map: read, its value not yet
+    std::unordered_set<std::string> names;  // of a map: to find duplicates
+  };
+
+  Node make(const YAML::Mark& mark, Node::Kind kind) {
+    count(1, mark);
+    Node node;
+    node.kind = kind;
+    node.line = mark.line + 1;
+    node.column = mark.column + 1;
+    return node;
+  }
+  void count(size_t nodes, const YAML::Mark& mark) {
+    nodes_ += nodes;
+    if (nodes_ > most_nodes_)
+      throw Refused{mark, "more than " + std::to_string(most_nodes_) + " values (with aliases expanded)"};
+  }
+  static size_t sizeOf(const Node& node) {
+    size_t size = 1;
+    for (const Node& item : node.items) size += sizeOf(item);
+    for (const Entry& entry : node.entries) size += 1 + sizeOf(entry.value);
+    return size;
+  }
+  void open(const YAML::Mark& mark, Node::Kind kind, YAML::anchor_t anchor) {
+    if (open_.size() >= kMaxDepth) throw Refused{mark, "nested deeper than " + std::to_string(kMaxDepth) + " levels"};
+    open_.push_back({make(mark, kind), anchor, std::nullopt, {}});
+  }
+  void closeLast() {
+    Open done = std::move(open_.back());
+    open_.pop_back();
+    const YAML::Mark mark = YAML::Mark::null_mark();
+    add(std::move(done.node), mark, done.anchor);
+  }
+  void add(Node node, const YAML::Mark& mark, YAML::anchor_t anchor) {
+    if (anchor != 0) {
+      count(sizeOf(node), mark);
+      anchors_.emplace_back(anchor, node);
+    }
+    if (open_.empty()) {
+      root_ = std::move(node);
+    } else if (open_.back().node.isSequence()) {
+      open_.back().node.items.push_back(std::move(node));
+    } else {
+      addToMap(open_.back(), std::move(node));
+    }
+  }
+  void addToMap(Open& map, Node node) {
+    if (!map.key) {
+      if (!node.isScalar() && !node.isNull()) {
+        report(problems_, file_, node.line, node.column, "", "a key that is " + describe(node) + ", expected a name");
+        node.scalar.assign(1, '?');
+      } else if (!map.names.insert(node.scalar).second) {
+        const Entry* first = nullptr;
+        for (const Entry& entry : map.node.entries)
+          if (entry.key.scalar == node.scalar && first == nullptr) first = &entry;
+        problems_.push_back({{file_, node.line, node.column},
+                             node.scalar,
+                             "given twice (first in line " + std::to_string(first ? first->key.line : 0) +
+                                 "), expected each key once"});
+      }
+      map.key = std::move(node);
+      return;
+    }
+    map.node.entries.push_back({*std::move(map.key), std::move(node)});
+    map.key.reset();
+  }
+
+  std::string file_;
+  Problems& problems_;
+  std::vector<Open> open_;
+  std::vector<std::pair<YAML::anchor_t, Node>> anchors_;
+  std::optional<Node> root_;
+  size_t nodes_ = 0, most_nodes_;
+};
+
+/// The first byte that is no part of valid UTF-8, or npos. Overlong forms are let through: nothing decodes them here.
+size_t firstBadByte(const std::string& text) {
+  for (size_t i = 0; i < text.size();) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    const size_t length = c < 0x80                ? 1
+                          : c >= 0xC2 && c < 0xE0 ? 2
+                          : c >= 0xE0 && c < 0xF0 ? 3
+                          : c >= 0xF0 && c < 0xF5 ? 4
+                                                  : 0;
+    const bool control = c < 0x20 && c != '\n' && c != '\r' && c != '\t';
+    if (length == 0 || control || i + length > text.size()) return i;
+    for (size_t j = 1; j < length; ++j)
+      if ((static_cast<unsigned char>(text[i + j]) & 0xC0) != 0x80) return i;
+    i += length;
+  }
+  return std::string::npos;
+}
+
+Place placeOf(const std::string& text, size_t offset, const std::string& file) {
+  const std::string_view before = std::string_view(text).substr(0, offset);
+  const size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
+  return {file, 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')),
+          1 + static_cast<int>(offset - line_start)};
+}
+
+Place placeOf(const YAML::Mark& mark, const std::string& file) {
+  return {file, std::max(mark.line, 0) + 1, std::max(mark.column, 0) + 1};
+}
+
+}  // namespace
+
+std::optional<Node> parseText(const std::string& text, const std::string& file, Problems& problems) {
+  if (const size_t bad = firstBadByte(text); bad != std::string::npos) {
+    report(problems, placeOf(text, bad, file), "",
+           "a byte that is not text (code " + std::to_string(static_cast<unsigned char>(text[bad])) +
+               "), expected YAML in UTF-8");
+    return std::nullopt;
+  }
+  Builder builder(file, maxNodes(text.size()), problems);
+  try {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    if (!parser.HandleNextDocument(builder)) {
+      report(problems, file, 1, 1, "", "the file is empty");
+      return std::nullopt;
+    }
+    std::optional<Node> root = builder.take();
+    Problems ignored;
+    Builder second(file, maxNodes(text.size()), ignored);
+    if (parser.HandleNextDocument(second)) {
+      const std::optional<Node> next = second.take();
+      report(problems, file, next ? next->line : 1, next ? next->column : 1, "",
+             "a second document (after ---), expected one");
+    }
+    return root;
+  } catch (const Refused& refused) {
+    report(problems, placeOf(refused.mark, file), "", refused.what);
+  } catch (const YAML::Exception& error) {
+    report(problems, placeOf(error.mark, file), "", "not YAML: " + error.msg);
+  } catch (const std::exception& error) {
+    report(problems, file, 1, 1, "", std::string("not YAML: ") + error.what());
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> readFile(const std::filesystem::path& file, size_t max_bytes, Problems& problems) {
+  auto text = readRegular(file.string(), max_bytes);
+  if (text) return *std::move(text);
+  report(problems, file.string(), 0, 0, "", text.error());
+  return std::nullopt;
+}
+
+std::optional<Node> parseFile(const std::filesystem::path& file, Problems& problems) {
+  const std::optional<std::string> text = readFile(file, kMaxFileBytes, problems);
+  return text ? parseText(*text, file.string(), problems) : std::nullopt;
+}
+
+}  // namespace hapticd::document

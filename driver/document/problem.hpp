@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+/// What is wrong with a file, for the person who wrote it.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace hapticd::document {
+
+/// Where something was written; lines and columns count from 1, 0: nowhere in particular.
+struct Place {
+  std::string file;
+  int line = 0, column = 0;
+};
+
+struct Problem {
+  Place place;
+  std::string key;   ///< "models[2].parameters.stiffness"; "" for the file as a whole
+  std::string what;  ///< what is wrong, and what was expected
+
+  /// "scene.yaml:12:18: models[2].parameters.stiffness: -5 N/m is out of range, expected 0 to 20000 N/m"
+  std::string text() const;
+};
+
+using Problems = std::vector<Problem>;
+
+/// Adds a problem.
+void report(Problems& problems, const Place& place, const std::string& key, const std::string& what);
+void report(Problems& problems, const std::string& file, int line, int column, const std::string& key,
+            const std::string& what);
+
+/// In the order of the files' lines, as editors list them; the order of files stays.
+void sortByPlace(Problems& problems);
+
+}  // namespace hapticd::document

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: MIT
+#include "document/reader.hpp"
+
+#include <sys/stat.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "base/regular_file.hpp"
+#include "document/suggestion.hpp"
+#include "document/table.hpp"
+
+namespace hapticd::document {
+namespace {
+
+constexpr double kUnitTolerance = 1e-3;  ///< of a quaternion's length: digits that a person leaves out, not an error
+constexpr size_t kLongestName = 100;
+
+std::string wordOf(const Node& node) {
+  return node.isScalar() && !node.quoted ? node.scalar : "";
+}
+
+}  // namespace
+
+std::string numberText(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+std::string expectedOf(const Range& range) {
+  const std::string unit = range.unit[0] != '\0' ? std::string(" ") + range.unit : "";
+  const bool low = range.min > -1e300, high = range.max < 1e300;
+  if (low && high) return numberText(range.min) + " to " + numberText(range.max) + unit;
+  if (low) return numberText(range.min) + unit + " or more";
+  if (high) return numberText(range.max) + unit + " or less";
+  return "a number" + (unit.empty() ? "" : " in" + unit);
+}
+
+std::string joined(const std::string& parent, const std::string& key) {
+  return parent.empty() ? key : parent + "." + key;
+}
+
+bool normalise(Eigen::Quaterniond& q) {
+  const double length = q.norm();
+  if (!(std::abs(length - 1) <= kUnitTolerance)) return false;
+  q.coeffs() /= length;
+  return true;
+}
+
+std::optional<double> Reader::number(const Node& node, const std::string& key, const Range& range) {
+  const std::optional<double> value = node.isScalar() && !node.quoted ? toNumber(node.scalar) : std::nullopt;
+  if (!value) {
+    problem(node, key, describe(node) + " is not a number, expected " + expectedOf(range));
+  } else if (!std::isfinite(*value)) {
+    problem(node, key, node.scalar + " is not finite, expected " + expectedOf(range));
+  } else if (*value < range.min || *value > range.max) {
+    const std::string unit = range.unit[0] != '\0' ? std::string(" ") + range.unit : "";
+    problem(node, key, node.scalar + unit + " is out of range, expected " + expectedOf(range));
+  } else {
+    return value;
+  }
+  return std::nullopt;
+}
+
+std::optional<double> Reader::whole(const Node& node, const std::string& key, const Range& range) {
+  const std::optional<double> value = number(node, key, range);
+  if (!value || *value == std::floor(*value)) return value;
+  problem(node, key, node.scalar + " is not a whole number, expected " + expectedOf(range));
+  return std::nullopt;
+}
+
+std::optional<bool> Reader::boolean(const Node& node, const std::string& key) {
+  const std::string word = wordOf(node);
+  if (word == "true" || word == "yes" || word == "on") return true;
+  if (word == "false" || word == "no" || word == "off") return false;
+  problem(node, key, describe(node) + " is neither true nor false, expected true or false");
+  return std::nullopt;
+}
+
+std::optional<size_t> Reader::choice(const Node& node, const std::string& key, std::span<const std::string> choices) {
+  for (size_t i = 0; node.isScalar() && i < choices.size(); ++i)
+    if (node.scalar == choices[i]) return i;
+  const std::vector<std::string> all(choices.begin(), choices.end());
+  const std::string meant = node.isScalar() ? suggestion(node.scalar, all) : "";
+  problem(node, key, describe(node) + " is an invalid value, expected one of " + listed(all, 40) + meant);
+  return std::nullopt;
+}
+
+std::optional<std::string> Reader::text(const Node& node, const std::string& key) {
+  if (node.isScalar()) return node.scalar;
+  problem(node, key, describe(node) + ", expected a text");
+  return std::nullopt;
+}
+
+std::optional<std::string> Reader::name(const Node& node, const std::string& key) {
+  const std::optional<std::string> given = text(node, key);
+  if (!given) return std::nullopt;
+  bool good = !given->empty() && given->size() <= kLongestName && given->front() != ' ' && given->back() != ' ';
+  for (const char c : *given) good = good && static_cast<unsigned char>(c) >= 0x20 && c != ',' && c != '"' && c != 0x7f;
+  if (good) return given;
+  problem(node, key,
+          describe(node) + " is not a valid name, expected 1 to " + std::to_string(kLongestName) +
+              " characters without commas, quotes, or blanks at the ends");
+  return std::nullopt;
+}
+
+std::optional<std::filesystem::path> Reader::existingFile(const Node& node, const std::string& key) {
+  if (!node.isScalar() || node.scalar.empty()) {
+    problem(node, key, describe(node) + ", expected the path of a file");
+    return std::nullopt;
+  }
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path written(node.scalar);
+  const fs::path full = fs::absolute(file_.parent_path() / written, error).lexically_normal();
+  struct stat info{};
+  if (stat(full.c_str(), &info) == 0) {
+    const std::string other = notAFile(info.st_mode);
+    if (other.empty()) return full;
+    problem(node, key, full.string() + " " + other);
+  } else {
+    std::vector<std::string> neighbours;
+    for (fs::directory_iterator entry(full.parent_path(), error), end; !error && entry != end; entry.increment(error))
+      neighbours.push_back(entry->path().filename().string());
+    problem(node, key,
+            "there is no file " + full.string() + ", expected the path of a file" +
+                (written.is_absolute() ? "" : ", relative to the file that names it") +
+                suggestion(full.filename().string(), neighbours));
+  }
+  return std::nullopt;
+}
+
+std::optional<Eigen::Vector3d> Reader::vector3(const Node& node, const std::string& key, const Range& range) {
+  if (!node.isSequence() || node.items.size() != 3) {
+    problem(node, key,
+            (node.isSequence() ? "a list of " + std::to_string(node.items.size()) : describe(node)) +
+                ", expected a list of 3 numbers, " + expectedOf(range));
+    return std::nullopt;
+  }
+  Eigen::Vector3d v;
+  bool good = true;
+  for (int i = 0; i < 3; ++i) {
+    const auto value = number(node.items[static_cast<size_t>(i)], key + "[" + std::to_string(i) + "]", range);
+    good = good && value;
+    v[i] = value.value_or(0);
+  }
+  return good ? std::optional(v) : std::nullopt;
+}
+
+std::optional<Eigen::Quaterniond> Reader::quaternion(const Node& node, const std::string& key) {
+  if (!node.isSequence() || node.items.size() != 4) {
+    problem(node, key,
+            (node.isSequence() ? "a list of " + std::to_string(node.items.size()) : describe(node)) +
+                ", expected a unit quaternion [w, x, y, z]");
+    return std::nullopt;
+  }
+  std::array<double, 4> v{};
+  for (size_t i = 0; i < 4; ++i) {
+    const auto value = number(node.items[i], key + "[" + std::to_string(i) + "]", {-2, 2});
+    if (!value) return std::nullopt;
+    v[i] = *value;
+  }
+  Eigen::Quaterniond q(v[0], v[1], v[2], v[3]);
+  if (normalise(q)) return q;
+  problem(node, key,
+          "the quaternion has length " + numberText(q.norm()) + ", expected 1 within 0.001 (order w, x, y, z)");
+  return std::nullopt;
+}
+
+void Reader::object(const Node& node, const std::string& key, const Table& table, void* object) {
+  if (!node.isMap()) {
+    problem(node, key, describe(node) + ", expected a mapping with " + listed(table.names()));
+    return;
+  }
+  for (const Entry& entry : node.entries) {
+    const std::string path = joined(key, entry.key.scalar);
+    if (const Key* known = table.find(entry.key.scalar)) {
+      if (entry.value.isNull())
+        problem(entry.key, path, std::string("empty, expected ") + known->expected());
+      else
+        known->store(*this, entry.value, path, *known, object);
+    } else {
+      problem(
+          entry.key, path,
+          "unknown key, expected one of " + listed(table.names(), 20) + suggestion(entry.key.scalar, table.names()));
+    }
+  }
+  for (const Key& wanted : table.keys)
+    if (wanted.required && node.find(wanted.name) == nullptr)
+      problem(node, joined(key, wanted.name), std::string("missing, expected ") + wanted.expected());
+}
+
+}  // namespace hapticd::document

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+/// One line a key: parser, type, unit, range, default, documentation and JSON Schema all come from it.
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "document/reader.hpp"
+
+namespace hapticd::document {
+
+enum class Type : uint8_t {
+  kReal,
+  kInteger,
+  kBool,
+  kChoice,
+  kName,
+  kText,
+  kFile,  ///< a path
+  kVector3,
+  kQuaternion,  ///< w, x, y, z
+  kObject,
+  kList,  ///< of objects
+  kAny    ///< looked at later, with the plugin's own table
+};
+
+struct Key {
+  const char* name;
+  Type type;
+  const char* doc;
+  const char* def = nullptr;  ///< as YAML; nullptr: none
+  bool required = false;
+  Range range{-1e308, 1e308};
+  std::span<const std::string_view> choices{};
+  const Table* table = nullptr;  ///< kObject, kList
+  void (*store)(Reader&, const Node&, const std::string& path, const Key&, void* object) = nullptr;
+  const char* shape = "";  ///< kAny: what is expected, in words
+
+  std::string expected() const;  ///< "a number, 10 to 20000 Hz"
+};
+
+struct Table {
+  std::span<const Key> keys;
+
+  const Key* find(std::string_view name) const;
+  std::vector<std::string> names() const;
+};
+
+/// The line is a required one.
+constexpr Key required(Key key) {
+  key.required = true;
+  return key;
+}
+
+namespace detail {
+template <class T, class C>
+C classOf(T C::*);
+template <class T>
+struct Bare {
+  using Type = T;
+};
+template <class T>
+struct Bare<std::optional<T>> {
+  using Type = T;
+};
+template <auto M>
+using Class = decltype(classOf(M));
+template <auto M>
+auto& member(void* object) {
+  return static_cast<Class<M>*>(object)->*M;
+}
+std::vector<std::string> texts(std::span<const std::string_view> words);
+}  // namespace detail
+
+template <auto M>
+constexpr Key real(const char* name, Range range, const char* def, const char* doc) {
+  return {name,
+          Type::kReal,
+          doc,
+          def,
+          false,
+          range,
+          {},
+          nullptr,
+          [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
+            if (const auto value = in.number(node, path, key.range)) detail::member<M>(object) = *value;
+          }};
+}
+
+template <auto M>
+constexpr Key integer(const char* name, Range range, const char* def, const char* doc) {
+  return {name,
+          Type::kInteger,
+          doc,
+          def,
+          false,
+          range,
+          {},
+          nullptr,
+          [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
+            using T = typename detail::Bare<std::remove_cvref_t<decltype(detail::member<M>(object))>>::Type;
+            if (const auto value = in.whole(node, path, key.range)) detail::member<M>(object) = static_cast<T>(*value);
+          }};
+}
+
+template <auto M>
+constexpr Key boolean(const char* name, const char* def, const char* doc) {
+  return {name,
+          Type::kBool,
+          doc,
+          def,
+          false,
+          {0, 1},
+          {},
+          nullptr,
+          [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
+            if (const auto value = in.boolean(node, path)) detail::member<M>(object) = *value;
+          }};
+}
+
+/// The member is a std::string or an enumeration in the order of the choices.
+template <auto M>
+constexpr Key choice(const char* name, std::span<const std::string_view> choices, const char* def, const char* doc) {
+  return {name,
+          Type::kChoice,
+          doc,
+          def,
+          false,
+          {},
+          choices,
+          nullptr,
+          [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
+            using T = std::remove_cvref_t<decltype(detail::member<M>(object))>;
+            const auto index = in.choice(node, path, detail::texts(key.choices));
+            if (!index) return;
+            if constexpr (std::is_enum_v<T>)
+              detail::member<M>(object) = static_cast<T>(*index);
+            else
+              detail::member<M>(object) = std::string(key.choices[*index]);
+          }};
+}
+
+template <auto M>
+constexpr Key name(const char* name, const char* doc) {
+  return {name,
+          Type::kName,
+          doc,
+          nullptr,
+          false,
+          {},
+          {},
+          nullptr,
+          [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
+            if (const auto value = in.name(node, path)) detail::member<M>(object) = *value;
+          }};
+}
+
+template <auto M>
+constexpr Key file(const char* name, const char* doc) {
+  return {name,
+          Type::kFile,
+          doc,
+          nullptr,
+          false,
+          {},
+          {},
+          nullptr,
+          [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
+            if (const auto value = in.existingFile(node, path)) detail::member<M>(object) = *value;
+          }};
+}
+
+template <auto M>
+constexpr Key vector3(const char* name, Range range, const char* def, const char* doc) {
+  return {name,
+          Type::kVector3,
+          doc,
+          def,
+          false,
+          range,
+          {},
+          nullptr,
+          [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
+            if (const auto value = in.vector3(node, path, key.range)) detail::member<M>(object) = *value;
+          }};
+}
+
+template <auto M>
+constexpr Key quaternion(const char* name, const char* def, const char* doc) {
+  return {name,
+          Type::kQuaternion,
+          doc,
+          def,
+          false,
+          {-1, 1},
+          {},
+          nullptr,
+          [](Reader& in, const Node& node, const std::string& path, const Key&, void* object) {
+            if (const auto value = in.quaternion(node, path)) detail::member<M>(object) = *value;
+          }};
+}
+
+/// A nested mapping; an optional member exists once the mapping is given.
+template <auto M>
+constexpr Key object(const char* name, const Table& table, const char* doc) {
+  return {name,
+          Type::kObject,
+          doc,
+          nullptr,
+          false,
+          {},
+          {},
+          &table,
+          [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
+            auto& target = detail::member<M>(object);
+            if constexpr (requires { target.emplace(); })
+              in.object(node, path, *key.table, &target.emplace());
+            else
+              in.object(node, path, *key.table, &target);
+          }};
+}
+
+/// A list of mappings; elements with a member `node` remember where they stand.
+template <auto M>
+constexpr Key list(const char* name, const Table& table, Range count, const char* doc) {
+  return {name,
+          Type::kList,
+          doc,
+          nullptr,
+          false,
+          count,
+          {},
+          &table,
+          [](Reader& in, const Node& node, const std::string& path, const Key& key, void* object) {
+            auto& target = detail::member<M>(object);
+            const auto most = static_cast<size_t>(key.range.max);
+            if (!node.isSequence() || node.items.size() > most)
+              return in.problem(
+                  node, path,
+                  (node.isSequence() ? "a list of " + std::to_string(node.items.size()) : describe(node)) +
+                      ", expected " + key.expected());
+            target.reserve(node.items.size());
+            for (size_t i = 0; i < node.items.size(); ++i) {
+              auto& item = target.emplace_back();
+              if constexpr (requires { item.node = &node; }) item.node = &node.items[i];
+              in.object(node.items[i], path + "[" + std::to_string(i) + "]", *key.table, &item);
+            }
+          }};
+}
+
+/// Kept as it stands; the node outlives the reading.
+template <auto M>
+constexpr Key any(const char* name, const char* shape, const char* doc) {
+  return {name,
+          Type::kAny,
+          doc,
+          nullptr,
+          false,
+          {},
+          {},
+          nullptr,
+          [](Reader&, const Node& node, const std::string&, const Key&, void* object) {
+            detail::member<M>(object) = &node;
+          },
+          shape};
+}
+
+}  // namespace hapticd::document

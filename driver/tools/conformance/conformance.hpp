@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+/// The conformance tests that a shape plugin must pass, by name.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "conformance/conformance_subject.hpp"
+
+namespace hapticd::conformance {
+
+struct ConformanceTest {
+  const char* name;
+  const char* doc;
+  /// "": passed; "skip: why": does not apply; otherwise what was wrong.
+  std::string (*run)(const Recipe& recipe, uint64_t seed);
+};
+
+std::vector<ConformanceTest> lifeTests();    ///< descriptors, parameters, creation and activation
+std::vector<ConformanceTest> stepTests();    ///< what every step owes: time, memory, finite and continuous answers
+std::vector<ConformanceTest> memoryTests();  ///< what an instance remembers, and what it must not
+
+/// All of them, in the order in which they run.
+const std::vector<ConformanceTest>& conformanceTests();
+
+/// Random parameters, probes, jumps, resets and bad samples from one seed. "": nothing was wrong.
+std::string fuzzOnce(const Recipe& recipe, uint64_t seed);
+
+}  // namespace hapticd::conformance

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+#include <malloc.h>
+
+#include <cmath>
+#include <cstring>
+#include <set>
+
+#include "base/clock.hpp"
+#include "conformance/conformance_parts.hpp"
+
+namespace hapticd::conformance {
+namespace {
+
+using Eigen::Vector3d;
+
+bool blank(const char* words) {
+  return words == nullptr || words[0] == '\0';
+}
+
+std::string descriptorComplete(const Recipe& recipe, uint64_t) {
+  auto made = Subject::make(recipe);
+  if (!made) return made.error();
+  const hsp_class& c = (*made)->description();
+  if (blank(c.id) || std::strchr(c.id, '.') == nullptr) return "id is not a reverse domain name";
+  if (blank(c.version) || blank(c.license) || blank(c.doc)) return "version, license or doc is missing";
+  for (uint32_t i = 0; i < c.param_count; ++i) {
+    const hsp_param& p = paramAt(c, i);
+    if (blank(p.id) || blank(p.doc) || p.unit == nullptr)
+      return "parameter " + std::to_string(i) + " lacks id, unit or doc";
+    const bool number = p.kind == HSP_REAL || p.kind == HSP_INT;
+    if (number && !(p.min <= p.def && p.def <= p.max)) return std::string(p.id) + ": its default is out of its range";
+    if (p.kind == HSP_ENUM && !(p.def >= 0 && p.def < p.choice_count))
+      return std::string(p.id) + ": its default is not one of its choices";
+  }
+  return "";
+}
+
+std::string idUnique(const Recipe& recipe, uint64_t) {
+  auto library = host::Library::open(recipe.file);
+  if (!library) return library.error();
+  auto entry = (*library)->shapes();
+  if (!entry) return entry.error();
+  std::set<std::string> ids;
+  for (uint32_t i = 0; i < (*entry)->class_count; ++i) {
+    const hsp_class* c = (*entry)->classes[i];
+    if (c == nullptr) return "a class is NULL";
+    if (!ids.insert(c->id).second || !ids.insert(c->name).second) return std::string("id or name twice: ") + c->id;
+    std::set<std::string> params;
+    for (uint32_t k = 0; k < c->param_count; ++k)
+      if (!params.insert(paramAt(*c, k).id).second) return std::string("parameter twice: ") + paramAt(*c, k).id;
+  }
+  return "";
+}
+
+std::string scanTimeLimit(const Recipe& recipe, uint64_t) {
+  const Nanoseconds begun = monotonicNow();
+  auto library = host::Library::open(recipe.file);
+  if (!library) return library.error();
+  const double seconds = static_cast<double>(monotonicNow() - begun) * 1e-9;
+  return seconds < 1 ? "" : "loading took " + text(seconds) + " s; expected less than 1 s";
+}
+
+std::string unknownExtension(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  for (const char* name : {"", "hsp.nothing/1", "hsp.surfaces/999", "HSP.SURFACES/1"})
+    if (made.subject->extension(name) != nullptr) return std::string("extension \"") + name + "\" is not NULL";
+  return "";
+}
+
+std::string createDestroyLeak(const Recipe& recipe, uint64_t) {
+  constexpr int kMost = 60;
+  constexpr Nanoseconds kEnough = 3 * kNanosecondsPerSecond;
+  const Nanoseconds begun = monotonicNow();
+  size_t warm = 0;
+  int cycles = 0;
+  for (int i = 0; i < kMost && monotonicNow() - begun < kEnough; ++i) {
+    const Made made(recipe);
+    if (!made.error.empty()) return made.error;
+    for (int k = 0; k < 20; ++k) made.subject->step({onPath(*made.subject, k / 40.0)}, kConformanceDt);
+    if (i == 4) warm = mallinfo2().uordblks;
+    cycles = i - 4;
+  }
+  if (cycles < 2) return "skip: activation takes too long to repeat it";
+  const double leak = (static_cast<double>(mallinfo2().uordblks) - static_cast<double>(warm)) / cycles;
+  return leak < 256 ? "" : text(leak) + " bytes leak in each life";
+}
+
+std::string setOutOfRange(const Recipe& recipe, uint64_t) {
+  auto made = Subject::make(recipe);
+  if (!made) return made.error();
+  const hsp_class& c = (*made)->description();
+  for (uint32_t i = 0; i < c.param_count; ++i) {
+    const hsp_param& p = paramAt(c, i);
+    if (p.kind > HSP_ENUM) continue;
+    const double most = p.kind == HSP_ENUM ? p.choice_count - 1.0 : p.kind == HSP_BOOL ? 1 : p.max;
+    for (const double bad : {std::nan(""), p.kind == HSP_REAL || p.kind == HSP_INT ? p.min - 1 - std::abs(p.min) : -1,
+                             most + 1 + std::abs(most)}) {
+      if (std::isinf(bad)) continue;
+      hsp_value value{}, before{}, after{};
+      value.kind = p.kind;
+      value.number = bad;
+      c.get((*made)->handle(), i, &before);
+      if (c.set((*made)->handle(), i, &value) >= 0) return std::string(p.id) + " took " + text(bad);
+      c.get((*made)->handle(), i, &after);
+      if (after.number != before.number) return std::string(p.id) + " was changed by a refused value";
+    }
+  }
+  hsp_value value{};
+  value.kind = HSP_REAL;
+  return c.set((*made)->handle(), c.param_count + 7, &value) >= 0 ? "set() accepted a parameter that does not exist"
+                                                                  : "";
+}
+
+std::string paramRoundtrip(const Recipe& recipe, uint64_t) {
+  auto made = Subject::make(recipe);
+  if (!made) return made.error();
+  const hsp_class& c = (*made)->description();
+  for (uint32_t i = 0; i < c.param_count; ++i) {
+    const hsp_param& p = paramAt(c, i);
+    if (p.kind > HSP_ENUM) continue;
+    hsp_value value{}, got{};
+    value.kind = p.kind;
+    value.number = p.kind == HSP_REAL ? p.def + 0.25 * (std::min(p.max, p.def + 1) - p.def) : p.def;
+    if (c.set((*made)->handle(), i, &value) < 0) return std::string(p.id) + " refused " + text(value.number);
+    if (c.get((*made)->handle(), i, &got) < 0 || got.number != value.number)
+      return std::string(p.id) + " returned " + text(got.number) + " for " + text(value.number);
+  }
+  return "";
+}
+
+std::string activateTwice(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  hsp_report report{};
+  if (made.subject->activateRaw(1, report) >= 0) return "a second activate() was accepted";
+  const hsp_class& c = made.subject->description();
+  hsp_value value{};
+  if (c.param_count == 0) return "";
+  value.kind = paramAt(c, 0).kind;
+  value.number = paramAt(c, 0).def;
+  value.text = "x";
+  return c.set(made.subject->handle(), 0, &value) >= 0 ? "set() was accepted while active" : "";
+}
+
+std::string layoutGolden(const Recipe& recipe, uint64_t) {
+  const Made made(recipe), wide(recipe);
+  if (!made.error.empty()) return made.error;
+  const hsp_class& c = made.subject->description();
+  if (c.struct_size < offsetof(hsp_class, extension)) return "hsp_class is smaller than that of version 1.0";
+  if (c.param_count > 0 && c.params[0].struct_size < sizeof(hsp_param))
+    return "hsp_param is smaller than that of version 1.0";
+  if (made.subject->report().struct_size != sizeof(hsp_report)) return "activate() changed report.struct_size";
+  wide.subject->widen(32);  // as a later host does, whose records are larger
+  for (int i = 0; i < kConformanceSteps / 4; ++i) {
+    const Vector3d p = onPath(*made.subject, static_cast<double>(i) / kConformanceSteps);
+    const Answer expected = made.subject->step({p}, kConformanceDt);
+    if (!sameBits(expected, wide.subject->step({p}, kConformanceDt)))
+      return "answers change with larger records: use HSP_AT";
+    if (!wide.subject->roomUntouched()) return "it wrote beyond hsp_contact";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::vector<ConformanceTest> lifeTests() {
+  return {
+      {"scan-time-limit", "the file loads within a second", &scanTimeLimit},
+      {"descriptor-complete", "every function, name, unit and default is there", &descriptorComplete},
+      {"id-unique", "no id, name or parameter occurs twice", &idUnique},
+      {"layout-golden", "structs have at least their size of version 1.0, and strides are used", &layoutGolden},
+      {"unknown-extension-returns-null", "an unknown extension is NULL", &unknownExtension},
+      {"create-destroy-leak", "create() to destroy() leaks no memory", &createDestroyLeak},
+      {"set-out-of-range-rejected", "values out of range change nothing", &setOutOfRange},
+      {"param-roundtrip", "get() returns what set() was given", &paramRoundtrip},
+      {"activate-twice-rejected", "active instances refuse activate() and set()", &activateTwice},
+  };
+}
+
+}  // namespace hapticd::conformance

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "conformance/conformance_parts.hpp"
+
+namespace hapticd::conformance {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The answers of one instance along the path.
+std::vector<Answer> answersOf(Subject& subject, int steps, double phase = 0) {
+  std::vector<Answer> answers;
+  for (int i = 0; i < steps; ++i)
+    answers.push_back(
+        subject.step({onPath(subject, static_cast<double>(i) / kConformanceSteps, phase)}, kConformanceDt));
+  return answers;
+}
+
+std::string firstDifference(const std::vector<Answer>& a, const std::vector<Answer>& b) {
+  for (size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    if (!sameBits(a[i], b[i])) return "answers differ from step " + std::to_string(i) + " on";
+  return "";
+}
+
+std::string resetEqualsFresh(const Recipe& recipe, uint64_t) {
+  const Made used(recipe), fresh(recipe);
+  if (!used.error.empty()) return used.error;
+  if (used.subject->moves()) return "skip: it moves, and reset() does not forget its pose";
+  answersOf(*used.subject, kConformanceSteps / 2, 0.7);
+  used.subject->reset();
+  const auto a = answersOf(*used.subject, kConformanceSteps / 4), b = answersOf(*fresh.subject, kConformanceSteps / 4);
+  for (size_t i = 0; i < a.size(); ++i) {
+    const double apart = (Vector3d(a[i].contacts[0].force) - Vector3d(b[i].contacts[0].force)).norm();
+    if (!(apart <= 1e-6 * (1 + Vector3d(b[i].contacts[0].force).norm())))
+      return "after reset() the force differs by " + text(apart) + " N at step " + std::to_string(i);
+  }
+  return "";
+}
+
+std::string batchEqualsSingle(const Recipe& recipe, uint64_t) {
+  const Made batch(recipe, 2), one(recipe), two(recipe);
+  if (!batch.error.empty()) return "two probes: " + batch.error;
+  if (batch.subject->moves() || (batch.subject->description().flags & HSP_C_DEFORMS) != 0)
+    return "skip: a moving or deforming shape couples the probes";
+  for (int i = 0; i < kConformanceSteps; ++i) {
+    const double part = static_cast<double>(i) / kConformanceSteps;
+    const Vector3d p = onPath(*batch.subject, part), q = onPath(*batch.subject, part, 1.1);
+    const Answer both = batch.subject->step({p, q}, kConformanceDt);
+    const Answer &a = one.subject->step({p}, kConformanceDt), &b = two.subject->step({q}, kConformanceDt);
+    if (std::memcmp(&both.contacts[0], &a.contacts[0], sizeof(hsp_contact)) != 0 ||
+        std::memcmp(&both.contacts[1], &b.contacts[0], sizeof(hsp_contact)) != 0)
+      return "two probes in one step get other answers than each alone, at step " + std::to_string(i);
+  }
+  return "";
+}
+
+std::string determinism(const Recipe& recipe, uint64_t) {
+  const Made first(recipe), second(recipe);
+  if (!first.error.empty()) return first.error;
+  return firstDifference(answersOf(*first.subject, kConformanceSteps), answersOf(*second.subject, kConformanceSteps));
+}
+
+std::string jumpFlag(const Recipe& recipe, uint64_t seed) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  if (made.subject->moves() || (made.subject->description().flags & HSP_C_DEFORMS) != 0)
+    return "skip: a moving or deforming shape remembers where it was touched";
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> part(0, 1);
+  for (int i = 0; i < 100; ++i) {
+    const Vector3d p = onPath(*made.subject, part(random), part(random));
+    const double jumped = made.subject->step({p}, kConformanceDt, HSP_IN_JUMP).contacts[0].depth_m;
+    const Made fresh(recipe);
+    const double alone = fresh.subject->step({p}, kConformanceDt).contacts[0].depth_m;
+    if (!(std::abs(jumped - alone) <= 1e-4 * (1e-2 + std::abs(alone))))
+      return "after a jump the depth is " + text(jumped) + " m, but that of a fresh instance is " + text(alone) + " m";
+  }
+  return "";
+}
+
+std::string stateRoundtrip(const Recipe& recipe, uint64_t) {
+  auto first = Subject::make(recipe), second = Subject::make(recipe);
+  if (!first) return first.error();
+  const auto* state = static_cast<const hsp_ext_state*>((*first)->extension(HSP_EXT_STATE));
+  if (state == nullptr) return "skip: no state extension";
+  if (auto active = (*first)->activate(); !active) return active.error();
+  answersOf(**first, kConformanceSteps / 2);
+  (*first)->deactivate();
+  std::vector<char> bytes(static_cast<size_t>(std::max<int64_t>(0, state->save((*first)->handle(), nullptr, 0))));
+  state->save((*first)->handle(), bytes.data(), bytes.size());
+  if (state->load((*second)->handle(), bytes.data(), bytes.size()) < 0) return "load() refused what save() wrote";
+  std::vector<char> again(bytes.size());
+  const int64_t size = state->save((*second)->handle(), again.data(), again.size());
+  return size == static_cast<int64_t>(bytes.size()) && bytes == again ? ""
+                                                                      : "the loaded state is saved with other bytes";
+}
+
+std::string stateGarbage(const Recipe& recipe, uint64_t seed) {
+  auto made = Subject::make(recipe);
+  if (!made) return made.error();
+  const auto* state = static_cast<const hsp_ext_state*>((*made)->extension(HSP_EXT_STATE));
+  if (state == nullptr) return "skip: no state extension";
+  std::mt19937_64 random(seed);
+  for (const size_t size : {0u, 1u, 7u, 64u, 1000u}) {
+    std::vector<char> bytes(size);
+    for (char& byte : bytes) byte = static_cast<char>(random());
+    if (state->load((*made)->handle(), bytes.data(), bytes.size()) >= 0)
+      return "load() accepted " + std::to_string(size) + " bytes of garbage";
+  }
+  return "";
+}
+
+std::string denormals(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  for (const double tiny : {0.0, -0.0, 5e-324, 1e-310, -1e-310, 1e-160}) {
+    hsp_probe probe{};
+    probe.orientation[0] = 1;
+    for (int i = 0; i < 3; ++i) probe.position[i] = probe.velocity[i] = tiny * (i + 1);
+    for (int i = 0; i < 10; ++i)
+      if (std::string wrong = wrongStatus(made.subject->stepRaw(probe, kConformanceDt)); !wrong.empty())
+        return wrong + " for a probe at " + text(tiny);
+  }
+  return "";
+}
+
+std::string twoInstances(const Recipe& recipe, uint64_t) {
+  const Made alone(recipe), first(recipe), second(recipe);
+  if (!alone.error.empty()) return alone.error;
+  const auto expected = answersOf(*alone.subject, kConformanceSteps / 2);
+  std::vector<Answer> mixed;
+  for (int i = 0; i < kConformanceSteps / 2; ++i) {
+    const double part = static_cast<double>(i) / kConformanceSteps;
+    mixed.push_back(first.subject->step({onPath(*first.subject, part)}, kConformanceDt));
+    second.subject->step({onPath(*second.subject, part, 2.1)}, kConformanceDt);
+  }
+  return firstDifference(expected, mixed);
+}
+
+}  // namespace
+
+std::vector<ConformanceTest> memoryTests() {
+  return {
+      {"reset-equals-fresh", "reset() forgets", &resetEqualsFresh},
+      {"batch-equals-single", "probes of one step do not mix", &batchEqualsSingle},
+      {"determinism-bitwise", "same input, same bits", &determinism},
+      {"jump-flag", "after a jump the nearest foot is found", &jumpFlag},
+      {"state-roundtrip", "a saved state can be loaded", &stateRoundtrip},
+      {"state-garbage-rejected", "garbage is refused as a state", &stateGarbage},
+      {"denormals", "tiny numbers give finite answers", &denormals},
+      {"two-instances-independent", "instances do not influence each other", &twoInstances},
+  };
+}
+
+}  // namespace hapticd::conformance

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#include "conformance/conformance_parts.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+namespace hapticd::conformance {
+
+using Eigen::Vector3d;
+
+Made::Made(const Recipe& recipe, uint32_t probes) {
+  auto made = Subject::make(recipe);
+  if (!made) {
+    error = made.error();
+    return;
+  }
+  subject = std::move(*made);
+  if (auto active = subject->activate(probes); !active) error = active.error();
+}
+
+std::string text(double value) {
+  char words[32];
+  std::snprintf(words, sizeof words, "%.6g", value);
+  return words;
+}
+
+Vector3d onPath(const Subject& subject, double part, double phase) {
+  const auto [low, high] = subject.bounds();
+  const Vector3d half = 0.65 * (high - low).cwiseMax(1e-3), middle = (low + high) / 2;
+  const double angle = 2 * M_PI * part;
+  return middle +
+         half.cwiseProduct(Vector3d(std::cos(angle + phase), std::cos(2 * angle + phase), std::cos(3 * angle - phase)));
+}
+
+std::string along(Subject& subject, const std::function<std::string(const Answer&, const Vector3d&)>& look, int steps) {
+  for (int i = 0; i <= steps; ++i) {
+    const Vector3d p = onPath(subject, static_cast<double>(i) / steps);
+    const Answer& answer = subject.step({p}, kConformanceDt);
+    if (std::string objection = look(answer, p); !objection.empty()) return objection + " at step " + std::to_string(i);
+  }
+  return "";
+}
+
+std::string wrongStatus(const Answer& answer) {
+  const bool known = answer.status == HSP_OK || answer.status == HSP_DEGRADED || answer.status == HSP_E_NUMERIC;
+  if (!known) return "status " + std::to_string(answer.status);
+  return finite(answer) ? "" : "an answer that is not finite";
+}
+
+const hsp_param& paramAt(const hsp_class& c, uint32_t i) {
+  return *HSP_AT(const hsp_param, c.params, c.params[0].struct_size, i);
+}
+
+}  // namespace hapticd::conformance

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "conformance/conformance_parts.hpp"
+#include "conformance/lock_count.hpp"
+#include "servo/safety/claim.hpp"
+#include "servo/safety/guard.hpp"
+
+namespace hapticd::conformance {
+namespace {
+
+using Eigen::Vector3d;
+
+std::string noAllocation(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  along(*made.subject, [](const Answer&, const Vector3d&) { return ""; });
+  const uint64_t count = made.subject->allocations();
+  return count == 0 ? "" : std::to_string(count) + " allocations in " + std::to_string(kConformanceSteps) + " steps";
+}
+
+std::string noLock(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  if (!countLocksOf(recipe.file)) return "skip: the file imports no lock function, or cannot be read";
+  uint64_t locks = 0;
+  for (int i = 0; i < kConformanceSteps; ++i) {
+    const Vector3d p = onPath(*made.subject, static_cast<double>(i) / kConformanceSteps);
+    const uint64_t before = locksCounted();
+    made.subject->step({p}, kConformanceDt);
+    locks += i % 5 != 0 ? locksCounted() - before : 0;  // searches belong to another thread, which may lock
+  }
+  return locks == 0 ? "" : std::to_string(locks) + " locks in " + std::to_string(kConformanceSteps) + " steps";
+}
+
+std::string stepCost(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  const uint64_t claim = std::max(made.subject->report().worst_ns, made.subject->report().typical_ns);
+  if (claim == 0) return "skip: the plugin claims no cost";
+  std::vector<uint64_t> spent;
+  along(*made.subject, [&](const Answer&, const Vector3d&) {
+    spent.push_back(made.subject->stepNs());
+    return "";
+  });
+  std::nth_element(spent.begin(), spent.begin() + static_cast<long>(spent.size() / 2), spent.end());
+  const uint64_t p50 = spent[spent.size() / 2];
+  return p50 <= claim
+             ? ""
+             : "a step takes " + std::to_string(p50) + " ns (median); the claimed worst is " + std::to_string(claim);
+}
+
+std::string finiteOutputs(const Recipe& recipe, uint64_t seed) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  const auto look = [](const Answer& answer, const Vector3d&) { return wrongStatus(answer); };
+  if (std::string wrong = along(*made.subject, look); !wrong.empty()) return wrong;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> step(0, 1e-3);
+  Vector3d p = onPath(*made.subject, 0.3);
+  for (int i = 0; i < kConformanceSteps; ++i) {
+    p += Vector3d(step(random), step(random), step(random));
+    if (std::string wrong = wrongStatus(made.subject->step({p}, kConformanceDt)); !wrong.empty())
+      return wrong + " on a random walk";
+  }
+  hsp_probe bad{};
+  for (double& x : bad.position) x = std::nan("");
+  bad.orientation[0] = 1;
+  bad.flags = HSP_IN_INVALID;
+  const Answer& answer = made.subject->stepRaw(bad, kConformanceDt);
+  if (!finite(answer)) return "the answer to a bad sample is not finite";
+  if (Vector3d(answer.contacts[0].force).norm() > 0) return "the answer to a bad sample has a force";
+  if (std::string wrong = wrongStatus(made.subject->step({p}, kConformanceDt)); !wrong.empty())
+    return wrong + " after a bad sample";
+  return "";
+}
+
+std::string forceContinuous(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  if (!(made.subject->report().max_stiffness > 0)) return "skip: no stiffness is claimed";
+  servo::Claim claim;
+  int jumps = 0;
+  Vector3d last = Vector3d::Zero();
+  return along(*made.subject, [&](const Answer& answer, const Vector3d& p) {
+    hsp_probe in{};
+    Eigen::Map<Vector3d>(in.velocity) = (p - last) / kConformanceDt;
+    last = p;
+    jumps += claim.judge(in, answer.contacts[0], p, made.subject->report().max_stiffness, made.subject->damping(),
+                         kConformanceDt) < 1
+                 ? 1
+                 : 0;
+    return std::string(jumps >= 3 ? "the force jumped beyond the claimed stiffness three times" : "");
+  });
+}
+
+std::string normalUnit(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  return along(*made.subject, [](const Answer& answer, const Vector3d&) {
+    const hsp_contact& c = answer.contacts[0];
+    const double norm = Vector3d(c.normal).norm();
+    const bool traced = (c.flags & HSP_OUT_TRACED) != 0;
+    return traced && std::abs(norm - 1) > 1e-6 ? "a normal of length " + text(norm) : std::string();
+  });
+}
+
+/// The sign that hurts: by the whole way, since a detent may pull for some of it.
+std::string forceOutward(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  double along_normal = 0;
+  along(*made.subject, [&](const Answer& answer, const Vector3d&) {
+    const hsp_contact& c = answer.contacts[0];
+    if ((c.flags & HSP_OUT_CONTACT) != 0 && c.depth_m > 0) along_normal += Vector3d(c.force).dot(Vector3d(c.normal));
+    return std::string();
+  });
+  return along_normal >= 0 ? "" : "forces in contact point against the outward normal: they pull the hand in";
+}
+
+std::string energyNonIncreasing(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  const double before = made.subject->energy();
+  if (made.subject->moves() && std::isnan(before)) return "skip: it moves and does not report its stored energy";
+  double given = 0, moved = 0;
+  Vector3d last = onPath(*made.subject, 0), force = Vector3d::Zero();
+  constexpr int kSlow = 20000;
+  along(
+      *made.subject,
+      [&](const Answer& answer, const Vector3d& p) {
+        const Vector3d now(answer.contacts[0].force);
+        given += 0.5 * (force + now).dot(p - last);
+        moved += std::abs(0.5 * (force + now).dot(p - last));
+        last = p;
+        force = now;
+        return "";
+      },
+      kSlow);
+  if (made.subject->moves()) return "";  // gravity and the hand both work on it: bounded by the test of its own energy
+  const double gained = std::isnan(before) ? 0 : made.subject->energy() - before;
+  constexpr double kRounding = 0.02;  // of the work that went to and fro: the path is walked in steps
+  const double allowed = kRounding * moved + 1e-6 - gained;
+  return given <= allowed ? "" : "a closed path gave " + text(given) + " J to the hand of " + text(moved) + " J moved";
+}
+
+}  // namespace
+
+std::vector<ConformanceTest> stepTests() {
+  return {
+      {"no-allocation-in-step", "steps do not allocate", &noAllocation},
+      {"no-lock-in-step", "steps do not lock", &noLock},
+      {"step-cost-vs-claim", "steps take no longer than claimed", &stepCost},
+      {"finite-outputs", "every answer is finite, whatever the probe does", &finiteOutputs},
+      {"force-continuous", "forces follow the claimed stiffness", &forceContinuous},
+      {"normal-unit-length", "normals are unit vectors", &normalUnit},
+      {"force-outward", "forces in contact push out of the shape", &forceOutward},
+      {"energy-non-increasing", "a closed path gives no energy", &energyNonIncreasing},
+  };
+}
+
+}  // namespace hapticd::conformance

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include "conformance/conformance_subject.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/allocation_count.hpp"
+#include "base/clock.hpp"
+#include "host/class_table.hpp"
+
+namespace hapticd::conformance {
+
+namespace {
+
+using Eigen::Vector3d;
+constexpr uint8_t kUntouched = 0xA5;
+
+const hsp_param& paramAt(const hsp_class& c, uint32_t index) {
+  return *HSP_AT(const hsp_param, c.params, c.params[0].struct_size, index);
+}
+
+/// A text of the user as the value of a parameter.
+hsp_value valueOf(const hsp_param& param, const std::string& text) {
+  hsp_value value{};
+  value.kind = param.kind;
+  value.text = text.c_str();
+  char* end = nullptr;
+  value.number = std::strtod(text.c_str(), &end);
+  if (param.kind == HSP_BOOL && text == "true") value.number = 1;
+  for (uint32_t i = 0; param.kind == HSP_ENUM && i < param.choice_count; ++i)
+    if (text == param.choices[i]) value.number = i;
+  return value;
+}
+
+}  // namespace
+
+bool sameBits(const Answer& a, const Answer& b) {
+  return a.status == b.status && a.contacts.size() == b.contacts.size() &&
+         std::memcmp(a.contacts.data(), b.contacts.data(), a.contacts.size() * sizeof(hsp_contact)) == 0 &&
+         std::memcmp(&a.pose, &b.pose, sizeof a.pose) == 0;
+}
+
+bool finite(const Answer& answer) {
+  const auto all = [](const double* values, int count) {
+    return std::all_of(values, values + count, [](double v) { return std::isfinite(v); });
+  };
+  return all(answer.pose.position, 13) &&
+         std::all_of(answer.contacts.begin(), answer.contacts.end(), [&](const hsp_contact& c) {
+           return all(c.force, 6) && ((c.flags & HSP_OUT_TRACED) == 0 || all(c.point, 9)) && std::isfinite(c.stiffness);
+         });
+}
+
+Result<std::unique_ptr<Subject>> Subject::make(const Recipe& recipe) {
+  auto library = host::Library::open(recipe.file);
+  if (!library) return Error{library.error()};
+  auto entry = (*library)->shapes();
+  if (!entry) return Error{entry.error()};
+  std::unique_ptr<Subject> subject(new Subject);
+  subject->library_ = *library;
+  subject->services_ = std::make_unique<host::Services>(recipe.class_name, nullptr);
+  subject->class_ = host::findClass<hsp_class>(**entry, recipe.class_name);
+  if (subject->class_ == nullptr || !host::complete(*subject->class_)) return Error{"lacks a required function"};
+  const hsp_class& c = *subject->class_;
+  subject->shape_ = c.create(&c, subject->services_->abi());
+  if (subject->shape_ == nullptr) return Error{"create() made no instance: " + subject->services_->lastError()};
+  for (uint32_t i = 0; i < c.param_count; ++i) {
+    const auto given = recipe.set.find(paramAt(c, i).id);
+    const bool damps = host::damps(c, i);
+    if (given == recipe.set.end()) {
+      if (damps) subject->damping_ = std::max(subject->damping_, paramAt(c, i).def);
+      continue;
+    }
+    const hsp_value value = valueOf(paramAt(c, i), given->second);
+    if (damps) subject->damping_ = std::max(subject->damping_, value.number);
+    if (c.set(subject->shape_, i, &value) < 0)
+      return Error{"set(" + given->first + ", " + given->second + "): " + subject->services_->lastError()};
+  }
+  return subject;
+}
+
+Subject::~Subject() {
+  deactivate();
+  if (shape_ != nullptr) class_->destroy(shape_);
+}
+
+hsp_status Subject::activateRaw(uint32_t probes, hsp_report& report) {
+  hsp_activation how{};
+  how.struct_size = sizeof how;
+  how.max_probes = probes;
+  how.rate_hz = 1000;
+  how.max_probe_speed = 20;
+  how.gravity[1] = -9.81;
+  how.pose.orientation[0] = 1;
+  report = {};
+  report.struct_size = sizeof report;
+  return class_->activate(shape_, &how, &report);
+}
+
+Result<void> Subject::activate(uint32_t probes) {
+  if (activateRaw(probes, report_) < 0) return Error{"activate(): " + services_->lastError()};
+  active_ = true;
+  pose_ = {};
+  pose_.orientation[0] = 1;
+  steps_ = allocations_ = 0;
+  last_.clear();
+  const auto* surfaces = static_cast<const hsp_ext_surfaces*>(extension(HSP_EXT_SURFACES));
+  traced_.assign(probes, std::vector<uint8_t>(surfaces != nullptr ? surfaces->surface_count : 0, 0));
+  return {};
+}
+
+void Subject::deactivate() {
+  if (active_) class_->deactivate(shape_);
+  active_ = false;
+}
+
+const void* Subject::extension(const char* name) const {
+  if (!HSP_HAS(class_, extension) || class_->extension == nullptr) return nullptr;
+  return class_->extension(shape_, name);
+}
+
+double Subject::energy() const {
+  const auto* energy = static_cast<const hsp_ext_energy*>(extension(HSP_EXT_ENERGY));
+  return energy != nullptr ? energy->stored(shape_) : std::nan("");
+}
+
+std::pair<Vector3d, Vector3d> Subject::bounds() const {
+  const auto* geometry = static_cast<const hsp_ext_geometry*>(extension(HSP_EXT_GEOMETRY));
+  Vector3d low(-0.1, -0.1, -0.1), high = -low;
+  if (geometry != nullptr && geometry->bounds(shape_, low.data(), high.data()) != HSP_OK)
+    return {Vector3d(-0.1, -0.1, -0.1), Vector3d(0.1, 0.1, 0.1)};
+  return {low, high};
+}
+
+void Subject::search(const std::vector<hsp_probe>& probes) {
+  const auto* surfaces = static_cast<const hsp_ext_surfaces*>(extension(HSP_EXT_SURFACES));
+  if (surfaces == nullptr) return;
+  constexpr double kReach = 0.15;
+  std::vector<hsp_near> found(surfaces->surface_count);
+  for (uint32_t probe = 0; probe < probes.size(); ++probe) {
+    std::vector<uint8_t> seen(surfaces->surface_count, 0);
+    const int64_t count = surfaces->nearby(shape_, probes[probe].position, kReach, found.data(), found.size());
+    for (int64_t i = 0; i < std::min<int64_t>(count, static_cast<int64_t>(found.size())); ++i) {
+      hsp_near near = found[static_cast<size_t>(i)];
+      near.probe = probe;
+      seen[near.surface] = traced_[probe][near.surface] = 1;
+      surfaces->activate(shape_, &near);
+    }
+    for (uint32_t s = 0; s < seen.size(); ++s)
+      if (traced_[probe][s] != 0 && seen[s] == 0) {
+        surfaces->deactivate(shape_, probe, s);
+        traced_[probe][s] = 0;
+      }
+  }
+}
+
+const Answer& Subject::step(const std::vector<Vector3d>& positions, double dt, uint32_t flags) {
+  std::vector<hsp_probe> probes(positions.size());
+  for (size_t i = 0; i < positions.size(); ++i) {
+    Eigen::Map<Vector3d>(probes[i].position) = positions[i];
+    probes[i].orientation[0] = 1;
+    probes[i].flags = flags;
+    probes[i].time_ns = steps_ * 1'000'000;
+    const bool moved = dt > 0 && i < last_.size() && (flags & HSP_IN_JUMP) == 0;
+    if (moved && (report_.flags & HSP_R_VELOCITY) != 0)
+      Eigen::Map<Vector3d>(probes[i].velocity) = (positions[i] - last_[i]) / dt;
+  }
+  last_ = positions;
+  if (steps_ % 5 == 0 || (flags & HSP_IN_JUMP) != 0) search(probes);
+  return run(probes, dt);
+}
+
+const Answer& Subject::stepRaw(const hsp_probe& probe, double dt) {
+  return run({probe}, dt);
+}
+
+const Answer& Subject::run(const std::vector<hsp_probe>& probes, double dt) {
+  const size_t in_stride = sizeof(hsp_probe) + room_, out_stride = sizeof(hsp_contact) + room_;
+  in_.assign(probes.size() * in_stride, kUntouched);
+  out_.assign(probes.size() * out_stride, kUntouched);
+  for (size_t i = 0; i < probes.size(); ++i) {
+    std::memcpy(&in_[i * in_stride], &probes[i], sizeof(hsp_probe));
+    std::memset(&out_[i * out_stride], 0, sizeof(hsp_contact));
+  }
+  hsp_step step{};
+  step.struct_size = sizeof step;
+  step.count = static_cast<uint32_t>(probes.size());
+  step.in = reinterpret_cast<const hsp_probe*>(in_.data());
+  step.in_stride = static_cast<uint32_t>(in_stride);
+  step.out = reinterpret_cast<hsp_contact*>(out_.data());
+  step.out_stride = static_cast<uint32_t>(out_stride);
+  step.dt_s = steps_ == 0 ? 0 : dt;
+  step.pose = &pose_;
+  const uint64_t before = allocationsOfThread();
+  const Nanoseconds begun = monotonicNow();
+  answer_.status = class_->step(shape_, &step);
+  step_ns_ = monotonicNow() - begun;
+  allocations_ += allocationsOfThread() - before;
+  answer_.contacts.resize(probes.size());
+  for (size_t i = 0; i < probes.size(); ++i)
+    std::memcpy(&answer_.contacts[i], &out_[i * out_stride], sizeof(hsp_contact));
+  answer_.pose = pose_;
+  ++steps_;
+  return answer_;
+}
+
+bool Subject::roomUntouched() const {
+  const size_t out_stride = sizeof(hsp_contact) + room_;
+  for (size_t i = 0; i < out_.size(); ++i)
+    if (i % out_stride >= sizeof(hsp_contact) && out_[i] != kUntouched) return false;
+  return true;
+}
+
+void Subject::reset() {
+  class_->reset(shape_);
+  const auto* surfaces = static_cast<const hsp_ext_surfaces*>(extension(HSP_EXT_SURFACES));
+  for (uint32_t probe = 0; surfaces != nullptr && probe < traced_.size(); ++probe)
+    for (uint32_t s = 0; s < traced_[probe].size(); ++s) {
+      if (traced_[probe][s] != 0) surfaces->deactivate(shape_, probe, s);
+      traced_[probe][s] = 0;
+    }
+  last_.clear();
+  steps_ = 0;
+}
+
+}  // namespace hapticd::conformance

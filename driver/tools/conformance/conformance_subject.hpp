@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+/// One instance of a shape under test, driven through the C ABI alone: what a conformance test works with.
+#pragma once
+#include <Eigen/Core>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/result.hpp"
+#include "hapticd/shape.h"
+#include "host/library.hpp"
+#include "host/services.hpp"
+
+namespace hapticd::conformance {
+
+/// What every instance of a check is made from.
+struct Recipe {
+  std::string file, class_name;
+  std::map<std::string, std::string> set;  ///< parameters as the user gives them; the rest keeps its default
+};
+
+/// The answer to one step; compared bit for bit where a test says so.
+struct Answer {
+  hsp_status status = HSP_OK;
+  std::vector<hsp_contact> contacts;
+  hsp_pose pose{};
+};
+bool sameBits(const Answer& a, const Answer& b);
+bool finite(const Answer& answer);
+
+class Subject {
+ public:
+  /// Loads, creates, sets; the error is in the plugin's own words.
+  static Result<std::unique_ptr<Subject>> make(const Recipe& recipe);
+  ~Subject();
+  Subject(const Subject&) = delete;
+  Subject& operator=(const Subject&) = delete;
+
+  Result<void> activate(uint32_t probes = 1);
+  hsp_status activateRaw(uint32_t probes, hsp_report& report);
+  void deactivate();
+
+  /// Moves every probe to a position within dt; velocities follow from the last. Searches every fifth step as the
+  /// host does.
+  const Answer& step(const std::vector<Eigen::Vector3d>& positions, double dt, uint32_t flags = 0);
+  /// As `step` with one probe, exactly as given.
+  const Answer& stepRaw(const hsp_probe& probe, double dt);
+  /// Room between the records of a step, to see that the strides are used.
+  void widen(size_t bytes) { room_ = bytes; }
+  bool roomUntouched() const;
+  void reset();
+
+  const hsp_class& description() const { return *class_; }
+  const hsp_report& report() const { return report_; }
+  hsp_shape* handle() const { return shape_; }
+  const void* extension(const char* name) const;
+  bool moves() const { return (report_.flags & HSP_R_MOVES) != 0; }
+  double damping() const { return damping_; }  ///< [N s/m] the largest that its parameters ask for
+  double energy() const;                       ///< [J] stored, NaN: it does not say
+  /// Box of the shape in its own frame, or a guess of 0.1 m about the origin.
+  std::pair<Eigen::Vector3d, Eigen::Vector3d> bounds() const;
+  uint64_t stepNs() const { return step_ns_; }           ///< of the last step, wall clock
+  uint64_t allocations() const { return allocations_; }  ///< in all steps since activate
+
+ private:
+  Subject() = default;
+  void search(const std::vector<hsp_probe>& probes);
+  const Answer& run(const std::vector<hsp_probe>& probes, double dt);
+
+  std::shared_ptr<host::Library> library_;
+  std::unique_ptr<host::Services> services_;
+  const hsp_class* class_ = nullptr;
+  hsp_shape* shape_ = nullptr;
+  hsp_report report_{};
+  bool active_ = false;
+  double damping_ = 0;
+  hsp_pose pose_{};
+  Answer answer_;
+  std::vector<Eigen::Vector3d> last_;
+  std::vector<std::vector<uint8_t>> traced_;  // [probe][surface]
+  std::vector<uint8_t> in_, out_;             // records with room between them
+  size_t room_ = 0;
+  uint64_t steps_ = 0, step_ns_ = 0, allocations_ = 0;
+};
+
+}  // namespace hapticd::conformance

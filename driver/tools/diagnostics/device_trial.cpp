@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/device_trial.hpp"
+
+#include "document/node.hpp"
+#include "host/device_instance.hpp"
+#include "scene/load.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+using document::Node;
+
+/// The node of a path such as "wire.input.fields[3].at", or the last one on the way that is there.
+const Node* walk(const Node* at, const std::string& path) {
+  for (size_t i = 0; i < path.size();) {
+    const size_t end = std::min(path.find_first_of(".[", i + 1), path.size());
+    const Node* next = nullptr;
+    if (path[i] == '[') {
+      const size_t index = std::strtoul(path.c_str() + i + 1, nullptr, 10);
+      if (at->isSequence() && index < at->items.size()) next = &at->items[index];
+    } else {
+      next = at->find(path.substr(path[i] == '.' ? i + 1 : i, end - i - (path[i] == '.' ? 1 : 0)));
+    }
+    if (next == nullptr) return at;
+    at = next;
+    i = end;
+  }
+  return at;
+}
+
+/// The key that a message begins with: "wire.rate: ..." after what names the device.
+std::string keyIn(const std::string& message, const Node& parameters, size_t& begin) {
+  for (begin = 0; begin < message.size();) {
+    const size_t end = message.find(": ", begin);
+    if (end == std::string::npos) break;
+    const std::string key = message.substr(begin, end - begin);
+    if (parameters.find(key.substr(0, key.find_first_of(".["))) != nullptr) return key;
+    begin = end + 2;
+  }
+  begin = 0;
+  return "";
+}
+
+}  // namespace
+
+document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& catalog) {
+  document::Problems problems;
+  const scene::LoadedDevice loaded = scene::loadDevice(file, catalog);
+  if (!loaded.device) return problems;  // a scene, or problems that are known already
+  const auto made = host::DeviceInstance::create(*loaded.device, nullptr);
+  const auto root = made ? std::nullopt : document::parseFile(file, problems);
+  const Node* parameters = root ? root->find("parameters") : nullptr;
+  if (parameters == nullptr) return problems;
+  size_t begin = 0;
+  const std::string message = made.error(), key = keyIn(message, *parameters, begin);
+  const Node* at = walk(parameters, key);
+  const std::string what = key.empty() ? message : message.substr(begin + key.size() + 2);
+  document::report(problems, file.string(), at->line, at->column, key.empty() ? "parameters" : "parameters." + key,
+                   what);
+  return problems;
+}
+
+}  // namespace hapticd::diagnostics

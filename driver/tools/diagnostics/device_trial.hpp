@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+/// What only a device module can judge of its device file, found without touching hardware.
+#pragma once
+#include <filesystem>
+
+#include "document/problem.hpp"
+#include "host/catalog.hpp"
+
+namespace hapticd::diagnostics {
+
+/// [main] Gives the parameters to the module; what it refuses is placed in the file by the key that it names.
+document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& catalog);
+
+}  // namespace hapticd::diagnostics

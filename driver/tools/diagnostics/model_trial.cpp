@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/model_trial.hpp"
+
+#include <Eigen/Core>
+
+#include "host/child.hpp"
+#include "host/shape_instance.hpp"
+#include "host/wire.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+constexpr int kLimitMs = 300'000;  ///< thousands of models may need minutes; a hang needs an end
+
+hsp_activation activationOf(const scene::Scene& scene, const scene::Model& model) {
+  hsp_activation activation{};
+  activation.struct_size = sizeof activation;
+  activation.max_probes = 1;
+  activation.rate_hz = scene.servo.rate;
+  activation.max_probe_speed = 2;
+  Eigen::Map<Eigen::Vector3d>(activation.gravity) = scene.servo.gravity;
+  Eigen::Map<Eigen::Vector3d>(activation.pose.position) = model.pose.position;
+  const Eigen::Quaterniond& q = model.pose.orientation;
+  const double orientation[4] = {q.w(), q.x(), q.y(), q.z()};
+  std::copy(orientation, orientation + 4, activation.pose.orientation);
+  return activation;
+}
+
+/// Texts about models, each with the number of its model, as they travel from the child.
+class Remarks {
+ public:
+  void add(size_t model, const std::string& text) {
+    ++count_;
+    list_.number(static_cast<uint32_t>(model));
+    list_.text(text);
+  }
+  std::string take() {
+    host::Packer all;
+    all.number(count_);
+    return all.take() + list_.take();
+  }
+  static document::Problems read(host::Unpacker& in, const scene::Scene& scene) {
+    document::Problems problems;
+    for (uint32_t left = in.count(); left > 0 && in.good(); --left) {
+      const uint32_t index = in.count();
+      const std::string text = in.text();
+      if (index >= scene.models.size()) break;
+      document::report(problems, scene.models[index].place, "models[" + std::to_string(index) + "]", text);
+    }
+    return problems;
+  }
+
+ private:
+  uint32_t count_ = 0;
+  host::Packer list_;
+};
+
+std::string tryAll(const scene::Scene& scene) {
+  Remarks problems, warnings;
+  host::Packer claims;
+  for (size_t i = 0; i < scene.models.size(); ++i) {
+    double stiffness = 0;
+    const auto log = [&](int level, const std::string&, const std::string& text) {
+      if (level == HSP_LOG_WARNING) warnings.add(i, text);
+    };
+    if (auto shape = host::ShapeInstance::create(scene.models[i], log); !shape) {
+      problems.add(i, shape.error());
+    } else if (const auto activated = (*shape)->activate(activationOf(scene, scene.models[i])); !activated) {
+      problems.add(i, activated.error());
+    } else {
+      stiffness = (*shape)->report().max_stiffness;
+    }
+    claims.number(stiffness);
+  }
+  return problems.take() + warnings.take() + claims.take();
+}
+
+}  // namespace
+
+ModelTrial tryModels(const scene::Scene& scene) {
+  ModelTrial trial;
+  if (scene.models.empty()) return trial;
+  const auto told = host::runInChild([&] { return tryAll(scene); }, kLimitMs);
+  if (!told) {
+    document::report(trial.problems, scene.file.string(), 1, 1, "models", "setting them up " + told.error());
+    return trial;
+  }
+  host::Unpacker in(*told);
+  trial.problems = Remarks::read(in, scene);
+  trial.warnings = Remarks::read(in, scene);
+  for (size_t i = 0; i < scene.models.size() && in.good(); ++i) trial.stiffness.push_back(in.real());
+  return trial;
+}
+
+}  // namespace hapticd::diagnostics

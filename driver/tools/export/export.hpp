@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+/// Recordings for other tools.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "base/result.hpp"
+#include "record/recording.hpp"
+
+namespace hapticd::record {
+
+/// What was written.
+struct Exported {
+  uint64_t rows = 0, bytes = 0;
+};
+
+/// [main] Every row of every stream as a message of its channel, /hapticd/STREAM, in the order of their ticks; the
+/// description as an attachment. Times are those of the run's start plus the tick's own.
+Result<Exported> exportMcap(const Recording& recording, const std::string& file);
+
+/// [main] One stream as a table with a header, 17 digits a number.
+Result<Exported> exportCsv(const RecordedStream& stream, const std::string& file);
+
+}  // namespace hapticd::record

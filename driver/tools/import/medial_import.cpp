@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+#include "import/medial_import.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "document/node.hpp"
+#include "host/shape_instance.hpp"
+#include "import/medial_axis.hpp"
+#include "import/nearest_points.hpp"
+#include "scene/load.hpp"
+
+namespace hapticd::importing {
+namespace {
+
+using Eigen::Vector3d;
+namespace fs = std::filesystem;
+
+constexpr double kToleranceShare = 0.01;  ///< of the body's size
+constexpr double kLarge = 1.0;            ///< [m] no hand reaches round a larger body
+constexpr double kChordShare = 0.002;     ///< of a NURBS model's size: chord error of its triangles
+constexpr std::size_t kMostFileBytes = std::size_t{1} << 30;
+
+bool endsWith(const std::string& name, const char* end) {
+  std::string lower = name;
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower.ends_with(end);
+}
+
+/// A model of a plugin by itself, active.
+Result<std::unique_ptr<host::ShapeInstance>> activated(const char* plugin, const fs::path& geometry,
+                                                       host::Catalog& catalog) {
+  std::string quoted;
+  for (const char c : fs::absolute(geometry).string()) quoted += c == '\'' ? std::string("''") : std::string(1, c);
+  const std::string text = fmt::format(
+      "hapticd: 1\nmodels:\n  - name: body\n    plugin: {}\n    parameters: {{geometry: '{}'}}\n", plugin, quoted);
+  std::optional<scene::Scene> scene;
+  const document::Problems problems = scene::checkText(text, fs::current_path() / "import.yaml", catalog, &scene);
+  if (!scene || scene->models.empty())
+    return Error{problems.empty() ? std::string("no scene") : problems.front().text()};
+  std::string said;
+  auto shape =
+      host::ShapeInstance::create(scene->models[0], [&said](int level, const std::string&, const std::string& what) {
+        if (level >= HSP_LOG_WARNING) said = what;
+      });
+  if (!shape) return Error{shape.error()};
+  hsp_activation activation{};
+  activation.struct_size = sizeof activation;
+  activation.max_probes = 1;
+  activation.rate_hz = 1000;
+  activation.max_probe_speed = 1;
+  activation.pose.orientation[0] = 1;
+  if (const auto done = (*shape)->activate(activation); !done) return Error{said.empty() ? done.error() : said};
+  return shape;
+}
+
+Result<Triangles> tessellated(host::ShapeInstance& shape, double share) {
+  const hsp_ext_geometry* geometry = shape.geometry();
+  if (geometry == nullptr) return Error{"the model has no triangles"};
+  hsp_mesh mesh{};
+  mesh.struct_size = sizeof mesh;
+  if (geometry->tessellate(shape.handle(), share * shape.report().size_m, &mesh) < 0)
+    return Error{"the model cannot be cut into triangles"};
+  Triangles result;
+  for (uint32_t i = 0; i < mesh.vertex_count; ++i)
+    result.points.emplace_back(Eigen::Map<const Eigen::Vector3f>(mesh.xyz + 3 * std::size_t{i}).cast<double>());
+  for (uint32_t t = 0; t < mesh.triangle_count; ++t)
+    result.corners.push_back({mesh.indices[3 * t], mesh.indices[3 * t + 1], mesh.indices[3 * t + 2]});
+  return result;
+}
+
+std::string toMa(const MedialAxis& axis, const std::string& source) {
+  std::string text = fmt::format("# made from {} by hapticd import --medial\n{} {} {}\n", source, axis.spheres.size(),
+                                 axis.edges.size(), axis.triangles.size());
+  for (const auto& s : axis.spheres) text += fmt::format("v {:.9g} {:.9g} {:.9g} {:.9g}\n", s[0], s[1], s[2], s[3]);
+  for (const auto& e : axis.edges) text += fmt::format("e {} {}\n", e[0], e[1]);
+  for (const auto& t : axis.triangles) text += fmt::format("f {} {} {}\n", t[0], t[1], t[2]);
+  return text;
+}
+
+std::string toYaml(const MedialAxis& axis, const MedialImport& options, const std::string& source) {
+  std::string text =
+      fmt::format("# made from {} by hapticd import --medial\nformat: hapticd-model/1\nmedial:\n  vertices:\n", source);
+  for (const auto& s : axis.spheres)
+    text += fmt::format("    - [{:.9g}, {:.9g}, {:.9g}, {:.9g}]\n", s[0], s[1], s[2], s[3]);
+  if (!axis.edges.empty()) text += "  edges:\n";
+  for (const auto& e : axis.edges) text += fmt::format("    - [{}, {}]\n", e[0], e[1]);
+  if (!axis.triangles.empty()) text += "  triangles:\n";
+  for (const auto& t : axis.triangles) text += fmt::format("    - [{}, {}, {}]\n", t[0], t[1], t[2]);
+  return text +
+         fmt::format("  stiffness: {}\n  damping: {}\n  mass: {}\n", options.stiffness, options.damping, options.mass);
+}
+
+struct Deviation {
+  double most = 0, mean = 0;
+};
+
+/// How far the given surface is from that of the body, by the plugin that will be felt.
+Result<Deviation> deviationFrom(host::ShapeInstance& body, const std::vector<Vector3d>& points) {
+  const hsp_near near{};
+  if (body.surfaces()->activate(body.handle(), &near) < 0) return Error{"the body cannot be traced"};
+  Deviation deviation;
+  for (const Vector3d& p : points) {
+    hsp_probe probe{};
+    Eigen::Map<Vector3d>(probe.position) = p;
+    probe.orientation[0] = 1;
+    probe.flags = HSP_IN_JUMP;
+    hsp_contact contact{};
+    hsp_step step{};
+    step.struct_size = sizeof step;
+    step.count = 1;
+    step.in = &probe;
+    step.out = &contact;
+    step.in_stride = sizeof probe;
+    step.out_stride = sizeof contact;
+    if (body.step(step) < 0) return Error{"the plugin gives no distance to the body"};
+    deviation.most = std::fmax(deviation.most, std::fabs(contact.depth_m));
+    deviation.mean += std::fabs(contact.depth_m) / static_cast<double>(points.size());
+  }
+  return deviation;
+}
+
+/// Measures the file that was written both ways and tells of it.
+Result<void> report(const MedialImport& options, const MedialOptions& settings, const MedialAxis& axis,
+                    const SurfaceSamples& samples, host::Catalog& catalog) {
+  std::fprintf(stderr, "measuring the written body\n");
+  const auto body = activated("mat_deformable", options.out, catalog);
+  if (!body) return Error{body.error()};
+  const auto there = deviationFrom(**body, samples.points);
+  if (!there) return Error{there.error()};
+  // Creases are rounded by a cell: finer ones than the tolerance tell no more, and cost its square.
+  const double chord = 0.5 * settings.tolerance / (*body)->report().size_m;
+  const auto drawn = tessellated(**body, std::clamp(chord, kChordShare, kToleranceShare));
+  if (!drawn) return Error{drawn.error()};
+  const NearestPoints nearest(samples.points);
+  double back = 0, beyond = 0;  // to the nearest sample, and to the plane there
+  for (const Vector3d& p : drawn->points) {
+    const uint32_t i = nearest.nearest(p);
+    const Vector3d off = samples.points[i] - p;
+    back = std::fmax(back, off.norm());
+    beyond = std::fmax(beyond, std::fabs(samples.normals[i].dot(off)));
+  }
+  std::printf("%s: %zu spheres, %zu edges, %zu triangles, %d part%s; %.2f %% of the surface covered\n",
+              options.out.c_str(), axis.spheres.size(), axis.edges.size(), axis.triangles.size(), axis.parts,
+              axis.parts == 1 ? "" : "s", 100 * axis.covered);
+  std::printf(
+      "the surface is at most %.3f mm from the body (Hausdorff distance, one-sided; mean %.3f mm); the body at "
+      "most %.3f mm from points of the surface, which are %.3f mm apart\n",
+      1e3 * there->most, 1e3 * there->mean, 1e3 * back, 1e3 * samples.spacing);
+  const double reached = std::fmax(there->most, beyond);
+  if (reached > settings.tolerance)
+    std::fprintf(stderr, "warning: the error is %.3g mm asked, %.3g mm reached: %s\n", 1e3 * settings.tolerance,
+                 1e3 * reached,
+                 static_cast<int>(axis.spheres.size()) >= settings.most_spheres
+                     ? "more --spheres may help"
+                     : "more --samples may help, or a smaller --angle where the surface has edges");
+  return {};
+}
+
+/// A file in millimetres that is read as metres makes a house of a hand.
+void tellSize(const Eigen::AlignedBox3d& box, const std::string& file) {
+  const Vector3d size = box.sizes();
+  std::printf("%s: %.4g x %.4g x %.4g m\n", file.c_str(), size.x(), size.y(), size.z());
+  std::fflush(stdout);
+  if (size.maxCoeff() > kLarge)
+    std::fprintf(stderr,
+                 "warning: %s: the body is %.3g m long, more than an arm reaches\n  fix: if the file counts "
+                 "millimetres, add --scale 0.001\n",
+                 file.c_str(), size.maxCoeff());
+}
+
+}  // namespace
+
+Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalog) {
+  if (!endsWith(options.out, ".ma") && !endsWith(options.out, ".yaml"))
+    return Error{options.out + ": expected a name that ends in .ma or .yaml"};
+  if (endsWith(options.file, ".yaml") || endsWith(options.file, ".yml") || endsWith(options.file, ".json")) {
+    const auto shape = activated("nurbs_rigid", options.file, catalog);
+    if (!shape) return Error{shape.error()};
+    constexpr double kOfTolerance = 0.25;  // the triangles are not to be what keeps the body from it
+    const double wanted = options.tolerance > 0 ? kOfTolerance * options.tolerance / (*shape)->report().size_m : 1;
+    return tessellated(**shape, std::min(kChordShare, wanted));
+  }
+  document::Problems problems;
+  const auto text = document::readFile(options.file, kMostFileBytes, problems);
+  if (!text) return Error{problems.empty() ? options.file + ": cannot be read" : problems.front().text()};
+  if (!endsWith(options.file, ".obj") && !endsWith(options.file, ".stl"))
+    return Error{options.file + ": expected .obj, .stl, or a model file (.yaml, .json) with surfaces"};
+  auto mesh = endsWith(options.file, ".obj") ? parseObj(*text, options.file) : parseStl(*text, options.file);
+  if (!mesh) return mesh;
+  for (Vector3d& p : mesh->points) p *= options.scale;
+  if (const auto closed = orientClosed(*mesh, options.file); !closed) return Error{closed.error()};
+  return mesh;
+}
+
+Result<void> importMedial(const MedialImport& options, const Triangles& mesh, host::Catalog& catalog) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : mesh.points) box.extend(p);
+  tellSize(box, options.file);
+  MedialOptions settings;
+  settings.tolerance = options.tolerance > 0 ? options.tolerance : kToleranceShare * box.diagonal().norm();
+  settings.most_spheres = options.most_spheres;
+  settings.least_angle = options.least_angle;
+  const SurfaceSamples samples = sampleSurface(mesh, static_cast<std::size_t>(options.samples));
+  const auto axis =
+      medialAxis(samples, settings, [](const std::string& what) { std::fprintf(stderr, "%s\n", what.c_str()); });
+  if (!axis) return Error{options.file + ": " + axis.error()};
+  const std::string source = fs::path(options.file).filename().string();
+  std::ofstream out(options.out, std::ios::binary);
+  out << (endsWith(options.out, ".ma") ? toMa(*axis, source) : toYaml(*axis, options, source)) << std::flush;
+  if (!out) return Error{options.out + ": cannot be written, expected a file in a folder that you may write to"};
+  out.close();
+  return report(options, settings, *axis, samples, catalog);
+}
+
+}  // namespace hapticd::importing

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd import --medial`: a soft body from a closed surface.
+#pragma once
+#include <string>
+
+#include "base/result.hpp"
+#include "host/catalog.hpp"
+#include "import/triangles.hpp"
+
+namespace hapticd::importing {
+
+struct MedialImport {
+  std::string file, out;
+  double scale = 1;      ///< metres per unit of an OBJ or STL
+  double tolerance = 0;  ///< [m]; 0: a hundredth of the body's size
+  int samples = 20000;   ///< points on the surface
+  int most_spheres = 2000;
+  double least_angle = 60;  ///< [degrees]
+  double stiffness = 300, damping = 0.5, mass = 0.01;
+};
+
+/// [main] The closed surface of `options.file`. The error is the fault of the file or of the names.
+Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalog);
+
+/// [main] Finds the medial axis, writes `options.out` and measures the body that was written. Tells progress on
+/// standard error and the result on standard output.
+Result<void> importMedial(const MedialImport& options, const Triangles& mesh, host::Catalog& catalog);
+
+}  // namespace hapticd::importing

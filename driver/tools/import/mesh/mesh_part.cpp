@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+#include "mesh_import/mesh_part.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "mesh_import/mesh_edges.hpp"
+
+namespace hapticd::importing {
+namespace {
+
+using brep::kNone;
+using Corners = std::array<std::uint32_t, 3>;
+using Eigen::Vector3d;
+
+class Repair {
+ public:
+  Repair(const MeshFile& mesh, double scale, MeshReport& report) : corners_(mesh.corners), report_(report) {
+    points_.reserve(mesh.points.size());
+    for (const Vector3d& p : mesh.points) points_.emplace_back(scale * p);
+  }
+
+  void run() {
+    dropEmpty();
+    dropDuplicates();
+    edges_ = meshEdges(corners_);
+    orient();
+    edges_ = meshEdges(corners_);  // flipped triangles number their edges anew
+    countEdges();
+    turnOutward();
+    dropUnusedPoints();
+  }
+
+  std::vector<Vector3d> points_;
+  std::vector<Corners> corners_;
+  std::vector<MeshEdge> edges_;
+
+ private:
+  void dropEmpty() {
+    const auto empty = [this](const Corners& c) {
+      if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return true;
+      const Vector3d ab = points_[c[1]] - points_[c[0]], ac = points_[c[2]] - points_[c[0]];
+      return !(ab.cross(ac).norm() > 1e-14 * ab.norm() * ac.norm());
+    };
+    report_.degenerate = std::erase_if(corners_, empty);
+  }
+
+  void dropDuplicates() {
+    std::vector<std::pair<Corners, std::uint32_t>> sorted;
+    sorted.reserve(corners_.size());
+    for (std::uint32_t i = 0; i < corners_.size(); ++i) {
+      Corners c = corners_[i];
+      std::sort(c.begin(), c.end());
+      sorted.emplace_back(c, i);
+    }
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<char> drop(corners_.size(), 0);
+    for (std::size_t i = 1; i < sorted.size(); ++i)
+      if (sorted[i].first == sorted[i - 1].first) drop[sorted[i].second] = 1;
+    std::size_t at = 0;
+    report_.duplicates = std::erase_if(corners_, [&](const Corners&) { return drop[at++] != 0; });
+  }
+
+  /// Turns triangles so that neighbours agree. In each shell the majority keeps its side.
+  void orient() {
+    const std::vector<std::uint32_t> across = pairedNeighbours(edges_, corners_.size());
+    shell_.assign(corners_.size(), kNone);
+    std::vector<char> flip(corners_.size(), 0);
+    std::vector<std::uint32_t> members;
+    for (std::uint32_t seed = 0; seed < corners_.size(); ++seed) {
+      if (shell_[seed] != kNone) continue;
+      members.assign(1, seed);
+      shell_[seed] = static_cast<std::uint32_t>(report_.shells);
+      std::size_t flips = 0;
+      for (std::size_t i = 0; i < members.size(); ++i) {
+        const std::uint32_t t = members[i];
+        flips += flip[t] != 0;
+        for (std::uint32_t k = 0; k < 3; ++k) {
+          const std::uint32_t code = across[3 * t + k];
+          if (code == kNone) continue;
+          const std::uint32_t other = code / 4, m = code % 4;
+          const bool alike = corners_[t][k] == corners_[other][m];  // the edge runs the same way in both
+          if (shell_[other] == kNone) {
+            shell_[other] = shell_[seed];
+            flip[other] = static_cast<char>((flip[t] != 0) != alike);
+            members.push_back(other);
+          } else if (((flip[t] != 0) != (flip[other] != 0)) != alike && t < other) {
+            ++report_.unorientable;
+          }
+        }
+      }
+      const bool majority = 2 * flips > members.size();
+      for (const std::uint32_t t : members)
+        if ((flip[t] != 0) != majority) turn(t);
+      ++report_.shells;
+    }
+  }
+
+  void turn(std::size_t t) {
+    std::swap(corners_[t][1], corners_[t][2]);
+    ++report_.flipped;
+  }
+
+  void countEdges() {
+    std::vector<std::uint32_t> next(points_.size(), kNone);  // over free edges
+    for (std::size_t i = 0; i < edges_.size();) {
+      const std::size_t end = endOfEdge(edges_, i);
+      report_.non_manifold += end - i > 2;
+      if (end - i == 1) {
+        ++report_.free_edges;
+        const Corners& c = corners_[edges_[i].code / 4];
+        const std::uint32_t k = edges_[i].code % 4;
+        next[c[k]] = c[(k + 1) % 3];
+      }
+      i = end;
+    }
+    report_.closed = report_.free_edges == 0 && report_.non_manifold == 0 && report_.unorientable == 0;
+    for (std::uint32_t start = 0; start < next.size(); ++start) {
+      if (next[start] == kNone) continue;
+      ++report_.holes;
+      for (std::uint32_t at = start; at != kNone && next[at] != kNone;) at = std::exchange(next[at], kNone);
+    }
+  }
+
+  /// A closed shell must enclose a positive volume, unless it lies inside another one: then it may be a cavity.
+  void turnOutward() {
+    std::vector<Eigen::AlignedBox3d> boxes(report_.shells);
+    std::vector<double> volumes(report_.shells, 0);
+    if (!report_.closed) return;
+    for (std::size_t t = 0; t < corners_.size(); ++t) {
+      const Corners& c = corners_[t];
+      volumes[shell_[t]] += points_[c[0]].dot(points_[c[1]].cross(points_[c[2]])) / 6;
+      for (const std::uint32_t corner : c) boxes[shell_[t]].extend(points_[corner]);
+    }
+    std::vector<char> inside_out(report_.shells, 0);
+    for (std::size_t s = 0; s < boxes.size(); ++s) {
+      const auto around = [&](const Eigen::AlignedBox3d& box) { return &box != &boxes[s] && box.contains(boxes[s]); };
+      inside_out[s] = volumes[s] < 0 && std::none_of(boxes.begin(), boxes.end(), around);
+      report_.volume += inside_out[s] != 0 ? -volumes[s] : volumes[s];
+    }
+    for (std::size_t t = 0; t < corners_.size(); ++t)
+      if (inside_out[shell_[t]] != 0) turn(t);
+    if (std::any_of(inside_out.begin(), inside_out.end(), [](char c) { return c != 0; })) edges_ = meshEdges(corners_);
+  }
+
+  void dropUnusedPoints() {
+    std::vector<std::uint32_t> number(points_.size(), kNone);
+    std::vector<Vector3d> kept;
+    for (Corners& c : corners_)
+      for (std::uint32_t& corner : c) {  // in the order of use: neighbours in space are neighbours in memory
+        if (number[corner] == kNone) {
+          number[corner] = static_cast<std::uint32_t>(kept.size());
+          kept.push_back(points_[corner]);
+        }
+        corner = number[corner];
+      }
+    points_ = std::move(kept);
+  }
+
+  MeshReport& report_;
+  std::vector<std::uint32_t> shell_;  ///< by triangle
+};
+
+std::string counted(std::size_t count, const char* one, const char* many) {
+  return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+}  // namespace
+
+brep::Part meshPart(const MeshFile& mesh, const MeshOptions& options, const std::string& file_name,
+                    MeshReport& report) {
+  Repair repair(mesh, options.scale, report);
+  repair.run();
+  if (repair.corners_.empty()) throw std::invalid_argument(file_name + ": all triangles have zero area");
+  brep::Part part;
+  part.source = {file_name, "", options.scale == 1 ? "m" : "scaled"};
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : repair.points_) {
+    part.points.push_back({p.x(), p.y(), p.z()});
+    box.extend(p);
+  }
+  for (const Corners& c : repair.corners_) part.triangles.push_back({c, {kNone, kNone, kNone}});
+  for (std::size_t i = 0; i < repair.edges_.size();) {
+    const std::size_t end = endOfEdge(repair.edges_, i);
+    for (std::size_t k = i; end - i > 1 && k < end; ++k) {
+      const std::uint32_t code = repair.edges_[k].code;
+      part.triangles[code / 4].across[code % 4] = repair.edges_[k + 1 < end ? k + 1 : i].code;
+    }
+    i = end;
+  }
+  brep::Body body;
+  body.kind = brep::BodyKind::kMesh;
+  body.flags = report.closed ? brep::kClosed : 0;
+  body.point_count = static_cast<std::uint32_t>(part.points.size());
+  body.triangle_count = static_cast<std::uint32_t>(part.triangles.size());
+  body.smooth_angle = options.smooth_angle;
+  part.names = {file_name.substr(0, file_name.rfind('.'))};
+  body.name = 0;
+  part.bodies.push_back(body);
+  brep::Instance instance;
+  instance.body = instance.name = 0;
+  part.instances.push_back(instance);
+  report.triangles = part.triangles.size();
+  report.points = part.points.size();
+  report.size = box.sizes();
+  for (const std::string& line : linesOf(report)) part.warnings.push_back(line);
+  return part;
+}
+
+std::vector<std::string> linesOf(const MeshReport& r) {
+  std::vector<std::string> lines;
+  const auto say = [&](std::size_t count, const char* one, const char* many) {
+    if (count > 0) lines.push_back(counted(count, one, many));
+  };
+  say(r.degenerate, "triangle of zero area was left out", "triangles of zero area were left out");
+  say(r.duplicates, "duplicate triangle was left out", "duplicate triangles were left out");
+  say(r.flipped, "triangle was reversed", "triangles were reversed");
+  say(r.non_manifold, "edge has more than two triangles", "edges have more than two triangles");
+  say(r.unorientable, "edge has triangles with contradictory outward sides",
+      "edges have triangles with contradictory outward sides");
+  if (r.holes > 0)
+    lines.push_back(counted(r.holes, "hole", "holes") + " with " + counted(r.free_edges, "free edge", "free edges"));
+  return lines;
+}
+
+}  // namespace hapticd::importing

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+/// Small tools of the readers of mesh files.
+#pragma once
+#include <Eigen/Core>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace hapticd::importing {
+
+/// Cuts a text into lines and these into words, without copies.
+class Words {
+ public:
+  explicit Words(std::string_view text) : rest_(text) {}
+
+  /// The next line, false at the end.
+  bool nextLine() {
+    if (rest_.empty()) return false;
+    const std::size_t end = rest_.find('\n');
+    line_ = rest_.substr(0, end);
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    ++number_;
+    return true;
+  }
+  /// The next word of the line, empty at its end.
+  std::string_view next() {
+    const std::size_t begin = line_.find_first_not_of(kSpace);
+    if (begin == std::string_view::npos) return line_ = {};
+    const std::size_t end = std::min(line_.find_first_of(kSpace, begin), line_.size());
+    const std::string_view word = line_.substr(begin, end - begin);
+    line_.remove_prefix(end);
+    return word;
+  }
+  std::size_t lineNumber() const { return number_; }
+  std::string_view rest() const { return rest_; }  ///< what follows the line
+
+ private:
+  static constexpr std::string_view kSpace = " \t\r\v\f";
+  std::string_view rest_, line_;
+  std::size_t number_ = 0;
+};
+
+/// A finite number that is all of a word.
+inline std::optional<double> finiteNumber(std::string_view word) {
+  if (!word.empty() && word[0] == '+') word.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+/// The next three words as a point.
+inline std::optional<Eigen::Vector3d> nextPoint(Words& words) {
+  Eigen::Vector3d p;
+  for (int k = 0; k < 3; ++k) {
+    const auto value = finiteNumber(words.next());
+    if (!value) return {};
+    p[k] = *value;
+  }
+  return p;
+}
+
+/// Gives equal points one index: open addressing over their bits.
+class Weld {
+ public:
+  explicit Weld(std::vector<Eigen::Vector3d>& points) : points_(points), table_(1024, kFree) {}
+
+  std::uint32_t at(const Eigen::Vector3d& given) {
+    const Eigen::Vector3d p = given + Eigen::Vector3d::Zero();  // -0 becomes 0
+    if (2 * (points_.size() + 1) > table_.size()) grow();
+    std::size_t slot = slotOf(p);
+    for (; table_[slot] != kFree; slot = (slot + 1) & (table_.size() - 1))
+      if (points_[table_[slot]] == p) return table_[slot];
+    table_[slot] = static_cast<std::uint32_t>(points_.size());
+    points_.push_back(p);
+    return table_[slot];
+  }
+
+ private:
+  static constexpr std::uint32_t kFree = 0xffffffffu;
+
+  std::size_t slotOf(const Eigen::Vector3d& p) const {
+    std::uint64_t hash = 0;
+    for (int k = 0; k < 3; ++k) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(p[k])) * 0x9e3779b97f4a7c15u;
+      hash ^= hash >> 29;
+    }
+    return static_cast<std::size_t>(hash) & (table_.size() - 1);
+  }
+  void grow() {
+    table_.assign(2 * table_.size(), kFree);
+    for (std::uint32_t i = 0; i < points_.size(); ++i) {
+      std::size_t slot = slotOf(points_[i]);
+      while (table_[slot] != kFree) slot = (slot + 1) & (table_.size() - 1);
+      table_[slot] = i;
+    }
+  }
+
+  std::vector<Eigen::Vector3d>& points_;
+  std::vector<std::uint32_t> table_;
+};
+
+}  // namespace hapticd::importing

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+#include "tune/search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "base/clock.hpp"
+
+namespace hapticd::tune {
+namespace {
+
+constexpr int kPasses = 3;
+constexpr size_t kFewTogether = 256;                       ///< combinations that are all tried
+constexpr double kErrorNoise = 1e-10, kForceNoise = 1e-7;  ///< [m], [N] rounding: smaller errors are equal
+constexpr double kMargin = 0.5;                            ///< of a tolerance: what one motion shows, another exceeds
+
+double geometryOf(const Candidate& c) {
+  return std::max(c.error.geometry(), kErrorNoise);
+}
+double forceOf(const Candidate& c) {
+  return std::max(c.error.force_n, kForceNoise);
+}
+
+/// Better in one thing at least, and in none worse.
+bool beats(const Candidate& a, const Candidate& b) {
+  const bool cheaper = a.cost.p50_ns < b.cost.p50_ns * (1 - kCostNoise), no_dearer = a.cost.p50_ns <= b.cost.p50_ns;
+  const bool no_worse = geometryOf(a) <= geometryOf(b) && forceOf(a) <= forceOf(b);
+  const bool better = geometryOf(a) < geometryOf(b) || forceOf(a) < forceOf(b);
+  return no_worse && (cheaper || (no_dearer && better));
+}
+
+bool meets(const Candidate& c, const Goal& goal) {
+  if (goal.budget_ns) return c.cost.p99_ns <= *goal.budget_ns;
+  return c.error.geometry() <= kMargin * goal.tolerance_m && c.error.force_n <= kMargin * goal.force_tolerance_n;
+}
+
+/// Of two that both meet the goal, or both do not.
+bool preferred(const Candidate& a, const Candidate& b, const Goal& goal, bool met) {
+  const bool by_cost = goal.budget_ns ? !met : met;
+  if (by_cost) return a.cost.p50_ns < b.cost.p50_ns * (1 - kCostNoise);
+  const auto badness = [&](const Candidate& c) {
+    return std::max(c.error.geometry() / goal.tolerance_m, c.error.force_n / goal.force_tolerance_n);
+  };
+  return badness(a) < badness(b);
+}
+
+class Search {
+ public:
+  Search(const scene::Scene& scene, const Motion& motion, const std::vector<Knob>& knobs, const SearchOptions& options)
+      : scene_(scene), motion_(motion), knobs_(knobs), options_(options), begun_(monotonicNow()) {}
+
+  Result<Tuning> run() {
+    auto reference = answer(applied(scene_, knobs_, finestOf(knobs_)), motion_, VelocityFrom::kMotion, options_.log);
+    if (!reference) return Error{reference.error()};
+    reference_ = std::move(*reference);
+    const bool met = std::any_of(reference_.answers.begin(), reference_.answers.end(),
+                                 [](const Answer& answer) { return answer.traced; });
+    if (!met)
+      return Error{
+          "the motion comes near no model, so there is no error to measure\n"
+          "  expected: a tip that touches what the scene is about\n"
+          "  fix: give one with --probe FILE, or one that a hand made with --motion RECORDING"};
+    plan();
+    for (size_t i = 0; i < planned_.size() && going_; ++i)
+      if (auto tried = attempt(planned_[i]); !tried) return Error{tried.error()};
+    if (combinations() > kFewTogether)
+      if (auto done = descend(); !done) return Error{done.error()};
+    if (auto again = measureFirstAgain(); !again) return Error{again.error()};
+    Tuning tuning;
+    tuning.candidates = std::move(candidates_);
+    tuning.complete = going_;
+    markFront(tuning.candidates);
+    std::tie(tuning.chosen, tuning.reached) = choose(tuning.candidates, options_.goal);
+    return tuning;
+  }
+
+ private:
+  size_t combinations() const {
+    size_t count = 1;
+    for (const Knob& knob : knobs_) count = std::min<size_t>(count * knob.values.size(), 1'000'000);
+    return count;
+  }
+
+  void plan() {
+    const Choice current = currentOf(knobs_);
+    planned_ = {current, finestOf(knobs_)};
+    for (size_t i = 0; i < knobs_.size(); ++i)
+      for (size_t value = 0; value < knobs_[i].values.size(); ++value) planned_.push_back(with(current, i, value));
+    if (combinations() > kFewTogether) return;
+    Choice choice(knobs_.size(), 0);
+    for (size_t n = combinations(); n > 0; --n) {
+      planned_.push_back(choice);
+      for (size_t i = 0; i < choice.size(); ++i) {
+        if (++choice[i] < knobs_[i].values.size()) break;
+        choice[i] = 0;
+      }
+    }
+  }
+
+  static Choice with(Choice choice, size_t knob, size_t value) {
+    choice[knob] = value;
+    return choice;
+  }
+
+  /// Measures a choice once.
+  Result<void> attempt(const Choice& choice) {
+    if (!going_ || !seen_.insert(choice).second) return {};
+    auto run = measure(applied(scene_, knobs_, choice), motion_, kPasses, options_.log);
+    if (!run) return Error{run.error()};
+    candidates_.push_back({choice, run->cost, compare(*run, reference_), false});
+    const double spent = static_cast<double>(monotonicNow() - begun_) * kSecondsPerNanosecond;
+    Progress progress{candidates_.size(), std::max(distinct(), candidates_.size()), 0};
+    const double each = spent / static_cast<double>(progress.done);
+    progress.seconds_left =
+        std::min(each * static_cast<double>(progress.expected - progress.done), options_.seconds - spent);
+    going_ = spent < options_.seconds && (!options_.go_on || options_.go_on(progress));
+    return {};
+  }
+
+  /// The first setting is the scene's own, which every other is held against; a machine that was busy or had its
+  /// processor slow at the start would make all the others look cheaper.
+  Result<void> measureFirstAgain() {
+    Candidate& first = candidates_[0];
+    auto run = measure(applied(scene_, knobs_, first.choice), motion_, kPasses, options_.log);
+    if (!run) return Error{run.error()};
+    if (run->cost.p50_ns < first.cost.p50_ns) first.cost = run->cost;
+    return {};
+  }
+
+  size_t distinct() const { return std::set<Choice>(planned_.begin(), planned_.end()).size(); }
+
+  /// From the best so far, one knob at a time, until no knob helps.
+  Result<void> descend() {
+    constexpr int kRounds = 3;
+    for (int round = 0; round < kRounds && going_; ++round) {
+      const size_t before = choose(candidates_, options_.goal).first;
+      for (size_t knob = 0; knob < knobs_.size() && going_; ++knob)
+        for (size_t value = 0; value < knobs_[knob].values.size() && going_; ++value) {
+          const Choice best = candidates_[choose(candidates_, options_.goal).first].choice;
+          if (auto tried = attempt(with(best, knob, value)); !tried) return tried;
+        }
+      if (choose(candidates_, options_.goal).first == before) break;
+    }
+    return {};
+  }
+
+  const scene::Scene& scene_;
+  const Motion& motion_;
+  const std::vector<Knob>& knobs_;
+  const SearchOptions& options_;
+  Nanoseconds begun_;
+  Run reference_;
+  std::vector<Choice> planned_;
+  std::set<Choice> seen_;
+  std::vector<Candidate> candidates_;
+  bool going_ = true;
+};
+
+}  // namespace
+
+Result<Tuning> search(const scene::Scene& scene, const Motion& motion, const std::vector<Knob>& knobs,
+                      const SearchOptions& options) {
+  return Search(scene, motion, knobs, options).run();
+}
+
+void markFront(std::vector<Candidate>& candidates) {
+  for (Candidate& candidate : candidates)
+    candidate.on_front = std::none_of(candidates.begin(), candidates.end(),
+                                      [&](const Candidate& other) { return beats(other, candidate); });
+}
+
+bool alike(const Candidate& a, const Candidate& b) {
+  const double ratio = a.cost.p50_ns / b.cost.p50_ns;
+  return std::abs(std::log(ratio)) < kCostNoise && geometryOf(a) == geometryOf(b) && forceOf(a) == forceOf(b);
+}
+
+std::pair<size_t, bool> choose(const std::vector<Candidate>& candidates, const Goal& goal) {
+  size_t best = 0;
+  bool met = meets(candidates[0], goal);
+  for (size_t i = 1; i < candidates.size(); ++i) {
+    const bool now = meets(candidates[i], goal);
+    if ((now && !met) || (now == met && preferred(candidates[i], candidates[best], goal, met))) {
+      best = i;
+      met = now;
+    }
+  }
+  return {best, met};
+}
+
+}  // namespace hapticd::tune

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+/// Which settings to try, which of them are worth having, and which to take.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tune/knob.hpp"
+#include "tune/measurement.hpp"
+
+namespace hapticd::tune {
+
+/// What the user asks for. Errors are kept at half of the tolerance, so that other motions stay within it too.
+struct Goal {
+  std::optional<double> budget_ns;  ///< most accurate with a p99 below this; none: cheapest within the tolerances
+  double tolerance_m = 1e-6;        ///< of foot and depth
+  double force_tolerance_n = 0.1;
+};
+
+struct Candidate {
+  Choice choice;
+  Cost cost;
+  Difference error;  ///< from the converged reference
+  bool on_front = false;
+};
+
+struct Progress {
+  size_t done = 0, expected = 0;
+  double seconds_left = 0;
+};
+
+struct Tuning {
+  std::vector<Candidate> candidates;  ///< [0] is the scene as it is
+  size_t chosen = 0;
+  bool reached = false;   ///< the chosen one meets the goal
+  bool complete = false;  ///< not cut short by the time limit or the user
+};
+
+struct SearchOptions {
+  Goal goal;
+  double seconds = 50;                         ///< stop trying after this
+  std::function<bool(const Progress&)> go_on;  ///< called after each; false: stop with what there is
+  host::Services::Log log;
+};
+
+/// [main] Measures the scene as it is, each value of each knob by itself, all of them together where they are few, and
+/// otherwise the way down from the scene's settings, a knob at a time.
+Result<Tuning> search(const scene::Scene& scene, const Motion& motion, const std::vector<Knob>& knobs,
+                      const SearchOptions& options);
+
+/// Marks the candidates that no other beats in cost, geometry and force at once. Costs within the noise of a timing
+/// (kCostNoise) are equal.
+void markFront(std::vector<Candidate>& candidates);
+
+/// Equal but for the noise of timing and rounding.
+bool alike(const Candidate& a, const Candidate& b);
+
+/// Index of the candidate to take, and whether it meets the goal.
+std::pair<size_t, bool> choose(const std::vector<Candidate>& candidates, const Goal& goal);
+
+constexpr double kCostNoise = 0.05;  ///< relative
+
+}  // namespace hapticd::tune

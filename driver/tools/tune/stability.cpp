@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#include "tune/stability.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "document/node.hpp"
+#include "servo/core/minimum_jerk.hpp"
+#include "servo/safety/passivity/isolated.hpp"
+
+namespace hapticd::tune {
+namespace {
+
+constexpr double kBuzz = 0.1;  ///< [N] a step of force between neighbouring counts that a hand feels
+
+std::string text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.4g", value);
+  return buffer;
+}
+
+/// Two digits, rounded down: a setting that a person would write.
+double roundedDown(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::floor(value / unit) * unit;
+}
+
+int windowOf(const scene::Velocity& velocity) {
+  return velocity.estimator == "window" ? static_cast<int>(velocity.parameter) : 1;
+}
+
+void judgeModel(const scene::Scene& scene, size_t index, const scene::Device& device, const hdv_info& info,
+                double alone, double stiffness, document::Problems& problems) {
+  const scene::Model& model = scene.models[index];
+  const std::string key = "models[" + std::to_string(index) + "]";
+  const auto warn = [&](const std::string& what) { document::report(problems, model.place, key, what); };
+  const std::string claim = model.name + " pushes with up to " + text(stiffness) + " N/m";
+  if (info.max_stiffness > 0 && stiffness > info.max_stiffness)
+    warn(claim + ", and " + device.name + " is stable up to " + text(info.max_stiffness) +
+         " N/m; nearest: " + text(roundedDown(info.max_stiffness)) + " N/m");
+  if (alone > 0 && stiffness > alone)
+    warn(claim + ", and at " + text(scene.servo.rate) + " Hz a felt mass of " + text(info.mass_kg) +
+         " kg bears at most " + text(alone) + " N/m without damping of the arm; nearest: " + text(roundedDown(alone)) +
+         " N/m, or " + text(std::ceil(scene.servo.rate * std::sqrt(stiffness / alone) / 100) * 100) + " Hz");
+  if (info.resolution_m > 0 && stiffness * info.resolution_m > kBuzz)
+    warn(claim + ", so one count of " + text(info.resolution_m * 1e6) + " um is a step of " +
+         text(stiffness * info.resolution_m) +
+         " N, which a hand feels as buzz; nearest: " + text(roundedDown(kBuzz / info.resolution_m)) + " N/m");
+}
+
+/// Motors of an arm that is simulated do not burn.
+void judgeHeat(const scene::Device& device, const hdv_info& info, document::Problems& problems) {
+  const double most = device.limits.force > 0 ? device.limits.force : info.max_force;
+  const bool guarded = !device.limits.motors.empty() || (info.capabilities & HDV_C_SIMULATED) != 0;
+  if (guarded || info.continuous_force <= 0 || most <= info.continuous_force) return;
+  document::report(
+      problems, device.place, "limits.force",
+      text(most) + " N, and " + device.name + " sustains " + text(info.continuous_force) +
+          " N continuously, and no model of the motors' heat limits it; expected limits.motors; nearest: " +
+          text(info.continuous_force) + " N");
+}
+
+/// Samples against ticks: who drives the loop, and how often.
+void judgeRate(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
+               document::Problems& problems) {
+  constexpr double kSlack = 1.001;
+  const std::string file = scene.file.string(), rates = text(scene.servo.rate) + " Hz";
+  const std::string own = " (" + text(info.rate_hz) + " Hz)", nearest = "; nearest: " + text(info.rate_hz) + " Hz";
+  const bool paced = scene.servo.pace == scene::Pace::kDevice;
+  if (paced && (info.capabilities & HDV_C_PACING) == 0)
+    document::report(
+        problems, file, 0, 0, "servo.pace",
+        "device, but " + device.name +
+            " has a sample at any time, so the clock drives the loop unless another arm can; expected clock");
+  if (info.rate_hz <= 0) return;
+  const double ratio = scene.servo.rate / info.rate_hz;
+  if (paced && (ratio > kSlack || ratio < 1 / kSlack))
+    document::report(problems, file, 0, 0, "servo.rate",
+                     rates + ", but the samples of " + device.name + own +
+                         " drive the loop, and budgets and estimators are made for another rate" + nearest);
+  else if (ratio > kSlack && (info.capabilities & HDV_C_SIMULATED) == 0)
+    document::report(
+        problems, file, 0, 0, "servo.rate",
+        rates + " is faster than the samples of " + device.name + own + ": some ticks get no new sample" + nearest);
+}
+
+/// Where a model's path is named; the model's own place if its file has it no more.
+document::Place placeOfPath(const scene::Model& model) {
+  document::Problems unread;
+  const auto root = document::parseFile(model.place.file, unread);
+  const document::Node* models = root ? root->find("models") : nullptr;
+  if (models == nullptr) return model.place;
+  for (const document::Node& node : models->items) {
+    if (node.line != model.place.line || node.column != model.place.column) continue;
+    const document::Node *path = node.find("path"), *parameters = node.find("parameters");
+    if (path == nullptr && parameters != nullptr) path = parameters->find("path");
+    if (path != nullptr) return {model.place.file, path->line, path->column};
+  }
+  return model.place;
+}
+
+/// The largest of some rates, and when it was.
+struct Fastest {
+  double rate = 0, at = 0;
+  void take(double now, double t) {
+    if (now <= rate * (1 + 1e-9)) return;  // of equal ones the first
+    rate = now;
+    at = t;
+  }
+};
+
+}  // namespace
+
+document::Problems unstableSettings(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
+                                    const std::vector<double>& stiffness) {
+  document::Problems problems;
+  const double period = 1 / scene.servo.rate;
+  const double alone =
+      info.mass_kg > 0 ? passivity::maxStiffnessAlone(info.mass_kg, windowOf(scene.servo.velocity), period) : 0;
+  for (size_t i = 0; i < scene.models.size() && i < stiffness.size(); ++i)
+    judgeModel(scene, i, device, info, alone, stiffness[i], problems);
+  const std::string file = scene.file.string();
+  if (scene.servo.budget_us > period * 1e6)
+    document::report(problems, file, 0, 0, "servo.budget_us",
+                     text(scene.servo.budget_us) + " us is longer than the period of " + text(period * 1e6) +
+                         " us, so every tick may be late; nearest: " + text(0.8 * period * 1e6) + " us");
+  judgeHeat(device, info, problems);
+  judgeRate(scene, device, info, problems);
+  return problems;
+}
+
+document::Problems fastPaths(const scene::Scene& scene) {
+  document::Problems problems;
+  for (size_t i = 0; i < scene.models.size(); ++i) {
+    const std::vector<scene::PathPoint>& path = scene.models[i].path;
+    Fastest speed, turn;
+    for (size_t k = 1; k < path.size(); ++k) {
+      const scene::PathPoint &from = path[k - 1], &to = path[k];
+      const double time = to.t - from.t;
+      speed.take((to.pose.position - from.pose.position).norm() / time, from.t);
+      turn.take(to.pose.orientation.angularDistance(from.pose.orientation) / time, from.t);
+    }
+    const std::string key = "models[" + std::to_string(i) + "].path";
+    const auto judge = [&](const char* does, const Fastest& fastest, double most, const char* unit) {
+      if (fastest.rate <= most * 1.001) return;
+      document::report(problems, placeOfPath(scene.models[i]), key,
+                       scene.models[i].name + " " + does + " at up to " + text(fastest.rate) + unit + ", from t = " +
+                           text(fastest.at) + " s, and a path does not yield to a hand; expected at most " +
+                           text(most) + unit + ", the limit of ctl move");
+    };
+    judge("moves", speed, servo::MinimumJerk::kMostSpeed, " m/s");
+    judge("turns", turn, servo::MinimumJerk::kMostTurn, " rad/s");
+  }
+  return problems;
+}
+
+std::string overheating(const std::string& device, double sustained, const std::vector<double>& forces) {
+  if (sustained <= 0 || forces.empty()) return "";
+  double heat = 0;
+  for (const double force : forces) heat += force * force;
+  const double effective = std::sqrt(heat / static_cast<double>(forces.size()));
+  if (effective <= sustained) return "";
+  return device + " gave " + text(effective) + " N (root of the mean square) over the end of the run and sustains " +
+         text(sustained) + " N: real motors would overheat; a softer model or limits.force: " + text(sustained) +
+         " keeps within that";
+}
+
+}  // namespace hapticd::tune

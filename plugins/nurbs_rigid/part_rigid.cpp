@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+/// What a rigid model needs to know of a part: lengths of its faces for bumps, and its mass.
+#include <cmath>
+
+#include "nurbs_rigid.hpp"
+#include "traced_shape/part_mesh.hpp"
+
+namespace hapticd {
+
+std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const brep::Model& part) {
+  constexpr int kSamples = 8;
+  std::vector<Extent> extents;
+  spline::SurfacePoint E;
+  for (const brep::Body& body : part.part().bodies)
+    if (body.triangle_count > 0) return extents;
+  // Features of instances that are left out keep a length that means nothing.
+  extents.assign(part.featureCount(), {Eigen::Array2d(0, 0), Eigen::Array2d(1, 1), Eigen::Array2d(1, 1)});
+  for (const brep::Placement& place : part.placements()) {
+    const brep::Body& body = part.part().bodies[place.body];
+    for (std::uint32_t f = 0; f < body.face_count; ++f) {
+      const brep::Face& face = part.part().faces[body.first_face + f];
+      Extent extent;
+      extent.lo = brep::vec(face.lo).array();
+      extent.range = brep::vec(face.hi).array() - extent.lo;
+      extent.length.setZero();
+      for (int k = 0; k < kSamples * kSamples; ++k) {
+        const Eigen::Array2d share(k / kSamples + 0.5, k % kSamples + 0.5);
+        const Eigen::Array2d uv = extent.lo + extent.range * share / kSamples;
+        part.geometry().surface(face.surface, uv[0], uv[1], E);
+        extent.length += extent.range * Eigen::Array2d(E.Su.norm(), E.Sv.norm()) / (kSamples * kSamples);
+      }
+      extents[place.first_feature + f] = extent;
+    }
+  }
+  return extents;
+}
+
+dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded) {
+  constexpr double kChord = 1e-4;  // of the size: curved faces count to a thousandth of their volume
+  const Eigen::AlignedBox3d& box = part.bounds();
+  const Mesh mesh = tessellate(part, kChord * box.diagonal().norm());
+  dynamics::SolidIntegral integral(box.center());
+  const auto at = [&mesh](std::size_t i) {
+    const std::size_t v = 3 * mesh.indices[i];
+    return Eigen::Vector3d(mesh.xyz[v], mesh.xyz[v + 1], mesh.xyz[v + 2]);
+  };
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+    const Eigen::Vector3d a = at(i), b = at(i + 1), c = at(i + 2), area = 0.5 * (b - a).cross(c - a);
+    // Mid-edge rule: exact for the quadratic integrands, and near enough for the cubic ones.
+    for (const Eigen::Vector3d& middle :
+         {Eigen::Vector3d(0.5 * (a + b)), Eigen::Vector3d(0.5 * (b + c)), Eigen::Vector3d(0.5 * (c + a))})
+      integral.add(middle, area / 3);
+  }
+  constexpr double kEmptiest = 1e-6;
+  bounded = !part.open() && std::abs(integral.volume()) > kEmptiest * box.volume();
+  if (bounded) return integral.properties();
+  Eigen::AlignedBox3d thick = box;
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(1e-3 * box.diagonal().norm());
+  thick.min() -= margin;
+  thick.max() += margin;
+  return dynamics::boxProperties(thick);
+}
+
+}  // namespace hapticd

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "host/child.hpp"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <stdexcept>
+
+#include "host/describe.hpp"
+#include "host/wire.hpp"
+
+namespace hapticd::host {
+namespace {
+
+TEST(Child, ReturnsTheBytesOfTheWorkHoweverMany) {
+  const auto told = runInChild([] { return std::string(3'000'000, 'x'); }, 10'000);
+  ASSERT_TRUE(told) << told.error();
+  EXPECT_EQ(*told, std::string(3'000'000, 'x'));
+}
+
+TEST(Child, TellsACrashFromAHangFromAnExit) {
+  const auto crash = runInChild(
+      []() -> std::string {
+        ::raise(SIGFPE);
+        return "x";
+      },
+      10'000);
+  ASSERT_FALSE(crash);
+  EXPECT_EQ(crash.error(), "crashed: Floating point exception");
+  const auto hang = runInChild(
+      []() -> std::string {
+        for (;;) ::pause();
+      },
+      100);
+  ASSERT_FALSE(hang);
+  EXPECT_EQ(hang.error(), "took longer than 0.10 s");
+  const auto exits = runInChild([]() -> std::string { ::_exit(3); }, 10'000);
+  ASSERT_FALSE(exits);
+  EXPECT_EQ(exits.error(), "ended the process with code 3");
+  const auto throws = runInChild([]() -> std::string { throw std::runtime_error("no"); }, 10'000);
+  ASSERT_FALSE(throws);
+}
+
+TEST(Program, DescribesAFileAsAForkDoesAndTellsHowABadOneEnds) {
+  const std::filesystem::path modules = TEST_MODULES;
+  const auto plain = describeInChild(modules / "good/test_shape.so");
+  const auto told = describeByProgram(TEST_HAPTICD, modules / "good/test_shape.so");
+  ASSERT_TRUE(told) << told.error();
+  ASSERT_EQ(told->size(), plain->size());
+  EXPECT_EQ(told->front().id, plain->front().id);
+  EXPECT_EQ(told->front().paramIds(), plain->front().paramIds());
+  for (const char* bad : {"crash", "exits", "wrong_major", "no_entry", "broken_table"}) {
+    const std::filesystem::path file = modules / "bad" / (std::string(bad) + ".so");
+    const auto refused = describeByProgram(TEST_HAPTICD, file);
+    ASSERT_FALSE(refused) << bad;
+    EXPECT_EQ(refused.error(), describeInChild(file).error()) << bad;
+  }
+}
+
+TEST(Program, ThatClosesItsDescriptorsAndHangsIsEndedInTime) {
+  const auto hangs = runProgram({"/bin/sh", "-c", "exec 3>&-; exec sleep 60"}, 300);
+  ASSERT_FALSE(hangs);
+  EXPECT_EQ(hangs.error(), "took longer than 0.30 s");
+}
+
+TEST(Program, AnswersAParentThatWasStartedWithoutStandardFiles) {
+  const auto told = runInChild(
+      [] {
+        for (int fd = 0; fd < 3; ++fd) close(fd);
+        const auto answer = runProgram({"/bin/sh", "-c", "echo hello >&3"}, 10'000);
+        return answer ? *answer : answer.error();
+      },
+      20'000);
+  ASSERT_TRUE(told) << told.error();
+  EXPECT_EQ(*told, "hello\n");
+}
+
+TEST(Program, ThatIsNotThereOrAnswersNothingIsAnError) {
+  const auto missing = runProgram({"/nowhere/hapticd", "x"}, 1000);
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error(), "could not be tried: /nowhere/hapticd: No such file or directory");
+  const auto silent = runProgram({"/bin/true"}, 5000);
+  ASSERT_FALSE(silent);
+  EXPECT_EQ(silent.error(), "ended the process with code 0");
+  const auto slow = runProgram({"/bin/sleep", "60"}, 100);
+  ASSERT_FALSE(slow);
+  EXPECT_EQ(slow.error(), "took longer than 0.10 s");
+}
+
+TEST(Wire, GivesBackWhatWasPackedAndNoticesAnEarlyEnd) {
+  Packer packer;
+  packer.number(7u);
+  packer.number(-0.125);
+  packer.text("abc");
+  packer.text("");
+  const std::string bytes = packer.take();
+  Unpacker whole(bytes);
+  EXPECT_EQ(whole.count(), 7u);
+  EXPECT_EQ(whole.real(), -0.125);
+  EXPECT_EQ(whole.text(), "abc");
+  EXPECT_EQ(whole.text(), "");
+  EXPECT_TRUE(whole.good());
+  for (size_t length = 0; length < bytes.size(); ++length) {
+    const std::string part = bytes.substr(0, length);
+    Unpacker cut(part);
+    cut.count();
+    cut.real();
+    cut.text();
+    cut.text();
+    EXPECT_FALSE(cut.good()) << length;
+  }
+}
+
+}  // namespace
+}  // namespace hapticd::host

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "record/report.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "record/picture.hpp"
+
+namespace hapticd::record {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Report : public testing::Test {
+ protected:
+  Report() { fs::create_directories(dir_); }
+  ~Report() override { fs::remove_all(dir_); }
+  std::string file(const std::string& name) const { return (dir_ / name).string(); }
+  static std::string read(const std::string& name) {
+    std::ifstream in(name);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  static RunReport sample() {
+    RunReport report;
+    report.scene = "a <scene> & more";
+    report.ticks = 1000;
+    report.rate_hz = 1000;
+    report.seconds = 1;
+    report.lateness_us.add(3);
+    report.models.push_back({"ball", "sphere", {}});
+    report.models[0].contact.add(true, 0.002, 1.5, 1e-3, 400);
+    report.faults = {"the arm is gone"};
+    return report;
+  }
+
+ private:
+  fs::path dir_ = fs::temp_directory_path() / ("hapticd-report-" + std::to_string(getpid()));
+};
+
+TEST_F(Report, HasEveryPromisedKeyInItsUnit) {
+  ASSERT_TRUE(writeJson(sample(), file("r.json")));
+  const auto json = nlohmann::json::parse(read(file("r.json")));
+  for (const char* key : {"ticks", "rate_hz", "overruns", "missed_ticks", "page_faults", "servo_allocations"})
+    EXPECT_TRUE(json.at(key).is_number()) << key;
+  for (const char* key : {"lateness_us", "compute_us"})
+    for (const char* quantile : {"p50", "p99", "p999", "max"}) EXPECT_TRUE(json.at(key).at(quantile).is_number());
+  const auto& ball = json.at("models").at("ball");
+  EXPECT_EQ(ball.at("plugin"), "sphere");
+  EXPECT_EQ(ball.at("contact_ticks"), 1);
+  EXPECT_DOUBLE_EQ(ball.at("penetration_mm").at("max"), 2);
+  EXPECT_DOUBLE_EQ(ball.at("penetration_mm").at("std"), 0);
+  EXPECT_DOUBLE_EQ(ball.at("force_n").at("mean"), 1.5);
+  EXPECT_DOUBLE_EQ(ball.at("buzz_mm"), 0);
+  EXPECT_DOUBLE_EQ(ball.at("step_ns").at("max"), 400);
+  EXPECT_EQ(json.at("faults"), nlohmann::json::array({"the arm is gone"}));
+}
+
+TEST_F(Report, IsWrittenWholeOrNotAtAll) {
+  const auto written = writeJson(sample(), file("no-such-folder/r.json"));
+  ASSERT_FALSE(written);
+  EXPECT_NE(written.error().find("no-such-folder"), std::string::npos);
+  ASSERT_TRUE(writeJson(sample(), file("r.json")));
+  EXPECT_FALSE(fs::exists(file("r.json.part")));
+}
+
+TEST_F(Report, TellsPeopleFaultsAndContact) {
+  const std::string text = summary(sample());
+  for (const char* words : {"1000 ticks", "ball (sphere)", "max 2.000 mm", "fault: the arm is gone"})
+    EXPECT_NE(text.find(words), std::string::npos) << text;
+}
+
+TEST_F(Report, TellsPeopleOfModelsThatAnsweredCoarserWithoutContact) {
+  RunReport report = sample();
+  EXPECT_EQ(summary(report).find("accuracy"), std::string::npos);
+  report.models.push_back({"far", "sphere", {}});
+  report.models[1].degraded_ticks = 500;
+  EXPECT_NE(summary(report).find("lowered for 1 of 2 models, in up to 50 % of the ticks"), std::string::npos);
+}
+
+TEST_F(Report, TellsPeopleThatNothingWasTouched) {
+  RunReport report = sample();
+  EXPECT_EQ(summary(report).find("touched no model"), std::string::npos);
+  report.models[0].contact = {};
+  EXPECT_NE(summary(report).find("touched no model"), std::string::npos);
+}
+
+TEST_F(Report, DrawsEveryPeakAndEscapesNames) {
+  std::vector<Sample> samples(5000);
+  for (size_t i = 0; i < samples.size(); ++i) samples[i].t = static_cast<double>(i) * 1e-3;
+  samples[2500].force_n = 7;
+  ASSERT_TRUE(drawRun(sample(), samples, file("run.svg")));
+  const std::string svg = read(file("run.svg"));
+  EXPECT_NE(svg.find("a &lt;scene&gt; &amp; more"), std::string::npos);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_NE(svg.find("</svg>"), std::string::npos);
+  EXPECT_LT(svg.size(), 200000u);
+}
+
+TEST_F(Report, SaysWhenThereIsNothingToDraw) {
+  EXPECT_FALSE(drawRun(sample(), {}, file("run.svg")));
+}
+
+}  // namespace
+}  // namespace hapticd::record

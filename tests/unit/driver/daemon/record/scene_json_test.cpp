@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "record/scene_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace hapticd::record {
+namespace {
+
+scene::Scene sceneWithEveryLimit() {
+  scene::Scene scene;
+  scene.servo.spin_us = 20;
+  scene::Device& device = scene.devices.emplace_back();
+  device.name = "arm";
+  device.admittance = {2, 30};
+  scene::Limits& limits = device.limits;
+  limits.torque_slew = 5, limits.power = 2, limits.impulse = 0.3, limits.passivity = true;
+  limits.enable = {1, scene::EnableMode::kToggle};
+  limits.motors.emplace_back();
+  return scene;
+}
+
+TEST(SceneJson, ComesBackAsItWas) {
+  const std::string once = sceneToJson(sceneWithEveryLimit());
+  const auto scene = sceneFromJson(once);
+  ASSERT_TRUE(scene) << scene.error();
+  EXPECT_EQ(sceneToJson(*scene), once);
+  EXPECT_EQ(scene->devices[0].limits.enable.button, 1);
+  EXPECT_EQ(scene->devices[0].limits.power, 2);
+}
+
+TEST(SceneJson, AnOlderRecordingWasMadeWithoutWhatCameLater) {
+  auto json = nlohmann::json::parse(sceneToJson(sceneWithEveryLimit()));
+  auto& device = json["devices"][0];
+  for (const char* key : {"torque_slew", "power", "impulse", "enable", "motors"}) device["limits"].erase(key);
+  device.erase("admittance");
+  json["servo"].erase("spin_us");
+  const auto scene = sceneFromJson(json.dump());
+  ASSERT_TRUE(scene) << scene.error();
+  const scene::Limits& limits = scene->devices[0].limits;
+  EXPECT_EQ(limits.torque_slew, 0);
+  EXPECT_EQ(limits.power, 0);
+  EXPECT_EQ(limits.impulse, 0);
+  EXPECT_FALSE(limits.enable.button);
+  EXPECT_TRUE(limits.motors.empty());
+  EXPECT_FALSE(scene->devices[0].admittance);
+  EXPECT_FALSE(scene->servo.spin_us);
+}
+
+TEST(SceneJson, SaysWhatIsMissing) {
+  for (const char* key : {"force", "slew", "velocity", "workspace", "ramp_in", "ramp_out"}) {
+    auto json = nlohmann::json::parse(sceneToJson(sceneWithEveryLimit()));
+    json["devices"][0]["limits"].erase(key);
+    const auto scene = sceneFromJson(json.dump());
+    ASSERT_FALSE(scene) << key;
+    EXPECT_NE(scene.error().find(key), std::string::npos) << scene.error();
+  }
+}
+
+}  // namespace
+}  // namespace hapticd::record

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+#include "session/replay.hpp"
+
+#include <random>
+
+#include "session/watched_servo.hpp"
+#include "test_rig.hpp"
+#include "watch/watchdog.hpp"
+
+namespace hapticd::servo {
+namespace {
+
+void quiet(int, const std::string&, const std::string&) {}
+
+/// A rig whose loop is recorded from its first tick.
+struct Recorded : Rig {
+  static constexpr uint64_t kTicks = 200;
+
+  Recorded(const char* shape, std::vector<scene::Value> values, const std::vector<scene::Value>& device = {},
+           const std::vector<scene::Model>& more = {})
+      : Rig(
+            0, [this](Nanoseconds now) { return every(now), Nanoseconds{0}; }, kTicks, shape, std::move(values), more,
+            device) {}
+  std::function<void(Nanoseconds)> every = [](Nanoseconds) {};  ///< before each tick
+
+  /// Every step takes longer than it may.
+  void starve() {
+    scene.servo.budget_us = 1e-3;
+    WorldOptions options;
+    options.measure = options.budgets = true;
+    world = std::move(*World::build(scene, options, quiet));
+    loop = std::make_unique<Loop>(world->core(), world->lockstep(), arms, clock, settings, *telemetry);
+  }
+
+  void record() {
+    const auto streams = flightStreams(scene, arms, 1000, 1, 0);
+    const RunFacts facts{1000, settings.period_ns, settings.ticks, true};
+    about = aboutRun(scene, *world, arms, facts, streams);
+    telemetry->attach(std::make_unique<Flight>(std::move(*record::FlightRing::create(streams, about)), arms, 8));
+    loop->run();
+  }
+
+  ReplayOutcome replay() {
+    const record::FlightRing& ring = telemetry->flight()->ring();
+    auto recording = record::Recording::parse({ring.image(), ring.imageBytes()}, "memory");
+    EXPECT_TRUE(recording) << (recording ? "" : recording.error());
+    auto run = readAbout(about.json);
+    EXPECT_TRUE(run) << (run ? "" : run.error());
+    auto replay = Replay::prepare(**recording, std::move(*run), quiet);
+    EXPECT_TRUE(replay) << (replay ? "" : replay.error());
+    return (*replay)->run();
+  }
+
+  record::About about;
+};
+
+void expectSame(const ReplayOutcome& outcome) {
+  EXPECT_EQ(outcome.ticks, Recorded::kTicks) << outcome.note;
+  ASSERT_FALSE(outcome.first) << outcome.first->what << " in tick " << outcome.first->tick << ": "
+                              << outcome.first->recorded << ", now " << outcome.first->replayed;
+}
+
+TEST(Replay, IsTheSameToTheLastBit) {
+  Recorded rig("wall", {});
+  rig.record();
+  expectSame(rig.replay());
+}
+
+#ifndef HAPTICD_SANITIZED  // the watchdog counts processor time, which the sanitizers take too
+TEST(Replay, IsTheSameWhereTheWatchdogCutTheMotors) {
+  Recorded rig("deadly", {number(0, HSP_ENUM, 5)});
+  WatchedServo watched(*rig.loop, *rig.world, rig.arms, *rig.telemetry);
+  watch::Watchdog watchdog(watched, [] {});
+  ASSERT_FALSE(watchdog.start(81));
+  rig.record();
+  watchdog.stop();
+  ASSERT_EQ(rig.arms[0]->limiter().fault(), Fault::kStuck);
+  expectSame(rig.replay());
+}
+#endif
+
+TEST(Replay, IsTheSameWhereAShapeWasLoweredAndSilencedForItsTime) {
+  Recorded rig("wall", {});
+  rig.starve();
+  rig.record();
+  EXPECT_EQ(rig.world->core().models()[0].coarsest, Accuracy::kCoarsest);
+  EXPECT_EQ(rig.world->core().models()[0].guard.trouble(), Trouble::kOverrun);
+  expectSame(rig.replay());
+}
+
+TEST(Replay, IsTheSameThroughEveryFailureOfTheDevice) {
+  for (int failure = 1; failure <= 5; ++failure) {
+    Recorded rig("wall", {}, {number(2, HSP_ENUM, failure), number(3, HSP_REAL, 0.1)});
+    rig.record();
+    EXPECT_NE(rig.arms[0]->limiter().fault(), Fault::kNone);
+    expectSame(rig.replay());
+  }
+}
+
+/// A wall that a program leads into the hand, and the program's memory as it was then.
+TEST(Replay, IsTheSameWhereAModelWasLed) {
+  scene::Model door = testModel("wall", {number(1, HSP_REAL, 5)});
+  door.name = "door";
+  door.kinematic = true;
+  door.path = {{0, {{0, -0.1, 0}, Eigen::Quaterniond::Identity()}}};
+  Recorded rig("wall", {}, {}, {door});
+  link::PoseSlot slot, second;
+  std::mt19937_64 random(3);
+  int tick = 0;
+  rig.every = [&](Nanoseconds now) {
+    Order order;
+    order.target = 1;
+    const bool begins = tick == 20 || tick == 120;
+    order.kind = begins ? Order::Kind::kLead : Order::Kind::kUnlead;
+    order.slot = tick == 20 ? &slot : &second;
+    if (begins || tick == 110) rig.loop->give(order);
+    hapticd_target target{};
+    target.position[1] = -0.1 + 0.002 * (tick - 20) + 1e-4 * static_cast<double>(random() % 10);
+    target.linear[1] = 2;
+    target.angular[0] = 0.3;
+    target.orientation[0] = 1;
+    target.time = tick % 2 == 0 ? 0 : static_cast<double>(now) * 1e-9;
+    if (tick % 13 == 5) target.position[0] = HUGE_VAL;  // refused, then as in the replay, where it never was
+    if (tick > 20 && random() % 3 != 0) (tick < 115 ? slot : second).put(target);
+    ++tick;
+  };
+  rig.record();
+  const record::FlightRing& ring = rig.telemetry->flight()->ring();
+  EXPECT_GT(ring.written(kLeads), 80u);
+  EXPECT_GT(rig.world->core().models()[1].pose.position[1], -0.05);
+  EXPECT_GT(rig.world->core().models()[1].lead.refused(), 2u);
+  expectSame(rig.replay());
+}
+
+TEST(BlackBox, HasTheSameRowsAsTheShortOneThatItReplaces) {
+  Recorded rig("wall", {});
+  Rig plain(0, [](Nanoseconds) { return Nanoseconds{0}; }, Recorded::kTicks);
+  plain.loop->run();
+  rig.record();
+  const auto expected = plain.telemetry->blackBox(), got = rig.telemetry->blackBox();
+  ASSERT_EQ(got.size(), expected.size());
+  for (size_t i = 0; i < got.size(); ++i) {
+    EXPECT_EQ(got[i].t, expected[i].t);
+    EXPECT_EQ(got[i].position, expected[i].position);
+    EXPECT_EQ(got[i].force, expected[i].force);
+    EXPECT_EQ(got[i].depth_m, expected[i].depth_m);
+    EXPECT_EQ(got[i].model, expected[i].model);
+    EXPECT_EQ(got[i].status, expected[i].status);
+    EXPECT_EQ(got[i].fault, expected[i].fault);
+  }
+}
+
+}  // namespace
+}  // namespace hapticd::servo

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "watch/crash.hpp"
+#include "watch/notify.hpp"
+#include "watch/quarantine.hpp"
+#include "watch/watchdog.hpp"
+
+namespace hapticd::watch {
+namespace {
+
+struct Fake : Watched {
+  uint64_t tick = 0;
+  Nanoseconds begun = 0, cpu = 0;
+  bool harmless = false;
+  int cuts = 0;
+  uint64_t ticks() const noexcept override { return tick; }
+  Nanoseconds tickBegun() const noexcept override { return begun; }
+  Nanoseconds cpuTime() const noexcept override { return cpu; }
+  bool simulated() const noexcept override { return harmless; }
+  void cut(double) noexcept override { ++cuts; }
+  const char* plugin() const noexcept override { return nullptr; }
+  const char* model() const noexcept override { return nullptr; }
+  const void* blackBox() const noexcept override { return nullptr; }
+  size_t blackBoxBytes() const noexcept override { return 0; }
+};
+
+constexpr Nanoseconds kMs = 1'000'000;
+
+TEST(Watchdog, CutsATickThatDoesNotEndWithinFiveMillisecondsAndOnlyOnce) {
+  for (Nanoseconds phase = 0; phase < kMs; phase += kMs / 10) {  // of the checks against the tick
+    Fake servo;
+    Watchdog watchdog(servo, [] {});
+    servo.begun = 100 * kMs + phase;
+    Nanoseconds cut_at = 0;
+    for (Nanoseconds now = 100 * kMs; now < 130 * kMs; now += kMs)
+      if (watchdog.check(now)) cut_at = now;
+    EXPECT_EQ(servo.cuts, 1);
+    EXPECT_LE(cut_at - servo.begun, 5 * kMs);
+  }
+}
+
+TEST(Watchdog, LeavesAServoAloneThatWaitsOrTicks) {
+  Fake servo;
+  Watchdog watchdog(servo, [] {});
+  for (Nanoseconds now = kMs; now < 1000 * kMs; now += kMs) {
+    servo.begun = now % (3 * kMs) == 0 ? 0 : now - kMs / 2;
+    ++servo.tick;
+    EXPECT_FALSE(watchdog.check(now));
+  }
+  servo.begun = 0;  // a slow rate: it waits for long
+  for (Nanoseconds now = 1000 * kMs; now < 2000 * kMs; now += kMs) EXPECT_FALSE(watchdog.check(now));
+}
+
+TEST(Watchdog, ABusyMachineIsNoFaultOfASimulationButALoopIs) {
+  Fake servo;
+  servo.harmless = true;
+  Watchdog watchdog(servo, [] {});
+  servo.begun = kMs;
+  for (Nanoseconds now = kMs; now < 100 * kMs; now += kMs) EXPECT_FALSE(watchdog.check(now)) << "not scheduled";
+  servo.tick = 1;
+  servo.begun = 200 * kMs;
+  bool cut = false;
+  for (Nanoseconds now = 200 * kMs; now < 210 * kMs; now += kMs) {
+    servo.cpu = now;
+    cut |= watchdog.check(now);
+  }
+  EXPECT_TRUE(cut);
+}
+
+/// A servo that spins uses its processor, one that sleeps in a plugin does not: with hardware both are cut.
+TEST(Watchdog, CutsAPluginThatSpinsAndOneThatSleeps) {
+  for (const bool spins : {true, false}) {
+    Fake servo;
+    Watchdog watchdog(servo, [] {});
+    Nanoseconds cut_at = 0;
+    for (Nanoseconds now = 100 * kMs; now < 130 * kMs; now += kMs) {
+      if (now == 110 * kMs) servo.begun = now - kMs / 3;
+      if (spins && servo.begun != 0) servo.cpu = now - servo.begun;
+      if (watchdog.check(now)) cut_at = now;
+    }
+    ASSERT_EQ(servo.cuts, 1) << spins;
+    EXPECT_LE(cut_at - servo.begun, 5 * kMs) << spins;
+  }
+}
+
+/// The machine stands still for `stall` in the middle of a tick: watchdog and servo alike, and a virtual machine may
+/// charge the servo with the time. Gives how often the motors were cut when the tick then ends `rest` later.
+int cutsThroughAStall(bool simulated, Nanoseconds stall, Nanoseconds phase, Nanoseconds rest) {
+  Fake servo;
+  servo.harmless = simulated;
+  Watchdog watchdog(servo, [] {});
+  Nanoseconds now = 100 * kMs;
+  for (; now < 110 * kMs; now += kMs) watchdog.check(now);
+  servo.begun = now - kMs + phase;  // between two looks
+  const Nanoseconds back = servo.begun + kMs / 50 + stall;
+  for (now = std::max(now, back); now < back + rest; now += kMs) {
+    servo.cpu = now - servo.begun;
+    watchdog.check(now);
+  }
+  servo.begun = 0;
+  for (; now < back + 50 * kMs; now += kMs) watchdog.check(now);
+  return servo.cuts;
+}
+
+TEST(Watchdog, AMachineThatStoodStillIsNoServoThatIsStuck) {
+  for (const bool simulated : {false, true})
+    for (const Nanoseconds stall : {3 * kMs, 4 * kMs, 10 * kMs, 150 * kMs, 5000 * kMs})
+      for (Nanoseconds phase = 0; phase < kMs; phase += kMs / 10) {
+        EXPECT_EQ(cutsThroughAStall(simulated, stall, phase, kMs), 0) << stall << " " << phase;
+        EXPECT_EQ(cutsThroughAStall(simulated, stall, phase, 6 * kMs), 1) << "stuck after the stall: " << stall;
+      }
+}
+
+TEST(Watchdog, AfterAStallAServoThatIsStuckIsCutWithinFiveMillisecondsOfLooksOnTime) {
+  for (const Nanoseconds jitter : {Nanoseconds{0}, kMs / 10, kMs / 2, kMs}) {
+    Fake servo;
+    Watchdog watchdog(servo, [] {});
+    watchdog.check(100 * kMs);
+    servo.begun = 100 * kMs + kMs / 5;
+    const Nanoseconds back = 120 * kMs;
+    Nanoseconds cut_at = 0;
+    for (Nanoseconds now = back; cut_at == 0 && now < 140 * kMs; now += kMs + jitter)
+      if (watchdog.check(now)) cut_at = now;
+    EXPECT_GT(cut_at, back + kMs) << "no moment to end the tick";
+    EXPECT_LE(cut_at, back + 5 * kMs);
+  }
+}
+
+TEST(Watchdog, ThatIsAlwaysLateStillCutsAtItsFourthLook) {
+  Fake servo;
+  Watchdog watchdog(servo, [] {});
+  watchdog.check(100 * kMs);
+  servo.begun = 101 * kMs;
+  int looks = 0;
+  for (Nanoseconds now = 110 * kMs; servo.cuts == 0 && looks < 20; now += 10 * kMs, ++looks) watchdog.check(now);
+  EXPECT_EQ(looks, 4);
+}
+
+TEST(Watchdog, EndsAServoThatNeverComesBack) {
+  Fake servo;
+  int hung = 0;
+  Watchdog watchdog(servo, [&hung] { ++hung; });
+  servo.begun = kMs;
+  for (Nanoseconds now = kMs; now < 2000 * kMs; now += kMs) watchdog.check(now);
+  EXPECT_EQ(hung, 1);
+}
+
+#ifndef HAPTICD_SANITIZED  // the sanitizers handle these signals themselves
+
+/// A device whose cut crashes, or never comes back.
+struct BadCut : Fake {
+  bool hangs = false;
+  void cut(double) noexcept override {
+    while (hangs) pause();
+    std::raise(SIGSEGV);
+  }
+  const char* plugin() const noexcept override { return "bad"; }
+};
+
+TEST(CrashDeathTest, OneInsideTheCutOfTheMotorsStillEndsInQuarantine) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const std::filesystem::path dir = std::filesystem::temp_directory_path() / "hapticd-bad-cut";
+  std::filesystem::remove_all(dir);
+  std::filesystem::create_directories(dir);
+  const auto crash = [&] {
+    BadCut servo;
+    guardAgainstCrash(servo, dir);
+    alarm(20);  // s: ends one that hangs by a signal
+    std::raise(SIGFPE);
+  };
+  EXPECT_EXIT(crash(), testing::ExitedWithCode(1), "SIGFPE.*\n.*to switch the motors off crashed as well");
+  ASSERT_EQ(quarantined(dir).size(), 1u);
+  EXPECT_EQ(quarantined(dir)[0].plugin, "bad");
+  std::filesystem::remove_all(dir);
+}
+
+TEST(CrashDeathTest, ACutThatNeverComesBackIsEndedByTheNextThreadThatMissesTheServo) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto crash = [] {
+    BadCut servo;
+    servo.hangs = true;
+    guardAgainstCrash(servo, "");
+    alarm(20);
+    std::thread servo_thread([] { std::raise(SIGFPE); });
+    usleep(100'000);
+    dieOf("a step that did not come back");
+  };
+  EXPECT_EXIT(crash(), testing::ExitedWithCode(1), "");
+}
+
+#endif
+
+TEST(Notify, FeedsTheServiceManagerOnlyWhileTicksMove) {
+  const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string path = (std::filesystem::temp_directory_path() / ("notify" + std::to_string(getpid()))).string();
+  std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
+  unlink(path.c_str());
+  ASSERT_EQ(bind(fd, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  setenv("NOTIFY_SOCKET", path.c_str(), 1);
+  setenv("WATCHDOG_USEC", "2000000", 1);
+  Feeder feeder;
+  EXPECT_TRUE(feeder.feed(10'000 * kMs, 5));
+  char got[64] = "";
+  EXPECT_EQ(recv(fd, got, sizeof got, 0), 10);
+  EXPECT_STREQ(got, "WATCHDOG=1");
+  EXPECT_FALSE(feeder.feed(20'000 * kMs, 5)) << "the servo stands still";
+  EXPECT_TRUE(feeder.feed(20'000 * kMs, 6));
+  unsetenv("NOTIFY_SOCKET");
+  unsetenv("WATCHDOG_USEC");
+  EXPECT_FALSE(notify("READY=1"));
+  close(fd);
+  unlink(path.c_str());
+}
+
+TEST(Quarantine, RemembersEachPluginOnceAndForgetsItOnOrder) {
+  const auto dir = std::filesystem::temp_directory_path() / ("quarantine" + std::to_string(getpid()));
+  std::filesystem::create_directories(dir);
+  EXPECT_TRUE(quarantined(dir).empty());
+  std::ofstream(dir / kQuarantineFile) << "a\tSIGSEGV\nb\tSIGFPE\na\tagain\n\n";
+  ASSERT_EQ(quarantined(dir).size(), 2u);
+  EXPECT_EQ(quarantined(dir)[0].reason, "SIGSEGV");
+  EXPECT_TRUE(*clearQuarantine(dir, "a"));
+  EXPECT_FALSE(*clearQuarantine(dir, "a"));
+  ASSERT_EQ(quarantined(dir).size(), 1u);
+  EXPECT_EQ(quarantined(dir)[0].plugin, "b");
+  std::filesystem::remove_all(dir);
+}
+
+}  // namespace
+}  // namespace hapticd::watch

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "document/csv.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace hapticd::document {
+namespace {
+
+const CsvRules kPath{{"t,x,y,z", "t,x,y,z,qw,qx,qy,qz"}, true, true, 1e6};
+
+std::string firstProblem(const std::string& text, const CsvRules& rules = kPath) {
+  Problems problems;
+  EXPECT_FALSE(parseCsv(text, "p.csv", rules, problems));
+  return problems.empty() ? "" : problems.front().text();
+}
+
+TEST(Csv, ReadsCommentsBlanksAndLineEndingsAlike) {
+  Problems problems;
+  const auto table =
+      parseCsv("# made by hand\n\n t , x,y ,z\r\n0,1,2,3\r\n# between\n1e-3 , -1.5,+2,.5\n", "p.csv", kPath, problems);
+  ASSERT_TRUE(table) << (problems.empty() ? "" : problems.front().text());
+  ASSERT_EQ(table->rows(), 2u);
+  EXPECT_EQ(table->columns, 4u);
+  EXPECT_EQ(table->lines, (std::vector<int>{4, 6}));
+  EXPECT_EQ(table->row(1)[0], 1e-3);
+  EXPECT_EQ(table->row(1)[2], 2);
+  EXPECT_EQ(table->row(1)[3], 0.5);
+}
+
+TEST(Csv, TakesAFileWithoutAHeaderByTheNumberOfColumns) {
+  Problems problems;
+  const auto table = parseCsv("0,1,2,3,1,0,0,0\n1,1,2,3,1,0,0,0\n", "p.csv", kPath, problems);
+  ASSERT_TRUE(table);
+  EXPECT_EQ(table->columns, 8u);
+  EXPECT_EQ(table->rows(), 2u);
+}
+
+TEST(Csv, NamesLineColumnAndWhatWasExpected) {
+  EXPECT_EQ(firstProblem("t,x,y\n0,1,2\n"),
+            "p.csv:1:1: the header is \"t,x,y\", expected t,x,y,z or t,x,y,z,qw,qx,qy,qz");
+  EXPECT_EQ(firstProblem("t,x,y,z\n0,1,two,3\n"), "p.csv:2:5: y: \"two\" is not valid, expected a finite number");
+  EXPECT_EQ(firstProblem("t,x,y,z\n0,1,2\n"), "p.csv:2:1: 3 columns, expected 4");
+  EXPECT_EQ(firstProblem("t,x,y,z\n1,0,0,0\n1,0,0,0\n"), "p.csv:3:1: t: 1 does not grow, expected more than 1");
+  EXPECT_EQ(firstProblem("t,x,y,z\n0,nan,0,0\n"), "p.csv:2:3: x: \"nan\" is not valid, expected a finite number");
+  EXPECT_EQ(firstProblem("# only a comment\n"),
+            "p.csv:1:1: no rows, expected a header t,x,y,z or t,x,y,z,qw,qx,qy,qz and at least one row");
+}
+
+TEST(Csv, LetsNumbersBeNotFiniteWhereTheRulesSaySo) {
+  const CsvRules probe{{"t,x,y,z"}, false, true};
+  Problems problems;
+  const auto table = parseCsv("t,x,y,z\n0,nan,inf,-inf\n1,.nan,1e999,1e-999\n", "p.csv", probe, problems);
+  ASSERT_TRUE(table);
+  EXPECT_TRUE(std::isnan(table->row(0)[1]) && std::isinf(table->row(0)[2]) && std::isnan(table->row(1)[1]));
+  EXPECT_EQ(table->row(1)[3], 0);
+  EXPECT_NE(firstProblem("t,x,y,z\nnan,0,0,0\n", probe), "");
+}
+
+TEST(Csv, StopsTellingAfterTwentyProblems) {
+  std::string text = "t,x,y,z\n";
+  for (int i = 0; i < 1000; ++i) text += "no,numbers,in,here\n";
+  Problems problems;
+  EXPECT_FALSE(parseCsv(text, "p.csv", kPath, problems));
+  EXPECT_EQ(problems.size(), 20u);
+}
+
+TEST(Csv, NeverReturnsATableOfTheWrongSize) {
+  std::mt19937 random(3);
+  const std::string parts[] = {"0", "1", ",", "\n", "t,x,y,z\n", "#", " ", "nan", "1e9", "-", "\r\n", "q", "\0x"};
+  for (int round = 0; round < 20000; ++round) {
+    std::string text = round % 2 != 0 ? "t,x,y,z\n" : "";
+    for (unsigned n = random() % 40; n > 0; --n) text += parts[random() % std::size(parts)];
+    Problems problems;
+    const auto table = parseCsv(text, "p.csv", kPath, problems);
+    ASSERT_EQ(table.has_value(), problems.empty()) << text;
+    if (table) {
+      ASSERT_EQ(table->values.size(), table->rows() * table->columns) << text;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hapticd::document

@@ -1,8 +1,0 @@
-/// Crashes as soon as it is loaded.
-#include <csignal>
-
-namespace {
-struct Crash {
-  Crash() { std::raise(SIGSEGV); }
-} crash;
-}  // namespace

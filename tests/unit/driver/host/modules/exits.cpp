@@ -1,8 +1,0 @@
-/// Ends the process as soon as it is loaded.
-#include <unistd.h>
-
-namespace {
-struct Exits {
-  Exits() { _exit(0); }
-} exits;
-}  // namespace

@@ -1,3 +1,0 @@
-/// A shared object that is no plugin.
-extern "C" __attribute__((visibility("default"))) int something_else;
-int something_else = 1;

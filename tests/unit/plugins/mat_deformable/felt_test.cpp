@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+/// Bodies whose dynamics are felt, through the C ABI.
+#include <random>
+
+#include "soft_plugin.hpp"
+
+namespace hapticd::test {
+namespace {
+
+/// `felt` on one of the bodies that ship.
+class FeltBody : public Plugin {
+ public:
+  explicit FeltBody(const std::string& geometry = "soft-plate.yaml", uint32_t probes = 1, double shear = 0)
+      : Plugin(geometry) {
+    set("dynamics", 3.0);
+    set("shear_offset", shear);
+    set("tolerance", 1e-12);
+    EXPECT_EQ(activate(probes), HSP_OK);
+    for (uint32_t i = 0; i < probes; ++i) search({0, 0, .03}, i);
+  }
+};
+
+struct Hold {
+  const char* model;
+  Vector3d outside, inside;
+};
+std::vector<Hold> holds() {
+  return {{"soft-plate.yaml", {.013, .021, .0102}, {.013, .021, .006}},
+          {"soft-plate.yaml", {.049, .039, .0102}, {.049, .039, .007}},
+          {"palpation.yaml", {.018, -.009, .020}, {.018, -.009, .014}},
+          {"palpation.yaml", {.010, .004, .020}, {.010, .004, .015}},
+          {"pebble.yaml", {.004, .003, .018}, {.004, .003, .010}},
+          {"leaf.yaml", {.012, .003, .014}, {.012, .003, .009}},
+          {"rope.yaml", {0, .012, .0015}, {0, .0125, -.0015}}};
+}
+
+TEST(FeltBody, AHeldPressFeelsWhatABodyWithoutDynamicsDoes) {
+  for (const double shear : {0.0, 0.05}) {
+    for (const Hold& hold : holds()) {
+      Plugin still(hold.model);
+      still.set("dynamics", 0.0);
+      still.set("shear_offset", shear);
+      still.set("tolerance", 1e-12);  // shear springs stand where the foot does
+      ASSERT_EQ(still.activate(), HSP_OK);
+      FeltBody felt(hold.model, 1, shear);
+      still.search({0, 0, .03});
+      still.touch(hold.outside);
+      felt.touch(hold.outside);
+      const Vector3d wanted = forceOf(still.touch(hold.inside));
+      ASSERT_GT(wanted.norm(), 1e-3) << hold.model;
+      for (int i = 0; i <= 200; ++i) felt.touch(hold.outside + i / 200.0 * (hold.inside - hold.outside));
+      for (int i = 0; i < 4000; ++i) felt.touch(hold.inside);
+      const Vector3d held = forceOf(felt.touch(hold.inside));
+      EXPECT_LT((held - wanted).norm(), 1e-9 * wanted.norm()) << hold.model << " shear " << shear;
+      for (int i = 0; i < 3000; ++i) ASSERT_LT((forceOf(felt.touch(hold.inside)) - held).norm(), 1e-12) << hold.model;
+    }
+  }
+}
+
+TEST(FeltBody, PushesHarderWhenPressedFastAndLosesAProbeThatIsPulledAway) {
+  FeltBody body;
+  for (int i = 0; i <= 40; ++i) body.touch({0, 0, .0102 - 1e-4 * i});  // 0.1 m/s
+  const double fast = body.touch({0, 0, .006}).force[2];
+  EXPECT_GT(fast, .8 + .02);  // 200 N/m * 4 mm, and 0.6 N s/m * 0.1 m/s
+  for (int i = 0; i < 3000; ++i) body.touch({0, 0, .006});
+  EXPECT_NEAR(body.touch({0, 0, .006}).force[2], .8, 1e-9);
+  const hsp_contact away = body.touch({0, 0, .0085});  // 2.5 mm out in a tick
+  EXPECT_EQ(forceOf(away).norm(), 0);
+  EXPECT_GT(away.depth_m, 0);  // still below the contour at rest
+}
+
+TEST(FeltBody, AProbeThatBeginsInsideFeelsAHeldPressAtOnce) {
+  FeltBody body;
+  EXPECT_NEAR(body.touch({0, 0, .006}).force[2], .8, 1e-9);
+  EXPECT_NEAR(body.touch({0, 0, .006}).force[2], .8, 1e-9);
+  EXPECT_NEAR(body.step({Vector3d(.03, .02, .005)}, Vector3d::Zero(), 1e-3, HSP_IN_JUMP)[0].force[2], 1.0, .02);
+}
+
+TEST(FeltBody, ASecondProbeMeetsTheSurfaceThatTheFirstHasPressed) {
+  FeltBody body("soft-plate.yaml", 2);
+  for (int i = 0; i <= 50; ++i) body.step({Vector3d(0, 0, .0102 - 1e-4 * i), Vector3d(.002, 0, .0102)});
+  for (int i = 0; i < 2000; ++i) body.step({Vector3d(0, 0, .005), Vector3d(.002, 0, .0102)});
+  for (int i = 0; i <= 20; ++i) body.step({Vector3d(0, 0, .005), Vector3d(.002, 0, .0102 - 1e-4 * i)});
+  EXPECT_EQ(body.step({Vector3d(0, 0, .005), Vector3d(.002, 0, .0082)})[1].force[2], 0);  // in the dent of the first
+  for (int i = 0; i <= 32; ++i) body.step({Vector3d(0, 0, .005), Vector3d(.002, 0, .0082 - 1e-4 * i)});
+  std::vector<hsp_contact> both;
+  for (int i = 0; i < 2000; ++i) both = body.step({Vector3d(0, 0, .005), Vector3d(.002, 0, .005)});
+  EXPECT_LT(both[0].force[2], .8);  // alone it is 1 N
+  EXPECT_NEAR(both[0].force[2], both[1].force[2], .02);
+  EXPECT_GT(both[0].force[2] + both[1].force[2], 1.0);
+}
+
+TEST(FeltBody, GoesOnFromWhereItWasSavedWithWhatHasRelaxed) {
+  Plugin body, other;
+  for (Plugin* plate : {&body, &other}) {
+    plate->set("dynamics", 3.0);
+    plate->set("relaxation.share", .8);
+    plate->set("relaxation.time", .5);
+  }
+  const auto& state = other.extension<hsp_ext_state>(HSP_EXT_STATE);
+  ASSERT_EQ(body.activate(), HSP_OK);
+  body.search({0, 0, .03});
+  for (int i = 0; i <= 300; ++i) body.touch({0, 0, .0102 - 2e-5 * std::min(i, 200)});
+  std::vector<unsigned char> bytes(static_cast<std::size_t>(state.save(body.handle(), nullptr, 0)));
+  ASSERT_EQ(state.save(body.handle(), bytes.data(), bytes.size()), static_cast<int64_t>(bytes.size()));
+  ASSERT_EQ(state.load(other.handle(), bytes.data(), bytes.size()), HSP_OK);
+  ASSERT_EQ(other.activate(), HSP_OK);
+  other.search({0, 0, .03});
+  for (int i = 0; i < 200; ++i) {
+    body.touch({0, 0, .02});
+    other.touch({0, 0, .02});
+    if (i < 2) continue;
+    ASSERT_NEAR(other.energy(), body.energy(), 1e-9 * body.energy()) << i;
+  }
+}
+
+/// Work done on the body by a probe that wanders and comes back out, with the mean of the forces at both ends of each
+/// step: it never gives more than it got.
+TEST(FeltBody, RandomMotionsInAndAlongTheSurfaceMakeNoEnergy) {
+  std::mt19937 engine(5);
+  std::normal_distribution<double> normal;
+  for (const char* model : {"soft-plate.yaml", "pebble.yaml", "rope.yaml"}) {
+    for (const double speed : {.02, .1, .5, 2.0}) {
+      FeltBody body(model);
+      const double top = model[0] == 's' ? .0101 : model[0] == 'p' ? .0175 : .0012;
+      Vector3d p(0, model[0] == 'r' ? .012 : 0, top), velocity = Vector3d::Zero(), before = Vector3d::Zero();
+      const Vector3d home = p;
+      double worked = 0, turned_over = 0;
+      forceOf(body.touch(p));
+      for (int i = 0; i < 20'000; ++i) {
+        for (int k = 0; k < 3; ++k) velocity[k] += .1 * speed * normal(engine);
+        velocity -= .02 * velocity + 20 * speed * (p - (home - Vector3d(0, 0, .003)));
+        const Vector3d next = p + 1e-3 * velocity;
+        const Vector3d force = forceOf(body.touch(next));
+        worked -= .5 * (force + before).dot(next - p);
+        turned_over = std::max(turned_over, std::fabs(worked));
+        ASSERT_GT(worked, -1e-4 * turned_over - 1e-9) << model << " " << speed << " " << i;
+        p = next;
+        before = force;
+      }
+      EXPECT_GT(turned_over, 1e-3);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hapticd::test

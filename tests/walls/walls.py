@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Proves that the walls between rooms hold.
+
+Usage: walls.py SOURCE_DIR BUILD_DIR
+
+1. A file that includes across a wall does not compile, with the flags of a real file of that room.
+2. The rooms form no cycle.
+3. No source reaches another folder by "../".
+"""
+import json
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+
+# A file of the room, a header that it may include, and headers that it may not.
+WALLS = [
+    ("devices/usb_hid/usb_hid.cpp", "wire_arm/session.hpp", ["servo/core/core.hpp", "host/catalog.hpp", "session/runner.hpp"]),
+    ("devices/support/kinematics/arm.cpp", "kinematics/arm.hpp", ["base/os.hpp", "hapticd/device.h"]),
+    ("plugins/nurbs_rigid/nurbs_rigid.cpp", "kernels/trace/model.hpp", ["servo/core/core.hpp", "host/catalog.hpp", "simulated/hand.hpp"]),
+    ("plugins/kernels/trace/model.cpp", "kernels/spline/surface.hpp", ["hapticd/shape.h", "document/node.hpp", "kernels/medial/skeleton.hpp"]),
+    ("driver/document/node.cpp", "base/result.hpp", ["description/scene.hpp", "host/catalog.hpp", "scene/load.hpp"]),
+    ("driver/daemon/host/catalog.cpp", "description/class_info.hpp", ["scene/load.hpp", "servo/core/core.hpp"]),
+    ("driver/daemon/scene/load.cpp", "host/catalog.hpp", ["servo/core/core.hpp", "session/runner.hpp"]),
+    ("driver/daemon/sim/proximity.cpp", "link/link.hpp", ["servo/core/core.hpp", "servo/loop/loop.hpp"]),
+    ("driver/daemon/servo/core/core.cpp", "servo/safety/guard.hpp", ["record/recording.hpp", "control/server.hpp", "servo/arm/arm.hpp", "sim/proximity.hpp", "scene/load.hpp"]),
+    ("driver/daemon/servo/loop/loop.cpp", "servo/arm/arm.hpp", ["session/telemetry.hpp", "record/recording.hpp", "status/page.hpp", "watch/watchdog.hpp"]),
+    ("driver/daemon/watch/watchdog.cpp", "watch/watched.hpp", ["servo/loop/loop.hpp", "session/runner.hpp"]),
+    ("driver/daemon/control/server.cpp", "base/os.hpp", ["session/request_handler.hpp", "servo/core/core.hpp"]),
+    ("driver/daemon/session/runner.cpp", "servo/loop/loop.hpp", ["cli/command.hpp", "tune/knob.hpp", "kernels/trace/model.hpp"]),
+]
+
+
+def compiles(command, header):
+    """Whether a file with this one include compiles, and what the compiler said."""
+    run = subprocess.run(command + ["-fsyntax-only", "-x", "c++", "-"], input=f'#include "{header}"\n',
+                         capture_output=True, text=True)
+    return run.returncode == 0, run.stderr
+
+
+def flags_of(entry):
+    """The compiler and its flags, without launcher, input and output."""
+    words = shlex.split(entry["command"])
+    start = next(i for i, word in enumerate(words) if re.search(r"(c\+\+|g\+\+|clang\+\+)(-\d+)?$", word))
+    out, skip = [], False
+    for word in words[start:]:
+        if skip or word in ("-c", entry["file"]):
+            skip = False
+        elif word in ("-o", "-MF", "-MT", "-MD"):
+            skip = word != "-MD"
+        else:
+            out.append(word)
+    return out
+
+
+def check_walls(source, build):
+    entries = {pathlib.Path(e["file"]).resolve(): e for e in json.loads((build / "compile_commands.json").read_text())}
+    wrong = []
+    for file, allowed, forbidden in WALLS:
+        entry = entries.get((source / file).resolve())
+        if entry is None:
+            wrong.append(f"{file}: is not compiled, expected a file of the build")
+            continue
+        command = flags_of(entry)
+        good, said = compiles(command, allowed)
+        if not good:
+            wrong.append(f"{file}: cannot include {allowed}, which it should: {said.splitlines()[0]}")
+        for header in forbidden:
+            if not list(source.rglob("*/" + header)):
+                wrong.append(f"{header}: is nowhere in the sources, so the wall of {file} is not tested")
+            good, said = compiles(command, header)
+            if good or f"{header}: No such file" not in said and f"'{header}' file not found" not in said:
+                wrong.append(f"{file}: can include {header}, expected a wall")
+    return wrong
+
+
+def rooms_of(source, build):
+    """Include prefix -> folder of every room, from the links in the build folder."""
+    rooms = {}
+    for root in (build / "rooms").iterdir():
+        for link in root.rglob("*"):
+            if link.is_symlink():
+                rooms[str(link.relative_to(root))] = link.resolve()
+    return rooms
+
+
+def check_cycles(source, build):
+    rooms = rooms_of(source, build)
+    arrows = {name: set() for name in rooms}
+    for name, folder in rooms.items():
+        for file in list(folder.glob("*.cpp")) + list(folder.glob("*.hpp")):
+            for header in re.findall(r'#include "([^"]+)/[^"/]+"', file.read_text()):
+                if header in rooms and header != name:
+                    arrows[name].add(header)
+    done, path, wrong = set(), [], []
+
+    def walk(room):
+        if room in path:
+            wrong.append("rooms include each other: " + " -> ".join(path[path.index(room):] + [room]))
+            return
+        if room in done:
+            return
+        path.append(room)
+        for other in sorted(arrows[room]):
+            walk(other)
+        path.pop()
+        done.add(room)
+
+    for room in sorted(arrows):
+        walk(room)
+    print(f"{len(arrows)} rooms, {sum(map(len, arrows.values()))} arrows")
+    return wrong
+
+
+def check_paths(source):
+    wrong = []
+    for top in ("driver", "plugins", "devices"):
+        for file in (source / top).rglob("*.[ch]pp"):
+            if re.search(r'#include "\.\./', file.read_text()):
+                wrong.append(f'{file.relative_to(source)}: includes by "../", which goes round every wall')
+    return wrong
+
+
+def main():
+    source, build = map(pathlib.Path, sys.argv[1:3])
+    wrong = check_walls(source, build) + check_cycles(source, build) + check_paths(source)
+    print("\n".join(wrong) if wrong else f"{sum(len(w[2]) for w in WALLS)} includes across walls do not compile")
+    return 1 if wrong else 0
+
+
+sys.exit(main())
