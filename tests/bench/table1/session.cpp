@@ -90,6 +90,7 @@ class Rig {
     if (hand_ == nullptr) throw std::runtime_error("the arm has no hand to guide");
     lockstep_.emplace(world_->lockstep());
     if (auto started = arm_->start(0, scene.servo.gravity); !started) throw std::runtime_error(started.error());
+    arm_->carryWeight(true);
   }
 
   /// One tick. The hand goes to `wish` while it passes.

@@ -217,7 +217,7 @@ TEST_F(Commands, KinematicsGivesPoseJacobianAndTorques) {
             "0.25,-0.5,0.25,-0.5,0,1,0,0,0,1,0,0,1,0,0,0,0,0,0,0,0,-0,9.8100000000000005,3,4\n");
   const Outcome wrong = run("device kinematics " + arm + " --joints " + put("wrong.csv", "q1,q2\n0,nan\n"));
   EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_TRUE(has(wrong.text, "wrong.csv:2:1: column 2")) << wrong.text;
+  EXPECT_TRUE(has(wrong.text, "wrong.csv:2:3: q2: \"nan\" is not valid")) << wrong.text;
 }
 
 TEST_F(Commands, CheckPlacesWhatADeviceModuleRefusesInTheFile) {

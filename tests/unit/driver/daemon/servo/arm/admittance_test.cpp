@@ -53,6 +53,7 @@ struct Rig {
     handle = arm->device().handle();
     extension = static_cast<const hdv_ext_hand*>(arm->device().description().extension(handle, HDV_EXT_HAND));
     EXPECT_TRUE(arm->start(0, loaded.scene->servo.gravity));
+    arm->carryWeight(true);
     lockstep.emplace(world->lockstep());
   }
   void tick(const Vector3d& target, const Vector3d& push) {

@@ -54,8 +54,10 @@ struct Running {
     world->core().publish(t, probes);
     lockstep->before(t);
     world->core().tick(t, dt, probes);
-    for (uint32_t i = 0; i < arms.size(); ++i)
+    for (uint32_t i = 0; i < arms.size(); ++i) {
+      arms[i]->carryWeight(world->core().present() > 0);
       arms[i]->write(now, dt, world->core().force(i), world->core().torque(i), world->core().exchange(i));
+    }
     ++count;
   }
 
