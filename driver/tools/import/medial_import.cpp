@@ -155,8 +155,8 @@ Result<void> report(const MedialImport& options, const MedialOptions& settings, 
       1e3 * there->most, 1e3 * there->mean, 1e3 * back, 1e3 * samples.spacing);
   const double reached = std::fmax(there->most, beyond);
   if (reached > settings.tolerance)
-    std::fprintf(stderr, "warning: the error is %.3g mm asked, %.3g mm reached: %s\n", 1e3 * settings.tolerance,
-                 1e3 * reached,
+    std::fprintf(stderr, "warning: the body is within %.3g mm of the surface, but --tolerance asks for %.3g mm: %s\n",
+                 1e3 * reached, 1e3 * settings.tolerance,
                  static_cast<int>(axis.spheres.size()) >= settings.most_spheres
                      ? "more --spheres may help"
                      : "more --samples may help, or a smaller --angle where the surface has edges");

@@ -53,8 +53,8 @@ def killLeavesAReadableFile(folder, environment):
     check("what a kill left replays with every bit the same", code == 0, told)
     picture = os.path.join(folder, "killed.svg")
     code, told = hapticd("plot", file, "--out", picture)
-    check("what a kill left can be drawn, and says that it was cut off",
-          code == 0 and os.path.isfile(picture) and "cut off" in told, told)
+    check("what a kill left can be drawn, and says that it ends early",
+          code == 0 and os.path.isfile(picture) and "ends early" in told, told)
 
 
 with tempfile.TemporaryDirectory() as scratch:

@@ -75,7 +75,7 @@ TEST(HandPath, NamesTheLineThatIsWrong) {
       HandPath::parse(text, "p.csv");
       ADD_FAILURE() << "accepted: " << text;
     } catch (const std::runtime_error& e) {
-      EXPECT_EQ(std::string(e.what()).rfind("p.csv:3: ", 0), 0u) << e.what();
+      EXPECT_EQ(std::string(e.what()).rfind("p.csv:3:", 0), 0u) << e.what();
     }
   }
   EXPECT_THROW(HandPath::parse("", "p.csv"), std::runtime_error);

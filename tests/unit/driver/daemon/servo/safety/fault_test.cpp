@@ -46,7 +46,7 @@ const Injected kFaults[] = {
     {"not a number in the sample", kNotANumber, Fault::kNotFinite, "was not a number"},
     {"no new sample", kSilent, Fault::kStale, "sent no new sample (measured: 0.05", 0.052},
     {"device fault", kAtFault, Fault::kDeviceFault, "reports a hardware fault"},
-    {"late tick", kNone, Fault::kLate, "missed in a row (measured: 0.15", kTick, 0, 150'000'000},
+    {"late tick", kNone, Fault::kLate, "in a row were missed (measured: 0.15", kTick, 0, 150'000'000},
     {"velocity guard", kMoves, Fault::kTooFast, "faster than limits.velocity (measured:", 0.011, 2, 0,
      Order::Kind::kClear, [](scene::Limits& limits) { limits.velocity = 1; }},
     {"beyond what the velocity is estimated from", kMoves, Fault::kTooFast, "faster than limits.velocity", 3 * kTick,
