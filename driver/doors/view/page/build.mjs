@@ -2,13 +2,15 @@
 // Bundles the page into ../bundle, or into the folder given: three.js and uPlot with what is used of them, no source
 // maps, nothing that depends on the machine.
 import {build} from 'esbuild';
-import {copyFileSync, mkdirSync} from 'node:fs';
+import {copyFileSync, mkdirSync, readFileSync} from 'node:fs';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const out = process.argv[2] ?? join(here, '..', 'bundle');
 mkdirSync(out, {recursive: true});
+/** A package's licence as a comment: copies must carry it. */
+const licence = (name) => `/* ${name}\n${readFileSync(join(here, 'node_modules', name, 'LICENSE'), 'utf8').trim()}\n*/`;
 await build({
   absWorkingDir: here,
   entryPoints: [{in: 'src/main.js', out: 'app'}, {in: 'src/style.css', out: 'app'}],
@@ -17,7 +19,8 @@ await build({
   minify: true,
   format: 'esm',
   target: ['chrome115', 'firefox115', 'safari17'],
-  legalComments: 'eof',
+  legalComments: 'none',
+  footer: {js: `${licence('three')}\n${licence('uplot')}`, css: licence('uplot')},
   logLevel: 'warning',
 });
 for (const file of ['index.html', 'icon.svg']) copyFileSync(join(here, file), join(out, file));

@@ -1,25 +1,47 @@
 // SPDX-License-Identifier: MIT
 /** What happened, newest first: orders, faults, contacts, clicks, models and clients that came and went. */
-import {clock, element} from './format.js';
+import {clock, element, short} from './format.js';
 import {reader} from './rows.js';
 
 const kMost = 300;
-const kOrders = ['', 'enabled', 'disabled', 'moved', 'parameter set', 'fault cleared', 'held', 'added', 'removed', 'answered coarser', 'overran', 'motors cut'];
+const kOrders = ['', 'enabled', 'disabled', 'moved', 'parameter set', 'fault cleared', 'held', 'added', 'removed', 'answered coarser', 'overran', 'motors cut', 'led', 'no longer led'];
+const kToldAsEvents = new Set([5, 6, 7, 8, 9, 10, 12, 13]); // orders that events tell of, and those of the servo itself
+const kHeld = 8; // a person's hold is no failure
+const kOfArm = new Set([5, 6, 11]);
 const kFaults = ['no fault any more', 'a force or position was not a number', 'the device is gone', 'the device reports a fault', 'no new sample came', 'the tip was too fast',
   'too many ticks were missed', 'not calibrated', 'held', 'a tick was stuck', 'a motor is too hot', 'the position jumped'];
-const kServoOrders = new Set([9, 10, 11]);
+const kFaultUnits = {4: 's', 5: 'm/s', 6: 's', 9: 's', 10: '°C', 11: 'm/s'};
+const kSilenced = ['', 'it lost its track', 'its force or pose was not a number', 'it answered an unknown status', 'its steps took too long', 'its force jumped beyond its stiffness'];
+const kLed = ['', 'the hand', 'a force'];
+/** What is said of each event; e has code and value. Its sort sets colour, sound and mark. */
+const kEvents = {
+  click: {sort: 'click', text: () => 'click'},
+  touch: {sort: 'contact', text: (e) => `touched, ${short(e.value)} N`},
+  fault: {sort: 'fault', text: (e) => `${kFaults[e.code] ?? `fault ${e.code}`}${kFaultUnits[e.code] ? ` (${short(e.value)} ${kFaultUnits[e.code]})` : ''}`},
+  cleared: {sort: 'order', text: () => 'no fault any more'},
+  silenced: {sort: 'fault', text: (e) => `not felt any more: ${kSilenced[e.code] || 'it is not trusted'}`},
+  degraded: {sort: 'late', text: () => 'answers coarser, for lack of time'},
+  restored: {sort: 'order', text: () => 'answers as exactly as before'},
+  came: {sort: 'order', text: () => 'came'},
+  left: {sort: 'order', text: () => 'left'},
+  joined: {sort: 'order', text: (e) => `a program leads ${kLed[e.code] ?? ''}`.trimEnd()},
+  lost: {sort: 'order', text: () => 'is led no longer'},
+  refused: {sort: 'fault', text: (e) => `${e.value} records of its leader were refused so far`},
+  quarantined: {sort: 'fault', text: () => 'models were left out: their plugin ended an earlier run'},
+};
 
 export class Events {
   constructor(list, about, onEvent) {
     this.list = list;
     this.onEvent = onEvent;
-    this.names = (about.models ?? []).map((m) => m.name);
+    this.names = (about.scene?.models ?? about.models ?? []).map((m) => m.name);
     this.devices = (about.devices ?? []).map((d) => d.name);
     this.period = 1 / (about.rate_hz || 1000);
-    const columns = about.columns ?? {};
-    this.read = Object.fromEntries(['tick', 'kind', 'target', 'value'].map((n) => [n, reader(columns.orders ?? [], n)]));
-    this.event = Object.fromEntries(['tick', 'kind', 'model', 'probe', 'value'].map((n) => [n, reader(columns.events ?? [], n)]));
-    this.kinds = about.event_kinds ?? about.events ?? [];
+    const columns = about.columns ?? {}, readers = (stream, names) => Object.fromEntries(names.map((n) => [n, reader(columns[stream] ?? [], n)]));
+    this.read = readers('orders', ['tick', 'kind', 'target', 'value']);
+    this.event = readers('events', ['t', 'kind', 'model', 'probe', 'code', 'value']);
+    this.kinds = about.events ?? [];
+    this.told = 'events' in columns; // older recordings have none
     this.faults = [];
     this.touching = new Set();
     this.clear();
@@ -42,25 +64,26 @@ export class Events {
   orders(view, count, rowBytes) {
     for (let i = 0; i < count; ++i) {
       const at = i * rowBytes, kind = this.read.kind(view, at), target = this.read.target(view, at);
-      if (kServoOrders.has(kind) && kind !== 11) continue;
-      const whose = kind === 5 || kind === 6 || kind === 11 ? this.devices[target] ?? `arm ${target}` : this.name(target);
+      if (this.told && kToldAsEvents.has(kind)) continue;
+      const whose = kOfArm.has(kind) ? this.devices[target] ?? `arm ${target}` : this.name(target);
       const value = kind === 4 ? ` to ${Number(this.read.value(view, at).toPrecision(4))}` : '';
       this.add(this.read.tick(view, at) * this.period, kind === 11 ? 'fault' : 'order', `${whose}: ${kOrders[kind] ?? `order ${kind}`}${value}`);
     }
   }
 
-  /** The stream of events, where the daemon has one. */
   events(view, count, rowBytes) {
     for (let i = 0; i < count; ++i) {
-      const at = i * rowBytes, kind = this.event.kind(view, at);
-      const name = this.kinds[kind] ?? `event ${kind}`, model = this.event.model(view, at);
-      const sort = /fault|silenced|quarantin|cut|refused/.test(name) ? 'fault' : /click/.test(name) ? 'click' : /contact/.test(name) ? 'contact' : 'order';
-      this.add(this.event.tick(view, at) * this.period, sort, `${this.names[model] ? `${this.names[model]}: ` : ''}${name.replaceAll('_', ' ')}`);
+      const e = Object.fromEntries(Object.entries(this.event).map(([name, read]) => [name, read(view, i * rowBytes)]));
+      const name = this.kinds[e.kind] ?? `event ${e.kind}`, said = kEvents[name] ?? {sort: 'order', text: () => name.replaceAll('_', ' ')};
+      const whose = e.model >= 0 ? this.name(e.model) : this.devices[e.probe];
+      this.add(e.t, name === 'fault' && e.code === kHeld ? 'order' : said.sort, `${whose ? `${whose}: ` : ''}${said.text(e)}`);
     }
   }
 
-  /** What follows from the rows of now: faults that latched or went, contacts that began. */
+  /** Of a recording without a stream of events, what follows from the rows of now: faults that latched or went,
+   * contacts that began. */
   look(now) {
+    if (this.told) return;
     now.arms.forEach((arm, i) => {
       const fault = arm.now?.fault ?? 0;
       if (fault === (this.faults[i] ?? 0)) return;

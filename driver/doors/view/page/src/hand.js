@@ -31,6 +31,7 @@ export class Hand {
     this.view = view;
     this.arm = 0;
     this.devices = [];
+    this.reaches = [];
     this.possible = false;
     this.onRefused = () => {};
     const {canvas} = view;
@@ -42,9 +43,11 @@ export class Hand {
     canvas.addEventListener('contextmenu', (e) => e.preventDefault());
   }
 
-  /** A new run: nothing is led. @param devices names @param possible whether the daemon may be asked */
-  begin(devices, possible) {
+  /** A new run: nothing is led. @param devices names @param reaches [m] how far from the tip each hand pulls at most
+   * @param possible whether the daemon may be asked */
+  begin(devices, reaches, possible) {
     this.devices = devices;
+    this.reaches = reaches;
     this.possible = possible;
     this.#lead = null;
     this.#asking = false;
@@ -153,6 +156,12 @@ export class Hand {
     this.view.dirty = true;
   }
 
+  /** The keys move the next arm from now on. Returns its name. */
+  next() {
+    if (this.devices.length > 1) this.#release((this.arm + 1) % this.devices.length);
+    return this.devices[this.arm];
+  }
+
   #release(arm) {
     if (this.#lead !== null) this.connection.ask({do: 'unlead', lead: this.#lead});
     this.#lead = this.#wish = null;
@@ -179,12 +188,21 @@ export class Hand {
 
   #send() {
     if (this.#lead === null || !this.#wish) return;
-    this.connection.put(targetBytes(this.#lead, this.#wish));
+    this.connection.put(targetBytes(this.#lead, this.#pulled()));
     this.#sent = performance.now();
   }
 
-  /** Called each frame: what may have been lost is told again. */
+  /** A hand that is stronger than the arm would push the tip through every wall: it pulls no harder than the arm does. */
+  #pulled() {
+    const tip = this.view.probes[this.arm]?.tipPlace, reach = this.reaches[this.arm];
+    if (!tip || !this.#beyond()) return this.#wish;
+    return tip.clone().addScaledVector(this.#wish.clone().sub(tip).normalize(), reach);
+  }
+
+  #beyond() { return this.#wish !== null && this.#wish.distanceTo(this.view.probes[this.arm].tipPlace) > this.reaches[this.arm]; }
+
+  /** Called each frame: what may have been lost is told again, and a hand that is far behind is pulled on. */
   look(now) {
-    if (this.#lead !== null && now - this.#sent > kAgainMs) this.#send();
+    if (this.#lead !== null && (now - this.#sent > kAgainMs || this.#beyond())) this.#send();
   }
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 /** The page of hapticd-view: brings what comes over the connection to the scene, the plots and the panels. */
+import {ArmModel} from './arm.js';
 import {Connection} from './connection.js';
 import {Events} from './events.js';
-import {fileName, norm, save, short, themeColor} from './format.js';
+import {element, fileName, norm, save, short, themeColor} from './format.js';
 import {Hand} from './hand.js';
 import {Panel} from './panel.js';
 import {Plots} from './plots.js';
@@ -14,8 +15,22 @@ import {Timeline} from './timeline.js';
 const $ = (id) => document.getElementById(id);
 const kFullStain = 0.003; // m: depth of the strongest colour
 const kNoticeMs = 6000;
+const kHandStiffness = 500; // N/m, where a device file gives none
+const kShareOfLimit = 0.8; // of the arm's greatest force: what is left holds the tip outside
 const kGuided = 7; // of hand.script: a hand that waits for a leader
 const kHeldFault = 8; // number of the fault that a person's hold is
+
+/** [N] What the limiter of an arm lets through at most, or null. */
+function greatestForce(about, arm) {
+  const bounds = [about.scene?.devices?.[arm]?.limits?.force, about.devices?.[arm]?.info?.max_force].map(Number).filter((force) => force > 0);
+  return bounds.length > 0 ? Math.min(...bounds) : null;
+}
+
+/** [m] How far a simulated hand's spring stretches with the force that the arm can hold against. */
+function handReach(device, limit) {
+  const stiffness = Number(device?.parameters?.find((p) => p.id === 'hand.stiffness')?.number ?? kHandStiffness);
+  return limit > 0 && stiffness > 0 ? kShareOfLimit * limit / stiffness : Infinity;
+}
 
 class Page {
   constructor() {
@@ -75,17 +90,20 @@ class Page {
     on('reset', () => { this.now?.clear(); this.plots?.clear(); this.events?.clear(); });
     on('playback', (state) => this.timeline.show(state));
     on('waiting', ({name}) => this.#lamp('wait', `Waiting for a daemon named ${name}`));
-    on('end', () => { this.#lamp('wait', 'The run has ended'); this.hand?.begin([], false); });
-    on('lost', () => { this.#lamp('bad', 'hapticd-view does not answer'); this.hand?.begin([], false); });
+    on('end', () => { this.#lamp('wait', 'The run has ended'); this.hand?.begin([], [], false); });
+    on('lost', () => { this.#lamp('bad', 'hapticd-view does not answer'); this.hand?.begin([], [], false); });
   }
 
   /** A run was found. */
   #begin(hello) {
     const {about, streams, control, recorded} = hello;
     this.now = new Now(about, streams);
-    const limit = about.scene?.devices?.[0]?.limits, ticks = this.now.table('ticks');
-    const most = Number(limit?.force) || about.devices?.[0]?.info?.max_force || null;
-    this.plots = ticks ? new Plots($('plots'), ticks, {forceLimit: most}) : null;
+    const ticks = this.now.table('ticks'), arms = this.now.arms.map(({name}, i) => ({name, limit: greatestForce(about, i)}));
+    this.plots = ticks ? new Plots($('plots'), ticks, {arms, period: 1 / (about.rate_hz || 1000)}) : null;
+    this.readForces = arms.map(() => element('output', {}, '–'));
+    for (const old of document.querySelectorAll('.of-arm')) old.remove();
+    $('readouts').prepend(...arms.map(({name}, i) => element('div', {class: 'of-arm'},
+      element('dt', {title: name}, arms.length > 1 ? name : 'Force'), element('dd', {}, this.readForces[i], element('small', {}, 'N')))));
     this.events = new Events($('events'), about, (t, kind) => {
       if (kind !== 'contact') this.plots?.mark(t, kind);
       this.sound.play(kind);
@@ -93,22 +111,25 @@ class Page {
     this.view.models.clear();
     this.drawn.clear();
     this.view.arms(this.now.arms.length);
+    this.armModels = this.now.arms.map((_, i) => new ArmModel(about.scene?.devices?.[i], about.devices?.[i]?.info));
     this.fitted = false;
     this.fitWhenTip = false;
+    this.panel.folder = (about.scene?.file ?? '').replace(/\/[^/]*$/, '');
     $('scene-name').textContent = fileName(about.scene?.file) || hello.name;
     $('scene-mode').textContent = recorded ? `recording ${fileName(hello.name)}` : control ? 'live' : 'live, looking only';
     document.title = `${$('scene-name').textContent} · hapticd`;
     $('run-tools').hidden = !control;
-    this.hand.begin(this.now.arms.map((a) => a.name), control);
+    this.hand.begin(arms.map((a) => a.name), arms.map((a, i) => handReach(about.scene?.devices?.[i], a.limit)), control);
     const script = about.scene?.devices?.[0]?.parameters?.find((p) => p.id === 'hand.script');
     $('hint').hidden = !control || script?.number !== kGuided;
     $('hint').textContent = 'Drag the tip to press with the mouse';
     if (!recorded) this.timeline.show(null);
-    const space = about.scene?.devices?.[0];
-    if (Number(space?.limits?.workspace) > 0) this.view.setWorkspace(space.mount?.position ?? [0, 0, 0], Number(space.limits.workspace));
+    this.view.setWorkspaces((about.scene?.devices ?? []).map((device, i) => ({
+      box: this.armModels[i]?.workspace(), center: device.mount?.position ?? [0, 0, 0], radius: Number(device.limits?.workspace) || 0,
+    })));
     $('pick').replaceChildren(new Option('none', ''), ...(this.plots?.columns() ?? []).map((c) => new Option(c.unit ? `${c.name} [${c.unit}]` : c.name, c.name)));
     this.pendingList = null; // of the run before
-    this.#drawModels((about.models ?? []).map((m, i) => ({...m, index: i})));
+    this.#drawModels((about.scene?.models ?? about.models ?? []).map((m, i) => ({...m, index: i})));
   }
 
   /** Asks for the triangles of models that are new. */
@@ -119,9 +140,10 @@ class Page {
     for (const model of fresh) this.drawn.set(model.name, model.index);
     await Promise.all(fresh.map(async (model) => {
       const answer = await this.ask({do: 'geometry', model: model.name});
-      if (begun !== this.now || !answer.mesh) return;
+      if (begun !== this.now) return;
+      if (!answer.mesh) return this.notice(`${model.name} is not drawn: ${answer.error}`);
       const pose = this.now.poses.get(model.index) ?? model.pose ?? scene.find((s) => s.name === model.name)?.pose;
-      this.view.models.add(model.index, {...model, pose}, answer.mesh);
+      return this.view.models.add(model.index, {...model, pose}, answer.mesh);
     }));
     if (begun !== this.now) return;
     this.view.measure();
@@ -139,7 +161,11 @@ class Page {
         if (this.view.models.byIndex.get(index)?.name === name) this.view.models.remove(index);
         this.drawn.delete(name);
       }
-    for (const model of models) this.events.names[model.index] = model.name;
+    for (const model of models) {
+      this.events.names[model.index] = model.name;
+      // what moved and rests has no rows any more
+      if (model.pose && !this.now.poses.has(model.index)) this.view.models.move(new Map([[model.index, model.pose]]));
+    }
     this.view.dirty = true;
     this.#drawModels(models);
   }
@@ -183,12 +209,13 @@ class Page {
     now.arms.forEach((arm, i) => {
       if (!arm.now) return;
       view.probes[i].update(arm.now, contacts.filter((c) => c.probe === i), this.hand.wish(i));
+      if (view.shown.arm && arm.now.valid) view.probes[i].setLinks(this.armModels[i].links(arm.now.joints, arm.now.position));
     });
     if (this.fitWhenTip && now.arms[0]?.now?.valid) this.fitWhenTip = false, view.fit();
     this.events.look(now);
     this.#showHold(now.arms.some((arm) => arm.now?.fault === kHeldFault));
     const first = now.arms[0]?.now;
-    $('read-force').value = short(first ? norm(first.sent) : NaN);
+    now.arms.forEach((arm, i) => { this.readForces[i].value = short(arm.now ? norm(arm.now.sent) : NaN); });
     $('read-depth').value = short(now.tick.depth > 0 ? now.tick.depth * 1e3 : 0);
     $('read-speed').value = short(this.#speed(first) * 1e3);
     this.timeline.at(now.tick.t);
@@ -207,6 +234,7 @@ class Page {
 
   #status(status) {
     this.status = status;
+    this.panel.silenced(status.silenced ?? []);
     const faults = (status.devices ?? []).filter((d) => d.fault).map((d) => `${d.name}: ${d.fault}`);
     if (this.hello?.recorded) return this.#lamp('good', 'Recording');
     if (!('rate_hz' in status)) return undefined;
@@ -270,11 +298,15 @@ class Page {
 
   #key(e) {
     if (e.target.matches('input, select, textarea') || document.querySelector('dialog[open]') || e.ctrlKey || e.metaKey || e.altKey) return;
-    const keys = {' ': () => this.holdOrClear(), f: () => this.view?.fit(), 1: () => this.look('front'), 3: () => this.look('right'), 7: () => this.look('top'), '?': () => $('keys').showModal()};
+    const keys = {' ': () => this.holdOrClear(), f: () => this.view?.fit(), 1: () => this.look('front'), 3: () => this.look('right'), 7: () => this.look('top'), '?': () => $('keys').showModal(), n: () => this.nextArm()};
     const act = keys[e.key.toLowerCase()];
     if (!act || (e.key === ' ' && e.target.matches('button, a'))) return;
     e.preventDefault();
     act();
+  }
+
+  nextArm() {
+    if (this.hand?.possible) this.notice(`The keys move ${this.hand.next()}`, true);
   }
 
   look(name) {

@@ -29,10 +29,12 @@ export class Panel {
     this.ask = ask;
     this.control = false;
     this.models = [];
+    this.folder = ''; // of the scene
     this.signature = '';
     $('add-form').addEventListener('submit', (event) => {
       event.preventDefault();
-      this.#do({do: 'add', file: $('add-file').value.trim()}).then((answer) => { if (answer.ok) $('add-file').value = ''; });
+      const file = $('add-file').value.trim(); // a path like those in the scene is relative to its folder
+      this.#do({do: 'add', file: file.startsWith('/') ? file : `${this.folder}/${file}`}).then((answer) => { if (answer.ok) $('add-file').value = ''; });
     });
   }
 
@@ -44,10 +46,30 @@ export class Panel {
     $('add-form').hidden = !control;
     if (shape !== this.signature) {
       this.signature = shape;
+      const focused = this.#focused();
       $('models').replaceChildren(...models.map((model, i) => this.#model(model, i)));
       if (models.length === 0) $('models').append(element('p', {class: 'quiet'}, 'There is no model.'));
+      if (focused) this.#controlsOf(focused.model)?.[focused.place]?.focus();
     }
     for (const model of models) for (const parameter of model.live_parameters ?? []) this.#refresh(model, parameter);
+  }
+
+  #controlsOf(model) { return document.querySelector(`[data-model="${CSS.escape(model)}"]`)?.querySelectorAll('button, input, summary'); }
+
+  /** Which control of which model has the focus: keys go on where they were when the panel is made anew. */
+  #focused() {
+    const model = document.activeElement?.closest('[data-model]')?.dataset.model;
+    return model === undefined ? null : {model, place: [...this.#controlsOf(model)].indexOf(document.activeElement)};
+  }
+
+  /** Tells beside each model that is not felt why. @param list {model, why} of the status */
+  silenced(list) {
+    for (const article of document.querySelectorAll('[data-model]')) {
+      const why = list.find((s) => s.model === article.dataset.model)?.why ?? '';
+      const words = article.querySelector('.silenced');
+      words.hidden = why === '';
+      if (words.textContent !== why) words.textContent = why;
+    }
   }
 
   async #do(request) {
@@ -71,13 +93,14 @@ export class Panel {
     const fields = this.control ? live.map((parameter) => this.#field(model, parameter)) : [];
     const body = this.models.length > kOpenModels && fields.length > 0
       ? [element('details', {}, element('summary', {}, `${fields.length} parameters`), ...fields)] : fields;
-    return element('article', {class: 'model', data: {model: model.name}}, head, ...body);
+    const silenced = element('p', {class: 'wrong silenced', hidden: true, role: 'status'});
+    return element('article', {class: 'model', data: {model: model.name}}, head, silenced, ...body);
   }
 
   #field(model, parameter) {
     const id = `p-${model.name}-${parameter.id}`, value = parameter.value;
-    const number = element('input', {type: 'number', id, step: 'any', min: parameter.min, max: parameter.max, value: value ?? ''});
-    const slider = element('input', {type: 'range', step: 'any', 'aria-label': parameter.id});
+    const number = element('input', {type: 'number', id, step: parameter.whole ? 1 : 'any', min: parameter.min, max: parameter.max, value: value ?? ''});
+    const slider = element('input', {type: 'range', step: parameter.whole ? 1 : 'any', 'aria-label': parameter.id});
     const wrong = element('p', {class: 'wrong', hidden: true});
     const set = async (wanted) => {
       wrong.hidden = true;

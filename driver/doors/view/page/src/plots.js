@@ -56,10 +56,11 @@ class Plot {
     this.limit = limit;
     this.value = element('b', {}, '–');
     this.unit = unit;
+    const bound = limit === null ? '' : element('small', {title: 'Dashed in the plot'}, `limit ${short(limit)}`);
     const mark = element('i');
     mark.style.background = `var(${color})`;
     this.chartBox = element('div', {class: 'chart'});
-    this.root = element('article', {class: 'plot'}, element('h3', {}, mark, element('span', {}, title), this.value), this.chartBox);
+    this.root = element('article', {class: 'plot'}, element('h3', {}, mark, element('span', {title}, title), bound, this.value), this.chartBox);
     parent.append(this.root);
     this.extremes = new Extremes((view, at) => scale * read(view, at), plots.readTime);
     this.color = color;
@@ -137,19 +138,24 @@ class Plot {
 }
 
 export class Plots {
-  constructor(parent, table, {forceLimit}) {
+  /** @param arms {name, limit} of each: the greatest force [N] or null @param period [s] of a tick */
+  constructor(parent, table, {arms, period}) {
     parent.replaceChildren();
     this.parent = parent;
     this.table = table;
     this.marks = [];
     const {columns} = table;
     this.readTime = reader(columns, 't');
-    const force = vectorReader(columns, 'arm0_sent_f'), depth = reader(columns, 'depth');
+    const depth = reader(columns, 'depth');
+    const forces = arms.map(({name, limit}, i) => {
+      const force = vectorReader(columns, `arm${i}_sent_f`);
+      return {title: arms.length > 1 ? `Force on ${name}` : 'Force on the hand', unit: 'N', color: '--force', read: (v, at) => norm(force(v, at)), limit, least: 0.5};
+    });
     this.plots = [
-      {title: 'Force on the hand', unit: 'N', color: '--force', read: (v, at) => norm(force(v, at)), limit: forceLimit, least: 0.5},
+      ...forces,
       {title: 'Depth', unit: 'mm', color: '--depth', read: (v, at) => Math.max(depth(v, at), -0.02), scale: 1e3, zero: false, least: 0.5},
-      {title: 'Lateness', unit: 'µs', color: '--late', read: reader(columns, 'lateness_us'), least: 50},
-      {title: 'Compute', unit: 'µs', color: '--compute', read: reader(columns, 'compute_us'), least: 20},
+      {title: 'Lateness', unit: 'µs', color: '--late', read: reader(columns, 'lateness_us'), limit: period * 1e6, least: 50},
+      {title: 'Compute', unit: 'µs', color: '--compute', read: reader(columns, 'compute_us'), limit: period * 1e6, least: 20},
     ].map((what) => new Plot(parent, what, this));
     this.own = null;
     this.next = 0;

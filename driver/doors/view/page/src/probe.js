@@ -46,6 +46,7 @@ export class Probe {
     for (const over of [this.foot, this.shaft, this.head]) over.renderOrder = 2;
     this.arm = new Group();
     this.links = [];
+    this.point = new CylinderGeometry(0.4, 1, 1, 14);
     this.linkMaterial = new MeshLambertMaterial();
     this.group.add(this.tip, this.ghost, this.tether, this.foot, this.normal, this.shaft, this.head, this.arm);
     this.ghost.visible = this.tether.visible = this.tip.visible = false;
@@ -107,25 +108,23 @@ export class Probe {
     setSegment(this.normal, point, point.clone().addScaledVector(normal, this.size * 5));
   }
 
-  /** Draws the arm through places of the world, the last of which is the tip: lists of [x, y, z], one a chain. */
-  setLinks(chains) {
-    let used = 0;
-    for (const points of chains)
-      for (let i = 0; i + 1 < points.length; ++i)
-        this.#link(used++, new Vector3(...points[i]), new Vector3(...points[i + 1]));
-    this.links.slice(used).forEach(({link, joint}) => { link.visible = joint.visible = false; });
+  /** Draws the links of the arm, {from, to, radius, pointed} in the world, with a joint at the beginning of each. */
+  setLinks(links) {
+    links.forEach((link, i) => this.#link(i, link));
+    for (const {bar, joint} of this.links.slice(links.length)) bar.visible = joint.visible = false;
   }
 
-  #link(index, from, to) {
+  #link(index, {from, to, radius, pointed}) {
     if (index === this.links.length) {
-      const link = new Mesh(this.shaft.geometry, this.linkMaterial), joint = new Mesh(this.tip.geometry, this.linkMaterial);
-      this.arm.add(link, joint);
-      this.links.push({link, joint});
+      const bar = new Mesh(this.shaft.geometry, this.linkMaterial), joint = new Mesh(this.tip.geometry, this.linkMaterial);
+      this.arm.add(bar, joint);
+      this.links.push({bar, joint});
     }
-    const {link, joint} = this.links[index];
-    span(link, from, to, this.size * 0.9);
-    joint.visible = link.visible;
+    const {bar, joint} = this.links[index];
+    bar.geometry = pointed ? this.point : this.shaft.geometry;
+    span(bar, from, to, radius);
+    joint.visible = bar.visible;
     joint.position.copy(from);
-    joint.scale.setScalar(this.size * 1.35);
+    joint.scale.setScalar(radius * 1.3);
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /** The scene on a canvas. Draws when something changed, at most once a frame of the display, and coarser where the
  * machine is slow: a processor that plays the graphics card has few pixels to give. */
-import {Box3, BufferGeometry, Color, DirectionalLight, GridHelper, Group, HemisphereLight, LineBasicMaterial, LineLoop, Scene,
+import {Box3, Box3Helper, BufferGeometry, Color, DirectionalLight, GridHelper, Group, HemisphereLight, LineBasicMaterial, LineLoop, Scene,
   Vector3, WebGLRenderer} from 'three';
 import {OrbitCamera} from './camera.js';
 import {Models} from './models.js';
@@ -32,6 +32,7 @@ export class View {
     this.probes = [];
     this.light = new DirectionalLight('#ffffff', 2.1);
     this.scene.add(this.models.group, new HemisphereLight('#ffffff', '#8d99a6', 1.6), this.light);
+    this.workspaceMaterial = new LineBasicMaterial();
     this.shown = {arm: true, force: true, grid: true, workspace: false, wire: false};
     this.extent = kEmptyExtent;
     this.dirty = true;
@@ -41,18 +42,26 @@ export class View {
     this.resize();
   }
 
+  /** Right before the next picture: a canvas of another size is empty until it is drawn on. */
   resize() {
     const {clientWidth: width, clientHeight: height} = this.canvas.parentElement;
-    this.renderer.setPixelRatio(this.ratio);
-    this.renderer.setSize(width, height, false);
+    this.size = [width, height];
     this.orbit.resize(width, height);
     this.dirty = true;
+  }
+
+  #applySize() {
+    if (!this.size) return;
+    this.renderer.setPixelRatio(this.ratio);
+    this.renderer.setSize(...this.size, false);
+    this.size = null;
   }
 
   theme(colors) {
     this.colors = colors;
     this.scene.background = new Color(colors.panel);
     for (const probe of this.probes) probe.colors(colors);
+    this.workspaceMaterial.color.set(colors.accent);
     this.#floor();
     this.dirty = true;
   }
@@ -91,20 +100,30 @@ export class View {
     this.scene.add(this.grid);
   }
 
-  /** A ball of the world that the arm may reach: three great circles of a radius [m] about a centre. */
-  setWorkspace(center, radius) {
+  /** What each arm can reach, and how far from its base it may go: a box {min, max}, and three great circles of a
+   * radius [m] about a centre, or 0. */
+  setWorkspaces(spaces) {
     if (this.workspace) this.scene.remove(this.workspace);
     this.workspace = new Group();
-    const circle = new BufferGeometry().setFromPoints(Array.from({length: 96}, (_, i) => new Vector3(Math.cos(i * Math.PI / 48) * radius, Math.sin(i * Math.PI / 48) * radius, 0)));
-    const material = new LineBasicMaterial({color: this.colors?.accent});
-    for (const [x, y] of [[0, 0], [Math.PI / 2, 0], [0, Math.PI / 2]]) {
-      const line = new LineLoop(circle, material);
-      line.rotation.set(x, y, 0);
-      this.workspace.add(line);
+    this.workspaceMaterial.color.set(this.colors?.accent ?? '#888888');
+    for (const {box, center, radius} of spaces) {
+      if (box) this.workspace.add(new Box3Helper(new Box3(box.min, box.max)));
+      if (radius > 0) this.workspace.add(...this.#circles(center, radius));
     }
-    this.workspace.position.set(...center);
+    for (const line of this.workspace.children) line.material = this.workspaceMaterial;
     this.workspace.visible = this.shown.workspace;
     this.scene.add(this.workspace);
+  }
+
+  #circles(center, radius) {
+    const points = Array.from({length: 96}, (_, i) => new Vector3(Math.cos(i * Math.PI / 48) * radius, Math.sin(i * Math.PI / 48) * radius, 0));
+    const circle = new BufferGeometry().setFromPoints(points);
+    return [[0, 0], [Math.PI / 2, 0], [0, Math.PI / 2]].map(([x, y]) => {
+      const line = new LineLoop(circle);
+      line.rotation.set(x, y, 0);
+      line.position.set(...center);
+      return line;
+    });
   }
 
   show(what, on) {
@@ -131,6 +150,7 @@ export class View {
   draw() {
     if (!this.dirty) return false;
     this.dirty = false;
+    this.#applySize();
     const {camera, spherical, center} = this.orbit;
     this.light.position.copy(camera.position).addScaledVector(this.orbit.up(), spherical.radius * 0.7)
       .addScaledVector(this.orbit.right(), -spherical.radius * 0.55);
@@ -161,6 +181,7 @@ export class View {
 
   /** A picture of now, PNG. */
   picture() {
+    this.#applySize();
     this.renderer.render(this.scene, this.orbit.camera);
     return new Promise((resolve) => this.canvas.toBlob(resolve, 'image/png'));
   }
