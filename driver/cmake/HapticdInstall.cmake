@@ -18,6 +18,12 @@ string(REGEX REPLACE "/$" "" pc_to_prefix ${pc_to_prefix})
 configure_file(${PROJECT_SOURCE_DIR}/driver/cmake/hapticd.pc.in ${PROJECT_BINARY_DIR}/hapticd.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/hapticd.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 
+# Programs beside a daemon, in Python: its files are all that is needed.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/driver/doors/client/python/hapticd DESTINATION lib/python3/dist-packages
+        PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/driver/doors/client/python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
+        USE_SOURCE_PERMISSIONS)
+
 # The unit names the program, wherever it is installed.
 configure_file(${PROJECT_SOURCE_DIR}/config/systemd/hapticd.service.in ${PROJECT_BINARY_DIR}/hapticd.service @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/hapticd.service DESTINATION lib/systemd/system)

@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""The examples of the Python package against a running daemon, as a user runs them.
+
+Usage: run_the_examples.py HAPTICD SOURCE     prints a line a case; exit 1 when one is off.
+"""
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+HAPTICD, SOURCE = sys.argv[1:3]
+CLIENT = os.path.join(SOURCE, "driver", "doors", "client", "python")
+sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
+from e2e import check, finish
+
+SCENE = """hapticd: 1
+servo: {{rate: 1000}}
+device: {source}/config/devices/simulated-premium15.yaml
+hand: {{script: guided, tremor: 0, wander: 0}}
+models:
+  - name: door
+    plugin: nurbs_rigid
+    motion: kinematic
+    path: door.csv
+    parameters: {{geometry: {source}/config/models/box.yaml, stiffness: 500}}
+"""
+
+
+def example(name, *arguments):
+    done = subprocess.run([sys.executable, os.path.join(CLIENT, "examples", name), "--name", "lib", *arguments],
+                          env=dict(environment, PYTHONPATH=CLIENT), capture_output=True, text=True, timeout=120)
+    return done.returncode, done.stdout, done.stderr
+
+
+def examples(folder):
+    code, out, err = example("move_door.py", "door", "--seconds", "1")
+    check("move_door.py", code == 0 and "the door stands at" in out, (out, err))
+    code, out, err = example("move_door.py", "window")
+    check("move_door.py tells of a model that is none", code != 0 and "window" in err, err)
+    picture = os.path.join(folder, "live.png")
+    code, out, err = example("plot_live.py", "arm0_sent_fx", "depth", "--save", picture, "--window", "0.5")
+    check("plot_live.py", code == 0 and open(picture, "rb").read(4) == b"\x89PNG" and os.path.getsize(picture) > 5000, (out, err))
+    code, out, err = example("plot_live.py", "--list")
+    check("plot_live.py lists columns", code == 0 and re.search(r"arm0_sent_fx +N ", out), out[:300])
+    code, out, err = example("plot_live.py", "no_such_column")
+    check("plot_live.py tells of a column that is none", code == 2 and "no_such_column" in err, err)
+    table = os.path.join(folder, "run.csv")
+    code, out, err = example("record_to_pandas.py", "--seconds", "1", "--csv", table)
+    check("record_to_pandas.py", code == 0 and " 0 gaps" in out and open(table).readline().startswith("tick,time_ns,t,"), (out, err))
+
+
+with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
+    environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
+    scene = os.path.join(folder, "scene.yaml")
+    with open(scene, "w") as file:
+        file.write(SCENE.format(source=SOURCE))
+    with open(os.path.join(folder, "door.csv"), "w") as file:
+        file.write("t,x,y,z,qw,qx,qy,qz\n0,0,-0.3,0,1,0,0,0\n")
+    daemon = subprocess.Popen([HAPTICD, "run", scene, "--name", "lib"], env=environment, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL)
+    for _ in range(600):
+        if os.path.exists(os.path.join(folder, "lib.sock")):
+            break
+        time.sleep(0.05)
+    examples(folder)
+    daemon.terminate()
+    check("the run ends in order", daemon.wait(timeout=30) == 0)
+finish()
