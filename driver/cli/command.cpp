@@ -70,6 +70,13 @@ SetupErrors::SetupErrors() {
   waiting().open = true;
 }
 
+bool SetupErrors::keeps(int level, const std::string& who, const std::string& text) {
+  const std::lock_guard lock(waiting().mutex);
+  if (!waiting().open || level != HSP_LOG_ERROR) return false;
+  waiting().errors.emplace_back(who, text);
+  return true;
+}
+
 void SetupErrors::tell() {
   const std::lock_guard lock(waiting().mutex);
   for (const auto& [who, text] : waiting().errors) std::fprintf(stderr, "error: %s: %s\n", who.c_str(), text.c_str());
@@ -88,11 +95,7 @@ int fail(int exit_code, const std::string& message) {
 }
 
 void logToTerminal(int level, const std::string& who, const std::string& text) {
-  if (level < HSP_LOG_INFO) return;
-  if (const std::lock_guard lock(waiting().mutex); waiting().open && level == HSP_LOG_ERROR) {
-    waiting().errors.emplace_back(who, text);
-    return;
-  }
+  if (level < HSP_LOG_INFO || SetupErrors::keeps(level, who, text)) return;
   const char* word = level == HSP_LOG_INFO ? "info" : level == HSP_LOG_WARNING ? "warning" : "error";
   std::fprintf(stderr, "%s: %s: %s\n", word, who.c_str(), text.c_str());
 }

@@ -35,6 +35,8 @@ class SetupErrors {
   ~SetupErrors() { tell(); }
   SetupErrors(const SetupErrors&) = delete;
   SetupErrors& operator=(const SetupErrors&) = delete;
+  /// [any] Whether this message is an error that waits from now on.
+  static bool keeps(int level, const std::string& who, const std::string& text);
   /// [main] What waits is told, and nothing waits any more.
   static void tell();
 };

@@ -16,6 +16,7 @@
 #include "base/os.hpp"
 #include "cli/command.hpp"
 #include "cli/view_process.hpp"
+#include "log/log.hpp"
 #include "record/picture.hpp"
 #include "record/report.hpp"
 #include "session/run_files.hpp"
@@ -28,7 +29,8 @@ namespace hapticd::cli {
 namespace {
 
 struct Options {
-  std::string scene, device, report, picture, record, name;
+  std::string scene, device, report, picture, record, name, log_level = "info";
+  log::Settings log;
   std::optional<double> duration, rate;
   std::optional<int> cpu;
   std::optional<int> priority;
@@ -121,7 +123,7 @@ void warnOfHeat(const servo::Runner& runner, double rate) {
   if (runner.arms().empty() || static_cast<double>(forces.size()) < kHeatSeconds * rate) return;
   const std::string text =
       tune::overheating(runner.scene().devices[0].name, runner.arms()[0]->info().continuous_force, forces);
-  if (!text.empty()) std::fprintf(stderr, "warning: %s\n", text.c_str());
+  if (!text.empty()) log::write(HSP_LOG_WARNING, "", text);
 }
 
 /// Writes what was asked for and prints the summary; the run's own exit code unless a file fails.
@@ -186,13 +188,9 @@ void warnOfSettings(servo::Runner& runner, double rate) {
     printWarnings(tune::unstableSettings(scene, scene.devices[i], runner.arms()[i]->info(), stiffness), stderr);
 }
 
-/// A fault is told once, when it latches.
-void tellFaults(const servo::Runner& runner, std::vector<std::string>& told) {
-  for (size_t i = 0; i < told.size(); ++i) {
-    const std::string text = runner.faultOf(i);
-    if (!text.empty() && told[i].empty()) std::fprintf(stderr, "\nfault: %s\n", text.c_str());
-    told[i] = text;
-  }
+/// Into the log, except for what the message that ends the set-up will say anyway.
+void logOfRun(int level, const std::string& who, const std::string& text) {
+  if (!SetupErrors::keeps(level, who, text)) log::write(level, who, text);
 }
 
 /// A page for this run, by another process: started here, before this one takes rights that it must not inherit.
@@ -208,6 +206,7 @@ Result<void> showPage(const Options& options, const servo::RunFiles* files, scen
 }
 
 int run(const Options& options) {
+  if (auto opened = log::open(options.log); !opened) return fail(kBadInput, opened.error());
   for (const std::string& file : {options.report, options.picture, options.record})
     if (!writable(file))
       return fail(kBadInput, file + ": cannot be written, expected a file in a folder that you may write to");
@@ -217,7 +216,8 @@ int run(const Options& options) {
   auto scene = loadSceneOrReport(options.scene, options.device);
   if (!scene) return kBadInput;
   if (scene->devices.front().chosen_by_default)
-    std::fprintf(stderr, "no device is named: using the simulated one of %s\n", scene->devices.front().file.c_str());
+    log::write(HSP_LOG_INFO, "",
+               "no device is named: using the simulated one of " + scene->devices.front().file.string());
   servo::RunOptions how;
   how.rate = options.rate.value_or(scene->servo.rate);
   how.duration = options.duration;
@@ -236,29 +236,26 @@ int run(const Options& options) {
     if (auto shown = showPage(options, files.get(), *scene); !shown) return fail(kFailed, shown.error());
   how.state_dir = watch::stateDir().string();
   if (how.state_dir.empty())
-    std::fputs(
-        "warning: no state folder is writable: a plugin that ends this run will not be left out of the next one\n  "
-        "fix: set HOME, XDG_STATE_HOME or STATE_DIRECTORY to a folder that you may write to\n",
-        stderr);
+    log::write(HSP_LOG_WARNING, "",
+               "no state folder is writable: a plugin that ends this run will not be left out of the next one\n  fix: "
+               "set HOME, XDG_STATE_HOME or STATE_DIRECTORY to a folder that you may write to");
   const std::vector<std::string> left_out = leaveOutQuarantined(*scene, watch::stateFolder());
-  for (const std::string& text : left_out) std::fprintf(stderr, "warning: %s\n", text.c_str());
+  for (const std::string& text : left_out) log::write(HSP_LOG_WARNING, "", text);
   const SetupErrors once;
-  auto world = servo::Runner::buildWorld(*scene, how, logToTerminal);
+  auto world = servo::Runner::buildWorld(*scene, how, logOfRun);
   if (!world) return fail(kBadInput, world.error());
   os::onStopSignal(onStop);  // from here on there are files to leave
-  auto runner = servo::Runner::prepare(*scene, how, std::move(*world), logToTerminal);
+  auto runner = servo::Runner::prepare(*scene, how, std::move(*world), logOfRun);
   if (!runner) return fail(kFailed, runner.error());
   once.tell();
   warnOfSettings(**runner, how.rate);
   const StopBySignal stop(**runner);
-  if (files) files->serve(**runner, options.device, catalog(), logToTerminal);
+  if (files) files->serve(**runner, options.device, catalog(), logOfRun);
 
   const bool terminal = isatty(STDERR_FILENO) != 0;
   size_t told = 0;
-  std::vector<std::string> alarms((*runner)->arms().size());
   auto done = (*runner)->run([&](const servo::Runner& r) {
-    for (; told < r.warnings().size(); ++told) std::fprintf(stderr, "warning: %s\n", r.warnings()[told].c_str());
-    tellFaults(r, alarms);
+    for (; told < r.warnings().size(); ++told) log::write(HSP_LOG_WARNING, "", r.warnings()[told]);
     if (terminal) showStatus(r);
     if (files) files->look();
   });
@@ -308,9 +305,17 @@ void addRun(CLI::App& app, int& exit_code) {
                     "show the run in a browser page; on a simulated arm the mouse replaces the hand's script");
   command->add_flag("--no-open", options->no_open, "with --view: print the address of the page, but start no browser")
       ->needs("--view");
+  command->add_option("--log-level", options->log_level, "least that is logged; default: info")
+      ->check(CLI::IsMember({"debug", "info", "warning", "error"}));
+  command->add_option("--log-file", options->log.file,
+                      "write the log to this file too: 10 MB at most, and three older ones are kept");
+  command->add_flag("--log-json", options->log.json, "log one JSON object a line");
   command->add_flag("--allow-non-rt", options->allow_non_rt, "allow forces on real hardware without real-time rights");
   command->footer("Example:\n  hapticd run config/scenes/teapot.yaml --for 10 --report report.json --picture run.svg");
-  command->callback([options, &exit_code] { exit_code = run(*options); });
+  command->callback([options, &exit_code] {
+    options->log.level = log::levelOf(options->log_level);
+    exit_code = run(*options);
+  });
 }
 
 }  // namespace hapticd::cli

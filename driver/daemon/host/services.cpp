@@ -2,6 +2,7 @@
 #include "host/services.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <new>
@@ -15,6 +16,28 @@ constexpr size_t kLargestBlock = size_t{1} << 40;
 constexpr size_t kLongestMessage = 4096;  ///< a plugin that loses its terminator does not flood the log
 
 thread_local bool t_servo_thread = false;
+
+/// A message of the servo thread; longer ones are cut.
+struct Record {
+  int32_t level;
+  std::array<char, 48> who;
+  std::array<char, 204> text;
+};
+constexpr size_t kRecords = 64;  ///< read five times a second
+std::atomic<uint32_t> lost_records{0};
+
+/// One for the process, as there is one servo thread.
+SpscRing<Record>& servoRecords() {
+  static SpscRing<Record> ring(kRecords);
+  return ring;
+}
+
+template <size_t N>
+void copyText(const char* from, std::array<char, N>& to) noexcept {
+  const size_t length = strnlen(from, N - 1);
+  std::memcpy(to.data(), from, length);
+  to[length] = '\0';
+}
 
 }  // namespace
 
@@ -48,12 +71,28 @@ void Services::forgetError() {
 }
 
 void Services::markServoThread() {
+  (void)servoRecords();  // made before the thread's first tick
   t_servo_thread = true;
+}
+
+void Services::keep(int level, const char* utf8) const noexcept {
+  Record record{level, {}, {}};
+  copyText(who_.c_str(), record.who);
+  copyText(utf8, record.text);
+  if (!servoRecords().push(record)) lost_records.fetch_add(1, std::memory_order_relaxed);
+}
+
+void Services::passOn(const Log& log) {
+  Record record{};
+  while (servoRecords().pop(record)) log(record.level, record.who.data(), record.text.data());
+  if (const uint32_t lost = lost_records.exchange(0, std::memory_order_relaxed); lost > 0)
+    log(HSP_LOG_WARNING, "log", std::to_string(lost) + " messages of the servo thread came too fast and were lost");
 }
 
 void Services::write(int level, const char* utf8) {
   if (utf8 == nullptr) return;
   level = std::clamp<int>(level, HSP_LOG_DEBUG, HSP_LOG_ERROR);
+  if (t_servo_thread) return keep(level, utf8);
   const std::string text(utf8, strnlen(utf8, kLongestMessage));
   const std::lock_guard lock(mutex_);
   if (level == HSP_LOG_ERROR) last_error_ = text;

@@ -42,8 +42,12 @@ class Services {
   /// [any] True once after the instance has asked to be activated again.
   bool takeRestartRequest() noexcept { return restart_.exchange(false, std::memory_order_relaxed); }
 
-  /// [main] Marks the calling thread as the servo thread, for is_rt_thread.
+  /// [main] Marks the calling thread as the servo thread, for is_rt_thread. What instances log on it waits in a ring of
+  /// records of fixed size, without a lock, until passOn() is called.
   static void markServoThread();
+  /// [main] One reader: passes on what was logged on the servo thread since the last call, and how many messages found
+  /// the ring full.
+  static void passOn(const Log& log);
 
  private:
   static constexpr size_t kEvents = 64;  ///< a click or two a tick, read every 10 ms or so; the rest may be lost
@@ -52,6 +56,7 @@ class Services {
   };
   static Services& of(const hsp_host* host) { return *static_cast<Services*>(host->ctx); }
   void write(int level, const char* utf8);
+  void keep(int level, const char* utf8) const noexcept;
   void* allocate(size_t bytes, size_t align);
   void release(void* block);
 

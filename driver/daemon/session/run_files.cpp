@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "log/log.hpp"
 #include "scene/load.hpp"
 #include "status/page_file.hpp"
 #include "watch/quarantine.hpp"
@@ -39,7 +40,7 @@ void keepCrashed(const std::string& file, const std::string& name, const std::st
     if (!std::filesystem::exists(kept, error)) break;
   }
   if (std::filesystem::copy_file(file, kept, error))
-    std::fprintf(stderr, "warning: the last run was killed or crashed; its last seconds are in %s\n", kept.c_str());
+    log::write(HSP_LOG_WARNING, "", "the last run was killed or crashed; its last seconds are in " + kept);
   std::filesystem::remove(file, error);
 }
 
@@ -69,11 +70,11 @@ Result<std::unique_ptr<RunFiles>> RunFiles::open(const std::string& name, RunOpt
   std::unique_ptr<RunFiles> outside(new RunFiles);
   outside->folder_ = status::runtimeFolder(true);
   if (outside->folder_.empty()) {
-    std::fprintf(stderr,
-                 "warning: /dev/shm/hapticd-%u does not belong to you: no other program can watch or change this run, "
-                 "and a crash leaves no black box\n  fix: remove it, or set RUNTIME_DIRECTORY to a folder in memory "
-                 "that only you may write to\n",
-                 geteuid());
+    log::write(HSP_LOG_WARNING, "",
+               "/dev/shm/hapticd-" + std::to_string(geteuid()) +
+                   " does not belong to you: no other program can watch or change this run, and a crash leaves no "
+                   "black box\n  fix: remove it, or set RUNTIME_DIRECTORY to a folder in memory that only you may "
+                   "write to");
     return outside;
   }
   auto taken = outside->take(name.empty() ? "hapticd" : name);
@@ -81,7 +82,7 @@ Result<std::unique_ptr<RunFiles>> RunFiles::open(const std::string& name, RunOpt
     return Error{"--name " + name + ": another daemon runs as " + name + ", expected another name"};
   if (taken && !*taken) {
     taken = outside->take("hapticd-" + std::to_string(getpid()));
-    std::fprintf(stderr, "another daemon runs as hapticd; this one has the name %s\n", outside->name_.c_str());
+    log::write(HSP_LOG_INFO, "", "another daemon runs as hapticd; this one has the name " + outside->name_);
   }
   if (!taken) return Error{taken.error()};
   const std::string base = outside->folder_ + "/" + outside->name_;
@@ -116,7 +117,7 @@ void RunFiles::serve(Runner& runner, const std::string& device_file, host::Catal
   handler_ = std::make_unique<RequestHandler>(runner, load, log, stateFolder(folder_));
   auto server = control::Server::listen(folder_ + "/" + name_ + ".sock", kGroup);
   if (!server) {
-    std::fprintf(stderr, "warning: %s\n", server.error().c_str());
+    log::write(HSP_LOG_WARNING, "", server.error());
     return;
   }
   server_ = std::move(*server);
@@ -140,7 +141,7 @@ void RunFiles::look() {
   if (!handler_) return;
   const bool faulty_now = faulty();
   if (faulty_now && !dumped_)
-    if (const auto file = handler_->dump("a fault"); !file) std::fprintf(stderr, "warning: %s\n", file.error().c_str());
+    if (const auto file = handler_->dump("a fault"); !file) log::write(HSP_LOG_WARNING, "", file.error());
   dumped_ = faulty_now;
 }
 

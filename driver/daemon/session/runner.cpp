@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "base/os.hpp"
+#include "log/log.hpp"
 #include "servo/loop/paced_clock.hpp"
 #include "session/about.hpp"
 #include "session/silence_reason.hpp"
@@ -107,6 +108,7 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
         "--virtual-time runs faster than any clock, and the scene names real hardware; expected simulated devices "
         "only"};
   runner->telemetry_ = std::make_unique<Telemetry>(runner->scene_, options.rate, runner->world_->places());
+  runner->openEventLog();
 
   LoopSettings settings;
   settings.period_ns = static_cast<Nanoseconds>(std::llround(1e9 / options.rate));
@@ -219,6 +221,8 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
       if (!told && loop_->ticks() > kReadyTicks) told = watch::notify(readyMessage(*loop_)) || true;
       feeder.feed(clock.now(), loop_->ticks());
       if (!warnings_.empty() && !anyhow) break;
+      host::Services::passOn(log::write);
+      event_log_->tell(*telemetry_->flight());
       every(*this);
     }
     clock.waitUntil(clock.now() + proximity.turn(kStatusPeriod));
@@ -227,8 +231,17 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   servo.join();
   watchdog.stop();
   proximity.stop();
+  host::Services::passOn(log::write);
+  event_log_->tell(*telemetry_->flight());
   if (!loop_->finished()) return Error{warnings_.back() + "\n  forces stay off (--allow-non-rt allows them)"};
   return {};
+}
+
+void Runner::openEventLog() {
+  std::vector<std::string> devices;
+  for (const scene::Device& device : scene_.devices) devices.push_back(device.name);
+  event_log_ = std::make_unique<EventLog>(world_->places(), std::move(devices), arms_);
+  for (uint32_t place = 0; place < scene_.models.size(); ++place) event_log_->name(place, scene_.models[place].name);
 }
 
 void Runner::lockMemory() {
@@ -252,6 +265,7 @@ std::vector<std::string> Runner::enterRealTime() const {
 
 void Runner::nameModel(uint32_t place, const std::string& name, const std::string& plugin) {
   telemetry_->name(place, name, plugin);
+  event_log_->name(place, name);
   if (telemetry_->statusWriter() != nullptr) telemetry_->statusWriter()->name(place, name, plugin);
 }
 
@@ -265,8 +279,7 @@ std::string Runner::faultOf(size_t arm) const {
   const Limiter& limiter = arms_[arm]->limiter();
   const Fault fault = limiter.fault();
   if (fault == Fault::kNone || fault == Fault::kStopped) return "";
-  const bool own_words = fault == Fault::kDeviceLost || fault == Fault::kDeviceFault || fault == Fault::kStale;
-  return faultMessage(scene_.devices[arm].name, fault, limiter.measured(), own_words ? arms_[arm]->trouble() : nullptr);
+  return faultMessage(scene_.devices[arm].name, fault, limiter.measured(), arms_[arm]->troubleOf(fault));
 }
 
 std::vector<std::string> Runner::recovered() const {

@@ -12,6 +12,7 @@
 #include "description/scene.hpp"
 #include "record/recorder.hpp"
 #include "servo/loop/loop.hpp"
+#include "session/event_log.hpp"
 #include "session/telemetry.hpp"
 #include "session/world.hpp"
 #include "watch/watched.hpp"
@@ -83,6 +84,7 @@ class Runner {
   Result<void> openBlackBox(const LoopSettings& settings);
   Result<void> openArms(const host::Services::Log& log);
   Result<void> runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every);
+  void openEventLog();
   void lockMemory();
   std::vector<std::string> enterRealTime() const;  ///< servo thread. @return what was refused
   bool onlySimulated() const;
@@ -92,6 +94,7 @@ class Runner {
   std::unique_ptr<World> world_;
   std::vector<std::unique_ptr<Arm>> arms_;
   std::unique_ptr<Telemetry> telemetry_;
+  std::unique_ptr<EventLog> event_log_;
   std::unique_ptr<Clock> clock_;
   std::unique_ptr<Loop> loop_;
   std::unique_ptr<record::Recorder> recorder_;

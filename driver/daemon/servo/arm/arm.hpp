@@ -72,6 +72,11 @@ class Arm {
   Limiter& limiter() noexcept { return limiter_; }
   /// [any] What the device said of its last fault, "cause; cure"; nullptr: nothing.
   const char* trouble() const noexcept { return trouble_.load(std::memory_order_acquire); }
+  /// [any] The same for a fault that only the device can explain; nullptr for every other.
+  const char* troubleOf(Fault fault) const noexcept {
+    const bool own = fault == Fault::kDeviceLost || fault == Fault::kDeviceFault || fault == Fault::kStale;
+    return own ? trouble() : nullptr;
+  }
   const Limiter& limiter() const noexcept { return limiter_; }
   const Eigen::Vector3d& force() const noexcept { return force_; }  ///< [N] world, as sent
   const Probe& probe() const noexcept { return probe_; }

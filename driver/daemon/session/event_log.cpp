@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+#include "session/event_log.hpp"
+
+#include <fmt/format.h>
+
+#include "hapticd/abi.h"
+#include "log/log.hpp"
+#include "servo/safety/fault.hpp"
+#include "session/silence_reason.hpp"
+
+namespace hapticd::servo {
+
+namespace {
+
+constexpr size_t kAtOnce = 256;  ///< events that are read in one go
+
+std::string leaderOf(const hapticd_event& event) {
+  return fmt::format("process {:.0f}", event.value);
+}
+
+}  // namespace
+
+void EventLog::name(uint32_t place, const std::string& model) {
+  if (model.empty()) return;
+  const std::lock_guard lock(mutex_);
+  if (place >= models_.size()) models_.resize(place + 1);
+  models_[place] = model;
+}
+
+void EventLog::tell(const Flight& flight) {
+  for (;;) {
+    const std::vector<hapticd_event> events = flight.events(next_, kAtOnce);
+    for (const hapticd_event& event : events) {
+      const Message message = messageOf(event);
+      if (!message.text.empty()) log::write(message.level, message.who, message.text);
+    }
+    next_ += events.size();
+    if (events.size() < kAtOnce) return;
+  }
+}
+
+std::string EventLog::model(const hapticd_event& event) const {
+  const std::lock_guard lock(mutex_);
+  const auto place = static_cast<size_t>(event.model);
+  return event.model >= 0 && place < models_.size() ? models_[place] : "";
+}
+
+std::string EventLog::device(const hapticd_event& event) const {
+  const auto arm = static_cast<size_t>(event.probe);
+  return event.probe >= 0 && arm < devices_.size() ? devices_[arm] : "";
+}
+
+EventLog::Message EventLog::messageOf(const hapticd_event& event) const {
+  switch (event.kind) {
+    case HAPTICD_JOINED:
+    case HAPTICD_LOST:
+    case HAPTICD_REFUSED:
+      return messageOfLeader(event);
+    case HAPTICD_FAULT:
+    case HAPTICD_CLEARED:
+      return messageOfArm(event);
+    default:
+      return messageOfModel(event);
+  }
+}
+
+EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
+  const std::string who = model(event);
+  switch (event.kind) {
+    case HAPTICD_CLICK:
+      return {HSP_LOG_DEBUG, who, fmt::format("clicked at {:.4f} s", event.t)};
+    case HAPTICD_TOUCH:
+      return {HSP_LOG_DEBUG, who, fmt::format("{} touches it at {:.4f} s", device(event), event.t)};
+    case HAPTICD_SILENCED:
+      return {HSP_LOG_ERROR, "",
+              silenceReason(who, static_cast<Trouble>(event.code), static_cast<int32_t>(event.value))};
+    case HAPTICD_DEGRADED:
+      return {HSP_LOG_WARNING, who,
+              fmt::format("answers coarser (level {:.0f}), since the ticks took too long", event.value)};
+    case HAPTICD_RESTORED:
+      return {HSP_LOG_INFO, who, "answers as exactly as before"};
+    case HAPTICD_CAME:
+      return {HSP_LOG_INFO, who, "is in the scene now"};
+    case HAPTICD_LEFT:
+      return {HSP_LOG_INFO, who, "has left the scene"};
+    default:
+      return {HSP_LOG_DEBUG, "", ""};
+  }
+}
+
+EventLog::Message EventLog::messageOfArm(const hapticd_event& event) const {
+  if (event.kind == HAPTICD_CLEARED) return {HSP_LOG_INFO, device(event), "the fault is over; its forces come back"};
+  const auto fault = static_cast<Fault>(event.code);
+  if (fault == Fault::kStopped) return {HSP_LOG_DEBUG, "", ""};  // the run itself says how it ends
+  return {HSP_LOG_ERROR, "",
+          "fault: " + faultMessage(device(event), fault, event.value,
+                                   arms_[static_cast<size_t>(event.probe)]->troubleOf(fault))};
+}
+
+EventLog::Message EventLog::messageOfLeader(const hapticd_event& event) const {
+  const std::string what = event.model >= 0 ? model(event) : device(event);
+  if (event.kind == HAPTICD_REFUSED)
+    return {HSP_LOG_WARNING, what, fmt::format("{:.0f} records of its leader were refused so far", event.value)};
+  return {HSP_LOG_INFO, what, leaderOf(event) + (event.kind == HAPTICD_JOINED ? " leads it" : " leads it no more")};
+}
+
+}  // namespace hapticd::servo

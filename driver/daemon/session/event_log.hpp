@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+/// Writes into the daemon's log what the servo tells of itself, when it happens: faults, silenced and degraded models,
+/// models and leaders that come and go.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "hapticd/client.h"
+#include "servo/arm/arm.hpp"
+#include "session/flight.hpp"
+
+namespace hapticd::servo {
+
+class EventLog {
+ public:
+  using Arms = std::vector<std::unique_ptr<Arm>>;
+
+  /// [main] @param places models that there may be @param devices names of the arms, in their order
+  EventLog(size_t places, std::vector<std::string> devices, const Arms& arms)
+      : models_(places), devices_(std::move(devices)), arms_(arms) {}
+
+  /// [any] A model takes a place; "": it has left, and what happened before still bears its name.
+  void name(uint32_t place, const std::string& model);
+
+  /// [main] Writes the events since the last call.
+  void tell(const Flight& flight);
+
+  /// A message for the log; an empty text: none is due.
+  struct Message {
+    int32_t level;  ///< HSP_LOG_DEBUG, ...
+    std::string who, text;
+  };
+  /// [main] What an event means, in words.
+  Message messageOf(const hapticd_event& event) const;
+
+ private:
+  std::string model(const hapticd_event& event) const;
+  std::string device(const hapticd_event& event) const;
+  Message messageOfModel(const hapticd_event& event) const;
+  Message messageOfArm(const hapticd_event& event) const;
+  Message messageOfLeader(const hapticd_event& event) const;
+
+  mutable std::mutex mutex_;  // a model comes on the thread of the control socket
+  std::vector<std::string> models_, devices_;
+  const Arms& arms_;
+  uint64_t next_ = 0;
+};
+
+}  // namespace hapticd::servo

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+/// Every kind of event has its words, and names the model or the arm.
+#include "session/event_log.hpp"
+
+#include <gtest/gtest.h>
+
+#include "hapticd/abi.h"
+#include "servo/safety/guard.hpp"
+
+namespace hapticd::servo {
+namespace {
+
+class EventWords : public testing::Test {
+ protected:
+  EventWords() : log_(2, {"phantom"}, arms_) { log_.name(1, "door"); }
+  EventLog::Message of(uint32_t kind, uint32_t code = 0, double value = 0) const {
+    hapticd_event event{};
+    event.kind = kind;
+    event.model = 1;
+    event.probe = 0;
+    event.code = code;
+    event.value = value;
+    return log_.messageOf(event);
+  }
+  std::vector<std::unique_ptr<Arm>> arms_;
+  EventLog log_;
+};
+
+TEST_F(EventWords, AreAtTheLevelThatAPersonNeeds) {
+  EXPECT_EQ(of(HAPTICD_CLICK).level, HSP_LOG_DEBUG);
+  EXPECT_EQ(of(HAPTICD_CAME).level, HSP_LOG_INFO);
+  EXPECT_EQ(of(HAPTICD_DEGRADED, 0, 1).level, HSP_LOG_WARNING);
+  EXPECT_EQ(of(HAPTICD_REFUSED, 0, 3).level, HSP_LOG_WARNING);
+  EXPECT_EQ(of(HAPTICD_SILENCED, static_cast<uint32_t>(Trouble::kOverrun)).level, HSP_LOG_ERROR);
+}
+
+TEST_F(EventWords, NameTheModel) {
+  for (const uint32_t kind : {HAPTICD_CLICK, HAPTICD_DEGRADED, HAPTICD_RESTORED, HAPTICD_CAME, HAPTICD_LEFT,
+                              HAPTICD_JOINED, HAPTICD_LOST, HAPTICD_REFUSED}) {
+    EXPECT_EQ(of(kind).who, "door") << kind;
+    EXPECT_FALSE(of(kind).text.empty()) << kind;
+  }
+  const auto silenced = of(HAPTICD_SILENCED, static_cast<uint32_t>(Trouble::kNotFinite));
+  EXPECT_NE(silenced.text.find("model door: its plugin gave"), std::string::npos) << silenced.text;
+}
+
+TEST_F(EventWords, NameTheProcessThatLeads) {
+  EXPECT_EQ(of(HAPTICD_JOINED, 0, 4711).text, "process 4711 leads it");
+  EXPECT_EQ(of(HAPTICD_LOST, 0, 4711).text, "process 4711 leads it no more");
+}
+
+TEST_F(EventWords, KeepTheNameOfAModelThatHasLeft) {
+  log_.name(1, "");
+  EXPECT_EQ(of(HAPTICD_LEFT).who, "door");
+}
+
+TEST_F(EventWords, OfAKindThatIsNotKnownAreNone) {
+  EXPECT_TRUE(of(HAPTICD_EVENT_KINDS).text.empty());
+}
+
+}  // namespace
+}  // namespace hapticd::servo
