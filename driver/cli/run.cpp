@@ -205,27 +205,48 @@ Result<void> showPage(const Options& options, const servo::RunFiles* files, scen
   return {};
 }
 
-int run(const Options& options) {
-  if (auto opened = log::open(options.log); !opened) return fail(kBadInput, opened.error());
+/// What is wrong with the files that the run shall write; "" if nothing is.
+std::string wrongFiles(const Options& options) {
   for (const std::string& file : {options.report, options.picture, options.record})
-    if (!writable(file))
-      return fail(kBadInput, file + ": cannot be written, expected a file in a folder that you may write to");
+    if (!writable(file)) return file + ": cannot be written, expected a file in a folder that you may write to";
   if (const std::string file = writtenTwice(options); !file.empty())
-    return fail(kBadInput,
-                file + ": named twice, expected different files for the scene, --report, --picture and --record");
-  auto scene = loadSceneOrReport(options.scene, options.device);
-  if (!scene) return kBadInput;
-  if (scene->devices.front().chosen_by_default)
-    log::write(HSP_LOG_INFO, "",
-               "no device is named: using the simulated one of " + scene->devices.front().file.string());
+    return file + ": named twice, expected different files for the scene, --report, --picture and --record";
+  return "";
+}
+
+servo::RunOptions runOptions(const Options& options, const scene::Scene& scene) {
   servo::RunOptions how;
-  how.rate = options.rate.value_or(scene->servo.rate);
+  how.rate = options.rate.value_or(scene.servo.rate);
   how.duration = options.duration;
   how.virtual_time = options.virtual_time;
   how.cpu = options.cpu ? options.cpu : daemonSettings().cpu;
   how.priority = options.priority.value_or(daemonSettings().priority.value_or(os::kServoPriority));
   how.allow_non_rt = options.allow_non_rt;
   how.record = options.record;
+  how.state_dir = watch::stateDir().string();
+  if (how.state_dir.empty())
+    log::write(HSP_LOG_WARNING, "",
+               "no state folder is writable: a plugin that ends this run will not be left out of the next one\n  fix: "
+               "set HOME, XDG_STATE_HOME or STATE_DIRECTORY to a folder that you may write to");
+  return how;
+}
+
+/// The run itself, from the first tick to the last.
+Result<void> tickToTheEnd(servo::Runner& runner, servo::RunFiles* files) {
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  size_t told = 0;
+  auto done = runner.run([&](const servo::Runner& r) {
+    for (; told < r.warnings().size(); ++told) log::write(HSP_LOG_WARNING, "", r.warnings()[told]);
+    if (terminal) showStatus(r);
+    if (files != nullptr) files->look();
+  });
+  if (files != nullptr) files->end();
+  if (terminal) std::fputs("\r\033[K", stderr);
+  return done;
+}
+
+int runScene(const Options& options, scene::Scene& scene) {
+  servo::RunOptions how = runOptions(options, scene);
   std::unique_ptr<servo::RunFiles> files;  // a virtual run is over before anybody looks, unless it was given a name
   if (!options.virtual_time || !options.name.empty()) {
     auto opened = servo::RunFiles::open(options.name, how);
@@ -233,36 +254,32 @@ int run(const Options& options) {
     files = std::move(*opened);
   }
   if (options.view)
-    if (auto shown = showPage(options, files.get(), *scene); !shown) return fail(kFailed, shown.error());
-  how.state_dir = watch::stateDir().string();
-  if (how.state_dir.empty())
-    log::write(HSP_LOG_WARNING, "",
-               "no state folder is writable: a plugin that ends this run will not be left out of the next one\n  fix: "
-               "set HOME, XDG_STATE_HOME or STATE_DIRECTORY to a folder that you may write to");
-  const std::vector<std::string> left_out = leaveOutQuarantined(*scene, watch::stateFolder());
+    if (auto shown = showPage(options, files.get(), scene); !shown) return fail(kFailed, shown.error());
+  const std::vector<std::string> left_out = leaveOutQuarantined(scene, watch::stateFolder());
   for (const std::string& text : left_out) log::write(HSP_LOG_WARNING, "", text);
   const SetupErrors once;
-  auto world = servo::Runner::buildWorld(*scene, how, logOfRun);
+  auto world = servo::Runner::buildWorld(scene, how, logOfRun);
   if (!world) return fail(kBadInput, world.error());
   os::onStopSignal(onStop);  // from here on there are files to leave
-  auto runner = servo::Runner::prepare(*scene, how, std::move(*world), logOfRun);
+  auto runner = servo::Runner::prepare(scene, how, std::move(*world), logOfRun);
   if (!runner) return fail(kFailed, runner.error());
   once.tell();
   warnOfSettings(**runner, how.rate);
   const StopBySignal stop(**runner);
   if (files) files->serve(**runner, options.device, catalog(), logOfRun);
-
-  const bool terminal = isatty(STDERR_FILENO) != 0;
-  size_t told = 0;
-  auto done = (*runner)->run([&](const servo::Runner& r) {
-    for (; told < r.warnings().size(); ++told) log::write(HSP_LOG_WARNING, "", r.warnings()[told]);
-    if (terminal) showStatus(r);
-    if (files) files->look();
-  });
-  if (files) files->end();
-  if (terminal) std::fputs("\r\033[K", stderr);
-  if (!done) return fail(kFailed, done.error());
+  if (auto done = tickToTheEnd(**runner, files.get()); !done) return fail(kFailed, done.error());
   return conclude(options, **runner, left_out);
+}
+
+int run(const Options& options) {
+  if (auto opened = log::open(options.log); !opened) return fail(kBadInput, opened.error());
+  if (const std::string wrong = wrongFiles(options); !wrong.empty()) return fail(kBadInput, wrong);
+  auto scene = loadSceneOrReport(options.scene, options.device);
+  if (!scene) return kBadInput;
+  if (scene->devices.front().chosen_by_default)
+    log::write(HSP_LOG_INFO, "",
+               "no device is named: using the simulated one of " + scene->devices.front().file.string());
+  return runScene(options, *scene);
 }
 
 /// "1s" is met with what to write instead of a failed conversion.

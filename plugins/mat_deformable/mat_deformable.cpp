@@ -48,43 +48,56 @@ medial::BodyOptions MatDeformable::bodyOptions(const MedialFile& file, double ra
   return options;
 }
 
-void MatDeformable::activate(const hsp_activation& activation, hsp_report& report) {
-  MedialFile file = readMedialFile(geometry_, {stiffness_, damping_, mass_});
+void MatDeformable::openBody(const MedialFile& file, double rate) {
   try {
-    const medial::BodyOptions options = bodyOptions(file, activation.rate_hz);
+    const medial::BodyOptions options = bodyOptions(file, rate);
     body_ = file.grid ? makeSoftBody(*file.grid, options) : makeSoftBody(*file.mesh, options);
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument(geometry_ + ": medial: " + e.what());
   }
-  const uint32_t probes = std::max(activation.max_probes, 1u);
+}
+
+void MatDeformable::openContacts(uint32_t probes) {
   tracks_.assign(probes, Track{});
   presses_.clear();
   presses_.reserve(probes);
   contacts_.clear();
   met_.clear();
-  const medial::FeltSurface* const surface = body_->feltSurface();
-  if (surface != nullptr) {
-    contacts_.reserve(probes);
-    met_.reserve(probes);
-  }
+  if (body_->feltSurface() == nullptr) return;
+  contacts_.reserve(probes);
+  met_.reserve(probes);
+}
+
+std::size_t MatDeformable::openVolume() {
+  keeper_.reset();
+  if (volume_ != 1) return 0;
+  auto hull = body_->hull();
+  const medial::VolumeKeeper volume(*hull, body_->greatestRadius());
+  const std::size_t bytes = hull->bytes() + volume.bytes();
+  keeper_.reset(new Keeper{std::move(hull), volume});
+  return bytes;
+}
+
+uint32_t MatDeformable::openDisplay() {
   last_time_ns_ = 0;
   stored_ = since_shown_ = 0;
   shown_at_rest_ = true;
   displaced_ = std::make_unique<Displaced>(body_->nodes().count());
   display_.reset();
   frames_.reset();
-  if (display_tolerance_ > 0) {
-    frames_ = std::make_unique<Frames>(body_->contour(displayed()), body_->nodes().count());
-    report.viz_vertices = static_cast<uint32_t>(frames_->contour().vertexCount());
-  }
-  keeper_.reset();
-  std::size_t volume_bytes = 0;
-  if (volume_ == 1) {
-    auto hull = body_->hull();
-    const medial::VolumeKeeper volume(*hull, body_->greatestRadius());
-    volume_bytes = hull->bytes() + volume.bytes();
-    keeper_.reset(new Keeper{std::move(hull), volume});
-  }
+  if (display_tolerance_ <= 0) return 0;
+  frames_ = std::make_unique<Frames>(body_->contour(displayed()), body_->nodes().count());
+  return static_cast<uint32_t>(frames_->contour().vertexCount());
+}
+
+void MatDeformable::activate(const hsp_activation& activation, hsp_report& report) {
+  const MedialFile file = readMedialFile(geometry_, {stiffness_, damping_, mass_});
+  const uint32_t probes = std::max(activation.max_probes, 1u);
+  openBody(file, activation.rate_hz);
+  openContacts(probes);
+  if (const uint32_t vertices = openDisplay(); vertices > 0) report.viz_vertices = vertices;
+  const std::size_t volume_bytes = openVolume();
+  const medial::FeltSurface* const surface = body_->feltSurface();
   const std::vector<unsigned char> loaded = std::exchange(states_->loaded, {});
   if (!loaded.empty() && !restoreState(loaded, body_->nodes(), body_->feltSurface()))
     throw std::invalid_argument(geometry_ + ": the state that was loaded is of another body");
@@ -320,54 +333,60 @@ hsp_status MatDeformable::load(const void* buffer, uint64_t length) {
   return HSP_OK;
 }
 
+const void* MatDeformable::surfacesExtension() {
+  static constexpr hsp_ext_surfaces kExtension = {
+      sizeof(hsp_ext_surfaces), 1,
+      [](const hsp_shape* shape, const double p_model[3], double radius, hsp_near* out, uint64_t cap) -> int64_t {
+        return reinterpret_cast<const MatDeformable*>(shape)->nearby(p_model, radius, out, cap);
+      },
+      [](hsp_shape* shape, const hsp_near* near)
+          HSP_RT -> hsp_status { return reinterpret_cast<MatDeformable*>(shape)->start(*near); },
+      [](hsp_shape* shape, uint32_t probe, uint32_t)
+          HSP_RT -> hsp_status { return reinterpret_cast<MatDeformable*>(shape)->stop(probe); }};
+  return &kExtension;
+}
+
+const void* MatDeformable::geometryExtension() {
+  static constexpr hsp_ext_geometry kExtension = {
+      sizeof(hsp_ext_geometry), 0,
+      [](hsp_shape* shape, double chord_error, hsp_mesh* out) -> hsp_status {
+        return reinterpret_cast<MatDeformable*>(shape)->mesh(chord_error, *out);
+      },
+      [](hsp_shape* shape, double min[3], double max[3]) -> hsp_status {
+        const auto& body = reinterpret_cast<MatDeformable*>(shape)->body_;
+        if (!body) return HSP_E_STATE;
+        Eigen::Map<Vector3d>(min, 3) = body->bounds().min();
+        Eigen::Map<Vector3d>(max, 3) = body->bounds().max();
+        return HSP_OK;
+      }};
+  return &kExtension;
+}
+
+const void* MatDeformable::energyExtension() {
+  static constexpr hsp_ext_energy kExtension = {sizeof(hsp_ext_energy), 0, [](hsp_shape* shape) HSP_RT -> double {
+                                                  const MatDeformable& body = *reinterpret_cast<MatDeformable*>(shape);
+                                                  return body.energy();
+                                                }};
+  return &kExtension;
+}
+
+const void* MatDeformable::stateExtension() {
+  static constexpr hsp_ext_state kExtension = {sizeof(hsp_ext_state), 0,
+                                               [](hsp_shape* shape, void* buffer, uint64_t capacity) -> int64_t {
+                                                 return reinterpret_cast<MatDeformable*>(shape)->save(buffer, capacity);
+                                               },
+                                               [](hsp_shape* shape, const void* buffer, uint64_t length) -> hsp_status {
+                                                 return reinterpret_cast<MatDeformable*>(shape)->load(buffer, length);
+                                               }};
+  return &kExtension;
+}
+
 const void* MatDeformable::extension(const char* name) {
   const std::string_view wanted = name;
-  if (wanted == HSP_EXT_SURFACES && body_) {
-    static constexpr hsp_ext_surfaces kExtension = {
-        sizeof(hsp_ext_surfaces), 1,
-        [](const hsp_shape* shape, const double p_model[3], double radius, hsp_near* out, uint64_t cap) -> int64_t {
-          return reinterpret_cast<const MatDeformable*>(shape)->nearby(p_model, radius, out, cap);
-        },
-        [](hsp_shape* shape, const hsp_near* near)
-            HSP_RT -> hsp_status { return reinterpret_cast<MatDeformable*>(shape)->start(*near); },
-        [](hsp_shape* shape, uint32_t probe, uint32_t)
-            HSP_RT -> hsp_status { return reinterpret_cast<MatDeformable*>(shape)->stop(probe); }};
-    return &kExtension;
-  }
-  if (wanted == HSP_EXT_GEOMETRY && body_) {
-    static constexpr hsp_ext_geometry kExtension = {
-        sizeof(hsp_ext_geometry), 0,
-        [](hsp_shape* shape, double chord_error, hsp_mesh* out) -> hsp_status {
-          return reinterpret_cast<MatDeformable*>(shape)->mesh(chord_error, *out);
-        },
-        [](hsp_shape* shape, double min[3], double max[3]) -> hsp_status {
-          const auto& body = reinterpret_cast<MatDeformable*>(shape)->body_;
-          if (!body) return HSP_E_STATE;
-          Eigen::Map<Vector3d>(min, 3) = body->bounds().min();
-          Eigen::Map<Vector3d>(max, 3) = body->bounds().max();
-          return HSP_OK;
-        }};
-    return &kExtension;
-  }
-  if (wanted == HSP_EXT_ENERGY) {
-    static constexpr hsp_ext_energy kExtension = {sizeof(hsp_ext_energy), 0, [](hsp_shape* shape) HSP_RT -> double {
-                                                    const MatDeformable& body =
-                                                        *reinterpret_cast<MatDeformable*>(shape);
-                                                    return body.energy();
-                                                  }};
-    return &kExtension;
-  }
-  if (wanted == HSP_EXT_STATE) {
-    static constexpr hsp_ext_state kExtension = {
-        sizeof(hsp_ext_state), 0,
-        [](hsp_shape* shape, void* buffer, uint64_t capacity) -> int64_t {
-          return reinterpret_cast<MatDeformable*>(shape)->save(buffer, capacity);
-        },
-        [](hsp_shape* shape, const void* buffer, uint64_t length) -> hsp_status {
-          return reinterpret_cast<MatDeformable*>(shape)->load(buffer, length);
-        }};
-    return &kExtension;
-  }
+  if (wanted == HSP_EXT_SURFACES && body_) return surfacesExtension();
+  if (wanted == HSP_EXT_GEOMETRY && body_) return geometryExtension();
+  if (wanted == HSP_EXT_ENERGY) return energyExtension();
+  if (wanted == HSP_EXT_STATE) return stateExtension();
   return nullptr;
 }
 

@@ -105,6 +105,14 @@ class MatDeformable final : public Shape {
 
   medial::BodyOptions bodyOptions(const MedialFile& file, double rate_hz) const;
   Dynamics dynamicsOf(const MedialFile& file) const;
+  void openBody(const MedialFile& file, double rate_hz);
+  void openContacts(uint32_t probes);
+  uint32_t openDisplay();    ///< @return vertices that move; 0: none are shown
+  std::size_t openVolume();  ///< @return bytes that keep the volume; 0: it is not kept
+  static const void* surfacesExtension();
+  static const void* geometryExtension();
+  static const void* energyExtension();
+  static const void* stateExtension();
   void describe() const;
   double elapsed(const hsp_step& step) noexcept HSP_RT;
   FindOptions findOptions(const hsp_step& step) const noexcept HSP_RT;

@@ -42,6 +42,51 @@ struct Place {
   uint64_t index_address, rows_address;
 };
 
+void put(std::byte* memory, uint64_t at, const void* bytes, size_t size) {
+  std::memcpy(memory + at, bytes, size);
+}
+
+void putText(std::byte* memory, uint64_t at, const std::string& bytes) {
+  put(memory, at, bytes.data(), bytes.size());
+}
+
+/// Where index and rows of each stream stand behind the skeleton. @param end of the file: grows by them
+std::vector<Place> placesOf(const std::vector<StreamSpec>& streams, const std::vector<uint32_t>& rows, uint64_t& end) {
+  std::vector<Place> places;
+  for (size_t i = 0; i < streams.size(); ++i) {
+    const uint64_t index = end + sizeof(BlockHeader),
+                   chunk = index + hdf5::ChunkIndex::kNodeBytes + sizeof(BlockHeader);
+    places.push_back({index, chunk});
+    end = chunk + uint64_t{rows[i]} * streams[i].layout.rowBytes();
+  }
+  return places;
+}
+
+void writeBlocks(std::byte* memory, uint32_t stream, uint64_t bytes, const Place& place) {
+  BlockHeader block;
+  block.stream = BlockHeader::kIndex;
+  block.bytes = hdf5::ChunkIndex::kNodeBytes;
+  put(memory, place.index_address - sizeof block, &block, sizeof block);
+  block.stream = stream;
+  block.bytes = bytes;
+  put(memory, place.rows_address - sizeof block, &block, sizeof block);
+}
+
+void writeTable(std::byte* memory, const Skeleton& skeleton, size_t stream, uint32_t rows, uint32_t row_bytes,
+                const Place& place) {
+  hdf5::ChunkIndex index(rows, uint64_t{rows} * row_bytes);
+  for (const auto& node : index.add(place.rows_address, [&] { return place.index_address; }))
+    putText(memory, node.address, node.bytes);
+  hdf5::TableHeader table;
+  table.rows = rows;
+  table.index_address = index.root();
+  table.chunk_rows = rows;
+  table.row_bytes = row_bytes;
+  table.description_address = skeleton.descriptions[stream];
+  table.description_bytes = skeleton.description_bytes[stream];
+  putText(memory, skeleton.tables[stream], table.bytes());
+}
+
 }  // namespace
 
 Result<std::unique_ptr<FlightRing>> FlightRing::create(const std::vector<StreamSpec>& streams, const About& about,
@@ -51,14 +96,8 @@ Result<std::unique_ptr<FlightRing>> FlightRing::create(const std::vector<StreamS
     rows.push_back(static_cast<uint32_t>(
         std::clamp<uint64_t>(stream.ring_rows, 1, (uint64_t{1} << 31) / stream.layout.rowBytes())));
   const Skeleton skeleton = makeSkeleton(streams, rows, about, true);
-  std::vector<Place> places;
   uint64_t end = skeleton.bytes.size();
-  for (size_t i = 0; i < streams.size(); ++i) {
-    const uint64_t index = end + sizeof(BlockHeader),
-                   chunk = index + hdf5::ChunkIndex::kNodeBytes + sizeof(BlockHeader);
-    places.push_back({index, chunk});
-    end = chunk + uint64_t{rows[i]} * streams[i].layout.rowBytes();
-  }
+  const std::vector<Place> places = placesOf(streams, rows, end);
   auto memory = mapMemory(file, end);
   if (!memory) return Error{memory.error()};
   std::unique_ptr<FlightRing> ring(new FlightRing);
@@ -68,32 +107,13 @@ Result<std::unique_ptr<FlightRing>> FlightRing::create(const std::vector<StreamS
   ring->memory_ = *memory;
   ring->bytes_ = end;
   std::memset(ring->memory_, 0, end);
-  const auto put = [&](uint64_t at, const void* bytes, size_t size) { std::memcpy(ring->memory_ + at, bytes, size); };
-  const auto putText = [&](uint64_t at, const std::string& bytes) { put(at, bytes.data(), bytes.size()); };
-  putText(0, skeleton.bytes);
-  putText(0, hdf5::superblock(skeleton.root, end));
+  putText(ring->memory_, 0, skeleton.bytes);
+  putText(ring->memory_, 0, hdf5::superblock(skeleton.root, end));
   auto* header = reinterpret_cast<FileHeader*>(ring->memory_ + kHeaderAt);
   for (size_t i = 0; i < streams.size(); ++i) {
     const uint32_t row_bytes = streams[i].layout.rowBytes();
-    const uint64_t bytes = uint64_t{rows[i]} * row_bytes;
-    BlockHeader block;
-    block.stream = BlockHeader::kIndex;
-    block.bytes = hdf5::ChunkIndex::kNodeBytes;
-    put(places[i].index_address - sizeof block, &block, sizeof block);
-    block.stream = static_cast<uint32_t>(i);
-    block.bytes = bytes;
-    put(places[i].rows_address - sizeof block, &block, sizeof block);
-    hdf5::ChunkIndex index(rows[i], bytes);
-    for (const auto& node : index.add(places[i].rows_address, [&] { return places[i].index_address; }))
-      putText(node.address, node.bytes);
-    hdf5::TableHeader table;
-    table.rows = rows[i];
-    table.index_address = index.root();
-    table.chunk_rows = rows[i];
-    table.row_bytes = row_bytes;
-    table.description_address = skeleton.descriptions[i];
-    table.description_bytes = skeleton.description_bytes[i];
-    putText(skeleton.tables[i], table.bytes());
+    writeBlocks(ring->memory_, static_cast<uint32_t>(i), uint64_t{rows[i]} * row_bytes, places[i]);
+    writeTable(ring->memory_, skeleton, i, rows[i], row_bytes, places[i]);
     ring->streams_.push_back({&header->streams[i], ring->memory_ + places[i].rows_address, row_bytes, rows[i], 0, 0,
                               std::vector<uint64_t>(row_bytes / sizeof(uint64_t))});
   }

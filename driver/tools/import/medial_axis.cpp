@@ -167,44 +167,47 @@ class Parts {
   int count_;
 };
 
-void join(const std::vector<Ball>& kept, const std::vector<Ball>& witnesses, const SurfaceSamples& samples,
-          const NearestPoints& nearest, double tolerance, MedialAxis& axis) {
-  std::set<std::array<int, 2>> edges;
-  std::set<std::array<int, 3>> triangles;
-  const auto sound = [&](std::initializer_list<std::pair<int, double>> parts) {
+/// Which edges and triangles of balls stay inside the body.
+class Soundness {
+ public:
+  Soundness(const std::vector<Ball>& kept, const SurfaceSamples& samples, const NearestPoints& nearest,
+            double tolerance)
+      : kept_(kept), samples_(samples), nearest_(nearest), tolerance_(tolerance) {}
+
+  bool edge(int a, int b) const {
+    bool good = true;
+    for (int k = 1; good && k < kChecks; ++k) good = point({{a, 1 - k / double(kChecks)}, {b, k / double(kChecks)}});
+    return good;
+  }
+
+  bool triangle(const std::array<int, 3>& t) const {
+    bool good = point({{t[0], 1 / 3.0}, {t[1], 1 / 3.0}, {t[2], 1 / 3.0}});
+    for (std::size_t k = 0; good && k < 3; ++k)
+      good = point({{t[k], 2 / 3.0}, {t[(k + 1) % 3], 1 / 6.0}, {t[(k + 2) % 3], 1 / 6.0}});
+    return good;
+  }
+
+ private:
+  bool point(std::initializer_list<std::pair<int, double>> parts) const {
     Vector3d center = Vector3d::Zero();
     double radius = 0;
     for (const auto& [i, weight] : parts) {
-      center += weight * kept[static_cast<std::size_t>(i)].center;
-      radius += weight * kept[static_cast<std::size_t>(i)].radius;
+      center += weight * kept_[static_cast<std::size_t>(i)].center;
+      radius += weight * kept_[static_cast<std::size_t>(i)].radius;
     }
-    return !standsOut(center, radius, samples, nearest, tolerance);
-  };
-  const auto soundEdge = [&](int a, int b) {
-    bool good = true;
-    for (int k = 1; good && k < kChecks; ++k) good = sound({{a, 1 - k / double(kChecks)}, {b, k / double(kChecks)}});
-    return good;
-  };
-  std::set<std::array<int, 2>> refused;
-  for (const Ball& witness : witnesses) {
-    auto near = threeNearest(kept, witness.center);
-    if (near[1] < 0) continue;
-    const std::array<int, 2> edge{std::min(near[0], near[1]), std::max(near[0], near[1])};
-    if (!edges.contains(edge) && !refused.contains(edge)) (soundEdge(edge[0], edge[1]) ? edges : refused).insert(edge);
-    if (near[2] < 0) continue;
-    std::sort(near.begin(), near.end());
-    triangles.insert(near);
+    return !standsOut(center, radius, samples_, nearest_, tolerance_);
   }
-  for (const auto& t : triangles) {
-    const bool framed = edges.contains({t[0], t[1]}) && edges.contains({t[0], t[2]}) && edges.contains({t[1], t[2]});
-    bool good = framed && sound({{t[0], 1 / 3.0}, {t[1], 1 / 3.0}, {t[2], 1 / 3.0}});
-    for (std::size_t k = 0; good && k < 3; ++k)
-      good = sound({{t[k], 2 / 3.0}, {t[(k + 1) % 3], 1 / 6.0}, {t[(k + 2) % 3], 1 / 6.0}});
-    if (good) axis.triangles.push_back(t);
-  }
-  // Where samples were too few to tell, the shortest edge inside the body joins two parts.
-  Parts parts(kept.size());
-  for (const auto& e : edges) parts.join(e[0], e[1]);
+
+  const std::vector<Ball>& kept_;
+  const SurfaceSamples& samples_;
+  const NearestPoints& nearest_;
+  double tolerance_;
+};
+
+using Edges = std::set<std::array<int, 2>>;
+
+/// Where samples were too few to tell, the shortest edge inside the body joins two parts.
+void bridgeGaps(const std::vector<Ball>& kept, const Soundness& sound, Parts& parts, Edges& edges) {
   std::vector<std::pair<double, std::array<int, 2>>> gaps;
   const int count = static_cast<int>(kept.size());
   for (int a = 0; a < count && parts.count() > 1; ++a)
@@ -215,10 +218,32 @@ void join(const std::vector<Ball>& kept, const std::vector<Ball>& witnesses, con
   std::sort(gaps.begin(), gaps.end());
   for (const auto& [length, e] : gaps) {
     if (parts.count() == 1) break;
-    if (parts.joined(e[0], e[1]) || !soundEdge(e[0], e[1])) continue;
+    if (parts.joined(e[0], e[1]) || !sound.edge(e[0], e[1])) continue;
     parts.join(e[0], e[1]);
     edges.insert(e);
   }
+}
+
+/// Edges and triangles between the balls that are nearest to the same witness, where they stay inside the body.
+void join(const std::vector<Ball>& kept, const std::vector<Ball>& witnesses, const Soundness& sound, MedialAxis& axis) {
+  Edges edges, refused;
+  std::set<std::array<int, 3>> triangles;
+  for (const Ball& witness : witnesses) {
+    auto near = threeNearest(kept, witness.center);
+    if (near[1] < 0) continue;
+    const std::array<int, 2> edge{std::min(near[0], near[1]), std::max(near[0], near[1])};
+    if (!edges.contains(edge) && !refused.contains(edge)) (sound.edge(edge[0], edge[1]) ? edges : refused).insert(edge);
+    if (near[2] < 0) continue;
+    std::sort(near.begin(), near.end());
+    triangles.insert(near);
+  }
+  for (const auto& t : triangles) {
+    const bool framed = edges.contains({t[0], t[1]}) && edges.contains({t[0], t[2]}) && edges.contains({t[1], t[2]});
+    if (framed && sound.triangle(t)) axis.triangles.push_back(t);
+  }
+  Parts parts(kept.size());
+  for (const auto& e : edges) parts.join(e[0], e[1]);
+  bridgeGaps(kept, sound, parts, edges);
   axis.parts = parts.count();
   axis.edges.assign(edges.begin(), edges.end());
 }
@@ -302,7 +327,7 @@ Result<MedialAxis> medialAxis(const SurfaceSamples& samples, const MedialOptions
   progress(std::to_string(kept.size()) + " spheres; joining them");
   for (const Ball& ball : kept)
     axis.spheres.emplace_back(ball.center.x(), ball.center.y(), ball.center.z(), ball.radius);
-  join(kept, balls, samples, nearest, options.tolerance, axis);
+  join(kept, balls, Soundness(kept, samples, nearest, options.tolerance), axis);
   return axis;
 }
 

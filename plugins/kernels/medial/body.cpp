@@ -138,25 +138,26 @@ BodyForce Body::press(const Vector3d& p, const SkeletonFoot& foot, const Vector3
 
 /// A spring whose far end lies below the surface is shortened while the contact comes down to its height, and pushes
 /// inward: at worst with its stiffness times (rest length / least length - 1) per metre, against the normal spring.
+void Body::judgeMonotonicity(const SkeletonFoot& at, const Vector3d& normal, MonotonicityReport& report) const {
+  const double k = stiffness_.evaluate(at.u, at.v).f;
+  const Neighbours neighbours = neighboursOf(at, normal);
+  double slope = k, worst = 1, total = 0;
+  for (std::size_t i = 0; i < neighbours.count; ++i) {
+    const ShearSpring& spring = neighbours.springs[i];
+    const Vector3d chord = spring.anchor - (at.center + at.radius * normal);
+    const double down = -chord.dot(normal), level = (chord + down * normal).norm();
+    total += spring.stiffness;
+    if (!(down > 0)) continue;
+    const double ratio = chord.norm() / std::max(level, kSameValue);
+    slope += spring.stiffness * (1 - ratio);
+    worst = std::max(worst, ratio);
+  }
+  if (!(k > 0) || !(slope / k < report.slope)) return;
+  report = {slope / k, worst, total > 0 ? 1 + k / total : HUGE_VAL, at.u, at.v};
+}
+
 MonotonicityReport Body::checkMonotonicity() const {
   MonotonicityReport report;
-  const auto look = [&](double u, double v, const SkeletonFoot& at, const Vector3d& normal) {
-    const double k = stiffness_.evaluate(u, v).f;
-    const Neighbours neighbours = neighboursOf(at, normal);
-    double slope = k, worst = 1, total = 0;
-    for (std::size_t i = 0; i < neighbours.count; ++i) {
-      const ShearSpring& spring = neighbours.springs[i];
-      const Vector3d chord = spring.anchor - (at.center + at.radius * normal);
-      const double down = -chord.dot(normal), level = (chord + down * normal).norm();
-      total += spring.stiffness;
-      if (!(down > 0)) continue;
-      const double ratio = chord.norm() / std::max(level, kSameValue);
-      slope += spring.stiffness * (1 - ratio);
-      worst = std::max(worst, ratio);
-    }
-    if (!(k > 0) || !(slope / k < report.slope)) return;
-    report = {slope / k, worst, total > 0 ? 1 + k / total : HUGE_VAL, u, v};
-  };
   const auto visit = [&](double u, double v) {
     SkeletonFoot at;
     spline::SurfacePoint s;
@@ -166,10 +167,11 @@ MonotonicityReport Body::checkMonotonicity() const {
     if (cross.norm() > 0) at.across = cross.normalized();
     if (skeleton_.curve()) {
       const Vector3d side = s.Sv.unitOrthogonal(), other = s.Sv.cross(side).normalized();
-      for (const Vector3d& normal : {side, Vector3d(-side), other, Vector3d(-other)}) look(u, v, at, normal);
+      for (const Vector3d& normal : {side, Vector3d(-side), other, Vector3d(-other)})
+        judgeMonotonicity(at, normal, report);
     } else if (cross.norm() > 0) {
-      look(u, v, at, at.across);
-      look(u, v, at, -at.across);
+      judgeMonotonicity(at, at.across, report);
+      judgeMonotonicity(at, -at.across, report);
     }
   };
   const auto& [tu, tv] = skeleton_.parameters();

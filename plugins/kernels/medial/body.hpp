@@ -88,6 +88,8 @@ class Body {
     std::size_t count = 0;
   };
   Neighbours neighboursOf(const SkeletonFoot& foot, const Eigen::Vector3d& normal) const noexcept;
+  /// Lowers `report` where the springs along `normal` lose more slope than any before.
+  void judgeMonotonicity(const SkeletonFoot& at, const Eigen::Vector3d& normal, MonotonicityReport& report) const;
   std::vector<Oscillator> materialOf(const BodyData& data) const;
   std::vector<Tissue> tissueOf(const std::vector<Oscillator>& material) const;
 

@@ -32,6 +32,28 @@ Vector3d bend(const Vector3d& a, const Vector3d& middle, const Vector3d& b, doub
   return (std::sin((1 - s) * angle) * from + std::sin(s * angle) * to).normalized();
 }
 
+/// The rim of a grid of places, counter-clockwise seen from the top.
+struct Rim {
+  struct Step {
+    uint32_t i, j;
+    bool corner;
+  };
+  std::vector<Step> steps;
+
+  Rim(uint32_t rows, uint32_t columns) {
+    for (uint32_t i = 0; i + 1 < rows; ++i) steps.push_back({i, 0, i == 0});
+    for (uint32_t j = 0; j + 1 < columns; ++j) steps.push_back({rows - 1, j, j == 0});
+    for (uint32_t i = rows - 1; i > 0; --i) steps.push_back({i, columns - 1, i == rows - 1});
+    for (uint32_t j = columns - 1; j > 0; --j) steps.push_back({0, j, j == columns - 1});
+  }
+};
+
+/// The direction in which the surface ends at a place of the rim's side 0 to 3.
+Vector3d outwardOf(const Vector3d& tangent_u, const Vector3d& tangent_v, const Vector3d& across, std::size_t side) {
+  const Vector3d along = side % 2 == 0 ? tangent_u : tangent_v;
+  return unit((side < 2 ? along : Vector3d(-along)).cross(across), across.unitOrthogonal());
+}
+
 }  // namespace
 
 Contour::Contour(const Skeleton& skeleton, double chord_error) : columns_(skeleton.control().count[1]) {
@@ -165,28 +187,9 @@ void Contour::buildSheet(const Skeleton& skeleton, double chord_error) {
 /// Half a tube along each side and a piece of a sphere at each corner, from the top face to the bottom one.
 void Contour::closeRim(const Skeleton& skeleton, const std::array<std::vector<uint32_t>, 2>& faces, int steps) {
   const auto rows = static_cast<uint32_t>(at_[0].size()), columns = static_cast<uint32_t>(at_[1].size());
-  struct Corner {
-    uint32_t i, j;
-  };
-  std::vector<Corner> loop;  // counter-clockwise seen from the top
-  std::vector<std::size_t> corners;
-  for (uint32_t i = 0; i + 1 < rows; ++i) loop.push_back({i, 0});
-  corners.push_back(loop.size());
-  for (uint32_t j = 0; j + 1 < columns; ++j) loop.push_back({rows - 1, j});
-  corners.push_back(loop.size());
-  for (uint32_t i = rows - 1; i > 0; --i) loop.push_back({i, columns - 1});
-  corners.push_back(loop.size());
-  for (uint32_t j = columns - 1; j > 0; --j) loop.push_back({0, j});
-  corners.push_back(0);
-  const auto outwardOf = [&](const Place& p, std::size_t side) {
-    const Vector3d along = side == 0   ? p.tangent_u
-                           : side == 1 ? p.tangent_v
-                           : side == 2 ? Vector3d(-p.tangent_u)
-                                       : Vector3d(-p.tangent_v);
-    return unit(along.cross(p.across), p.across.unitOrthogonal());
-  };
+  const Rim rim(rows, columns);
   std::vector<std::vector<uint32_t>> arcs;  // one a place of the loop, several at a corner
-  const auto addArc = [&](const Corner& at, const Place& p, const Vector3d& outward) {
+  const auto addArc = [&](const Rim::Step& at, const Place& p, const Vector3d& outward) {
     const std::size_t face = at.i * columns + at.j;
     const Vector3d top = normal(faces[0][face]);
     const Vector3d bottom = normal(faces[1][face]);
@@ -196,18 +199,19 @@ void Contour::closeRim(const Skeleton& skeleton, const std::array<std::vector<ui
     arcs.push_back(std::move(arc));
   };
   std::size_t side = 0;
-  for (std::size_t k = 0; k < loop.size(); ++k) {
-    const Place p = place(skeleton, loop[k].i, loop[k].j);
-    const bool corner = std::find(corners.begin(), corners.end(), k) != corners.end();
-    const std::size_t before = k == 0 ? 3 : side;
-    if (corner && k > 0) ++side;
-    const Vector3d from = outwardOf(p, before), to = outwardOf(p, side);
-    if (!corner) {
-      addArc(loop[k], p, to);
+  for (const Rim::Step& at : rim.steps) {
+    const bool first = &at == &rim.steps.front();
+    const Place p = place(skeleton, at.i, at.j);
+    const std::size_t before = first ? 3 : side;
+    if (at.corner && !first) ++side;
+    const auto outward = [&](std::size_t of) { return outwardOf(p.tangent_u, p.tangent_v, p.across, of); };
+    const Vector3d from = outward(before), to = outward(side);
+    if (!at.corner) {
+      addArc(at, p, to);
       continue;
     }
     const Vector3d middle = unit(from + to, to);
-    for (int turn = 0; turn <= steps; ++turn) addArc(loop[k], p, bend(from, middle, to, double(turn) / steps));
+    for (int turn = 0; turn <= steps; ++turn) addArc(at, p, bend(from, middle, to, double(turn) / steps));
   }
   for (std::size_t k = 0; k < arcs.size(); ++k) strip(arcs[k], arcs[(k + 1) % arcs.size()]);
 }

@@ -106,6 +106,31 @@ MedialMesh::Node MedialMesh::boxOf(uint32_t element) const {
 }
 
 /// Halves the elements along the longest side of their middles' box, until one is left. Children stand together.
+MedialMesh::Node MedialMesh::boundsOf(const std::vector<Node>& boxes, std::span<const uint32_t> members) {
+  Node node = boxes[members.front()];
+  for (const uint32_t i : members) {
+    node.low = node.low.cwiseMin(boxes[i].low);
+    node.high = node.high.cwiseMax(boxes[i].high);
+    node.radius = std::max(node.radius, boxes[i].radius);
+  }
+  return node;
+}
+
+std::size_t MedialMesh::halve(const std::vector<Node>& boxes, std::span<uint32_t> members) {
+  Eigen::AlignedBox3d middles;
+  for (const uint32_t i : members) middles.extend((boxes[i].low + boxes[i].high) / 2);
+  Eigen::Index axis = 0;
+  middles.sizes().maxCoeff(&axis);
+  const std::size_t half = members.size() / 2;
+  std::nth_element(members.begin(), members.begin() + static_cast<std::ptrdiff_t>(half), members.end(),
+                   [&](uint32_t a, uint32_t b) {
+                     const double x = boxes[a].low[axis] + boxes[a].high[axis];
+                     const double y = boxes[b].low[axis] + boxes[b].high[axis];
+                     return x < y || (x == y && a < b);
+                   });
+  return half;
+}
+
 void MedialMesh::buildTree() {
   std::vector<uint32_t> order(elements_.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -120,27 +145,11 @@ void MedialMesh::buildTree() {
   while (!tasks.empty()) {
     const Task task = tasks.back();
     tasks.pop_back();
-    Node node = boxes[order[task.first]];
-    Eigen::AlignedBox3d middles;
-    for (std::size_t i = task.first; i < task.last; ++i) {
-      const Node& box = boxes[order[i]];
-      node.low = node.low.cwiseMin(box.low);
-      node.high = node.high.cwiseMax(box.high);
-      node.radius = std::max(node.radius, box.radius);
-      middles.extend((box.low + box.high) / 2);
-    }
-    node.leaf = task.last - task.first == 1;
+    const std::span<uint32_t> members(order.data() + task.first, task.last - task.first);
+    Node node = boundsOf(boxes, members);
+    node.leaf = members.size() == 1;
     if (!node.leaf) {
-      Eigen::Index axis = 0;
-      middles.sizes().maxCoeff(&axis);
-      const std::size_t middle = (task.first + task.last) / 2;
-      std::nth_element(order.begin() + static_cast<std::ptrdiff_t>(task.first),
-                       order.begin() + static_cast<std::ptrdiff_t>(middle),
-                       order.begin() + static_cast<std::ptrdiff_t>(task.last), [&](uint32_t a, uint32_t b) {
-                         const double x = boxes[a].low[axis] + boxes[a].high[axis];
-                         const double y = boxes[b].low[axis] + boxes[b].high[axis];
-                         return x < y || (x == y && a < b);
-                       });
+      const std::size_t middle = task.first + halve(boxes, members);
       node.child = static_cast<uint32_t>(nodes_.size());
       nodes_.resize(nodes_.size() + 2);
       tasks.push_back({node.child, task.first, middle});
@@ -159,25 +168,25 @@ double MedialMesh::lowerBound(const Node& node, const Vector3d& p) noexcept {
   return (node.low - p).cwiseMax(p - node.high).cwiseMax(0.0).norm() - node.radius;
 }
 
+void MedialMesh::enter(const HullFoot& foot, uint32_t element, double band, MeshFeet& out) noexcept {
+  ++out.evaluations;
+  const double best = out.count > 0 ? out.feet[0].distance : std::numeric_limits<double>::infinity();
+  if (!(foot.distance < best + band) && out.count > 0) return;
+  std::size_t place = std::min(out.count, MeshFeet::kMost - 1);  // the farthest gives way
+  if (out.count == MeshFeet::kMost && !(foot.distance < out.feet[place].distance)) return;
+  for (; place > 0 && foot.distance < out.feet[place - 1].distance; --place) out.feet[place] = out.feet[place - 1];
+  static_cast<HullFoot&>(out.feet[place]) = foot;
+  out.feet[place].element = element;
+  out.count = std::min(out.count + 1, MeshFeet::kMost);
+  while (out.count > 1 && !(out.feet[out.count - 1].distance < out.feet[0].distance + band)) --out.count;
+}
+
 void MedialMesh::nearest(const Vector3d& p, uint32_t start, double band, MeshFeet& out,
                          int most_visits) const noexcept {
   out.count = 0;
   out.evaluations = out.visits = 0;
   out.doubt = 0;
-  double best = std::numeric_limits<double>::infinity();
-  const auto look = [&](uint32_t element) {
-    ++out.evaluations;
-    const HullFoot foot = footOn(element, p);
-    if (!(foot.distance < best + band) && out.count > 0) return;
-    std::size_t place = std::min(out.count, MeshFeet::kMost - 1);  // the farthest gives way
-    if (out.count == MeshFeet::kMost && !(foot.distance < out.feet[place].distance)) return;
-    for (; place > 0 && foot.distance < out.feet[place - 1].distance; --place) out.feet[place] = out.feet[place - 1];
-    static_cast<HullFoot&>(out.feet[place]) = foot;
-    out.feet[place].element = element;
-    out.count = std::min(out.count + 1, MeshFeet::kMost);
-    best = out.feet[0].distance;
-    while (out.count > 1 && !(out.feet[out.count - 1].distance < best + band)) --out.count;
-  };
+  const auto look = [&](uint32_t element) { enter(footOn(element, p), element, band, out); };
   if (start < elements_.size()) look(start);
   struct Entry {
     uint32_t node;
@@ -188,9 +197,9 @@ void MedialMesh::nearest(const Vector3d& p, uint32_t start, double band, MeshFee
   stack[depth++] = {0, lowerBound(nodes_[0], p)};
   while (depth > 0) {
     const Entry entry = stack[--depth];
-    if (out.count > 0 && !(entry.bound < best + band)) continue;
+    if (out.count > 0 && !(entry.bound < out.feet[0].distance + band)) continue;
     if (out.visits >= most_visits && out.count > 0) {
-      out.doubt = std::max(out.doubt, best - entry.bound);
+      out.doubt = std::max(out.doubt, out.feet[0].distance - entry.bound);
       continue;
     }
     ++out.visits;

@@ -7,6 +7,7 @@
 #include <array>
 #include <climits>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "kernels/medial/primitives.hpp"
@@ -80,6 +81,11 @@ class MedialMesh {
   static double lowerBound(const Node& node, const Eigen::Vector3d& p) noexcept;
   void gather(const MeshData& data);
   void buildTree();
+  static Node boundsOf(const std::vector<Node>& boxes, std::span<const uint32_t> members);
+  /// Sorts the members' lower half along their longest extent to the front. @return how many these are
+  static std::size_t halve(const std::vector<Node>& boxes, std::span<uint32_t> members);
+  /// Takes the foot among the nearest if it lies within `band` of the nearest one.
+  static void enter(const HullFoot& foot, uint32_t element, double band, MeshFeet& out) noexcept;
   Node boxOf(uint32_t element) const;
 
   std::vector<Sphere> vertices_;
