@@ -45,7 +45,11 @@ class RecordedModelsImpl final : public RecordedModels {
     if (!server) return Error{server.error()};
     server_ = std::move(*server);
     control::Server::Service service;
-    service.answer = [this](const control::Peer&, const std::string& line) { return control::Reply(answer(line)); };
+    service.answer = [this](const control::Peer&, const std::string& line) {
+      Descriptor memory;
+      std::string text = answer(line, memory);
+      return control::Reply(std::move(text), std::move(memory));
+    };
     server_->start(std::move(service));
     return {};
   }
@@ -79,7 +83,7 @@ class RecordedModelsImpl final : public RecordedModels {
     return built;
   }
 
-  std::string answer(const std::string& line) {
+  std::string answer(const std::string& line, Descriptor& memory) {
     const auto request = control::parseRequest(line);
     if (!request) return control::refusal(request.error());
     if (request->kind == Request::Kind::kList) return list();
@@ -88,7 +92,9 @@ class RecordedModelsImpl final : public RecordedModels {
         std::find_if(models_.begin(), models_.end(), [&](const Built& built) { return built.name == request->model; });
     if (model == models_.end()) return control::refusal("the recording has no model \"" + request->model + "\"");
     if (!model->world) return control::refusal(model->error);
-    auto drawn = servo::geometryAnswer(*model->world->shapes()[0], request->tolerance);
+    const host::ShapeInstance& shape = *model->world->shapes()[0];
+    auto drawn = request->as_memory ? servo::geometryInMemory(shape, request->tolerance, memory)
+                                    : servo::geometryAnswer(shape, request->tolerance);
     return drawn ? *drawn : control::refusal(drawn.error());
   }
 

@@ -43,7 +43,7 @@ const std::array<Form, 21>& forms() {
                                             {"hold", Kind::kHold, {}, {"device"}},
                                             {"clear", Kind::kClear, {}, {"device"}},
                                             {"dump", Kind::kDump, {}, {}},
-                                            {"geometry", Kind::kGeometry, {"model"}, {"tolerance"}},
+                                            {"geometry", Kind::kGeometry, {"model"}, {"tolerance", "as"}},
                                             {"vertices", Kind::kVertices, {"model"}, {"after"}},
                                             {"lead", Kind::kLead, {}, {"model", "hand"}},
                                             {"unlead", Kind::kUnlead, {}, {"model", "hand"}},
@@ -95,6 +95,13 @@ class Taker {
       good = std::abs(to[i]) <= bound;
     }
     if (!good) complain(key, "a list of " + std::to_string(N) + " numbers within " + Json(bound).dump() + " of 0");
+  }
+  /// The only word that may stand there. @param to true where it does
+  void word(const char* key, const char* only, bool& to) {
+    const Json* value = find(key);
+    if (value == nullptr) return;
+    if (!value->is_string() || *value != only) return complain(key, Json(only).dump());
+    to = true;
   }
   void flag(const char* key, bool& to) {
     const Json* value = find(key);
@@ -177,6 +184,7 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
   take.text("file", request.file);
   take.number("value", -1e300, 1e300, request.value);
   take.number("tolerance", kFinestDrawing, 1, request.tolerance);
+  take.word("as", "memory", request.as_memory);
   take.number("after", 0, kMostFrames, request.after);
   take.flag("consent", request.consent);
   take.numbers("position", kMaxPlace, request.position);

@@ -41,6 +41,7 @@ struct Request {
   std::string hand;                               ///< kLead, kUnlead: the device whose simulated hand is led
   double value = 0;                               ///< kSet
   double tolerance = 0;                           ///< [m] kGeometry: chord error; 0: as the daemon chooses
+  bool as_memory = false;                         ///< kGeometry: a descriptor of memory instead of lists in the answer
   double after = 0;                               ///< kVertices: frame that is known; kEvents: the first that is wanted
   bool consent = false;                           ///< kSet: the operator agrees to change what is felt
   std::array<double, 3> position{};               ///< [m] kMove, world frame

@@ -79,10 +79,11 @@ Json poseJson(const Session& session, uint32_t place) {
 Json modelJson(const Session& session, uint32_t place) {
   const ModelPlace& taken = session.places[place];
   const auto leader = session.leads.leader(Order::Led::kModel, place);
+  const bool deforms = (session.runner.world().shapes()[place]->description().flags & HSP_C_DEFORMS) != 0;
   return {{"name", taken.model.name},           {"number", place},
           {"plugin", taken.model.plugin},       {"enabled", taken.enabled},
           {"kinematic", taken.model.kinematic}, {"leader", leader ? Json(*leader) : Json()},
-          {"pose", poseJson(session, place)}};
+          {"pose", poseJson(session, place)},   {"deforms", deforms}};
 }
 
 status::ModelNow nowOf(const Session& session, uint32_t place) {

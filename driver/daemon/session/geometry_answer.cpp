@@ -3,16 +3,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <iterator>
 
+#include "base/sealed_memory.hpp"
 #include "control/server.hpp"
 
 namespace hapticd::servo {
 namespace {
 
-constexpr double kChordShare = 0.005;   ///< of a model's size: fine enough for a screen
-constexpr double kDefaultChord = 1e-3;  ///< [m] of a model that does not say its size
+constexpr double kChordShare = 0.005;                       ///< of a model's size: fine enough for a screen
+constexpr std::size_t kMostMemory = std::size_t{64} << 20;  ///< [bytes] that a drawing takes beside the servo's
+constexpr double kDefaultChord = 1e-3;                      ///< [m] of a model that does not say its size
 
 bool tooLong(const std::string& text) {
   return text.size() > control::Server::kMaxWaiting;
@@ -29,9 +33,12 @@ bool appendPlaces(std::string& text, const float* xyz, std::size_t count) {
 
 constexpr const char* kNotANumber = "a vertex of the model is not a number";
 
-}  // namespace
+bool allFinite(const float* numbers, std::size_t count) {
+  return std::all_of(numbers, numbers + count, [](float number) { return std::isfinite(number); });
+}
 
-Result<std::string> geometryAnswer(const host::ShapeInstance& shape, double tolerance) {
+/// @param tolerance as asked for; afterwards as it was taken
+Result<hsp_mesh> cut(const host::ShapeInstance& shape, double& tolerance) {
   const hsp_ext_geometry* geometry = shape.geometry();
   if (geometry == nullptr) return Error{"the model has no triangles to draw"};
   const double size = shape.report().size_m;
@@ -40,18 +47,55 @@ Result<std::string> geometryAnswer(const host::ShapeInstance& shape, double tole
   mesh.struct_size = sizeof mesh;
   if (geometry->tessellate(shape.handle(), tolerance, &mesh) < 0)
     return Error{fmt::format("the model cannot be cut into triangles within {:g} m", tolerance)};
+  return mesh;
+}
+
+Error tooMany(const hsp_mesh& mesh, std::size_t most, double tolerance) {
+  return Error{
+      fmt::format("{} vertices and {} triangles are more than the {} bytes of an answer\n"
+                  "  fix: a tolerance coarser than {:g} m",
+                  mesh.vertex_count, mesh.triangle_count, most, tolerance)};
+}
+
+}  // namespace
+
+Result<std::string> geometryAnswer(const host::ShapeInstance& shape, double tolerance) {
+  const auto mesh = cut(shape, tolerance);
+  if (!mesh) return Error{mesh.error()};
   std::string text = fmt::format(R"({{"ok":true,"tolerance":{:g},"xyz":[)", tolerance);
-  if (!appendPlaces(text, mesh.xyz, 3 * std::size_t{mesh.vertex_count})) return Error{kNotANumber};
+  if (!appendPlaces(text, mesh->xyz, 3 * std::size_t{mesh->vertex_count})) return Error{kNotANumber};
   text += R"(],"triangles":[)";
-  for (std::size_t i = 0; i < 3 * std::size_t{mesh.triangle_count} && !tooLong(text); ++i)
-    fmt::format_to(std::back_inserter(text), "{}{}", i == 0 ? "" : ",", mesh.indices[i]);
+  for (std::size_t i = 0; i < 3 * std::size_t{mesh->triangle_count} && !tooLong(text); ++i)
+    fmt::format_to(std::back_inserter(text), "{}{}", i == 0 ? "" : ",", mesh->indices[i]);
   text += "]}";
-  if (tooLong(text))
-    return Error{
-        fmt::format("{} vertices and {} triangles are more than the {} bytes of an answer\n"
-                    "  fix: a tolerance coarser than {:g} m",
-                    mesh.vertex_count, mesh.triangle_count, control::Server::kMaxWaiting, tolerance)};
+  if (tooLong(text)) return tooMany(*mesh, control::Server::kMaxWaiting, tolerance);
   return text;
+}
+
+Result<std::string> geometryInMemory(const host::ShapeInstance& shape, double tolerance, Descriptor& memory) {
+  const auto mesh = cut(shape, tolerance);
+  if (!mesh) return Error{mesh.error()};
+  const std::size_t places = 3 * std::size_t{mesh->vertex_count}, corners = 3 * std::size_t{mesh->triangle_count};
+  if (!allFinite(mesh->xyz, places)) return Error{kNotANumber};
+  const bool normals = mesh->normals != nullptr && allFinite(mesh->normals, places);
+  const std::size_t bytes = 4 * (places * (normals ? 2 : 1) + corners);
+  if (bytes == 0) return Error{"the model has no triangles to draw"};
+  if (bytes > kMostMemory) return tooMany(*mesh, kMostMemory, tolerance);
+  const auto shared = SealedMemory::create("hapticd-geometry", bytes, SealedMemory::Writers::kOne);
+  if (!shared) return Error{shared.error()};
+  std::byte* at = (*shared)->data();
+  const auto append = [&](const void* from, std::size_t count) {
+    std::memcpy(at, from, 4 * count);
+    at += 4 * count;
+  };
+  append(mesh->xyz, places);
+  if (normals) append(mesh->normals, places);
+  append(mesh->indices, corners);
+  auto descriptor = (*shared)->share();
+  if (!descriptor) return Error{descriptor.error()};
+  memory = std::move(*descriptor);
+  return fmt::format(R"({{"ok":true,"bytes":{},"vertices":{},"triangles":{},"normals":{},"tolerance":{:g}}})", bytes,
+                     mesh->vertex_count, mesh->triangle_count, normals, tolerance);
 }
 
 Result<std::string> verticesAnswer(const host::ShapeInstance& shape, double after) {

@@ -132,7 +132,9 @@ Result<std::string> RequestHandler::obey(const control::Peer& peer, const Reques
     case Request::Kind::kGeometry: {
       const auto place = placeOf(request.model);
       if (!place) return Error{place.error()};
-      return geometryAnswer(*runner_.world().shapes()[*place], request.tolerance);
+      const host::ShapeInstance& shape = *runner_.world().shapes()[*place];
+      return request.as_memory ? geometryInMemory(shape, request.tolerance, attached_)
+                               : geometryAnswer(shape, request.tolerance);
     }
     case Request::Kind::kVertices: {
       const auto place = placeOf(request.model);

@@ -5,6 +5,8 @@ Usage: draw_a_body.py HAPTICD CONFIG     prints a line a case; exit 1 when one i
 """
 import json
 import os
+import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -52,6 +54,31 @@ with tempfile.TemporaryDirectory() as folder:
         steps = [max(abs(a - b) for a, b in zip(one["xyz"], two["xyz"])) for one, two in zip(frames, frames[1:])]
         check("little by little", max(steps) < 0.5 * max(moved), (max(steps), max(moved)))
 
+    def in_memory():
+        """The same triangles as memory, with the plugin's normals."""
+        with socket.socket(socket.AF_UNIX) as client:
+            client.settimeout(30)
+            client.connect(os.path.join(folder, "drawn.sock"))
+            client.sendall(b'{"do":"geometry","model":"teapot","as":"memory"}\n{"do":"geometry","model":"teapot","as":"paper"}\n')
+            line, descriptors, _, _ = socket.recv_fds(client, 1 << 16, 4)
+            answer = json.loads(line.split(b"\n")[0])
+        text = json.loads(ctl("geometry", "teapot")[1])
+        check("as memory it has as many", (answer["vertices"], answer["triangles"], len(descriptors)) == (len(text["xyz"]) // 3, len(text["triangles"]) // 3, 1), answer)
+        data = os.pread(descriptors[0], answer["bytes"], 0)
+        places, corners = 3 * answer["vertices"], 3 * answer["triangles"]
+        numbers = struct.unpack(f"<{2 * places}f", data[:8 * places])
+        check("the same places", max(abs(a - b) for a, b in zip(numbers, text["xyz"])) < 1e-7)
+        normals = numbers[places:]
+        check("unit normals", answer["normals"] and all(abs(sum(n * n for n in normals[i:i + 3]) - 1) < 1e-5 for i in range(0, places, 3)))
+        check("the same triangles", list(struct.unpack(f"<{corners}I", data[8 * places:])) == text["triangles"])
+        try:
+            os.ftruncate(descriptors[0], 0)
+            sealed = False
+        except OSError:
+            sealed = True
+        check("which nobody makes shorter", sealed)
+        os.close(descriptors[0])
+
     scene = os.path.join(folder, "pressed.yaml")  # the front of the plate is at z = 30 mm
     with open(scene, "w", encoding="utf-8") as out:
         out.write(f"hapticd: 1\nservo: {{rate: 1000}}\nhand: {{script: press, radius: 0.033, rise: 0.01, rate: 0.5}}\n"
@@ -87,6 +114,8 @@ with tempfile.TemporaryDirectory() as folder:
         followed()
         check("a rigid model is added", ctl("add", os.path.join(CONFIG, "scenes", "teapot.yaml"))[0] == 0)
         check("it is drawn as well", len(json.loads(ctl("geometry", "teapot")[1] or "{}").get("triangles", [])) > 1000)
+        in_memory()
+        check("the list says which deform", {m["name"]: m["deforms"] for m in json.loads(ctl("list")[1])["models"]} == {"plate": True, "teapot": False})
         code, out, err = ctl("geometry", "teapot", "--follow")
         check("following what does not deform is refused with its cure", code == 1 and "display_tolerance" in err, err)
         for arguments, why in ((("geometry", "nobody"), "no model"), (("geometry", "plate", "--tolerance", "2"), "from 1e-05"),
