@@ -76,7 +76,8 @@ struct ParameterTable {
     return std::array{
         F::choice("hand.script", &T::script, kScripts, 1,
                   "What the hand wants: hold still, stroke round the object, press into it and out again, tap on it, "
-                  "circle round it, follow a path file, none: the hand is away, or guided by a program (`hapticd ctl lead`)."),
+                  "circle round it, follow a path file, none: the hand is away, or guided by a program (`hapticd ctl "
+                  "lead`)."),
         F::real("hand.mass", &T::mass, "kg", 0, 100, 0.2, "Mass of the hand at the tip."),
         F::real("hand.stiffness", &T::hand_stiffness, "N/m", 0, 1e5, 500,
                 "Spring from the tip to where the hand wants it."),

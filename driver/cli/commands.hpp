@@ -7,6 +7,7 @@ namespace hapticd::cli {
 
 using AddCommand = void(CLI::App& app, int& exit_code);
 
+// clang-format off: a command is a line
 AddCommand addCheck, addCompletion, addCtl, addDevice, addDeviceCalibrate, addDeviceKinematics, addDoctor, addExplain,
     addExport, addImport, addManual, addPart, addPlot, addPlugin, addPluginCheck, addPluginNew, addReplay, addRun, addTop,
     addTrace, addTune, addView;
@@ -36,5 +37,6 @@ constexpr AddCommand* kCommands[] = {
     addTune,
     addView,
 };
+// clang-format on
 
 }  // namespace hapticd::cli

@@ -2,7 +2,10 @@
 #include "document/problem.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <list>
 #include <map>
+#include <tuple>
 
 namespace hapticd::document {
 
@@ -32,10 +35,13 @@ void report(Problems& problems, const std::string& file, int line, int column, c
 void sortByPlace(Problems& problems) {
   std::map<std::string, size_t> order;
   for (const Problem& problem : problems) order.emplace(problem.place.file, order.size());
-  std::stable_sort(problems.begin(), problems.end(), [&](const Problem& a, const Problem& b) {
+  // A list sorts without a buffer, and keeps the order of problems at the same place.
+  std::list<Problem> sorted(std::make_move_iterator(problems.begin()), std::make_move_iterator(problems.end()));
+  sorted.sort([&](const Problem& a, const Problem& b) {
     return std::tuple(order[a.place.file], a.place.line, a.place.column) <
            std::tuple(order[b.place.file], b.place.line, b.place.column);
   });
+  problems.assign(std::make_move_iterator(sorted.begin()), std::make_move_iterator(sorted.end()));
 }
 
 }  // namespace hapticd::document

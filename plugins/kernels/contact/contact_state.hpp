@@ -2,9 +2,9 @@
 /// Contact truth: which foot a probe is felt by, from tick to tick. A small state machine that the kernels share.
 ///
 /// Outside, the foot is the nearest point of all faces. A contact begins on the face that the probe's way crosses first
-/// and is held: its foot is followed continuously over that face and the next ones, a proxy (Zilles & Salisbury 1995) on
-/// exact geometry, until the probe comes out or goes over a convex edge. In a solid thicker than the press that is the
-/// nearest point as well; in a thin wall it is what keeps the hand out. Where nothing is known of the way (a start
+/// and is held: its foot is followed continuously over that face and the next ones, a proxy (Zilles & Salisbury 1995)
+/// on exact geometry, until the probe comes out or goes over a convex edge. In a solid thicker than the press that is
+/// the nearest point as well; in a thin wall it is what keeps the hand out. Where nothing is known of the way (a start
 /// inside, a jump, a lost sample, a contact that ended at an edge), a contact begins on the nearest face.
 #pragma once
 #include <Eigen/Core>

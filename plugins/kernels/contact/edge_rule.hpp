@@ -17,8 +17,8 @@ enum class EdgeKind : std::uint8_t {
 /// [rad] Faces whose normals differ by less are one smooth surface: 0.1 degrees, as CAD files need it.
 inline constexpr double kSmoothEdge = 1.8e-3;
 
-/// [any] @param here, next outward unit normals of the two faces at a point of the edge @param out unit, in the plane of
-/// the first face, at right angles to the edge and away from the face
+/// [any] @param here, next outward unit normals of the two faces at a point of the edge @param out unit, in the plane
+/// of the first face, at right angles to the edge and away from the face
 inline EdgeKind edgeKind(const Eigen::Vector3d& here, const Eigen::Vector3d& next,
                          const Eigen::Vector3d& out) noexcept {
   if (here.dot(next) > 0 && here.cross(next).squaredNorm() < kSmoothEdge * kSmoothEdge) return EdgeKind::kSmooth;

@@ -62,7 +62,8 @@ TEST(FastPaths, AreToldOnceWithTheirPlaceAndTheirFastestPiece) {
   scene.models[1].path = {pointOf(0, 0, 0), pointOf(1, 0.1, 0), pointOf(1.1, 0.6, 0), pointOf(1.3, 0.6, 2)};
   const document::Problems found = fastPaths(scene);
   ASSERT_EQ(found.size(), 2u);
-  EXPECT_EQ(found[0].text().find(file + ":5:11: models[1].path: ball moves at up to 5 m/s, from t = 1 s, and a path"), 0u)
+  EXPECT_EQ(found[0].text().find(file + ":5:11: models[1].path: ball moves at up to 5 m/s, from t = 1 s, and a path"),
+            0u)
       << found[0].text();
   EXPECT_NE(found[1].text().find("turns at up to 10 rad/s, from t = 1.1 s"), std::string::npos) << found[1].text();
 }
