@@ -41,7 +41,7 @@ void Mailbox::findNumbers(const codec::Report& report) {
   first_ = last_ = {};
   for (const codec::Field& field : report.fields) {
     if (field.role != codec::Role::kSequence) continue;
-    const Number number{field.at, codec::sizeOf(field.type)};
+    const Number number{field.at, field.bytes()};
     if (first_.bytes == 0 || number.at < first_.at) first_ = number;
     if (last_.bytes == 0 || number.at > last_.at) last_ = number;
   }

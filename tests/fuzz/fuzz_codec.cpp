@@ -8,6 +8,7 @@
 #include <random>
 
 #include "emulators/wire_file.hpp"
+#include "support/random_wire.hpp"
 #include "wire_arm/session.hpp"
 
 namespace {
@@ -37,9 +38,7 @@ std::vector<uint8_t> mutated(hapticd::codec::Report report, uint32_t sequence, s
 }
 
 /// @return 0 if all went well
-int run(const std::filesystem::path& file, long reports) {
-  const size_t joints = hapticd::emulator::jointsOf(file);
-  const auto wire = hapticd::codec::readWire(hapticd::emulator::wireOf(file), joints);
+int run(const std::string& name, const hapticd::codec::Wire& wire, size_t joints, long reports, bool must_take) {
   hapticd::wire_arm::SessionSettings settings;
   settings.joints = joints;
   hapticd::wire_arm::Session session(wire, settings);
@@ -59,14 +58,49 @@ int run(const std::filesystem::path& file, long reports) {
     wish.follow = random() % 2 == 0;
     wish.position.fill(random() % 16 == 0 ? std::nan("") : 1.0);
     std::array<uint8_t, hapticd::codec::kMaxReportBytes + 1> out;
-    if (session.command(now, wish, out) != wire.output.bytes()) return std::printf("%s: no command\n", file.c_str());
+    const size_t size = session.command(now, wish, out);
+    const bool whole = wire.framing.escape.used ? size >= wire.output.bytes() : size == wire.output.bytes();
+    if (!whole) return std::printf("%s: no command\n", name.c_str());
     for (const double position : session.sample().position)
-      if (!std::isfinite(position)) return std::printf("%s: %g in report %ld\n", file.c_str(), position, i);
+      if (!std::isfinite(position)) return std::printf("%s: %g in report %ld\n", name.c_str(), position, i);
     if (random() % 100'000 == 0) session.attach(now, {}, true);
   }
-  std::printf("%-22s %ld reports, %ld taken, %s\n", file.filename().c_str(), reports, good,
-              describe(session.trouble()));
-  return good == 0 ? 1 : 0;
+  if (must_take)
+    std::printf("%-22s %ld reports, %ld taken, %s\n", name.c_str(), reports, good, describe(session.trouble()));
+  return must_take && good == 0 ? 1 : 0;
+}
+
+/// Descriptions with some characters changed: each is read or refused, and what is read is safe to run.
+int runBroken(std::string text, size_t joints, std::mt19937_64& random, long reports) {
+  static const char kLetters[] = "0123456789-{}[]\",:iuf.eE ";
+  for (auto changes = 1 + random() % 4; changes > 0; --changes)
+    text[random() % text.size()] = kLetters[random() % (sizeof kLetters - 1)];
+  try {
+    return run("broken", hapticd::codec::readWire(text, joints), joints, reports, false);
+  } catch (const std::invalid_argument&) {
+    return 0;
+  }
+}
+
+/// Formats that nobody has: any widths, offsets, orders, checksums, escapes.
+int runRandom(long formats) {
+  std::mt19937_64 random(11);
+  int failed = 0;
+  long refused = 0;
+  for (long i = 0; i < formats && failed == 0; ++i) {
+    hapticd::codec::RandomWire format(static_cast<uint64_t>(i));
+    hapticd::codec::Wire wire = format.wire();
+    if (i % 3 == 0) {
+      wire.framing.used = wire.framing.escape.used = true;
+      wire.framing.start = static_cast<int>(random() % 256), wire.framing.end = static_cast<int>(random() % 256);
+      wire.framing.escape.mark = static_cast<uint8_t>(random());
+    }
+    failed = run("random " + std::to_string(i), wire, format.joints(), 200, false);
+    for (int k = 0; k < 20 && failed == 0; ++k, ++refused)
+      failed = runBroken(format.text(), format.joints(), random, 5);
+  }
+  std::printf("%-22s %ld formats, %ld broken descriptions\n", "random", formats, refused);
+  return failed;
 }
 
 }  // namespace
@@ -75,6 +109,11 @@ int main(int argc, char** argv) {
   const long reports = argc > 1 ? std::atol(argv[1]) : 1'000'000;
   int failed = 0;
   for (const auto& entry : std::filesystem::directory_iterator(HAPTICD_SOURCE_DIR "/config/devices"))
-    if (YAML::LoadFile(entry.path())["parameters"]["wire"]) failed |= run(entry.path(), reports);
+    if (YAML::LoadFile(entry.path())["parameters"]["wire"]) {
+      const size_t joints = hapticd::emulator::jointsOf(entry.path());
+      const auto wire = hapticd::codec::readWire(hapticd::emulator::wireOf(entry.path()), joints);
+      failed |= run(entry.path().filename(), wire, joints, reports, true);
+    }
+  failed |= runRandom(reports / 1000);
   return failed != 0 ? 1 : 0;
 }

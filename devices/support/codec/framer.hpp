@@ -14,7 +14,7 @@ class Framer {
  public:
   Framer(const Framing& framing, size_t report_bytes) : framing_(framing), report_bytes_(report_bytes) {}
 
-  void reset() noexcept { filled_ = 0; }
+  void reset() noexcept { filled_ = 0, pending_ = false; }
 
   /// [any] Takes what one transfer brought and calls `report(bytes)` for each whole report in it.
   /// @return bytes that belonged to none
@@ -23,20 +23,52 @@ class Framer {
     size_t lost = 0;
     for (size_t i = 0; i < bytes.size(); ++i) {
       if (i % framing_.packet < framing_.header) continue;
-      held_[filled_++] = bytes[i];
-      if (filled_ == 1 && framing_.start >= 0 && held_[0] != framing_.start) filled_ = 0, ++lost;
-      if (filled_ < report_bytes_) continue;
-      if (framing_.end >= 0 && held_[filled_ - 1] != framing_.end) {
-        lost += resynchronise();
-        continue;
-      }
-      report(std::span<const uint8_t>(held_.data(), filled_));
-      filled_ = 0;
+      const auto whole = framing_.escape.used ? takeEscaped(bytes[i], lost) : takePlain(bytes[i], lost);
+      if (!whole) continue;
+      report(std::span<const uint8_t>(held_.data(), report_bytes_));
+      // One mark may end a report and begin the next.
+      filled_ = framing_.escape.used && framing_.start == framing_.end && framing_.start >= 0 ? 1 : 0;
     }
     return lost;
   }
 
  private:
+  /// @return true: `held_` is a whole report
+  bool takePlain(uint8_t byte, size_t& lost) noexcept {
+    held_[filled_++] = byte;
+    if (filled_ == 1 && framing_.start >= 0 && held_[0] != framing_.start) filled_ = 0, ++lost;
+    if (filled_ < report_bytes_) return false;
+    if (framing_.end < 0 || held_[filled_ - 1] == framing_.end) return true;
+    lost += resynchronise();
+    return false;
+  }
+
+  /// A mark that is not escaped is a mark wherever it stands.
+  bool takeEscaped(uint8_t byte, size_t& lost) noexcept {
+    const Escape& escape = framing_.escape;
+    if (byte == escape.mark && !pending_) return pending_ = true, false;
+    const bool literal = pending_;
+    pending_ = false;
+    if (literal) byte = escape.decoded(byte);
+    const bool last = filled_ + 1 == report_bytes_;
+    const bool ends = !literal && framing_.end >= 0 && byte == framing_.end;
+    const bool starts = !literal && framing_.start >= 0 && byte == framing_.start;
+    if (ends && last) return held_[filled_++] = byte, true;
+    if (starts) {
+      lost += filled_ > 1 ? filled_ : 0;  // one mark alone is a pause
+      held_[0] = byte, filled_ = 1;
+      return false;
+    }
+    const bool wrong = ends || (filled_ == 0 && framing_.start >= 0) || (last && framing_.end >= 0);
+    if (wrong) {
+      lost += filled_ + (ends && filled_ == 0 ? 0 : 1);
+      filled_ = 0;
+      return false;
+    }
+    held_[filled_++] = byte;
+    return filled_ == report_bytes_;
+  }
+
   /// Drops up to the next start mark that is held. @return bytes dropped
   size_t resynchronise() noexcept {
     size_t next = 1;
@@ -48,7 +80,29 @@ class Framer {
 
   Framing framing_;
   size_t report_bytes_, filled_ = 0;
+  bool pending_ = false;  // the escape mark came, and not yet what it stands for
   std::array<uint8_t, kMaxReportBytes + 1> held_{};
 };
+
+/// [any] Puts escapes into a report that goes out; its own first and last byte stay where they are marks.
+/// @param bytes the report, and room for twice as many @return bytes to send
+inline size_t addEscapes(const Framing& framing, std::span<uint8_t> bytes, size_t size) noexcept {
+  if (!framing.escape.used) return size;
+  const auto isMark = [&](size_t i) { return (i == 0 && framing.start >= 0) || (i + 1 == size && framing.end >= 0); };
+  size_t extra = 0;
+  for (size_t i = 0; i < size; ++i) extra += !isMark(i) && framing.escapes(bytes[i]) ? 1 : 0;
+  size_t to = size + extra;
+  if (to > bytes.size()) return 0;
+  for (size_t i = size; i-- > 0;) {  // backward, so that nothing is overwritten before it was read
+    const uint8_t byte = bytes[i];
+    if (isMark(i) || !framing.escapes(byte)) {
+      bytes[--to] = byte;
+    } else {
+      bytes[--to] = framing.escape.encoded(byte);
+      bytes[--to] = framing.escape.mark;
+    }
+  }
+  return size + extra;
+}
 
 }  // namespace hapticd::codec

@@ -8,117 +8,120 @@
 #include <limits>
 #include <utility>
 
+#include "codec/bits.hpp"
+
 namespace hapticd::codec {
 namespace {
 
 constexpr uint8_t kNibbleBase = 0x41;
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
-
-/// `count` bytes as one unsigned number.
-uint64_t gather(const uint8_t* bytes, size_t count, bool big_endian) noexcept {
-  uint64_t value = 0;
-  for (size_t i = 0; i < count; ++i) value = value << 8 | bytes[big_endian ? i : count - 1 - i];
-  return value;
-}
-
-void scatter(uint64_t value, uint8_t* bytes, size_t count, bool big_endian) noexcept {
-  for (size_t i = 0; i < count; ++i) {
-    bytes[big_endian ? count - 1 - i : i] = static_cast<uint8_t>(value);
-    value >>= 8;
-  }
-}
+constexpr double kTwoTo64 = 18446744073709551616.0;
 
 bool isNibble(uint8_t c) noexcept {
   return c >= kNibbleBase && c < kNibbleBase + 16;
 }
 
-double nibbles(const uint8_t* text) noexcept {
-  uint32_t value = 0;
-  for (size_t i = 0; i < 4; ++i) {
-    if (!isNibble(text[i])) return kNotANumber;
-    value |= static_cast<uint32_t>(text[i] - kNibbleBase) << (4 * i);
-  }
-  return static_cast<int16_t>(static_cast<uint16_t>(value));
+/// What the bytes of a field hold: its bits, and the number that they are; not a number where they cannot be one.
+struct Raw {
+  uint64_t code = 0;
+  double number = kNotANumber;
+};
+
+bool isText(Type type) noexcept {
+  return type == Type::kNibble || type == Type::kNibbles;
 }
 
-/// The raw number of a field; not a number where the bytes cannot be one.
-double rawOf(const Field& field, const uint8_t* bytes) noexcept {
-  const uint8_t* at = bytes + field.at;
-  const uint64_t raw = field.type < Type::kNibble ? gather(at, sizeOf(field.type), field.big_endian) : 0;
-  switch (field.type) {
-    case Type::kI8:
-      return static_cast<int8_t>(static_cast<uint8_t>(raw));
-    case Type::kI16:
-      return static_cast<int16_t>(static_cast<uint16_t>(raw));
-    case Type::kI32:
-      return static_cast<int32_t>(static_cast<uint32_t>(raw));
-    case Type::kU8:
-    case Type::kU16:
-    case Type::kU32:
-      return static_cast<double>(raw);
-    case Type::kF32:
-      return static_cast<double>(std::bit_cast<float>(static_cast<uint32_t>(raw)));
-    case Type::kF64:
-      return std::bit_cast<double>(raw);
+/// How many bits of a number a type has: text has fewer than its bytes.
+unsigned digitsOf(const Field& field) noexcept {
+  return field.type == Type::kNibble ? 4 : field.type == Type::kNibbles ? 16 : field.bits;
+}
+
+double numberOf(Type type, unsigned bits, uint64_t code) noexcept {
+  switch (type) {
+    case Type::kUnsigned:
     case Type::kNibble:
-      return isNibble(*at) ? *at - kNibbleBase : kNotANumber;
+      return static_cast<double>(code);
+    case Type::kSigned:
     case Type::kNibbles:
-      return nibbles(at);
+      return static_cast<double>(static_cast<int64_t>(code << (64 - bits)) >> (64 - bits));
+    case Type::kFloat:
+      return bits == 32 ? static_cast<double>(std::bit_cast<float>(static_cast<uint32_t>(code)))
+                        : std::bit_cast<double>(code);
   }
   return kNotANumber;
 }
 
-void putRaw(const Field& field, double raw, uint8_t* bytes) noexcept {
-  uint8_t* at = bytes + field.at;
-  if (field.type == Type::kF32)
-    return scatter(std::bit_cast<uint32_t>(static_cast<float>(raw)), at, 4, field.big_endian);
-  if (field.type == Type::kF64) return scatter(std::bit_cast<uint64_t>(raw), at, 8, field.big_endian);
-  const auto whole = static_cast<uint64_t>(static_cast<int64_t>(raw));
-  if (field.type == Type::kNibble) {
-    *at = static_cast<uint8_t>(kNibbleBase + (whole & 15));
-  } else if (field.type == Type::kNibbles) {
-    for (size_t i = 0; i < 4; ++i) at[i] = static_cast<uint8_t>(kNibbleBase + (whole >> (4 * i) & 15));
+/// The bits of a number that is in range; of an integer the nearest towards zero.
+uint64_t codeOf(const Field& field, double number) noexcept {
+  const unsigned bits = digitsOf(field);
+  if (field.type == Type::kFloat)
+    return bits == 32 ? std::bit_cast<uint32_t>(static_cast<float>(number)) : std::bit_cast<uint64_t>(number);
+  const bool is_signed = field.type == Type::kSigned || field.type == Type::kNibbles;
+  if (!is_signed)
+    return number >= std::ldexp(1, static_cast<int>(bits)) ? onesOf(bits)
+           : number <= 0                                   ? 0
+                                                           : static_cast<uint64_t>(number);
+  // The greatest number of more than 53 bits is rounded up where it is a double: as such it would wrap to the least.
+  const double half = std::ldexp(1, static_cast<int>(bits) - 1);
+  const auto most = static_cast<int64_t>(onesOf(bits - 1));
+  const int64_t whole = number >= half ? most : number <= -half ? -most - 1 : static_cast<int64_t>(number);
+  return static_cast<uint64_t>(whole) & onesOf(bits);
+}
+
+Raw rawOf(const Field& field, const uint8_t* bytes) noexcept {
+  const uint8_t* at = bytes + field.at;
+  Raw raw;
+  if (!isText(field.type)) {
+    raw.code = getBits(at, field.bit_skip, field.bits, field.big_endian);
   } else {
-    scatter(whole, at, sizeOf(field.type), field.big_endian);
+    const unsigned letters = digitsOf(field) / 4;
+    for (unsigned i = 0; i < letters; ++i) {
+      if (!isNibble(at[i])) return raw;
+      raw.code |= static_cast<uint64_t>(at[i] - kNibbleBase) << (4 * i);
+    }
   }
+  raw.number = numberOf(field.type, digitsOf(field), raw.code);
+  return raw;
+}
+
+void putCode(const Field& field, uint64_t code, uint8_t* bytes) noexcept {
+  uint8_t* at = bytes + field.at;
+  if (!isText(field.type)) return putBits(code, at, field.bit_skip, field.bits, field.big_endian);
+  const unsigned letters = digitsOf(field) / 4;
+  for (unsigned i = 0; i < letters; ++i) at[i] = static_cast<uint8_t>(kNibbleBase + (code >> (4 * i) & 15));
+}
+
+void putNumber(const Field& field, double number, uint8_t* bytes) noexcept {
+  putCode(field, codeOf(field, number), bytes);
 }
 
 /// Sets one bit of what the bytes of a field hold already; several fields share the bytes.
 void putBit(const Field& field, bool on, uint8_t* bytes) noexcept {
-  if (field.type == Type::kNibble && bytes[field.at] == 0)
-    putRaw(field, 0, bytes);  // a nibble of no bits is a letter too
-  if (on == field.inverted) return;
-  const auto whole = static_cast<uint64_t>(static_cast<int64_t>(rawOf(field, bytes)));
-  putRaw(field, static_cast<double>(whole | uint64_t{1} << field.bit), bytes);
+  if (isText(field.type) && bytes[field.at] == 0) putCode(field, 0, bytes);  // a nibble of no bits is a letter too
+  if (on != field.inverted) putCode(field, rawOf(field, bytes).code | uint64_t{1} << field.bit, bytes);
 }
 
 /// Yes or no, as a bit or as the field's value.
 void putFlag(const Field& field, bool on, uint8_t* bytes) noexcept {
-  return field.bit >= 0 ? putBit(field, on, bytes) : putRaw(field, on ? field.value : 0, bytes);
+  return field.bit >= 0 ? putBit(field, on, bytes) : putNumber(field, on ? field.value : 0, bytes);
 }
 
-uint32_t checksumOf(const Field& field, const uint8_t* bytes) noexcept {
-  uint32_t sum = field.method == Checksum::kCrc16 ? 0xffff : 0;
-  for (size_t i = field.from; i < field.to; ++i) {
-    if (field.method == Checksum::kSum8) sum = (sum + bytes[i]) & 0xff;
-    if (field.method == Checksum::kXor8) sum ^= bytes[i];
-    if (field.method != Checksum::kCrc16) continue;
-    sum ^= static_cast<uint32_t>(bytes[i]) << 8;  // CRC-16/CCITT-FALSE
-    for (int bit = 0; bit < 8; ++bit) sum = ((sum & 0x8000) != 0 ? sum << 1 ^ 0x1021 : sum << 1) & 0xffff;
-  }
-  return sum;
+uint64_t sumOf(const Field& field, const uint8_t* bytes) noexcept {
+  return checksumOf(field.check, {bytes + field.from, static_cast<size_t>(field.to - field.from)});
 }
 
 /// A bit of a field, or whether its number is something else than zero.
-bool isSet(const Field& field, double raw) noexcept {
-  if (field.bit < 0) return raw != 0;
-  const auto whole = static_cast<uint64_t>(static_cast<int64_t>(raw));
-  return ((whole >> field.bit & 1) != 0) != field.inverted;
+bool isSet(const Field& field, const Raw& raw) noexcept {
+  return field.bit < 0 ? raw.number != 0 : ((raw.code >> field.bit & 1) != 0) != field.inverted;
+}
+
+bool isValue(const Field& field, const Raw& raw) noexcept {
+  return field.type == Type::kFloat ? raw.number == field.value : raw.code == field.code;
 }
 
 Verdict take(const Field& field, const uint8_t* bytes, State& state) noexcept {
-  const double raw = rawOf(field, bytes);
-  const double value = raw * field.scale + field.offset;
+  const Raw raw = rawOf(field, bytes);
+  const double value = raw.number * field.scale + field.offset;
   if (!std::isfinite(value)) return Verdict::kCorrupt;
   switch (field.role) {
     case Role::kPosition:
@@ -134,14 +137,15 @@ Verdict take(const Field& field, const uint8_t* bytes, State& state) noexcept {
       if (isSet(field, raw)) state.buttons |= 1u << field.index;
       break;
     case Role::kSequence: {
-      const auto sequence = static_cast<uint32_t>(static_cast<int64_t>(raw));
+      const auto sequence = static_cast<uint32_t>(raw.code);
+      if (field.modulo != 0 && raw.code >= field.modulo) return Verdict::kCorrupt;
       if (state.has_sequence && sequence != state.sequence) return Verdict::kTorn;
       state.sequence = sequence;
       state.has_sequence = true;
       break;
     }
     case Role::kStarts:
-      state.starts = static_cast<uint32_t>(static_cast<int64_t>(raw));
+      state.starts = static_cast<uint32_t>(raw.code);
       state.has_starts = true;
       break;
     case Role::kFault:
@@ -151,11 +155,11 @@ Verdict take(const Field& field, const uint8_t* bytes, State& state) noexcept {
       state.calibrated = isSet(field, raw);
       break;
     case Role::kFirmware:
-      return raw == field.value ? Verdict::kGood : Verdict::kWrongFirmware;
+      return isValue(field, raw) ? Verdict::kGood : Verdict::kWrongFirmware;
     case Role::kConstant:
-      return raw == field.value ? Verdict::kGood : Verdict::kCorrupt;
+      return isValue(field, raw) ? Verdict::kGood : Verdict::kCorrupt;
     case Role::kChecksum:
-      return raw == static_cast<double>(checksumOf(field, bytes)) ? Verdict::kGood : Verdict::kCorrupt;
+      return raw.code == sumOf(field, bytes) ? Verdict::kGood : Verdict::kCorrupt;
     case Role::kEnable:
     case Role::kCalibrate:
     case Role::kReference:
@@ -169,24 +173,57 @@ double clampRaw(const Field& field, double value) noexcept {
   const double raw = (value - field.offset) / field.scale;
   if (!std::isfinite(raw))
     return std::clamp(std::isfinite(value) ? 0.0 : -field.offset / field.scale, field.least, field.most);
-  const bool floating = field.type == Type::kF32 || field.type == Type::kF64;
-  return std::clamp(floating ? raw : std::nearbyint(raw), field.least, field.most);
+  return std::clamp(field.type == Type::kFloat ? raw : std::nearbyint(raw), field.least, field.most);
+}
+
+void putConstant(const Field& field, uint8_t* bytes) noexcept {
+  return field.type == Type::kFloat ? putNumber(field, field.value, bytes) : putCode(field, field.code, bytes);
+}
+
+void putSequence(const Field& field, uint32_t sequence, uint8_t* bytes) noexcept {
+  putCode(field, field.modulo != 0 ? sequence % field.modulo : sequence, bytes);
+}
+
+/// As the arm would write it.
+void put(const Field& field, const State& state, uint8_t* bytes) noexcept {
+  const auto flag = [&](bool on) { field.bit >= 0 ? putBit(field, on, bytes) : putNumber(field, on ? 1 : 0, bytes); };
+  switch (field.role) {
+    case Role::kPosition:
+      return putNumber(field, clampRaw(field, state.position[field.index]), bytes);
+    case Role::kVelocity:
+      return putNumber(field, clampRaw(field, state.velocity[field.index]), bytes);
+    case Role::kTorque:
+      return putNumber(field, clampRaw(field, state.torque[field.index]), bytes);
+    case Role::kButton:
+      return flag((state.buttons >> field.index & 1) != 0);
+    case Role::kFault:
+      return flag(state.fault);
+    case Role::kCalibrated:
+      return flag(state.calibrated);
+    case Role::kSequence:
+      return putSequence(field, state.sequence, bytes);
+    case Role::kStarts:
+      return putCode(field, state.starts, bytes);
+    case Role::kConstant:
+    case Role::kFirmware:
+      return putConstant(field, bytes);
+    default:
+      return;
+  }
 }
 
 void put(const Field& field, const Order& order, uint8_t* bytes) noexcept {
   const double torque = order.enable ? order.torque[field.index] : 0;
   switch (field.role) {
     case Role::kTorque:
-      return putRaw(field, clampRaw(field, torque), bytes);
-    case Role::kSequence: {
-      const auto [least, most] = rangeOf(field.type);
-      return putRaw(field, std::fmod(order.sequence, most + 1), bytes);
-    }
+      return putNumber(field, clampRaw(field, torque), bytes);
+    case Role::kSequence:
+      return putSequence(field, order.sequence, bytes);
     case Role::kConstant:
     case Role::kFirmware:
-      return putRaw(field, field.value, bytes);
+      return putConstant(field, bytes);
     case Role::kReference:
-      return putRaw(field, clampRaw(field, order.position[field.index]), bytes);
+      return putNumber(field, clampRaw(field, order.position[field.index]), bytes);
     case Role::kFollow:
       return putFlag(field, order.enable && order.follow, bytes);
     case Role::kEnable:
@@ -200,53 +237,28 @@ void put(const Field& field, const Order& order, uint8_t* bytes) noexcept {
 
 }  // namespace
 
-size_t sizeOf(Type type) noexcept {
+std::pair<double, double> rangeOf(Type type, unsigned bits) noexcept {
   switch (type) {
-    case Type::kI8:
-    case Type::kU8:
-    case Type::kNibble:
-      return 1;
-    case Type::kI16:
-    case Type::kU16:
-      return 2;
-    case Type::kI32:
-    case Type::kU32:
-    case Type::kF32:
-    case Type::kNibbles:
-      return 4;
-    case Type::kF64:
-      return 8;
-  }
-  return 0;
-}
-
-std::pair<double, double> rangeOf(Type type) noexcept {
-  switch (type) {
-    case Type::kI8:
-      return {-128, 127};
-    case Type::kU8:
-      return {0, 255};
-    case Type::kI16:
-    case Type::kNibbles:
-      return {-32768, 32767};
-    case Type::kU16:
-      return {0, 65535};
-    case Type::kI32:
-      return {-2147483648.0, 2147483647.0};
-    case Type::kU32:
-      return {0, 4294967295.0};
+    case Type::kUnsigned:
+      return {0, bits >= 64 ? kTwoTo64 : static_cast<double>(onesOf(bits))};
+    case Type::kSigned:
+      return {-std::ldexp(1, static_cast<int>(bits) - 1),
+              bits >= 64 ? kTwoTo64 / 2 : static_cast<double>(onesOf(bits - 1))};
     case Type::kNibble:
       return {0, 15};
-    case Type::kF32:
-      return {-static_cast<double>(std::numeric_limits<float>::max()),
-              static_cast<double>(std::numeric_limits<float>::max())};
-    case Type::kF64:
-      return {-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
+    case Type::kNibbles:
+      return {-32768, 32767};
+    case Type::kFloat: {
+      const double most =
+          bits == 32 ? static_cast<double>(std::numeric_limits<float>::max()) : std::numeric_limits<double>::max();
+      return {-most, most};
+    }
   }
   return {0, 0};
 }
 
-Verdict decode(const Report& report, std::span<const uint8_t> bytes, State& state) noexcept {
+Verdict decode(const Report& report, std::span<const uint8_t> bytes, State& state, const Field** wrong) noexcept {
+  if (wrong != nullptr) *wrong = nullptr;
   if (report.id >= 0) {
     if (bytes.empty()) return Verdict::kWrongSize;
     if (bytes[0] != report.id) return Verdict::kWrongId;
@@ -254,22 +266,47 @@ Verdict decode(const Report& report, std::span<const uint8_t> bytes, State& stat
   }
   if (bytes.size() != report.size) return Verdict::kWrongSize;
   state = State{};
-  for (const Field& field : report.fields)
-    if (const Verdict verdict = take(field, bytes.data(), state); verdict != Verdict::kGood) return verdict;
+  for (const Field& field : report.fields) {
+    const Verdict verdict = take(field, bytes.data(), state);
+    if (verdict == Verdict::kGood) continue;
+    if (wrong != nullptr) *wrong = &field;
+    return verdict;
+  }
   return Verdict::kGood;
 }
 
-size_t encode(const Report& report, const Order& order, std::span<uint8_t> bytes) noexcept {
+uint64_t codeAt(const Field& field, std::span<const uint8_t> body) noexcept {
+  return rawOf(field, body.data()).code;
+}
+
+uint64_t checksumAt(const Field& field, std::span<const uint8_t> body) noexcept {
+  return sumOf(field, body.data());
+}
+
+namespace {
+
+template <class Put>
+size_t write(const Report& report, std::span<uint8_t> bytes, const Put& put) noexcept {
   const size_t total = report.bytes();
   if (bytes.size() < total) return 0;
   std::memset(bytes.data(), 0, total);
   uint8_t* body = bytes.data();
   if (report.id >= 0) *body++ = static_cast<uint8_t>(report.id);
   for (const Field& field : report.fields)
-    if (field.role != Role::kChecksum) put(field, order, body);
+    if (field.role != Role::kChecksum) put(field, body);
   for (const Field& field : report.fields)  // over what the others wrote
-    if (field.role == Role::kChecksum) putRaw(field, checksumOf(field, body), body);
+    if (field.role == Role::kChecksum) putCode(field, sumOf(field, body), body);
   return total;
+}
+
+}  // namespace
+
+size_t encode(const Report& report, const Order& order, std::span<uint8_t> bytes) noexcept {
+  return write(report, bytes, [&](const Field& field, uint8_t* body) { put(field, order, body); });
+}
+
+size_t encode(const Report& report, const State& state, std::span<uint8_t> bytes) noexcept {
+  return write(report, bytes, [&](const Field& field, uint8_t* body) { put(field, state, body); });
 }
 
 }  // namespace hapticd::codec

@@ -6,7 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
+
+#include "codec/checksum.hpp"
 
 namespace hapticd::codec {
 
@@ -15,16 +18,11 @@ inline constexpr size_t kMaxReportBytes = 1024;
 inline constexpr size_t kMaxButtons = 32;
 
 enum class Type : uint8_t {
-  kI8,
-  kI16,
-  kI32,
-  kU8,
-  kU16,
-  kU32,
-  kF32,
-  kF64,
-  kNibble,   ///< one character: 0x41 + four bits (Novint Falcon)
-  kNibbles,  ///< four such characters, lowest four bits first: a signed 16-bit number
+  kUnsigned,  ///< of 1 to 64 bits
+  kSigned,    ///< two's complement of 2 to 64 bits
+  kFloat,     ///< IEEE 754 of 32 or 64 bits
+  kNibble,    ///< one character: 0x41 + four bits (Novint Falcon)
+  kNibbles,   ///< four such characters, lowest four bits first: a signed 16-bit number
 };
 
 enum class Role : uint8_t {
@@ -45,13 +43,12 @@ enum class Role : uint8_t {
   kStarts,      ///< in: counts how often the device started: another number means that it forgot everything
 };
 
-enum class Checksum : uint8_t { kSum8, kXor8, kCrc16 };
-
 /// One field of a report. SI value = raw * scale + offset, in both directions.
 struct Field {
   Role role = Role::kConstant;
-  Type type = Type::kU8;
-  Checksum method = Checksum::kSum8;
+  Type type = Type::kUnsigned;
+  uint8_t bits = 8;      ///< of a number; of text 8 a character
+  uint8_t bit_skip = 0;  ///< bits of the first byte in front of it, see bits.hpp
   bool big_endian = false, wraps = false;
   int8_t bit = -1;  ///< of an integer; -1: the whole number
   uint8_t index = 0;
@@ -60,7 +57,12 @@ struct Field {
   double scale = 1, offset = 0;
   double least = 0, most = 0;  ///< raw limits of an output
   double value = 0;
+  uint64_t code = 0;      ///< of an integer constant: its bits
+  uint64_t modulo = 0;    ///< a sequence counts from 0 to modulo - 1; 0: through all of its bits
   bool inverted = false;  ///< of a bit: 0 means yes
+  Check check;            ///< of a checksum
+  /// Bytes from `at` on that it touches.
+  size_t bytes() const noexcept { return (size_t{bit_skip} + bits + 7) / 8; }
 };
 
 /// All fields of one kind of report.
@@ -88,16 +90,24 @@ struct Order {
 
 enum class Verdict : uint8_t { kGood, kWrongSize, kWrongId, kWrongFirmware, kCorrupt, kTorn };
 
-/// Bytes that a number of this type takes.
-size_t sizeOf(Type type) noexcept;
-/// Smallest and greatest raw number of an integer type; of a floating one, of its finite numbers.
-std::pair<double, double> rangeOf(Type type) noexcept;
+/// Smallest and greatest raw number of an integer type; of a floating one, of its finite numbers. Of more than 53 bits
+/// the greatest is rounded up.
+std::pair<double, double> rangeOf(Type type, unsigned bits) noexcept;
 
 /// [any] Reads one report, with its id in front if it has one. Anything but kGood leaves `state` undefined.
-Verdict decode(const Report& report, std::span<const uint8_t> bytes, State& state) noexcept;
+/// @param wrong the field to which a bad verdict is owed, nullptr: the report as a whole
+Verdict decode(const Report& report, std::span<const uint8_t> bytes, State& state,
+               const Field** wrong = nullptr) noexcept;
+
+/// [any] The bits of a field of a report, without its id; a checksum as the bytes that it covers have it.
+uint64_t codeAt(const Field& field, std::span<const uint8_t> body) noexcept;
+uint64_t checksumAt(const Field& field, std::span<const uint8_t> body) noexcept;
 
 /// [any] Writes one report, with its id in front if it has one; numbers beyond the limits of their field are clamped, a
 /// torque that is no number becomes none. @param bytes at least report.bytes() @return bytes written
 size_t encode(const Report& report, const Order& order, std::span<uint8_t> bytes) noexcept;
+
+/// [any] Writes a report as the arm would: the opposite of decode(), for captures that are invented.
+size_t encode(const Report& report, const State& state, std::span<uint8_t> bytes) noexcept;
 
 }  // namespace hapticd::codec

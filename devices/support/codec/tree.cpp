@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "codec/tree.hpp"
 
+#include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <vector>
 
 namespace hapticd::codec {
 namespace {
@@ -35,9 +38,10 @@ std::string shown(const Json& value) {
 struct Document::Data {
   Json json;
   std::string name;
+  std::vector<std::string> problems;
 };
 
-Document::Document(const std::string& json, std::string name) : data_(new Data{Json(), std::move(name)}) {
+Document::Document(const std::string& json, std::string name) : data_(new Data{Json(), std::move(name), {}}) {
   data_->json = Json::parse(json, nullptr, false);
   if (data_->json.is_discarded()) throw std::invalid_argument(data_->name + ": cannot be read, expected a mapping");
 }
@@ -45,36 +49,60 @@ Document::Document(const std::string& json, std::string name) : data_(new Data{J
 Document::~Document() = default;
 
 Tree Document::root() const {
-  return {&data_->json, data_->name};
+  return {&data_->json, data_->name, data_.get()};
+}
+
+void Document::check() const {
+  std::string all;
+  for (const std::string& problem : data_->problems) all += (all.empty() ? "" : "\n") + problem;
+  if (!all.empty()) throw std::invalid_argument(all);
 }
 
 void Tree::fail(const std::string& what) const {
-  throw std::invalid_argument(path_ + ": " + what);
+  constexpr size_t kMost = 100;
+  auto& problems = static_cast<Document::Data*>(data_)->problems;
+  const std::string text = path_ + ": " + what;
+  const bool known = std::find(problems.begin(), problems.end(), text) != problems.end();
+  if (!known && problems.size() < kMost) problems.push_back(text);
+}
+
+size_t Tree::problems() const {
+  return static_cast<Document::Data*>(data_)->problems.size();
 }
 
 bool Tree::has(const char* key) const {
-  const Json& json = jsonOf(value_);
-  return json.is_object() && json.contains(key);
+  return value_ != nullptr && jsonOf(value_).is_object() && jsonOf(value_).contains(key);
+}
+
+bool Tree::isMapping() const {
+  if (value_ == nullptr) return false;
+  if (jsonOf(value_).is_object()) return true;
+  fail(shown(jsonOf(value_)) + ", expected a mapping");
+  return false;
 }
 
 Tree Tree::at(const char* key) const {
-  const Json& json = jsonOf(value_);
-  if (!json.is_object()) fail(shown(json) + ", expected a mapping");
-  if (!json.contains(key)) fail("lacks the key " + std::string(key));
-  return {&json[key], path_ + "." + key};
+  const std::string path = path_ + "." + key;
+  if (has(key)) return {&jsonOf(value_)[key], path, data_};
+  if (isMapping()) fail("lacks the key " + std::string(key));
+  return {nullptr, path, data_};
 }
 
 Tree Tree::item(size_t index) const {
-  return {&jsonOf(value_)[index], path_ + "[" + std::to_string(index) + "]"};
+  return {value_ == nullptr ? nullptr : &jsonOf(value_)[index], path_ + "[" + std::to_string(index) + "]", data_};
 }
 
 size_t Tree::count() const {
+  if (value_ == nullptr) return 0;
   const Json& json = jsonOf(value_);
-  if (!json.is_array()) fail(shown(json) + ", expected a list");
-  return json.size();
+  if (json.is_array()) return json.size();
+  fail(shown(json) + ", expected a list");
+  return 0;
 }
 
 double Tree::number(double least, double most) const {
+  const double allowed = std::clamp(0.0, least, most);
+  if (value_ == nullptr) return allowed;
   const Json& json = jsonOf(value_);
   double value = std::nan("");
   if (json.is_number()) value = json.get<double>();
@@ -84,42 +112,65 @@ double Tree::number(double least, double most) const {
     const double parsed = std::strtod(text.c_str(), &end);
     if (end != text.c_str() && *end == '\0') value = parsed;
   }
-  if (!(value >= least && value <= most))
-    fail(shown(json) + ", expected a number from " + shortText(least) + " to " + shortText(most));
-  return value;
+  if (value >= least && value <= most) return value;
+  fail(shown(json) + ", expected a number from " + shortText(least) + " to " + shortText(most));
+  return allowed;
 }
 
 double Tree::whole(double least, double most) const {
+  const size_t before = problems();
   const double value = number(least, most);
-  if (value != std::floor(value)) fail(shown(jsonOf(value_)) + ", expected a whole number");
-  return value;
+  if (problems() == before && value != std::floor(value)) fail(shown(jsonOf(value_)) + ", expected a whole number");
+  return std::floor(value);
+}
+
+uint64_t Tree::bits(unsigned width) const {
+  if (value_ == nullptr) return 0;
+  const uint64_t ones = width >= 64 ? ~uint64_t{0} : (uint64_t{1} << width) - 1;
+  const Json& json = jsonOf(value_);
+  std::string text = json.is_string() ? json.get<std::string>() : json.is_number_integer() ? json.dump() : "";
+  const bool negative = !text.empty() && text[0] == '-';
+  if (negative) text.erase(0, 1);
+  const bool hex = text.size() > 2 && text[0] == '0' && (text[1] == 'x' || text[1] == 'X');
+  char* end = nullptr;
+  errno = 0;
+  const uint64_t value = std::strtoull(text.c_str(), &end, hex ? 16 : 10);
+  const bool good = !text.empty() && text[0] >= '0' && text[0] <= '9' && *end == '\0' && errno == 0;
+  if (good && !negative && value <= ones) return value;
+  if (good && negative && value <= ones / 2 + 1) return (~value + 1) & ones;
+  fail(shown(json) + ", expected a whole number of " + std::to_string(width) + " bits");
+  return 0;
 }
 
 bool Tree::boolean() const {
+  if (value_ == nullptr) return false;
   const Json& json = jsonOf(value_);
   if (json.is_boolean()) return json.get<bool>();
   if (json == "true" || json == "yes" || json == "on") return true;
   if (json == "false" || json == "no" || json == "off") return false;
   fail(shown(json) + ", expected true or false");
+  return false;
 }
 
 std::string Tree::text() const {
+  if (value_ == nullptr) return "";
   const Json& json = jsonOf(value_);
-  if (!json.is_string()) fail(shown(json) + ", expected text");
-  return json.get<std::string>();
+  if (json.is_string()) return json.get<std::string>();
+  fail(shown(json) + ", expected text");
+  return "";
 }
 
-void Tree::only(std::initializer_list<const char*> keys) const {
-  const Json& json = jsonOf(value_);
-  if (!json.is_object()) fail(shown(json) + ", expected a mapping");
-  for (const auto& [key, value] : json.items()) {
-    bool known = false;
-    for (const char* name : keys) known = known || key == name;
-    if (known) continue;
+bool Tree::only(std::span<const char* const> keys) const {
+  if (!isMapping()) return false;
+  bool all_known = true;
+  for (const auto& [key, value] : jsonOf(value_).items()) {
+    if (std::any_of(keys.begin(), keys.end(), [&, &name = key](const char* known) { return name == known; })) continue;
     std::string all;
     for (const char* name : keys) all += (all.empty() ? "" : ", ") + std::string(name);
-    throw std::invalid_argument(path_ + "." + key + ": unknown key, expected one of " + all);
+    Tree{&value, path_ + "." + key, data_}.fail("unknown key, expected one of " + all);
+    all_known = false;
   }
+  return all_known;
 }
 
 }  // namespace hapticd::codec

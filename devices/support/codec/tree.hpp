@@ -1,31 +1,39 @@
 // SPDX-License-Identifier: MIT
 /// A view of structured data that knows the path of every key, so that what is wrong in a device file can be named.
 #pragma once
-#include <initializer_list>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
+#include <utility>
 
 namespace hapticd::codec {
 
-/// One value and where it stands. Every function throws std::invalid_argument with the path for a wrong value.
+/// One value and where it stands. What is wrong is noted with its path, and reading goes on with a value that is
+/// allowed: so all that is wrong in a file is told at once.
 class Tree {
  public:
   bool has(const char* key) const;
-  Tree at(const char* key) const;  ///< a key that must be there
+  Tree at(const char* key) const;  ///< a key that must be there; without it everything read from there is allowed
   Tree item(size_t index) const;
   size_t count() const;                            ///< of a list
   double number(double least, double most) const;  ///< a number, or text such as 0x1A
   double whole(double least, double most) const;
+  uint64_t bits(unsigned width) const;  ///< a whole number of up to 64 bits, exactly; negative: two's complement
   bool boolean() const;
   std::string text() const;
-  void only(std::initializer_list<const char*> keys) const;  ///< a mapping with no other keys
-  [[noreturn]] void fail(const std::string& what) const;     ///< "path: what"
+  bool only(std::span<const char* const> keys) const;  ///< a mapping with no other keys
+  void fail(const std::string& what) const;            ///< notes "path: what"
+  bool exists() const { return value_ != nullptr; }
+  size_t problems() const;  ///< of the whole document so far
 
  private:
   friend class Document;
-  Tree(const void* value, std::string path) : value_(value), path_(std::move(path)) {}
-  const void* value_;
+  Tree(const void* value, std::string path, void* data) : value_(value), path_(std::move(path)), data_(data) {}
+  bool isMapping() const;
+  const void* value_;  // nullptr: missing, which has been noted
   std::string path_;
+  void* data_;
 };
 
 /// Owns what a Tree looks at.
@@ -37,9 +45,12 @@ class Document {
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
   Tree root() const;
+  /// Throws std::invalid_argument with all that was noted, a line each.
+  void check() const;
 
  private:
   struct Data;
+  friend class Tree;
   std::unique_ptr<Data> data_;
 };
 

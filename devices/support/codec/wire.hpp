@@ -2,6 +2,8 @@
 /// The wire format of an arm as its device file gives it: reports, framing, start-up sequence and timing. Read once and
 /// checked then, so that the codec can trust every offset.
 #pragma once
+#include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -15,12 +17,47 @@ enum class Exchange : uint8_t {
   kPoll,    ///< the arm answers each command
 };
 
+/// Bytes that may not stand inside a report are sent as the mark and another byte: HDLC and PPP flip a bit, SLIP has a
+/// code for each.
+struct Escape {
+  bool used = false;
+  uint8_t mark = 0;
+  uint8_t flip = 0x20;  ///< exclusive or of what follows the mark; without codes
+  size_t count = 0;     ///< of codes
+  std::array<uint8_t, 8> plain{}, code{};
+  std::array<uint8_t, 16> also{};  ///< bytes that are escaped besides marks; without codes
+  size_t also_count = 0;
+
+  /// What follows the mark for a byte, and back.
+  uint8_t encoded(uint8_t byte) const noexcept {
+    for (size_t i = 0; i < count; ++i)
+      if (plain[i] == byte) return code[i];
+    return count > 0 ? byte : static_cast<uint8_t>(byte ^ flip);
+  }
+  uint8_t decoded(uint8_t byte) const noexcept {
+    for (size_t i = 0; i < count; ++i)
+      if (code[i] == byte) return plain[i];
+    return count > 0 ? byte : static_cast<uint8_t>(byte ^ flip);
+  }
+};
+
 /// Reports inside a stream of bytes: packets start with bytes of the USB chip, reports start and end with a mark.
 struct Framing {
   bool used = false;
   size_t header = 0;         ///< bytes at the head of each USB packet that are not ours
   size_t packet = 64;        ///< bytes of one USB packet
   int start = -1, end = -1;  ///< first and last byte of a report; -1: none
+  Escape escape;
+
+  /// True for a byte that must not be sent as it is.
+  bool escapes(uint8_t byte) const noexcept {
+    if (escape.count > 0)
+      return std::find(escape.plain.begin(), escape.plain.begin() + escape.count, byte) !=
+             escape.plain.begin() + escape.count;
+    return byte == escape.mark || byte == start || byte == end ||
+           std::find(escape.also.begin(), escape.also.begin() + escape.also_count, byte) !=
+               escape.also.begin() + escape.also_count;
+  }
 };
 
 /// One step of the start-up sequence: a control request, or bytes that the arm must answer.

@@ -12,7 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "codec/wire_schema.hpp"
 #include "hapticd/device.hpp"
+#include "hapticd/device_capture.h"
 #include "hapticd/device_pace.h"
 #include "hapticd/device_trouble.h"
 #include "kinematics/extension.hpp"
@@ -40,6 +42,11 @@ struct Parameters : MechanismParameters {
 template <class T>
 struct ParameterTable {
   using F = Fields<T>;
+  static constexpr Field<T> withSchema(Field<T> field, const char* const* schema) {
+    field.param.choices = schema;
+    field.param.choice_count = 1;
+    return field;
+  }
   static constexpr auto usb() {
     return std::array{
         F::text("usb.id", &T::id, "", "Vendor and product id, hexadecimal, \"1234:0006\".", HSP_P_REQUIRED),
@@ -50,7 +57,9 @@ struct ParameterTable {
   }
   static constexpr auto device() {
     return std::array{
-        F::data("wire", &T::wire, nullptr, "Reports, framing, start-up and timing: see devices.md.", HSP_P_REQUIRED),
+        withSchema(F::data("wire", &T::wire, nullptr, "Reports, framing, start-up and timing: see devices.md.",
+                           HSP_P_REQUIRED),
+                   codec::kWireSchema),
         F::choice("calibration.method", &T::method, kMethods, 0,
                   "none: absolute encoders; device: it finds its zero and says so; pose: held in a known pose."),
         F::array("calibration.pose", &T::pose, "rad", 1, 0, 16, -100, 100, "[]", "pose: joint positions there."),
@@ -215,6 +224,10 @@ class Arm : public Device, public Parameters {
       static constexpr hdv_ext_pace kPace{sizeof(hdv_ext_pace), 0, &waitForSample};
       return &kPace;
     }
+    if (std::string_view(name) == HDV_EXT_CAPTURE) {
+      static constexpr hdv_ext_capture kCapture{sizeof(hdv_ext_capture), 0, &capture};
+      return &kCapture;
+    }
     if (std::string_view(name) == HDV_EXT_TROUBLE) {
       static constexpr hdv_ext_trouble kTrouble{sizeof(hdv_ext_trouble), 0, &why};
       return &kTrouble;
@@ -232,22 +245,41 @@ class Arm : public Device, public Parameters {
  private:
   size_t joints() const { return static_cast<size_t>(arm_->jointCount()); }
 
-  /// From the parameters alone; throws std::invalid_argument.
+  /// From the parameters alone; throws std::invalid_argument with all that is wrong, a line each.
   void prepare() {
-    arm_ = makeMechanism(*this);
-    joints_ = joints();
-    wire_ = codec::readWire(wire, joints_);
-    (void)static_cast<const T*>(this)->address();
-    if (max_torque.size() != joints_ && max_torque.size() != 1)
-      throw std::invalid_argument("arm.max_torque: " + std::to_string(max_torque.size()) + " numbers, expected 1 or " +
-                                  std::to_string(joints_) + ", one a joint");
+    std::string wrong;
+    const auto attempt = [&wrong](const auto& part) {
+      try {
+        part();
+      } catch (const std::invalid_argument& e) {
+        wrong += (wrong.empty() ? "" : "\n") + std::string(e.what());
+      }
+    };
+    joints_ = 0;  // not known while the mechanism is wrong
+    attempt([&] { arm_ = makeMechanism(*this), joints_ = joints(); });
+    bool wire_known = false;
+    attempt([&] { wire_ = codec::readWire(wire, joints_), wire_known = true; });
+    attempt([&] { (void)static_cast<const T*>(this)->address(); });
+    attempt([&] { checkCount("arm.max_torque", max_torque.size(), true); });
+    if (method == static_cast<int>(Calibration::kPose))
+      attempt([&] { checkCount("calibration.pose", pose.size(), false); });
+    if (wire_known) attempt([&] { takeWire(); });
+    attempt([&] { takeFirmware(); });
+    if (!wrong.empty()) throw std::invalid_argument(wrong);
     for (size_t i = 0; i < joints_; ++i) limit_[i] = max_torque[max_torque.size() == 1 ? 0 : i];
-    if (method == static_cast<int>(Calibration::kPose) && pose.size() != joints_)
-      throw std::invalid_argument("calibration.pose: " + std::to_string(pose.size()) + " numbers, expected " +
-                                  std::to_string(joints_) + ", one a joint");
+    takeLimits();
+  }
+
+  void checkCount(const char* what, size_t count, bool may_be_one) const {
+    if (joints_ == 0 || count == joints_ || (may_be_one && count == 1)) return;
+    throw std::invalid_argument(std::string(what) + ": " + std::to_string(count) + " numbers, expected " +
+                                (may_be_one ? "1 or " : "") + std::to_string(joints_) + ", one a joint");
+  }
+
+  /// What the wire format means for the arm.
+  void takeWire() {
     velocity_ = torque_ = follows_ = false;
     for (const codec::Field& field : wire_.output.fields) follows_ = follows_ || field.role == codec::Role::kFollow;
-    takeLimits();
     bool says_calibrated = false;
     for (const codec::Field& field : wire_.input.fields) {
       velocity_ = velocity_ || field.role == codec::Role::kVelocity;
@@ -256,11 +288,13 @@ class Arm : public Device, public Parameters {
     }
     if (method == static_cast<int>(Calibration::kDevice) && !says_calibrated)
       throw std::invalid_argument("calibration.method: device, but no field of wire.input is \"calibrated\"");
-    if (loader != 0 && !firmware.empty()) {
-      auto image = readFalconFirmware(firmware);
-      if (!image) throw std::invalid_argument("firmware: " + image.error());
-      image_ = *image;
-    }
+  }
+
+  void takeFirmware() {
+    if (loader == 0 || firmware.empty()) return;
+    auto image = readFalconFirmware(firmware);
+    if (!image) throw std::invalid_argument("firmware: " + image.error());
+    image_ = *image;
   }
 
   void takeLimits() {
@@ -302,6 +336,13 @@ class Arm : public Device, public Parameters {
   /// Also before open() and after close(): there is nothing to cut then.
   static void cut(hdv_device* device) noexcept HSP_RT {
     if (Link* link = reinterpret_cast<T*>(device)->link_.get()) link->cut();
+  }
+
+  static hsp_status capture(hdv_device* device, hdv_take_transfer take, void* who) {
+    T& self = *reinterpret_cast<T*>(device);
+    const auto done = self.link_ ? self.link_->capture(take, who) : Result<void>(Error{"is not open"});
+    if (!done) detail::logError(self.host(), done.error());
+    return done ? HSP_OK : HSP_E_IO;
   }
 
   static uint64_t waitForSample(hdv_device* device, uint64_t until_ns) noexcept {

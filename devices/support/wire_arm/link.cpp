@@ -110,6 +110,26 @@ Result<void> Link::start() {
                std::to_string(static_cast<int>(wire_.rate)) + " reports a second, the motors stay off"};
 }
 
+Result<void> Link::capture(hdv_take_transfer take, void* who) {
+  if (!open_) return Error{"is not open"};
+  const Nanoseconds begun = monotonicNow();
+  Nanoseconds due = begun;
+  for (bool more = true; more;) {
+    if (const Nanoseconds now = monotonicNow(); now >= due) {
+      size_t size = session_.command(now, Wish{}, out_);
+      due = std::max(due + period_, now);
+      if (const Status sent = transport_->send({out_.data(), size}); sent == Status::kGone) return Error{"is gone"};
+      more = take(who, now - begun, 1, out_.data(), size) == 0;
+    }
+    size_t size = 0;
+    const Nanoseconds now = monotonicNow();
+    const Status status = transport_->receive(in_, size, due > now ? std::min(due - now, kMillisecond) : 0);
+    if (status == Status::kGone) return Error{"is gone"};
+    if (status == Status::kOk) more = take(who, monotonicNow() - begun, 0, in_.data(), size) == 0 && more;
+  }
+  return {};
+}
+
 void Link::stop() {
   stop_ = true;
   thread_.join();

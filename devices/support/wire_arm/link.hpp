@@ -12,6 +12,7 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "base/triple_buffer.hpp"
+#include "hapticd/device_capture.h"
 #include "wire_arm/session.hpp"
 #include "wire_arm/transport.hpp"
 
@@ -42,6 +43,8 @@ class Link {
   Result<Identity> open();
   /// [main] Starts the thread and waits for the first report.
   Result<void> start();
+  /// [main] Open and not started: speaks with its motors off and hands over every transfer, until `take` ends it.
+  Result<void> capture(hdv_take_transfer take, void* who);
   /// [main] Motors off, thread joined.
   void stop();
   /// [main]

@@ -51,7 +51,7 @@ Session::Session(const codec::Wire& wire, const SessionSettings& settings)
     : wire_(wire), settings_(settings), framer_(wire.framing, wire.input.bytes()) {
   for (const codec::Field& field : wire_.input.fields) {
     if (field.role != codec::Role::kPosition || !field.wraps) continue;
-    const auto [least, most] = codec::rangeOf(field.type);
+    const auto [least, most] = codec::rangeOf(field.type, field.bits);
     span_[field.index] = (most - least + 1) * std::abs(field.scale);
   }
 }
@@ -230,7 +230,7 @@ size_t Session::command(Nanoseconds now, const Wish& wish, std::span<uint8_t> by
   order.calibrate = calibrate_;
   answered_[sent_ % kRateWindow] = reports_;
   order.sequence = ++sent_;
-  return codec::encode(wire_.output, order, bytes);
+  return codec::addEscapes(wire_.framing, bytes, codec::encode(wire_.output, order, bytes));
 }
 
 void Session::setZero(const JointArray& zero) noexcept {

@@ -105,6 +105,10 @@ Json schemaOf(const host::ParamInfo& param) {
     case HSP_ARRAY:
       json["type"] = param.min_count <= 1 ? Json{"array", "number"} : Json("array");
       break;
+    case HSP_DATA:
+      if (!param.choices.empty()) json = Json::parse(param.choices[0], nullptr, false);
+      if (!json.is_object()) json = Json::object();
+      break;
     default:
       break;
   }

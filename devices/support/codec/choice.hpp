@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+/// A word of a file as one of some named values.
+#pragma once
+#include <string>
+
+#include "codec/tree.hpp"
+
+namespace hapticd::codec {
+
+template <class T>
+struct Name {
+  const char* name;
+  T value;
+};
+
+/// [main] The value of that name; the first one, with a note in the tree, where there is none.
+template <class T, size_t N>
+T choiceOf(const Tree& tree, const Name<T> (&names)[N]) {
+  const size_t before = tree.problems();
+  const std::string text = tree.text();
+  std::string all;
+  for (const Name<T>& name : names) {
+    if (text == name.name) return name.value;
+    all += (all.empty() ? "" : ", ") + std::string(name.name);
+  }
+  if (tree.exists() && tree.problems() == before) tree.fail("\"" + text + "\", expected one of " + all);
+  return names[0].value;
+}
+
+}  // namespace hapticd::codec

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+#include "codec/wire_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <tuple>
+
+#include "codec/bits.hpp"
+#include "codec/choice.hpp"
+
+namespace hapticd::codec {
+namespace {
+
+constexpr Name<Role> kRoles[] = {
+    {"position", Role::kPosition},   {"velocity", Role::kVelocity},     {"torque", Role::kTorque},
+    {"button", Role::kButton},       {"sequence", Role::kSequence},     {"counter", Role::kSequence},
+    {"fault", Role::kFault},         {"calibrated", Role::kCalibrated}, {"firmware", Role::kFirmware},
+    {"constant", Role::kConstant},   {"checksum", Role::kChecksum},     {"enable", Role::kEnable},
+    {"calibrate", Role::kCalibrate}, {"reference", Role::kReference},   {"follow", Role::kFollow},
+    {"starts", Role::kStarts}};
+constexpr Name<bool> kOrders[] = {{"little", false}, {"big", true}};
+constexpr const char* kKeys[] = {"is",     "joint",         "button",         "at",        "type",
+                                 "endian", "bit",           "bit_offset",     "inverted",  "scale",
+                                 "offset", "scale_degrees", "offset_degrees", "limit",     "wraps",
+                                 "value",  "modulo",        "method",         "from",      "to",
+                                 "word",   "polynomial",    "initial",        "reflected", "final_xor",
+                                 "negated"};
+
+bool perJoint(Role role) {
+  return role == Role::kPosition || role == Role::kVelocity || role == Role::kTorque || role == Role::kReference;
+}
+
+bool isText(Type type) {
+  return type == Type::kNibble || type == Type::kNibbles;
+}
+
+bool readTarget(const Tree& tree, size_t joints, bool input, Field& field) {
+  const size_t before = tree.problems();
+  const Tree is = tree.at("is");
+  field.role = choiceOf(is, kRoles);
+  if (tree.problems() != before) return false;
+  const bool only_in = field.role == Role::kPosition || field.role == Role::kVelocity || field.role == Role::kButton ||
+                       field.role == Role::kFault || field.role == Role::kCalibrated || field.role == Role::kStarts;
+  const bool only_out = field.role == Role::kEnable || field.role == Role::kCalibrate ||
+                        field.role == Role::kReference || field.role == Role::kFollow;
+  if ((input && only_out) || (!input && only_in))
+    is.fail("\"" + is.text() + "\" in an " + (input ? "input" : "output") + " report, expected it in the other one");
+  const double most = static_cast<double>(joints > 0 ? joints : kMaxJoints);
+  if (perJoint(field.role)) field.index = static_cast<uint8_t>(tree.at("joint").whole(1, most) - 1);
+  if (field.role == Role::kButton) field.index = static_cast<uint8_t>(tree.at("button").whole(1, kMaxButtons) - 1);
+  return tree.problems() == before;
+}
+
+/// "u24": u, i or f and the bits; the two kinds of text.
+void readType(const Tree& tree, Field& field) {
+  const size_t before = tree.problems();
+  const std::string text = tree.text();
+  if (text == "nibble" || text == "nibbles") {
+    field.type = text == "nibble" ? Type::kNibble : Type::kNibbles;
+    field.bits = text == "nibble" ? 8 : 32;
+    return;
+  }
+  const bool digits = text.size() >= 2 && text.size() <= 3 && text[1] != '0' &&
+                      std::all_of(text.begin() + 1, text.end(), [](char c) { return c >= '0' && c <= '9'; });
+  const int bits = digits ? std::stoi(text.substr(1)) : 0;
+  const char kind = text.empty() ? ' ' : text[0];
+  const bool good = (kind == 'u' && bits >= 1 && bits <= 64) || (kind == 'i' && bits >= 2 && bits <= 64) ||
+                    (kind == 'f' && (bits == 32 || bits == 64));
+  if (good) {
+    field.type = kind == 'u' ? Type::kUnsigned : kind == 'i' ? Type::kSigned : Type::kFloat;
+    field.bits = static_cast<uint8_t>(bits);
+  } else if (tree.exists() && tree.problems() == before) {
+    tree.fail("\"" + text +
+              "\", expected one of i8, i16, i32, u8, u16, u32 (i or u with any width from 2 to 64 bits: "
+              "u12, i24), f32, f64, nibble, nibbles");
+  }
+}
+
+void readPlace(const Tree& tree, const Report& report, Field& field) {
+  const auto room = static_cast<double>(8 * report.size - field.bits);
+  if (tree.has("bit_offset") && isText(field.type))
+    tree.at("bit_offset").fail("of text, expected it only with i, u and f types");
+  if (field.bits > 8 * report.size)
+    return tree.at("type").fail("takes " + std::to_string(field.bits / 8) +
+                                " bytes, expected no more than the report's " + std::to_string(report.size));
+  const bool at_bit = tree.has("bit_offset");
+  double skip =
+      at_bit && !tree.has("at") ? 0 : 8 * tree.at("at").whole(0, at_bit ? report.size - 1 : std::floor(room / 8));
+  if (at_bit) skip += tree.at("bit_offset").whole(0, std::max(0.0, room - skip));
+  field.at = static_cast<uint16_t>(skip / 8);
+  field.bit_skip = static_cast<uint8_t>(static_cast<size_t>(skip) % 8);
+}
+
+void readNumber(const Tree& tree, const Report& report, Field& field) {
+  readType(tree.at("type"), field);
+  readPlace(tree, report, field);
+  if (tree.has("endian")) field.big_endian = choiceOf(tree.at("endian"), kOrders);
+  std::tie(field.least, field.most) = rangeOf(field.type, field.bits);
+  if (tree.has("bit")) {
+    if (field.type == Type::kFloat || field.type == Type::kNibbles)
+      tree.at("bit").fail("of a " + tree.at("type").text() + ", expected a whole-number type");
+    const double bits = field.type == Type::kNibble ? 4 : field.bits;
+    field.bit = static_cast<int8_t>(tree.at("bit").whole(0, bits - 1));
+  }
+  if (tree.has("inverted")) field.inverted = tree.at("inverted").boolean();
+}
+
+void readScale(const Tree& tree, Field& field) {
+  const double degree = M_PI / 180;
+  const size_t before = tree.problems();
+  if (tree.has("scale")) field.scale = tree.at("scale").number(-1e9, 1e9);
+  if (tree.has("offset")) field.offset = tree.at("offset").number(-1e9, 1e9);
+  if (tree.has("scale_degrees")) field.scale = degree * tree.at("scale_degrees").number(-1e9, 1e9);
+  if (tree.has("offset_degrees")) field.offset = degree * tree.at("offset_degrees").number(-1e9, 1e9);
+  if (!(std::abs(field.scale) > 0) && tree.problems() == before) {
+    tree.at(tree.has("scale_degrees") ? "scale_degrees" : "scale").fail("0, expected the SI value of one raw unit");
+    field.scale = 1;
+  }
+  if (tree.has("limit")) {
+    const double limit = tree.at("limit").number(0, field.most);
+    field.least = std::max(field.least, -limit), field.most = limit;
+  }
+  if (tree.has("wraps")) {
+    field.wraps = tree.at("wraps").boolean();
+    if (field.wraps && (field.type == Type::kFloat || field.role != Role::kPosition))
+      tree.at("wraps").fail("true, expected it only with a whole-number position");
+  }
+}
+
+void readConstant(const Tree& tree, Field& field) {
+  const Tree value = tree.at("value");
+  const size_t before = tree.problems();
+  field.value = value.number(field.least, field.most);
+  if (field.type == Type::kFloat || tree.problems() != before) return;
+  const unsigned digits = field.type == Type::kNibble ? 4 : field.type == Type::kNibbles ? 16 : field.bits;
+  constexpr double kExact = 9007199254740992;  // 2^53: beyond it a double has not all digits
+  if (std::abs(field.value) < kExact && field.value == std::floor(field.value))
+    field.code = static_cast<uint64_t>(static_cast<int64_t>(field.value)) & onesOf(digits);
+  else
+    field.code = value.bits(digits);
+}
+
+void readSequence(const Tree& tree, Field& field) {
+  if (field.type == Type::kFloat)
+    tree.at("type").fail("\"" + tree.at("type").text() + "\", expected a whole-number type");
+  if (tree.has("modulo"))
+    field.modulo = static_cast<uint64_t>(tree.at("modulo").whole(2, std::min(field.most + 1, 4294967296.0)));
+}
+
+/// By name, or by the numbers of a CRC. @return false: the method is not known
+bool readMethod(const Tree& tree, Field& field) {
+  Check& check = field.check;
+  check.bits = field.bits;
+  const Tree method = tree.at("method");
+  const size_t before = tree.problems();
+  const std::string name = method.text();
+  if (name == "sum8" || name == "xor8") check.bits = 8;
+  if (name == "sum8" || name == "sum") return true;
+  if (name == "xor8" || name == "xor") return check.method = Checksum::kXor, true;
+  if (name == "crc") {
+    check.method = Checksum::kCrc;
+    check.polynomial = tree.at("polynomial").bits(check.bits);
+    if (tree.has("polynomial") && (check.polynomial & 1) == 0)
+      tree.at("polynomial").fail("is even, expected the polynomial without its highest term, which ends in + 1");
+    return true;
+  }
+  std::string all = "sum, xor, sum8, xor8, crc";
+  for (const NamedCrc& named : namedCrcs()) {
+    if (name == named.name) return check = named.check, true;
+    all += std::string(", ") + named.name;
+  }
+  if (method.exists() && tree.problems() == before) method.fail("\"" + name + "\", expected one of " + all);
+  return false;
+}
+
+/// What changes a sum or a CRC; a CRC by name has all of it.
+void readMethodDetails(const Tree& tree, Check& check) {
+  const bool crc = tree.at("method").text() == "crc", named = check.method == Checksum::kCrc && !crc;
+  const auto forbid = [&](const char* key, bool allowed, const char* what) {
+    if (tree.has(key) && !allowed) tree.at(key).fail(std::string("expected only with ") + what);
+    return tree.has(key) && allowed;
+  };
+  (void)forbid("polynomial", crc, "method crc");
+  if (forbid("reflected", crc, "method crc")) check.reflected = tree.at("reflected").boolean();
+  if (forbid("initial", !named, "sum, xor and crc: a CRC by name has its own"))
+    check.initial = tree.at("initial").bits(check.bits);
+  if (forbid("final_xor", !named, "sum, xor and crc: a CRC by name has its own"))
+    check.final_xor = tree.at("final_xor").bits(check.bits);
+  const bool words = check.method != Checksum::kCrc;
+  if (forbid("negated", check.method == Checksum::kSum, "a sum")) check.negated = tree.at("negated").boolean();
+  if (forbid("word", words, "sum and xor")) check.word = static_cast<uint8_t>(tree.at("word").whole(1, 8));
+}
+
+void readChecksum(const Tree& tree, const Report& report, Field& field) {
+  if (readMethod(tree, field)) readMethodDetails(tree, field.check);
+  field.check.big_endian = field.big_endian;
+  field.from = static_cast<uint16_t>(tree.at("from").whole(0, static_cast<double>(report.size - 1)));
+  field.to = static_cast<uint16_t>(tree.at("to").whole(field.from + 1.0, static_cast<double>(report.size)));
+  if (field.type != Type::kUnsigned && field.type != Type::kSigned)
+    tree.at("type").fail("\"" + tree.at("type").text() + "\", expected a whole number of bits: u8, u16");
+  else if (field.bits < field.check.bits)
+    tree.at("type").fail("\"" + tree.at("type").text() + "\", expected u" + std::to_string(field.check.bits) + " for " +
+                         tree.at("method").text());
+  if (field.at < field.to && field.at + field.bytes() > field.from)
+    tree.at("at").fail("lies inside the bytes that the checksum covers, expected it outside");
+}
+
+}  // namespace
+
+std::span<const char* const> fieldKeys() {
+  return kKeys;
+}
+
+ReadField readField(const Tree& tree, const Report& report, size_t joints, bool input) {
+  ReadField read;
+  Field& field = read.field;
+  if (!tree.only(kKeys) && !tree.has("is")) return read;
+  read.target_known = readTarget(tree, joints, input, field);
+  readNumber(tree, report, field);
+  if (!read.target_known) return read;  // what else it needs depends on what it is
+  if (perJoint(field.role)) readScale(tree, field);
+  if (field.role == Role::kConstant || field.role == Role::kFirmware) readConstant(tree, field);
+  if (field.role == Role::kEnable || field.role == Role::kCalibrate || field.role == Role::kFollow)
+    field.value = tree.has("value") ? tree.at("value").number(field.least, field.most) : 1;
+  if (field.role == Role::kSequence || field.role == Role::kStarts) readSequence(tree, field);
+  if (field.role == Role::kChecksum) readChecksum(tree, report, field);
+  return read;
+}
+
+}  // namespace hapticd::codec
