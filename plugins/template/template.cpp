@@ -1,15 +1,30 @@
 // SPDX-License-Identifier: MIT
-/// A ball: the smallest whole plugin. `hapticd plugin new NAME` copies it under another name.
+/// A ball: a small whole plugin, with every kind of parameter and a state for each probe.
+/// `hapticd plugin new NAME` copies it under another name; delete what your shape does not need.
+#include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <stdexcept>
 
 #include "hapticd/shape.hpp"
 
 namespace {
 
+/// The ball holds the tip where it touched, until the tip slides: one such state for each probe (finger).
+struct Grip {
+  bool holds = false;
+  double at[3] = {0, 0, 0};  // [m] model frame
+};
+
 struct TemplateBall : hapticd::Shape {
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.shape.template", "template", "0.1.0", "MIT",
                                             "A ball about the model's origin; the plugin to start from."};
-  double radius = 0, stiffness = 0;
+  static constexpr const char* kLaws[] = {"linear", "profile"};
+
+  double radius = 0, stiffness = 0, friction = 0;
+  int law = 0;                  // index into kLaws
+  std::vector<double> profile;  // depth, force, depth, force, ...
+  std::string profile_file;
 
   static constexpr auto fields() {
     using F = hapticd::Fields<TemplateBall>;
@@ -17,25 +32,37 @@ struct TemplateBall : hapticd::Shape {
         F::real("radius", &TemplateBall::radius, "m", 0.001, 1, 0.05, "Radius of the ball."),
         F::real("stiffness", &TemplateBall::stiffness, "N/m", 0, 5000, 500, "Force for each metre of depth.",
                 HSP_P_LIVE),
+        F::real("friction", &TemplateBall::friction, "", 0, 2, 0.2, "Force along the surface by force into it."),
+        F::choice("law", &TemplateBall::law, kLaws, 0, "Force by stiffness, or by the table of depth and force."),
+        F::array("profile", &TemplateBall::profile, "m, N", 2, 4, 200, 0, 20, "[[0, 0], [0.002, 1], [0.01, 3]]",
+                 "Table of depth and force in rows that grow."),
+        F::path("profile_file", &TemplateBall::profile_file,
+                "The same table as a file of lines depth,force; it replaces profile."),
     };
   }
 
   /// May allocate, and throw std::exception with a message for the user. Claims what the host may rely on.
-  void activate(const hsp_activation&, hsp_report& report) {
-    report.max_stiffness = stiffness;
+  void activate(const hsp_activation& activation, hsp_report& report) {
+    if (!profile_file.empty()) profile = readTable(profile_file);
+    grips_.assign(activation.max_probes, Grip{});
+    report.max_stiffness = law == 0 ? stiffness : steepest();
     report.size_m = 2 * radius;
     report.typical_ns = 50;
     report.worst_ns = 2000;
   }
 
+  void reset() noexcept HSP_RT { std::fill(grips_.begin(), grips_.end(), Grip{}); }
+
   /// Every tick, for each probe: no allocation, lock, system call or exception. Model frame, SI units.
-  hsp_status touch(const hsp_probe& probe, const hsp_step&, hsp_contact& contact) noexcept HSP_RT {
+  hsp_status touch(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT {
+    Grip& grip = grips_[numberOf(probe, step)];
+    if ((probe.flags & (HSP_IN_INVALID | HSP_IN_JUMP)) != 0) grip.holds = false;
     if ((probe.flags & HSP_IN_INVALID) != 0) return HSP_OK;  // no sample: no force
     const double* p = probe.position;
     const double distance = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
     if (distance == 0) return HSP_E_NUMERIC;  // the very centre has no nearest side
     contact.depth_m = radius - distance;
-    const double push = contact.depth_m > 0 ? stiffness * contact.depth_m : 0;
+    const double push = contact.depth_m > 0 ? forceAt(contact.depth_m) : 0;
     for (int i = 0; i < 3; ++i) {
       contact.normal[i] = p[i] / distance;
       contact.point[i] = radius * contact.normal[i];
@@ -44,8 +71,66 @@ struct TemplateBall : hapticd::Shape {
     contact.stiffness = contact.depth_m > 0 ? stiffness : 0;
     contact.flags = HSP_OUT_TRACED;
     if (contact.depth_m > 0) contact.flags |= HSP_OUT_CONTACT;
+    rub(grip, p, push, contact);
     return HSP_OK;
   }
+
+ private:
+  /// Which of the probes of a step this one is, below hsp_activation::max_probes: records lie in_stride bytes apart.
+  static size_t numberOf(const hsp_probe& probe, const hsp_step& step) noexcept HSP_RT {
+    const auto bytes = reinterpret_cast<const char*>(&probe) - reinterpret_cast<const char*>(step.in);
+    return static_cast<size_t>(bytes) / step.in_stride;
+  }
+
+  /// The tip hangs on a spring from where it is held, with at most friction * push; beyond that the hold slides along.
+  void rub(Grip& grip, const double* p, double push, hsp_contact& contact) const noexcept HSP_RT {
+    if (push <= 0 || !grip.holds) std::copy_n(p, 3, grip.at);
+    grip.holds = push > 0;
+    double along[3], length = 0, normal = 0;
+    for (int i = 0; i < 3; ++i) normal += (p[i] - grip.at[i]) * contact.normal[i];
+    for (int i = 0; i < 3; ++i) {
+      along[i] = p[i] - grip.at[i] - normal * contact.normal[i];
+      length += along[i] * along[i];
+    }
+    const double pull = stiffness * std::sqrt(length), most = friction * push;
+    const double part = pull > most ? most / pull : 1;
+    for (int i = 0; i < 3; ++i) {
+      contact.force[i] -= stiffness * part * along[i];
+      if (part < 1) grip.at[i] = p[i] - part * along[i];
+    }
+  }
+
+  /// Straight between the rows, and on as the last two go.
+  double forceAt(double depth) const noexcept HSP_RT {
+    if (law == 0) return stiffness * depth;
+    size_t i = 2;
+    while (i + 2 < profile.size() && depth > profile[i]) i += 2;
+    const double part = (depth - profile[i - 2]) / (profile[i] - profile[i - 2]);
+    return std::fmax(0.0, profile[i - 1] + part * (profile[i + 1] - profile[i - 1]));
+  }
+
+  /// The largest slope of the table; refuses one that does not grow.
+  double steepest() const {
+    double most = 0;
+    for (size_t i = 2; i < profile.size(); i += 2) {
+      if (profile[i] <= profile[i - 2]) throw std::runtime_error("profile: the depths do not grow");
+      most = std::fmax(most, std::fabs((profile[i + 1] - profile[i - 1]) / (profile[i] - profile[i - 2])));
+    }
+    return most;
+  }
+
+  /// The path is absolute: the host has looked for it beside the scene.
+  static std::vector<double> readTable(const std::string& file) {
+    std::ifstream in(file);
+    std::vector<double> numbers;
+    double depth = 0, force = 0;
+    char comma = 0;
+    while (in >> depth >> comma >> force && comma == ',') numbers.insert(numbers.end(), {depth, force});
+    if (!in.eof() || numbers.size() < 4) throw std::runtime_error(file + ": expected two or more lines depth,force");
+    return numbers;
+  }
+
+  std::vector<Grip> grips_;
 };
 
 }  // namespace

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""What the README shows to a researcher with a shape and to a developer of an application, taken from it and done.
+
+Usage: readme_readers.py HAPTICD SOURCE_DIR CXX       exit 1 when one is off
+"""
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish
+
+HAPTICD, SOURCE, CXX = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), sys.argv[3]
+README = open(os.path.join(SOURCE, "README.md")).read()
+
+
+def run(*command, environment=None, **more):
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=200, **more)
+    return done.returncode, done.stdout + done.stderr
+
+
+def own_shape(folder):
+    """The floor of the README, compiled with its line, found, checked and felt in its scene."""
+    code = re.search(r"```cpp\n(#include <hapticd/shape.hpp>.*?)```", README, re.S)[1]
+    open(os.path.join(folder, "floor.cpp"), "w").write(code)
+    line = re.search(r"^    (g\+\+ .* -o my-plugins/floor.so)$", README, re.M)[1].replace("-I driver/include", f"-I {SOURCE}/driver/include")
+    os.mkdir(os.path.join(folder, "my-plugins"))
+    done = subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, text=True, timeout=200)
+    check("the README's floor compiles with the README's line", done.returncode == 0, done.stderr[-800:])
+    environment = dict(os.environ, HAPTICD_PLUGIN_PATH=os.path.join(folder, "my-plugins"))
+    check("plugin list finds it", "floor" in run(HAPTICD, "plugin", "list", environment=environment)[1])
+    code, said = run(HAPTICD, "plugin", "check", os.path.join(folder, "my-plugins/floor.so"))
+    check("plugin check passes it", code == 0, said)
+    scene = re.search(r"^    hapticd: 1\n    models:\n      - \{name: ground.*?\n", README, re.M)[0]
+    file = os.path.join(folder, "floor.yaml")
+    open(file, "w").write(re.sub(r"^    ", "", scene, flags=re.M))
+    report = os.path.join(folder, "report.json")
+    code, said = run(HAPTICD, "run", file, "--for", "5", "--virtual-time", "--report", report, environment=environment)
+    touched = os.path.exists(report) and json.load(open(report))["models"]["ground"]["contact_ticks"]
+    check("and it is felt in the README's scene", code == 0 and touched and touched > 100, (touched, said))
+    wrong = open(os.path.join(folder, "floor.cpp")).read().replace("stiffness * out.depth_m", "-stiffness * out.depth_m")
+    open(os.path.join(folder, "floor.cpp"), "w").write(wrong)
+    subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
+    code, said = run(HAPTICD, "plugin", "check", os.path.join(folder, "my-plugins/floor.so"))
+    check("with the wrong sign the check says so", code == 1 and "pull the hand in" in said, said)
+
+
+def other_lines(folder):
+    """The table lines that the README shows beside them belong to a plugin that compiles."""
+    block = re.search(r"```cpp\n(    F::choice.*?)```", README, re.S)[1]
+    members = "  int law = 0;\n  std::vector<double> profile;\n  std::array<double, 3> axis{};\n  std::string heights;\n"
+    code = re.search(r"```cpp\n(#include <hapticd/shape.hpp>.*?)```", README, re.S)[1]
+    code = code.replace("  double stiffness = 0;\n", "  double stiffness = 0;\n" + members + '  static constexpr const char* kLaws[] = {"linear", "table"};\n')
+    code = code.replace("return std::array{F::real(", "return std::array{\n" + re.sub(r"//.*", "", block) + "F::real(")
+    open(os.path.join(folder, "more.cpp"), "w").write(code)
+    done = subprocess.run([CXX, "-std=c++20", "-fsyntax-only", "-I", f"{SOURCE}/driver/include", "more.cpp"], cwd=folder, capture_output=True, text=True)
+    check("the README's other lines of a table compile", done.returncode == 0, done.stderr[:1500])
+
+
+CLIENT = r"""
+set -eu
+until hapticd ctl --name reader status >/dev/null 2>&1; do sleep 0.2; done
+hapticd ctl --name reader get ball stiffness
+hapticd ctl --name reader set ball stiffness 300 --consent
+hapticd ctl --name reader get ball stiffness
+hapticd ctl --name reader disable ball
+hapticd ctl --name reader list
+hapticd ctl --name reader stop
+"""
+
+
+def own_client(folder):
+    """A shell script that leads a run by what `ctl --help` and the README say."""
+    scene = os.path.join(folder, "client.yaml")
+    model = os.path.join(SOURCE, "config/models/sphere.yaml")
+    open(scene, "w").write(f"hapticd: 1\nmodels:\n  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {model}, stiffness: 400}}}}\n")
+    environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder, PATH=os.path.dirname(HAPTICD) + ":" + os.environ["PATH"])
+    daemon = subprocess.Popen([HAPTICD, "run", scene, "--name", "reader", "--for", "100"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    code, said = run("bash", "-c", CLIENT, environment=environment)
+    check("a shell client reads, sets and stops", code == 0 and '"value": 400' in said and '"value": 300' in said and '"enabled": false' in said, said)
+    try:
+        daemon.wait(30)
+    except subprocess.TimeoutExpired:
+        daemon.kill()
+    check("and the run ends well", daemon.returncode == 0, daemon.stderr.read()[-500:])
+
+
+with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
+    own_shape(folder)
+    other_lines(folder)
+    own_client(folder)
+finish()
