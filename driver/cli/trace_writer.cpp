@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "hapticd/held.h"
+
 namespace hapticd::cli {
 
 namespace {
@@ -37,6 +39,17 @@ TraceWriter::TraceWriter(std::FILE* out, std::string file, const scene::Scene& s
     : out_(out), file_(std::move(file)), models_(std::move(models)) {
   for (const scene::Model& model : scene.models) names_.push_back(field(model.name));
 }
+
+namespace {
+
+constexpr long kHeld = 2;  ///< the answer is good, and its foot is that of a held contact
+
+long statusOf(const servo::ModelState& model, const hsp_contact& contact, bool probe_valid) {
+  if (!probe_valid) return HSP_E_NUMERIC;
+  return model.status == HSP_OK && (contact.flags & HSP_OUT_HELD) != 0 ? kHeld : model.status;
+}
+
+}  // namespace
 
 TraceWriter::~TraceWriter() {
   if (out_ != nullptr && out_ != stdout) std::fclose(out_);
@@ -80,7 +93,7 @@ Result<void> TraceWriter::write(double t, const servo::Core& core, bool probe_va
     numbers(c.torque, 3);
     whole(contact.traced && c.depth_m > 0 ? 1 : 0);
     whole(c.iterations);
-    whole(probe_valid ? model.status : HSP_E_NUMERIC);
+    whole(statusOf(model, c, probe_valid));
     numbers(model.pose.position, 3);
     numbers(model.pose.orientation, 4);
     line_ += '\n';

@@ -17,7 +17,7 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
  public:
   static constexpr ShapeInfo kInfo = {"org.hapticd.shape.nurbs_rigid",
                                       "nurbs_rigid",
-                                      "1.0",
+                                      "1.1",
                                       "MIT",
                                       "A rigid model of NURBS surfaces, traced exactly by its parameters.",
                                       HSP_C_MOVES};
@@ -49,7 +49,7 @@ class NurbsRigid final : public TracedShape, public MotionParameters {
                     HSP_P_LIVE | HSP_P_SAFETY),
             F::real("pop_through", &NurbsRigid::pop_through_, "N", 0, 1e3, 0,
                     "a shell (sides: both) gives way above this force; 0: never")},
-        motionFields<NurbsRigid>());
+        motionFields<NurbsRigid>(), formerFields<NurbsRigid>());
   }
 
   void activate(const hsp_activation& activation, hsp_report& report);

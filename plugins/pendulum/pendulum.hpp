@@ -14,7 +14,7 @@ class Pendulum final : public TracedShape {
  public:
   static constexpr ShapeInfo kInfo = {"org.hapticd.shape.pendulum",
                                       "pendulum",
-                                      "1.0",
+                                      "1.1",
                                       "MIT",
                                       "A model that swings about a fixed axis under gravity and the hand.",
                                       HSP_C_MOVES};
@@ -37,7 +37,8 @@ class Pendulum final : public TracedShape {
                     "pivot to centre of mass, which is drawn straight along gravity"),
             F::real("damping", &Pendulum::damping_, "N m s/rad", 0, 1e6, 0, "of the swing"),
             F::real("angle", &Pendulum::angle_, "rad", -1e3, 1e3, 0, "at the start, from hanging"),
-            F::real("rate", &Pendulum::rate_, "rad/s", -1e3, 1e3, 0, "at the start")});
+            F::real("rate", &Pendulum::rate_, "rad/s", -1e3, 1e3, 0, "at the start")},
+        formerFields<Pendulum>());
   }
 
   void activate(const hsp_activation& activation, hsp_report& report);

@@ -14,7 +14,7 @@ class PushButton final : public TracedShape {
  public:
   static constexpr ShapeInfo kInfo = {"org.hapticd.shape.push_button",
                                       "push_button",
-                                      "1.0",
+                                      "1.1",
                                       "MIT",
                                       "A massless button: the surface's spring in series with a detent curve.",
                                       HSP_C_MOVES};
@@ -31,7 +31,8 @@ class PushButton final : public TracedShape {
                      "[[0, 0], [0.003, 4], [0.004, 2], [0.005, 3]]",
                      "points [travel, force] of the button's own resistance, from [0, 0]; it clicks where it falls"),
             F::real("end_stiffness", &PushButton::end_stiffness_, "N/m", 1, 1e6, 8000,
-                    "slope beyond the last point of detent")});
+                    "slope beyond the last point of detent")},
+        formerFields<PushButton>());
   }
 
   void activate(const hsp_activation& activation, hsp_report& report);

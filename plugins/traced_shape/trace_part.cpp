@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// What a traced shape does with a part in place of a model file.
 #include <algorithm>
-#include <limits>
 #include <span>
 #include <stdexcept>
 
@@ -52,37 +51,10 @@ Touch TracedShape::tracePart(const hsp_probe& probe, const hsp_step& step, hsp_c
   brep::Tracer& tracer = part_tracers_[index];
   if ((probe.flags & (HSP_IN_INVALID | HSP_IN_JUMP)) != 0) tracer.forgetContact();
   if ((probe.flags & HSP_IN_INVALID) != 0) return touch;
-  contact::ContactRule rule;
-  rule.sides = static_cast<contact::Sides>(sides_);
-  rule.hysteresis = hold_ > 0 ? hold_ : std::numeric_limits<double>::infinity();
   brep::SearchBudget budget;
   if (step.max_iterations > 0) budget.elements = static_cast<int>(std::clamp<uint32_t>(step.max_iterations, 8, 256));
-  const contact::Foot foot = tracer.step(Eigen::Vector3d(probe.position), rule, budget);
-  if (foot.status == contact::FootStatus::kInvalid) touch.status = HSP_E_NUMERIC;
-  if (foot.status == contact::FootStatus::kDegraded) touch.status = HSP_DEGRADED;
-  if (!contact::found(foot) || foot.surface < 0) return touch;
-  touch.foot.point = foot.point;
-  touch.foot.normal = foot.normal;
-  touch.foot.depth = foot.depth;
-  touch.foot.distance = foot.distance;
-  touch.foot.u = foot.u;
-  touch.foot.v = foot.v;
-  touch.foot.surface = foot.surface;
-  touch.normal = foot.normal;
-  touch.depth = foot.depth;
-  touch.traced = true;
-  Eigen::Map<Eigen::Vector3d>(contact.point) = foot.point;
-  Eigen::Map<Eigen::Vector3d>(contact.normal) = foot.normal;
-  contact.depth_m = foot.depth;
-  contact.param[0] = foot.u;
-  contact.param[1] = foot.v;
-  contact.residual_m = foot.residual;
-  contact.feature = static_cast<uint32_t>(foot.surface);
-  contact.iterations = static_cast<uint32_t>(foot.evaluations);
-  contact.flags = HSP_OUT_TRACED;
-  if (foot.depth > 0) contact.flags |= HSP_OUT_CONTACT;
-  if (foot.on_edge) contact.flags |= HSP_OUT_EDGE;
-  return touch;
+  const contact::Foot foot = tracer.step(Eigen::Vector3d(probe.position), contactRule(), budget);
+  return answer(foot, contact);
 }
 
 }  // namespace hapticd

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "document.hpp"
+#include "hapticd/held.h"
 #include "kernels/brep/part_file.hpp"
 #include "model_file.hpp"
 #include "part_mesh.hpp"
@@ -20,6 +21,7 @@ constexpr double kFarthestMesh = 1e-6;  // [m] finer meshes are for files, not f
 
 void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
   part_.reset();
+  takeFormerNames();
   const std::string text = readModelText(geometry_);
   if (brep::looksLikePart(std::as_bytes(std::span(text)))) return loadPart(text, activation, report);
   if (!instance_.empty())
@@ -39,7 +41,7 @@ void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
   tracers_.reserve(probes);
   for (uint32_t i = 0; i < probes; ++i) tracers_.emplace_back(*model_);
   offers_.assign(probes, Offers{});
-  entered_.assign(probes, 0);
+  searched_.assign(probes, 1);
   report.size_m = model_->bounds().diagonal().norm();
   report.locked_bytes = model_->bytes();
 }
@@ -55,7 +57,22 @@ void TracedShape::reset() noexcept HSP_RT {
   for (trace::Tracer& tracer : tracers_) tracer.reset();
   for (brep::Tracer& tracer : part_tracers_) tracer.reset();
   for (Offers& offers : offers_) offers.count = 0;
-  std::fill(entered_.begin(), entered_.end(), 0);
+  std::fill(searched_.begin(), searched_.end(), 1);
+}
+
+void TracedShape::takeFormerNames() {
+  if (hold_ == kNotGiven) return;
+  contact_hysteresis_ = std::max(hold_, 0.0);
+  hold_ = kNotGiven;
+  if (host() != nullptr && host()->log != nullptr)
+    host()->log(host(), HSP_LOG_WARNING, "hold: its name is contact_hysteresis now; write that in its place");
+}
+
+contact::ContactRule TracedShape::contactRule() const noexcept HSP_RT {
+  contact::ContactRule rule;
+  rule.sides = static_cast<contact::Sides>(sides_);
+  if (contact_hysteresis_ < kHoldAlways) rule.hysteresis = contact_hysteresis_;
+  return rule;
 }
 
 trace::TraceOptions TracedShape::optionsOf(const hsp_step& step) const noexcept HSP_RT {
@@ -63,7 +80,7 @@ trace::TraceOptions TracedShape::optionsOf(const hsp_step& step) const noexcept 
   options.method = method_ == 0 || step.order == 1 ? trace::Method::kDirect : trace::Method::kNewton;
   options.iterations = iterations_;
   options.tolerance = step.tolerance_m > 0 ? step.tolerance_m : tolerance_;
-  options.hold = hold_;
+  options.rule = contactRule();
   options.unite = sides_ == kFront;  // the other side of a union of solids is no union
   if (step.max_iterations > 0)
     options.max_evaluations = static_cast<int>(std::min<uint32_t>(step.max_iterations, options.max_evaluations));
@@ -78,57 +95,62 @@ Touch TracedShape::trace(const hsp_probe& probe, const hsp_step& step, hsp_conta
     touch.status = HSP_E_ARG;
     return touch;
   }
-  if ((probe.flags & HSP_IN_INVALID) != 0) return touch;
-  if ((probe.flags & HSP_IN_JUMP) != 0) forgetBut(offers_[index], index);
+  if ((probe.flags & HSP_IN_INVALID) != 0) {
+    tracers_[index].forgetContact();
+    return touch;
+  }
+  if ((probe.flags & HSP_IN_JUMP) != 0) searched_[index] = 0;
+  if (searched_[index] == 0) beginAnew(index);
   offers_[index].count = 0;
-  touch.foot = tracers_[index].step(Eigen::Vector3d(probe.position), optionsOf(step));
-  if (touch.foot.status == trace::TraceStatus::kInvalid) touch.status = HSP_E_NUMERIC;
-  if (touch.foot.status == trace::TraceStatus::kDegraded) touch.status = HSP_DEGRADED;
-  if (touch.foot.surface < 0) return touch;
-  double outward = 1;
-  touch.depth = felt(touch.foot, index, outward);
-  touch.normal = outward * touch.foot.normal;
-  touch.traced = true;
-  Eigen::Map<Eigen::Vector3d>(contact.point) = touch.foot.point;
-  Eigen::Map<Eigen::Vector3d>(contact.normal) = touch.normal;
-  contact.depth_m = touch.depth;
-  contact.param[0] = touch.foot.u;
-  contact.param[1] = touch.foot.v;
-  contact.residual_m = touch.foot.residual;
-  contact.feature = static_cast<uint32_t>(touch.foot.surface);
-  contact.iterations = static_cast<uint32_t>(touch.foot.evaluations);
-  contact.flags = HSP_OUT_TRACED;
-  if (touch.depth > 0) contact.flags |= HSP_OUT_CONTACT;
-  if (touch.foot.on_edge) contact.flags |= HSP_OUT_EDGE;
+  touch = answer(tracers_[index].step(Eigen::Vector3d(probe.position), optionsOf(step)), contact);
+  if (searched_[index] == 0 && touch.traced) {
+    // What was followed is no longer near, and a foot on the way from there would push the wrong way: until the next
+    // search it is told of, but nothing pushes.
+    contact.depth_m = touch.depth = -touch.foot.distance;
+    contact.flags &= ~uint32_t{HSP_OUT_CONTACT | HSP_OUT_HELD};
+    touch.status = HSP_DEGRADED;
+  }
   return touch;
 }
 
-/// After a jump what was tracked is no longer near, and a foot on the way from there would push the wrong way: only
-/// what a search has offered since is followed. Until the next search nothing is traced, and nothing pushes.
-void TracedShape::forgetBut(Offers& offers, uint32_t probe) noexcept HSP_RT {
+/// After a jump only what a search has offered since is followed, if there is such.
+void TracedShape::beginAnew(uint32_t probe) noexcept HSP_RT {
+  tracers_[probe].forgetContact();
+  const uint32_t count = offers_[probe].count;
+  if (count == 0) return;
   tracers_[probe].reset();
-  entered_[probe] = 0;
-  const uint32_t count = offers.count;
-  for (uint32_t i = 0; i < count; ++i) start(offers.near[i]);
+  for (uint32_t i = 0; i < count; ++i) start(offers_[probe].near[i]);
+  searched_[probe] = 1;
 }
 
-/// Depth on the side that is felt, and the sign that turns the surface's outward normal to that side.
-double TracedShape::felt(const trace::Foot& foot, uint32_t probe, double& outward) noexcept HSP_RT {
-  if (sides_ == kFront) return foot.depth;
-  double& side = entered_[probe];
-  if (sides_ == kBack) {
-    side = -1;
-  } else if (side == 0 || foot.aside > std::abs(foot.behind)) {
-    side = foot.behind > 0 ? -1 : 1;  // free to choose: it has just come, or goes round an open edge
-  }
-  outward = side;
-  const double depth = side * foot.behind - foot.aside;
-  return depth > 0 ? depth : -foot.distance;
+/// A foot that is felt, as the host is told of it.
+Touch TracedShape::answer(const contact::Foot& foot, hsp_contact& contact) const noexcept HSP_RT {
+  Touch touch;
+  touch.foot = foot;
+  if (foot.status == contact::FootStatus::kInvalid) touch.status = HSP_E_NUMERIC;
+  if (foot.status == contact::FootStatus::kDegraded) touch.status = HSP_DEGRADED;
+  if (foot.surface < 0) return touch;
+  touch.depth = foot.depth;
+  touch.normal = foot.normal;
+  touch.traced = true;
+  Eigen::Map<Eigen::Vector3d>(contact.point) = foot.point;
+  Eigen::Map<Eigen::Vector3d>(contact.normal) = foot.normal;
+  contact.depth_m = foot.depth;
+  contact.param[0] = foot.u;
+  contact.param[1] = foot.v;
+  contact.residual_m = foot.residual;
+  contact.feature = static_cast<uint32_t>(foot.surface);
+  contact.iterations = static_cast<uint32_t>(foot.evaluations);
+  contact.flags = HSP_OUT_TRACED;
+  if (foot.depth > 0) contact.flags |= HSP_OUT_CONTACT;
+  if (foot.on_edge) contact.flags |= HSP_OUT_EDGE;
+  if (foot.status == contact::FootStatus::kHeld) contact.flags |= HSP_OUT_HELD;
+  return touch;
 }
 
 void TracedShape::popThrough(uint32_t probe) noexcept HSP_RT {
   if (sides_ == kBoth && probe < part_tracers_.size()) part_tracers_[probe].popThrough();
-  if (sides_ == kBoth && probe < entered_.size()) entered_[probe] = -entered_[probe];
+  if (sides_ == kBoth && probe < tracers_.size()) tracers_[probe].popThrough();
 }
 
 /// One record a surface, then rivals: other feet on the same surfaces, which come as second offers.
@@ -155,7 +177,6 @@ hsp_status TracedShape::start(const hsp_near& near) noexcept HSP_RT {
 hsp_status TracedShape::stop(uint32_t probe, uint32_t surface) noexcept HSP_RT {
   if (probe >= tracers_.size() || surface >= static_cast<uint32_t>(model_->surfaceCount())) return HSP_E_ARG;
   tracers_[probe].deactivate(static_cast<int>(surface));
-  if (tracers_[probe].activeCount() == 0) entered_[probe] = 0;
   return HSP_OK;
 }
 

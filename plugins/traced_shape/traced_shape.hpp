@@ -16,7 +16,7 @@ namespace hapticd {
 
 /// Where a probe is against a model, seen from the side that is felt.
 struct Touch {
-  trace::Foot foot;
+  contact::Foot foot;
   Eigen::Vector3d normal{0, 0, 1};  ///< unit, away from the solid
   double depth = 0;                 ///< [m] > 0 inside
   bool traced = false;              ///< foot is valid
@@ -50,9 +50,17 @@ class TracedShape : public Shape {
                   HSP_P_ACCURACY),
         F::real("tolerance", &TracedShape::tolerance_, "m", 1e-12, 1e-3, 1e-9,
                 "error of the foot point at which method newton stops", HSP_P_ACCURACY | HSP_P_LIVE),
-        F::real("hold", &TracedShape::hold_, "m", 0, 1, 0,
-                "a contact goes over to another face only when that is nearer by this: 0 the nearest face always; more "
-                "than a wall is thick: the probe does not come out of its far side")};
+        F::real("contact_hysteresis", &TracedShape::contact_hysteresis_, "m", 0, kHoldAlways, kHoldAlways,
+                "a contact is held on the face it began on, and goes over to another only when that is nearer by this: "
+                "0 the nearest face always; the default: until the probe comes out")};
+  }
+
+  /// Old names of parameters, at the end of the table: recordings know parameters by their number.
+  template <class T>
+  static constexpr auto formerFields() {
+    using F = Fields<T>;
+    return std::array{F::real("hold", &TracedShape::hold_, "m", kNotGiven, kHoldAlways, kNotGiven,
+                              "the former name of contact_hysteresis; -1: not given")};
   }
 
   void deactivate();
@@ -89,9 +97,11 @@ class TracedShape : public Shape {
 
   std::string geometry_;
   int sides_ = kAuto, method_ = 1, iterations_ = 1, evaluation_ = 0;
-  double tolerance_ = 1e-9, hold_ = 0;
+  double tolerance_ = 1e-9, contact_hysteresis_ = kHoldAlways, hold_ = kNotGiven;
 
  private:
+  static constexpr double kHoldAlways = 1;  ///< [m] a contact hysteresis of this or more never leaves the face
+  static constexpr double kNotGiven = -1;
   static constexpr const char* kSideNames[] = {"front", "back", "both", "auto"};
   static constexpr const char* kMethodNames[] = {"dpt", "newton"};
   static constexpr const char* kEvaluationNames[] = {"table", "net"};
@@ -102,14 +112,16 @@ class TracedShape : public Shape {
     uint32_t count = 0;
   };
 
-  void forgetBut(Offers& offers, uint32_t probe) noexcept HSP_RT;
+  void beginAnew(uint32_t probe) noexcept HSP_RT;
   trace::TraceOptions optionsOf(const hsp_step& step) const noexcept HSP_RT;
   int64_t nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const;
   hsp_status start(const hsp_near& near) noexcept HSP_RT;
   hsp_status stop(uint32_t probe, uint32_t surface) noexcept HSP_RT;
   hsp_status mesh(double chord_error, hsp_mesh& out);
   hsp_status bounds(double min[3], double max[3]) const;
-  double felt(const trace::Foot& foot, uint32_t probe, double& outward) noexcept HSP_RT;
+  void takeFormerNames();
+  contact::ContactRule contactRule() const noexcept HSP_RT;
+  Touch answer(const contact::Foot& foot, hsp_contact& contact) const noexcept HSP_RT;
 
   void loadPart(const std::string& bytes, const hsp_activation& activation, hsp_report& report);
   Touch tracePart(const hsp_probe& probe, const hsp_step& step, hsp_contact& contact) noexcept HSP_RT;
@@ -121,7 +133,7 @@ class TracedShape : public Shape {
   std::unique_ptr<trace::Model> model_;
   std::vector<trace::Tracer> tracers_;  ///< one a probe
   std::vector<Offers> offers_;          ///< by probe
-  std::vector<double> entered_;         ///< by probe, sides both: +1 the front is felt, -1 the back, 0 not known yet
+  std::vector<char> searched_;          ///< by probe: a search has answered since the last jump
   Mesh mesh_;
   hsp_ext_surfaces surfaces_extension_{};
   hsp_ext_geometry geometry_extension_{};

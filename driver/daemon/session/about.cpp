@@ -16,6 +16,7 @@
 #include "document/node.hpp"
 #include "record/scene_json.hpp"
 #include "session/event_finder.hpp"
+#include "session/former_defaults.hpp"
 
 namespace hapticd::servo {
 
@@ -181,6 +182,9 @@ Result<RecordedRun> readAbout(const std::string& json_text) {
     auto scene = record::sceneFromJson(json.at("scene").dump());
     if (!scene) return Error{scene.error()};
     run.scene = std::move(*scene);
+    for (const Json& model : json.at("models"))
+      for (scene::Model& other : run.scene.models)
+        if (model.at("name") == other.name) useFormerDefaults(other, model.at("id"), model.at("version"));
     const bool possible = std::isfinite(run.facts.rate) && run.facts.rate > 0 && run.facts.period_ns > 0;
     if (!possible || run.devices.size() != run.scene.devices.size())
       return Error{"its rate or its devices are impossible: it is damaged"};

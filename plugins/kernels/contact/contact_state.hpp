@@ -60,6 +60,18 @@ class ContactState {
     return true;
   }
 
+  /// [rt] The same where the probe may have met the face of its foot since the last tick, but no other face, and was
+  /// outside and nearest to it then: it has gone by, however near. @param last the probe of the last tick
+  bool passesBy(double height, double distance, const Eigen::Vector3d& last, const Eigen::Vector3d& p,
+                const ContactRule& rule) noexcept {
+    const double side = rule.sides == Sides::kBoth ? side_ : (rule.sides == Sides::kFront ? 1 : -1);
+    if (phase_ != Phase::kOutside || from_ != last || !(side * height > kTouching))
+      return false;
+    from_ = p;
+    clearance_ = kSure * distance;
+    return true;
+  }
+
   bool held() const noexcept { return phase_ == Phase::kHeld; }  ///< [rt]
   double side() const noexcept { return side_; }                 ///< [rt] +1: the front is felt, -1: the back
   /// [rt] Where the probe came from is no longer known: a jump, or a lost sample.

@@ -59,7 +59,7 @@ Foot Tracer::describe(int track, const Vector3d& p, int evaluations) const noexc
   foot.residual = local.residual;
   foot.surface = piece.source;
   foot.evaluations = evaluations;
-  foot.status = local.converged ? TraceStatus::kOk : TraceStatus::kDegraded;
+  foot.status = local.converged ? FootStatus::kNearest : FootStatus::kDegraded;
   foot.on_edge = local.sides != 0;
   if (local.sides != 0 || !local.regular) [[unlikely]]
     decideSide(track, p, foot);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "kernels/trace/tracer.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "kernels/trace/faces.hpp"
 
 namespace hapticd::trace {
 namespace {
@@ -17,7 +17,7 @@ constexpr double kNeighbourReach = 0.15;  ///< [m] a neighbour nobody asked for 
 constexpr int kMaxCrossings = 4;          ///< of sides in one tick
 
 /// Away from the common tick.
-[[gnu::cold, gnu::noinline]] Foot nothing(TraceStatus status) noexcept {
+[[gnu::cold, gnu::noinline]] Foot nothing(FootStatus status) noexcept {
   Foot foot;
   foot.status = status;
   return foot;
@@ -49,11 +49,20 @@ void Tracer::drop(int track) noexcept {
   if (gone(nearest_)) nearest_ = -1;
   for (Part& part : parts_)
     if (gone(part.nearest)) part.nearest = -1;
+  for (Contact& contact : contacts_)
+    if (gone(contact.held)) contact.held = -1;
+  if (tracks_.active().empty())
+    for (Contact& contact : contacts_) contact.state.forget();
+}
+
+void Tracer::dropUnlessHeld(int track) noexcept {
+  if (!tracks_[track].held) drop(track);
 }
 
 void Tracer::reset() noexcept {
   tracks_.clear();
   parts_.fill({});
+  contacts_.fill({});
   nearest_ = -1;
   has_last_ = false;
 }
@@ -77,10 +86,30 @@ inline void Tracer::locate(int track, const Vector3d& p, const TraceOptions& opt
   budget_ -= t.foot.evaluations;
 }
 
+/// The foot near `at` on a patch.
+LocalFoot Tracer::footFrom(int patch, Iterate& at, const Vector3d& p, const TraceOptions& options) noexcept {
+  LocalFoot foot;
+  if (options.method == Method::kDirect) {
+    directFoot(model_.patch(patch), p, at, options.iterations, budget_, foot);
+  } else {
+    newtonFoot(model_.patch(patch), p, at, std::max(options.tolerance, 0.0), budget_, foot);
+  }
+  budget_ -= foot.evaluations;
+  return foot;
+}
+
 /// Notes a foot that was located. Returns the track that holds it then: a rival may join the patch's first foot.
 inline int Tracer::note(int track) noexcept {
   tracks_.refined(track);
-  return tracks_[tracks_[track].patch].rival >= 0 ? tracks_.merge(track) : track;
+  if (tracks_[tracks_[track].patch].rival < 0) [[likely]]
+    return track;
+  const int kept = tracks_.merge(track);
+  const auto goesWith = [&](int& of) {
+    if (of >= 0 && tracks_[of].slot < 0) of = kept;
+  };
+  goesWith(nearest_);
+  for (Contact& contact : contacts_) goesWith(contact.held);
+  return kept;
 }
 
 int Tracer::refine(int track, const Vector3d& p, const TraceOptions& options) noexcept {
@@ -89,47 +118,82 @@ int Tracer::refine(int track, const Vector3d& p, const TraceOptions& options) no
   return note(track);
 }
 
+/// Whether the nearest foot is the answer, and nothing else has changed.
+inline bool Tracer::goesOn(const Vector3d& p, const Vector3d& last, const TraceOptions& options) noexcept {
+  Contact& contact = contacts_[0];
+  const LocalFoot& foot = tracks_[nearest_].foot;
+  if (contact.held >= 0 && contact.held != nearest_) return false;
+  if (options.rule.hysteresis > 0 && !(foot.regular && foot.converged)) return false;
+  if (contact.state.goesOn(foot.height, foot.distance, p, options.rule)) [[likely]]
+    return true;
+  return options.rule.hysteresis > 0 && tracks_.isAlone(nearest_, (p - last).norm()) &&
+         contact.state.passesBy(foot.height, foot.distance, last, p, options.rule);
+}
+
 Foot Tracer::step(const Vector3d& p, const TraceOptions& options) noexcept {
-  if (!(p.lpNorm<1>() <= kFarthest)) return nothing(TraceStatus::kInvalid);  // also true for not-a-number
+  if (!(p.lpNorm<1>() <= kFarthest)) {  // also true for not-a-number
+    forgetContact();
+    return nothing(FootStatus::kInvalid);
+  }
   const int budget = std::max(options.max_evaluations, 1);
   budget_ = budget;
   if (nearest_ >= 0) [[likely]]
     locate(nearest_, p, options);  // takes long and waits for nothing: the processor does the rest meanwhile
-  if (has_last_) tracks_.gone((p - last_p_).norm());
+  const Vector3d last = has_last_ ? last_p_ : p;
+  if (has_last_) tracks_.gone((p - last).norm());
   last_p_ = p;
   has_last_ = true;
   tracks_.nextTick();
   if (nearest_ >= 0) [[likely]] {
     nearest_ = note(nearest_);
     parts_[static_cast<std::size_t>(tracks_[nearest_].part)].nearest = nearest_;
-    if (tracks_[nearest_].foot.sides == 0 && model_.partCount() == 1 && tracks_.isNearest(nearest_)) [[likely]]
-      return describe(nearest_, p, budget - budget_);
+    if (tracks_[nearest_].foot.sides == 0 && model_.partCount() == 1 && tracks_.isNearest(nearest_) &&
+        goesOn(p, last, options)) [[likely]] {
+      if (options.rule.sides == contact::Sides::kFront) [[likely]]
+        return describe(nearest_, p, budget - budget_);
+      return contact::seenFrom(describe(nearest_, p, budget - budget_), contacts_[0].state.side());
+    }
   }
-  nearest_ = nearestOf(-1, nearest_, p, options);
-  if (nearest_ < 0) return nothing(TraceStatus::kIdle);
-  parts_[static_cast<std::size_t>(tracks_[nearest_].part)].nearest = nearest_;
-  return answer(p, options, budget);
+  return settle(p, last, options, budget);
 }
 
-/// What the tick found. On its own, so that the foot is made where the caller wants it.
-Foot Tracer::answer(const Vector3d& p, const TraceOptions& options, int budget) noexcept {
-  Foot foot = describe(nearest_, p, 0);
-  if (options.unite && model_.partCount() > 1) uniteParts(p, options, foot);
-  foot.evaluations = budget - budget_;
+/// The foot of a tick that is not common. On its own, so that the foot is made where the caller wants it.
+Foot Tracer::settle(const Vector3d& p, const Vector3d& last, const TraceOptions& options, int budget) noexcept {
+  Foot foot;
+  if (options.unite && model_.partCount() > 1) {
+    foot = nearestFoot(-1, p, options);
+    if (contact::found(foot)) uniteParts(p, last, options, foot);
+  } else if (!(options.rule.hysteresis > 0) && options.rule.sides == contact::Sides::kFront) {
+    hold(-1, -1);
+    foot = nearestFoot(-1, p, options);
+  } else {
+    Faces faces(*this, -1, p, options);
+    foot = contacts_[0].state.step(faces, last, p, options.rule);
+  }
+  if (contact::found(foot)) foot.evaluations = budget - budget_;
   return foot;
+}
+
+/// The nearest foot of a part (-1: of all), as its outward normal sees it.
+Foot Tracer::nearestFoot(int part, const Vector3d& p, const TraceOptions& options) noexcept {
+  Foot foot;
+  if (part >= 0) return nearestOfPart(part, p, options, foot) ? foot : nothing(FootStatus::kIdle);
+  nearest_ = nearestOf(-1, nearest_, p, options);
+  if (nearest_ < 0) return nothing(FootStatus::kIdle);
+  parts_[static_cast<std::size_t>(tracks_[nearest_].part)].nearest = nearest_;
+  return describe(nearest_, p, 0);
 }
 
 /// Nearest foot of a part (-1: of all), refined in this tick, looking at track `start` (-1: none) first.
 int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions& options) noexcept {
   double best = kInfinity;
   int nearest = -1;
-  if (part >= 0)  // what the search of all parts has refined already
-    for (int index : tracks_.active()) {
-      const Track& t = tracks_[index];
-      if (t.part != part || t.tick != tracks_.tick() || !(t.foot.distance < best)) continue;
-      best = t.foot.distance;
-      nearest = index;
-    }
+  for (int index : tracks_.active()) {  // what was refined in this tick already
+    const Track& t = tracks_[index];
+    if ((part >= 0 && t.part != part) || t.tick != tracks_.tick() || !(t.foot.distance < best)) continue;
+    best = t.foot.distance;
+    nearest = index;
+  }
   int crossed = -1;  // where track `start` has gone on to
   for (int index = start >= 0 ? start : tracks_.mostPromising(best, part); index >= 0 && budget_ > 0;
        index = tracks_.mostPromising(best, part)) {
@@ -146,9 +210,7 @@ int Tracer::nearestOf(int part, int start, const Vector3d& p, const TraceOptions
     }
     if (nearest < 0 || tracks_[nearest].slot < 0 || tracks_[index].foot.distance < best) nearest = index;
     best = std::min(best, tracks_[index].foot.distance);
-    if (index != nearest && tracks_.isRival(index) && isHopeless(tracks_[index], best)) tracks_.drop(index);
-    // A contact that is held is left only for what is nearer by so much.
-    if (last && options.hold > 0 && describe(index, p, 0).depth > 0) best -= options.hold;
+    if (index != nearest && tracks_.isRival(index) && isHopeless(tracks_[index], best)) dropUnlessHeld(index);
   }
   if (nearest < 0) return start;
   return nearest == crossed ? nearest : cross(nearest, p, options);
@@ -160,13 +222,12 @@ bool Tracer::isHopeless(const Track& rival, double best) const noexcept {
 }
 
 /// Replaces a foot by the one found from (u, v) on its patch if that is nearer.
-bool Tracer::tryFrom(int track, const Array2d& uv, const Vector3d& p, double tolerance) noexcept {
+bool Tracer::tryFrom(int track, const Array2d& uv, const Vector3d& p, const TraceOptions& options) noexcept {
   if (budget_ <= 0) return false;
   Track& t = tracks_[track];
   Iterate other;
   other.uv = uv;
-  const LocalFoot foot = newtonFoot(model_.patch(t.patch), p, other, tolerance, budget_);
-  budget_ -= foot.evaluations;
+  const LocalFoot foot = footFrom(t.patch, other, p, options);
   if (!(foot.distance < t.foot.distance)) return false;
   t.foot = foot;
   t.at = other;
@@ -175,9 +236,7 @@ bool Tracer::tryFrom(int track, const Array2d& uv, const Vector3d& p, double tol
 }
 
 /// Follows a foot across the sides that it meets, while that brings it nearer. Returns the track that it ends on.
-/// The paper's method clamps a foot to its patch: the next patch holds one of its own, if a search has found it.
 int Tracer::cross(int track, const Vector3d& p, const TraceOptions& options) noexcept {
-  if (options.method == Method::kDirect) return track;
   for (int i = 0; i < kMaxCrossings && budget_ > 0; ++i) {
     const SideMask sides = tracks_[track].foot.sides;
     int next = -1;
@@ -192,7 +251,6 @@ int Tracer::cross(int track, const Vector3d& p, const TraceOptions& options) noe
 /// Follows a foot across the seams and poles that it meets. Beyond other sides another track goes on; here there is
 /// none, and a foot left on a seam would tell that the surface is farther than it is.
 void Tracer::crossSeams(int track, const Vector3d& p, const TraceOptions& options) noexcept {
-  if (options.method == Method::kDirect) return;
   const Track& t = tracks_[track];
   for (int side = 0; side < kSides; ++side) {
     const Side& edge = model_.patch(t.patch).sides[static_cast<std::size_t>(side)];
@@ -208,7 +266,7 @@ void Tracer::crossSeams(int track, const Vector3d& p, const TraceOptions& option
 bool Tracer::isFarther(int patch, const Array2d& uv, const LocalFoot& there, const Vector3d& p) const noexcept {
   constexpr double kAway = 0.05;  // of the range of the parameters
   const Track& t = tracks_[patch];
-  if (t.tick == tracks_.tick()) return false;
+  if (t.tick == tracks_.tick() || t.held) return false;
   if (t.at.known == Iterate::Known::kParameters)
     return ((t.at.uv - uv).abs() > kAway * (model_.patch(patch).hi - model_.patch(patch).lo)).any();
   return (t.at.E.S - p).norm() > there.distance && (t.at.E.S - there.S).norm() > there.distance;
@@ -225,7 +283,7 @@ int Tracer::crossSide(int track, int side, const Vector3d& p, const TraceOptions
   const double best = tracks_[track].foot.distance;
   const double fraction = piece.fractionOn(side, tracks_[track].foot.uv);
   const Array2d there = model_.patch(edge.patch).onSide(edge.side, edge.flipped ? 1 - fraction : fraction);
-  if (edge.patch == patch) return tryFrom(track, there, p, tolerance) ? track : -1;
+  if (edge.patch == patch) return tryFrom(track, there, p, options) ? track : -1;
   const int next = edge.patch;
   tracks_.follow(next, there);
   if (isFarther(next, there, tracks_[track].foot, p)) tracks_.restart(next, there);
@@ -233,12 +291,13 @@ int Tracer::crossSide(int track, int side, const Vector3d& p, const TraceOptions
   if (tracks_[next].tick != tracks_.tick()) return -1;
   // The common side belongs to the neighbour too: if its foot is farther away, it sits in another valley.
   if (tracks_[next].foot.distance > best + tolerance) {
+    if (tracks_[next].held) return slideOver(track, side, p, options);
     const Iterate at = tracks_[next].at;
     const LocalFoot foot = tracks_[next].foot;
-    if (tryFrom(next, there, p, tolerance) && foot.distance < best + Model::kSoon) tracks_.keepAsRival(next, at, foot);
+    if (tryFrom(next, there, p, options) && foot.distance < best + Model::kSoon) tracks_.keepAsRival(next, at, foot);
   }
   const bool nearer = tracks_[next].foot.distance < best;
-  if (!nearer && !tracks_[next].asked && tracks_[next].foot.distance > kNeighbourReach) drop(next);
+  if (!nearer && !tracks_[next].asked && tracks_[next].foot.distance > kNeighbourReach) dropUnlessHeld(next);
   return nearer ? next : -1;
 }
 
@@ -274,12 +333,12 @@ int Tracer::leavePole(int track, int side, const Vector3d& p, const TraceOptions
   Array2d uv;
   uv[axis] = fan.side % 2 == 0 ? piece.lo[axis] + inward : piece.hi[axis] - inward;
   uv[1 - axis] = fan.along[ray];
-  if (fan.patch == patch) return tryFrom(track, uv, p, options.tolerance) ? track : -1;
+  if (fan.patch == patch) return tryFrom(track, uv, p, options) ? track : -1;
   const int next = fan.patch;
   tracks_.follow(next, uv);
   if (budget_ > 0) refine(next, p, options);
   if (tracks_[next].tick != tracks_.tick()) return -1;
-  if (!(tracks_[next].foot.distance < best_distance)) tryFrom(next, uv, p, options.tolerance);
+  if (!(tracks_[next].foot.distance < best_distance)) tryFrom(next, uv, p, options);
   return tracks_[next].foot.distance < best_distance ? next : -1;
 }
 

@@ -52,7 +52,7 @@ void Tracks::offer(int patch, const Array2d& uv, double distance, double best, b
   if (distance > best + Model::kSoon || (inside != uv).any()) return;  // or the foot of another patch of the surface
   if (follows(patch, inside, bound)) return;
   for (int i = patch; i >= 0; i = (*this)[i].rival)
-    if ((*this)[i].touched < told_before_) return set(i, inside, bound);
+    if ((*this)[i].touched < told_before_ && !(*this)[i].held) return set(i, inside, bound);
   // Beyond a common side the foot goes on down: the neighbour's record tells of that valley.
   if (!(distance < best) && piece.goesOn(piece.sidesAt(inside))) return;
   if (const Track* rival = newRival(patch)) set(static_cast<int>(rival - tracks_.data()), inside, bound);
@@ -115,13 +115,29 @@ void Tracks::keepAsRival(int patch, const Iterate& at, const LocalFoot& foot) no
   refined(static_cast<int>(rival - tracks_.data()));
 }
 
+int Tracks::put(int patch, const Iterate& at, const LocalFoot& foot) noexcept {
+  int index = patch;
+  if ((*this)[patch].slot < 0) {
+    append(patch, way_);
+  } else {
+    for (int i = patch; i >= 0; i = (*this)[i].rival)
+      if ((*this)[i].tick == tick_ && isSame(patch, (*this)[i].foot, foot)) return i;
+    if (const Track* room = newRival(patch)) index = static_cast<int>(room - tracks_.data());
+  }
+  (*this)[index].at = at;
+  (*this)[index].foot = foot;
+  refined(index);
+  return index;
+}
+
 /// A rival that nobody uses, or else the one that has been out of interest for the longest time; none if all are new.
 Track* Tracks::newRival(int patch) noexcept {
   int index = patch_count_;
   for (int i = patch_count_; i < patch_count_ + kRivals && (*this)[index].slot >= 0; ++i)
-    if ((*this)[i].slot < 0 || (*this)[i].touched < (*this)[index].touched) index = i;
+    if ((*this)[i].slot < 0 || (*this)[index].held || (!(*this)[i].held && (*this)[i].touched < (*this)[index].touched))
+      index = i;
   Track& rival = (*this)[index];
-  if (rival.slot >= 0 && rival.touched == tick_) return nullptr;
+  if (rival.slot >= 0 && (rival.held || rival.touched == tick_)) return nullptr;
   drop(index);
   Track& first = (*this)[patch];
   rival.patch = patch;
@@ -154,23 +170,27 @@ void Tracks::drop(int index) noexcept {
   t.slot = t.rival = -1;
   t.tick = 0;
   t.at.known = Iterate::Known::kParameters;
-  t.asked = false;
+  t.asked = t.held = false;
+}
+
+/// Whether two feet on one patch are the same.
+bool Tracks::isSame(int patch, const LocalFoot& one, const LocalFoot& other) const noexcept {
+  const Array2d range = model_.patch(patch).hi - model_.patch(patch).lo;
+  return ((one.uv - other.uv).abs() < kSameFoot * range).all() || (one.S - other.S).norm() < kSamePoint;
 }
 
 int Tracks::merge(int index) noexcept {
-  const Array2d range = model_.patch((*this)[index].patch).hi - model_.patch((*this)[index].patch).lo;
   const int first = (*this)[index].patch;
   for (int i = first; i >= 0; i = (*this)[i].rival) {
     if (i == index || (*this)[i].tick != tick_) continue;
-    const LocalFoot &one = (*this)[i].foot, &other = (*this)[index].foot;
-    const bool same = ((one.uv - other.uv).abs() < kSameFoot * range).all() || (one.S - other.S).norm() < kSamePoint;
-    if (!same) continue;
+    if (!isSame(first, (*this)[i].foot, (*this)[index].foot)) continue;
     const int kept = isRival(i) ? index : i, gone = isRival(i) ? i : index;
     if ((*this)[gone].foot.distance < (*this)[kept].foot.distance) {
       (*this)[kept].at = (*this)[gone].at;
       (*this)[kept].foot = (*this)[gone].foot;
       refined(kept);
     }
+    (*this)[kept].held = (*this)[kept].held || (*this)[gone].held;
     drop(gone);
     return kept;
   }

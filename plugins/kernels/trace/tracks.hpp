@@ -20,6 +20,7 @@ struct Track {
   int slot = -1;       ///< index among the active ones, -1: not active
   int rival = -1;      ///< next foot on the same patch, -1: none
   bool asked = false;  ///< activated by the host; otherwise by a neighbour's foot on a common side
+  bool held = false;   ///< a contact is on it: only the host may drop it
 };
 
 /// Bookkeeping without geometry: which feet are followed, and how near the surface under each can be by now. The
@@ -46,6 +47,9 @@ class Tracks {
   void restart(int patch, const Eigen::Array2d& uv) noexcept;
   /// [rt] Keeps a foot that another has displaced, if there is room.
   void keepAsRival(int patch, const Iterate& at, const LocalFoot& foot) noexcept;
+  /// [rt] Follows a foot of this tick that was found elsewhere. Returns its index: that of the same foot if it is
+  /// followed already.
+  int put(int patch, const Iterate& at, const LocalFoot& foot) noexcept;
   /// [rt] Stops following a foot; the first foot of a patch takes its rivals with it.
   void drop(int index) noexcept;
   /// [rt] Rivals on the patch of `index` that have come to the same foot in this tick are one. Returns the index under
@@ -87,6 +91,18 @@ class Tracks {
     return found;
   }
 
+  /// [rt] [m] No point of the surface under a foot is nearer than this.
+  double atLeast(int index) const noexcept { return key_[static_cast<std::size_t>((*this)[index].slot)] - way_; }
+
+  /// [rt] Whether the surfaces under all other feet are farther than `distance` [m].
+  bool isAlone(int index, double distance) const noexcept {
+    if (key_.size() == 1) return true;
+    const int own = (*this)[index].slot;
+    for (std::size_t slot = 0; slot < key_.size(); ++slot)
+      if (!(key_[slot] > distance + way_) && static_cast<int>(slot) != own) return false;
+    return true;
+  }
+
   /// [rt] Whether no other foot could be nearer than this one, refined in this tick.
   bool isNearest(int index) const noexcept {
     if (key_.size() == 1) return true;
@@ -107,6 +123,7 @@ class Tracks {
   void countAnew() noexcept;
   bool follows(int patch, const Eigen::Array2d& uv, double bound) noexcept;
   void set(int index, const Eigen::Array2d& uv, double bound) noexcept;
+  bool isSame(int patch, const LocalFoot& one, const LocalFoot& other) const noexcept;
 
   const Model& model_;
   int patch_count_;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "kernels/trace/tracer.hpp"
+#include "kernels/trace/faces.hpp"
 
 namespace hapticd::trace {
 namespace {
@@ -38,18 +38,34 @@ Vector3d wayOut(const Wall* walls, int count, double deepest, double* pushes) no
   return way;
 }
 
+constexpr double kSteepest = 1.5;  ///< the depth behind a bevelled edge changes by up to sqrt 2 of the probe's way
+
 double behindPlane(const Foot& foot) noexcept {
   return foot.behind - foot.aside;  // beside a free edge the plane falls away in a bevel of 45 degrees
 }
 
 }  // namespace
 
-/// Brings what is known of a part up to date if its plane could be less than `reach` [m] from the probe by now.
-bool Tracer::refreshPart(int part, const Vector3d& p, const TraceOptions& options, double reach, Foot& foot) noexcept {
-  constexpr double kSteepest = 1.5;  // the depth behind a bevelled edge changes by up to sqrt 2 of the probe's way
+/// The foot by which a part is felt, if its plane could be less than `reach` [m] from the probe by now.
+bool Tracer::refreshPart(int part, const Vector3d& p, const Vector3d& last, const TraceOptions& options, double reach,
+                         Foot& foot) noexcept {
+  const Part& known = parts_[static_cast<std::size_t>(part)];
+  Contact& contact = contactOf(part);
+  const double most = known.depth + kSteepest * (tracks_.way() - known.way);
+  if (!contact.state.held() && known.known && most < -reach) return false;
+  if (!(options.rule.hysteresis > 0)) {
+    hold(part, -1);
+    return nearestOfPart(part, p, options, foot);
+  }
+  Faces faces(*this, part, p, options);
+  foot = contact.state.step(faces, last, p, options.rule);
+  return contact::found(foot);
+}
+
+/// Brings what is known of a part up to date.
+bool Tracer::nearestOfPart(int part, const Vector3d& p, const TraceOptions& options, Foot& foot) noexcept {
   Part& known = parts_[static_cast<std::size_t>(part)];
   const double most = known.depth + kSteepest * (tracks_.way() - known.way);
-  if (known.known && most < -reach) return false;
   if (known.nearest >= 0 && (tracks_[known.nearest].slot < 0 || tracks_[known.nearest].part != part))
     known.nearest = -1;
   if (known.nearest < 0 || known.nearest != nearest_) known.nearest = nearestOf(part, known.nearest, p, options);
@@ -62,7 +78,7 @@ bool Tracer::refreshPart(int part, const Vector3d& p, const TraceOptions& option
     return true;
   }
   // The evaluations ran out, and another foot may be nearer: seen from this one the probe may seem far inside.
-  foot.status = TraceStatus::kDegraded;
+  foot.status = FootStatus::kDegraded;
   const double too_deep = behindPlane(foot) - most;
   if (!known.known) return false;
   if (too_deep > 0) {
@@ -72,7 +88,7 @@ bool Tracer::refreshPart(int part, const Vector3d& p, const TraceOptions& option
   return true;
 }
 
-void Tracer::uniteParts(const Vector3d& p, const TraceOptions& options, Foot& foot) noexcept {
+void Tracer::uniteParts(const Vector3d& p, const Vector3d& last, const TraceOptions& options, Foot& foot) noexcept {
   std::array<Foot, Model::kMaxParts> feet;
   std::array<Wall, Model::kMaxParts> walls;
   std::array<double, Model::kMaxParts> pushes{};
@@ -80,18 +96,20 @@ void Tracer::uniteParts(const Vector3d& p, const TraceOptions& options, Foot& fo
   int count = 0;
   double deepest = 0;
   // The parts that the probe is in, then those so near that they could be in the way out.
-  for (int pass = 0; pass < 2; ++pass) {
+  for (int pass = 0; pass < 2 && (pass == 0 || deepest > 0); ++pass) {
     const double reach = deepest;
     for (int part = 0; part < model_.partCount(); ++part) {
       const auto n = static_cast<std::size_t>(count);
-      if (seen[static_cast<std::size_t>(part)] || !refreshPart(part, p, options, reach, feet[n])) continue;
+      if (seen[static_cast<std::size_t>(part)] || !refreshPart(part, p, last, options, reach, feet[n])) continue;
       seen[static_cast<std::size_t>(part)] = true;
       walls[n] = {feet[n].normal, behindPlane(feet[n])};
       deepest = std::max(deepest, walls[n].depth);
       ++count;
     }
-    if (!(deepest > 0)) return;
   }
+  for (int part = 0; part < model_.partCount(); ++part)
+    if (!seen[static_cast<std::size_t>(part)]) contactOf(part).state.pass();
+  if (!(deepest > 0)) return;
   const Vector3d way = wayOut(walls.data(), count, deepest, pushes.data());
   const auto pushing = std::count_if(pushes.begin(), pushes.begin() + count, [](double push) { return push > 0; });
   const auto most = static_cast<std::size_t>(std::max_element(pushes.begin(), pushes.begin() + count) - pushes.begin());

@@ -76,12 +76,15 @@ std::vector<std::unique_ptr<Solver>> allSolvers(const spline::SurfaceData& data)
 }  // namespace
 
 std::vector<std::unique_ptr<Solver>> ourSolvers(const spline::SurfaceData& data) {
-  trace::TraceOptions direct, newton, tight;
+  trace::TraceOptions nearest, newton;
+  newton.rule = {};  // contacts are held
+  trace::TraceOptions direct = newton, tight = newton;
   direct.method = trace::Method::kDirect;
   tight.tolerance = 1e-15;
   std::vector<std::unique_ptr<Solver>> solvers;
   solvers.push_back(std::make_unique<OurSolver>("hapticd newton, 1 nm (default)", data, newton));
   solvers.push_back(std::make_unique<OurSolver>("hapticd newton, 1 fm", data, tight));
+  solvers.push_back(std::make_unique<OurSolver>("hapticd newton, 1 nm, contact_hysteresis 0", data, nearest));
   solvers.push_back(std::make_unique<OurSolver>("hapticd newton, 1 nm, net form", data, newton, spline::Form::kNet));
   for (int iterations : {1, 2, 3}) {
     direct.iterations = iterations;

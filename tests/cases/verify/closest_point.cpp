@@ -110,7 +110,7 @@ void closestPoint(const Case& c, Check& check) {
   trace::TraceOptions options;
   options.tolerance = 1e-15;
   const trace::Foot foot = tracer.step(q, options);
-  check.isTrue("traced", foot.status != trace::TraceStatus::kInvalid && foot.surface == 0);
+  check.isTrue("traced", foot.status != trace::FootStatus::kInvalid && foot.surface == 0);
   const Json &expect = c.expect, &tol = c.tol;
   if (expect.contains("distance")) check.near("distance", foot.distance, expect["distance"], number(tol["dist_abs"]));
   if (expect.contains("signed_distance"))

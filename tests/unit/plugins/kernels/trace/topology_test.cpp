@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Force across edges, overlapping parts, rival feet, and contacts that are held.
+/// Force across edges, overlapping parts, and rival feet.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -231,53 +231,6 @@ TEST(Topology, FeetInTwoValleysOfOnePatchAreFollowed) {
   EXPECT_LE(wrong, 80);  // valleys that did not exist at the last search; 400 without rivals
   EXPECT_LE(wrong_near, 2);
   EXPECT_LE(longest, 5);
-}
-
-TEST(Topology, AHeldContactKeepsItsFaceUntilAnotherIsNearerByTheHold) {
-  const Model model = solid("box");
-  for (double hold : {0.0, 0.002, 0.5}) {
-    TraceOptions options;
-    options.hold = hold;
-    Tracer tracer(model);
-    double changed = -1;
-    for (int tick = 0; tick < 4000; ++tick) {  // in through the top at 5 mm, down beside the right face, 4 mm off it
-      const Vector3d p(0.046, 0.051 - 1e-5 * tick, 0);
-      if (tick % 5 == 0) search(model, tracer, p);
-      const Foot foot = tracer.step(p, options);
-      if (changed < 0 && foot.normal.x() > 0.5) changed = 0.05 - p.y();
-    }
-    if (hold > 0.1) {
-      EXPECT_LT(changed, 0) << "pushed up all the way";
-    } else {
-      EXPECT_NEAR(changed, 0.004 + hold, 1e-4);
-    }
-  }
-}
-
-TEST(Topology, AHeldContactDoesNotComeOutOfTheFarSideOfAThinWall) {
-  spline::SurfaceData front, back;
-  for (auto* wall : {&front, &back}) {
-    const double x = wall == &front ? 0.001 : -0.001;
-    wall->knots = {{{0, 0, 1, 1}, {0, 0, 1, 1}}};
-    wall->points = {{x, -0.05, -0.05}, {x, -0.05, 0.05}, {x, 0.05, -0.05}, {x, 0.05, 0.05}};
-    wall->reversed = wall == &front;  // Su x Sv = +y x +z = +x
-  }
-  front.reversed = false;
-  back.reversed = true;
-  const Model model({front, back});
-  for (double hold : {0.0, 0.02}) {
-    TraceOptions options;
-    options.hold = hold;
-    Tracer tracer(model);
-    Foot foot;
-    for (int tick = 0; tick < 600; ++tick) {
-      const Vector3d p(0.002 - 1e-5 * tick, 0, 0);
-      if (tick % 5 == 0) search(model, tracer, p);
-      foot = tracer.step(p, options);
-    }
-    EXPECT_EQ(foot.depth > 0, hold > 0);  // 3 mm beyond the back: through it, or still pushed to the front
-    EXPECT_EQ(foot.surface, hold > 0 ? 0 : 1);
-  }
 }
 
 }  // namespace

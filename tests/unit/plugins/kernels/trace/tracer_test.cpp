@@ -194,7 +194,7 @@ TEST(Tracer, BadSamplesLeaveNoTrace) {
   for (int tick = 0; tick < 100; ++tick) {
     if (tick == 50) {
       for (double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300})
-        EXPECT_EQ(with.step(Vector3d(0, bad, 0)).status, TraceStatus::kInvalid);
+        EXPECT_EQ(with.step(Vector3d(0, bad, 0)).status, FootStatus::kInvalid);
     }
     const Foot a = with.step(at(tick)), b = without.step(at(tick));
     EXPECT_EQ(a.point, b.point);
@@ -229,12 +229,12 @@ TEST(Tracer, StopsWhenNothingIsActiveAndStartsAgain) {
   const Model model = solid("box");
   Tracer tracer(model);
   const Vector3d p(0.01, 0.049, 0.02);
-  EXPECT_EQ(tracer.step(p).status, TraceStatus::kIdle);
+  EXPECT_EQ(tracer.step(p).status, FootStatus::kIdle);
   search(model, tracer, p);
   EXPECT_NEAR(tracer.step(p).depth, 0.001, 1e-12);
   for (int surface = 0; surface < model.surfaceCount(); ++surface) tracer.deactivate(surface);
   EXPECT_EQ(tracer.activeCount(), 0);
-  EXPECT_EQ(tracer.step(p).status, TraceStatus::kIdle);
+  EXPECT_EQ(tracer.step(p).status, FootStatus::kIdle);
 }
 
 TEST(Tracer, DirectTracingLagsByTheKnownSteadyError) {

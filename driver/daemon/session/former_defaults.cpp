@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include "session/former_defaults.hpp"
+
+#include <algorithm>
+
+#include "hapticd/abi.h"
+
+namespace hapticd::servo {
+
+namespace {
+
+struct FormerDefault {
+  const char* plugin_id;
+  const char* version;  ///< the last one that had it
+  const char* id;
+  uint32_t index;  ///< in the plugin's table
+  double value;
+};
+
+/// Contacts were not held before 1.1: the nearest face was felt.
+constexpr FormerDefault kFormer[] = {
+    {"org.hapticd.shape.nurbs_rigid", "1.0", "contact_hysteresis", 6, 0},
+    {"org.hapticd.shape.pendulum", "1.0", "contact_hysteresis", 6, 0},
+    {"org.hapticd.shape.push_button", "1.0", "contact_hysteresis", 6, 0},
+};
+
+/// Parts were held from the beginning.
+bool isPart(const scene::Model& model) {
+  return std::any_of(model.parameters.begin(), model.parameters.end(), [](const scene::Value& value) {
+    return value.kind == HSP_PATH && std::filesystem::path(value.text).extension() == ".hpart";
+  });
+}
+
+}  // namespace
+
+void useFormerDefaults(scene::Model& model, const std::string& plugin_id, const std::string& version) {
+  for (const FormerDefault& former : kFormer) {
+    if (plugin_id != former.plugin_id || version != former.version || isPart(model)) continue;
+    const auto given = [&former](const scene::Value& value) { return value.index == former.index; };
+    if (std::any_of(model.parameters.begin(), model.parameters.end(), given)) continue;
+    scene::Value& value = model.parameters.emplace_back();
+    value.id = former.id;
+    value.index = former.index;
+    value.kind = HSP_REAL;
+    value.number = former.value;
+  }
+}
+
+}  // namespace hapticd::servo

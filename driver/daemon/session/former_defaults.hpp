@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+/// Defaults of parameters that newer versions of a plugin have changed.
+#pragma once
+#include <string>
+
+#include "description/scene.hpp"
+
+namespace hapticd::servo {
+
+/// [main] Gives a model of a recording the defaults that its plugin had then, where the scene did not give a value: so
+/// that an old recording answers as it did. @param plugin_id, version of the plugin that made the recording
+void useFormerDefaults(scene::Model& model, const std::string& plugin_id, const std::string& version);
+
+}  // namespace hapticd::servo

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+/// What contact::ContactState sees of a model, or of one of its parts, at the probe of this tick.
+#pragma once
+#include "kernels/trace/tracer.hpp"
+
+namespace hapticd::trace {
+
+class Tracer::Faces {
+ public:
+  /// @param part -1: of all parts together
+  Faces(Tracer& tracer, int part, const Eigen::Vector3d& p, const TraceOptions& options) noexcept
+      : tracer_(tracer), part_(part), p_(p), options_(options) {}
+
+  contact::Followed follow(double side, Foot& foot) noexcept { return tracer_.follow(part_, side, p_, options_, foot); }
+
+  Foot nearest() noexcept {
+    if (!known_) nearest_ = tracer_.nearestFoot(part_, p_, options_);
+    known_ = true;
+    return nearest_;
+  }
+
+  bool enter(const Eigen::Vector3d& from, contact::Sides, double& side) noexcept {
+    const Crossing first = tracer_.firstCrossing(part_, from, p_, side, options_);
+    if (first.track < 0) return false;
+    side = first.side;
+    tracer_.hold(part_, first.track);
+    return true;
+  }
+
+  void holdNearest() noexcept { tracer_.hold(part_, tracer_.nearestTrack(part_)); }
+  void release() noexcept { tracer_.hold(part_, -1); }
+
+ private:
+  Tracer& tracer_;
+  const int part_;
+  const Eigen::Vector3d& p_;
+  const TraceOptions& options_;
+  Foot nearest_;  ///< of this tick
+  bool known_ = false;
+};
+
+}  // namespace hapticd::trace

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+/// The foot of a held contact: where the probe's way meets a surface, and how the foot goes on over edges.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "kernels/contact/edge_rule.hpp"
+#include "kernels/trace/faces.hpp"
+
+namespace hapticd::trace {
+namespace {
+
+using contact::Followed;
+using Eigen::Array2d;
+using Eigen::Vector3d;
+
+constexpr int kMaxCrossings = 4;    ///< of sides in one tick
+constexpr double kMet = 1e-8;       ///< [m] a point so near to a surface is on it
+constexpr int kMostCandidates = 8;  ///< surfaces that may be in the way
+constexpr double kBeyond = 1e-9;    ///< of the way: a crossing so little before or after it counts
+
+/// A point where a straight way meets a patch.
+struct Meeting {
+  Array2d uv{0, 0};
+  double share = 0;          ///< of the way
+  Vector3d normal{0, 0, 1};  ///< outward, unit
+  bool found = false;
+};
+
+/// Newton on S(u, v) = from + share * way, from a point near by. Takes at most `budget` evaluations off it.
+Meeting meet(const Patch& patch, const Vector3d& from, const Vector3d& way, Meeting at, int& budget) noexcept {
+  constexpr int kMostSteps = 6;
+  const double enough = std::max(kMet, kRounding * (from.lpNorm<1>() + way.lpNorm<1>()));
+  spline::SurfacePoint E;
+  for (int i = 0; i < kMostSteps && budget > 0; ++i) {
+    patch.surface.evaluate1(at.uv[0], at.uv[1], E);
+    --budget;
+    const Vector3d miss = from + at.share * way - E.S, n = E.Su.cross(E.Sv);
+    const double length = n.norm(), det = -n.dot(way);
+    if (miss.norm() <= enough && length > 0) {
+      at.normal = n * (patch.sign / length);
+      at.found = true;
+      return at;
+    }
+    if (!(std::abs(det) > 1e-12 * length * way.norm())) return at;
+    // Cramer's rule for (Su Sv -way) (du dv ds) = miss.
+    const double du = -miss.dot(E.Sv.cross(way)) / det, dv = miss.dot(E.Su.cross(way)) / det;
+    at.uv = (at.uv + Array2d(du, dv)).max(patch.lo).min(patch.hi);
+    at.share = std::clamp(at.share + miss.dot(n) / det, -1.0, 2.0);
+  }
+  return at;
+}
+
+}  // namespace
+
+void Tracer::forgetContact() noexcept {
+  for (Contact& contact : contacts_) {
+    contact.state.forget();
+    if (contact.held >= 0) tracks_[contact.held].held = false;
+    contact.held = -1;
+  }
+}
+
+void Tracer::popThrough() noexcept {
+  hold(-1, -1);
+  contacts_[0].state.popThrough(last_p_);
+}
+
+void Tracer::hold(int part, int track) noexcept {
+  int& held = contactOf(part).held;
+  if (held >= 0) tracks_[held].held = false;
+  held = track;
+  if (track >= 0) tracks_[track].held = true;
+}
+
+Followed Tracer::follow(int part, double side, const Vector3d& p, const TraceOptions& options, Foot& foot) noexcept {
+  if (contactOf(part).held < 0) return Followed::kLost;
+  const int before = tracks_[contactOf(part).held].patch;
+  int track = refine(contactOf(part).held, p, options);
+  for (int i = 0; i < kMaxCrossings && tracks_[track].foot.sides != 0; ++i) {
+    const SideMask sides = tracks_[track].foot.sides;
+    int next = -1;
+    for (int at = 0; at < kSides; ++at)
+      if ((sides & bit(at)) && isReleased(track, at, side, p)) return Followed::kReleased;
+    for (int at = 0; at < kSides && next < 0; ++at)
+      if (sides & bit(at)) next = slideOver(track, at, p, options);
+    if (next < 0) break;
+    hold(part, next);
+    track = next;
+  }
+  foot = describe(track, p, 0);
+  foot.begins = tracks_[track].patch != before && foot.on_edge;
+  return Followed::kOn;
+}
+
+/// Whether the probe has gone over a convex edge that the held foot is on, and is in front of the next face.
+bool Tracer::isReleased(int track, int side, double felt, const Vector3d& p) const noexcept {
+  const Track& t = tracks_[track];
+  const Patch& patch = model_.patch(t.patch);
+  const Side& edge = patch.sides[static_cast<std::size_t>(side)];
+  if (edge.kind != SideKind::kJoined) return false;
+  spline::SurfacePoint E;
+  patch.surface.evaluate1(t.foot.uv[0], t.foot.uv[1], E);
+  const bool across_u = Patch::axisOf(side) == 0;
+  const Vector3d along = across_u ? E.Sv : E.Su, across = (side % 2 == 0 ? -1.0 : 1.0) * (across_u ? E.Su : E.Sv);
+  const double length2 = along.squaredNorm();
+  if (!(length2 > 0)) return false;
+  const Vector3d out = (across - along * (along.dot(across) / length2)).stableNormalized(), r = p - t.foot.S;
+  if (!(r.dot(out) > 0)) return false;
+  const double fraction = patch.fractionOn(side, t.foot.uv);
+  const Patch& next = model_.patch(edge.patch);
+  const Vector3d there = felt * next.normalAt(next.onSide(edge.side, edge.flipped ? 1 - fraction : fraction));
+  const contact::EdgeKind kind = contact::edgeKind(felt * surfaceNormal(track), there, out);
+  return contact::atEdge(kind, there, r) == contact::AtEdge::kRelease;
+}
+
+/// Where a held foot goes on beyond a side: the track that it is on then, -1: it stays. Unlike crossSide() it begins at
+/// the common side, whatever other foot of the next patch is nearer.
+int Tracer::slideOver(int track, int side, const Vector3d& p, const TraceOptions& options) noexcept {
+  const int patch = tracks_[track].patch;
+  const Patch& piece = model_.patch(patch);
+  const Side& edge = piece.sides[static_cast<std::size_t>(side)];
+  if (edge.kind == SideKind::kFree || budget_ <= 0) return -1;
+  if (edge.kind == SideKind::kPole) return leavePole(track, side, p, options, true);
+  const double fraction = piece.fractionOn(side, tracks_[track].foot.uv);
+  Iterate at;
+  at.uv = model_.patch(edge.patch).onSide(edge.side, edge.flipped ? 1 - fraction : fraction);
+  const LocalFoot foot = footFrom(edge.patch, at, p, options);
+  if (!(foot.distance < tracks_[track].foot.distance)) return -1;
+  if (edge.patch != patch) return tracks_.put(edge.patch, at, foot);
+  tracks_[track].at = at;
+  tracks_[track].foot = foot;
+  tracks_.refined(track);
+  return track;
+}
+
+/// The first surface that the way from `from` to p enters by a side that is felt. @param touching the side on which
+/// `from` is of a surface that it is on
+Tracer::Crossing Tracer::firstCrossing(int part, const Vector3d& from, const Vector3d& p, double touching,
+                                       const TraceOptions& options) noexcept {
+  const double length = (p - from).norm();
+  std::array<int, kMostCandidates> near{};
+  int count = 0;
+  for (const int index : tracks_.active()) {
+    const bool reached = tracks_.atLeast(index) <= length && model_.patch(tracks_[index].patch).atLeast(p) <= length;
+    if (!reached || (part >= 0 && tracks_[index].part != part)) continue;
+    int at = std::min(count, kMostCandidates - 1);
+    if (count == kMostCandidates && !(tracks_.atLeast(index) < tracks_.atLeast(near.back()))) continue;
+    for (; at > 0 && tracks_.atLeast(index) < tracks_.atLeast(near[static_cast<std::size_t>(at) - 1]); --at)
+      near[static_cast<std::size_t>(at)] = near[static_cast<std::size_t>(at) - 1];
+    near[static_cast<std::size_t>(at)] = index;
+    count = std::min(count + 1, kMostCandidates);
+  }
+  Crossing first;
+  for (int i = 0; i < count; ++i) {
+    int track = near[static_cast<std::size_t>(i)];
+    if (tracks_[track].slot < 0) continue;
+    if (budget_ > 0) track = refine(track, p, options);
+    if (first.track >= 0 && tracks_[first.track].slot < 0) first.track = track;  // they have become one
+    if (tracks_[track].tick != tracks_.tick() || !(tracks_[track].foot.distance <= length + kMet)) continue;
+    Crossing crossing;
+    crossing.side = touching;
+    crossing.track = track;
+    if (!crosses(track, from, p, crossing) || !(crossing.share < first.share)) continue;
+    const auto sides = options.rule.sides;
+    if (sides == contact::Sides::kBoth || (sides == contact::Sides::kFront) == (crossing.side > 0)) first = crossing;
+  }
+  return first;
+}
+
+/// Whether the way from `from` to p crosses the surface under a foot of this tick, and where.
+bool Tracer::crosses(int track, const Vector3d& from, const Vector3d& p, Crossing& crossing) noexcept {
+  const LocalFoot foot = tracks_[track].foot;
+  const Patch& patch = model_.patch(tracks_[track].patch);
+  const Vector3d n = surfaceNormal(track), way = p - from;
+  const double before = (from - foot.S).dot(n), after = (p - foot.S).dot(n);
+  if (std::abs(before) > kMet) crossing.side = before > 0 ? 1 : -1;
+  if (!(crossing.side * after < 0)) return false;
+  Meeting start;
+  start.uv = foot.uv;
+  start.share = std::clamp(before / (before - after), 0.0, 1.0);
+  const Meeting met = meet(patch, from, way, start, budget_);
+  if (!met.found) {  // the tangent plane stands for the surface, unless the way passes beside the patch
+    crossing.share = start.share;
+    return foot.sides == 0 && patch.sidesAt(met.uv) == 0;
+  }
+  crossing.share = met.share;
+  return met.share >= -kBeyond && met.share <= 1 + kBeyond && crossing.side * way.dot(met.normal) < 0;
+}
+
+}  // namespace hapticd::trace
