@@ -106,6 +106,7 @@ void addSizes(std::vector<Case>& cases) {
   cases.push_back(make(
       "1e300 m between probe and surface", sphere(0.05), 200, 1000, [](double) { return Vector3d(1e300, 0, 0); },
       [](const Vector3d&) { return std::nan(""); }));
+  for (Case& c : cases) c.alone = true;
 }
 
 void addForms(std::vector<Case>& cases) {
@@ -214,7 +215,7 @@ std::vector<Case> randomWalks(int ticks) {
     Case c;
     c.name = "random patch " + std::to_string(n) + ", random walk within 10 mm";
     c.surfaces = {data};
-    c.bifurcation = true;
+    c.bifurcation = c.walk = true;
     Vector3d p(0.05, 0.05, 0.005), v(0, 0, 0);
     for (int i = 0; i < ticks / kPatches; ++i) {
       v = 0.98 * v + Vector3d(push(random), push(random), push(random)) -

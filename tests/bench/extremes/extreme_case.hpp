@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <functional>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,25 @@ struct Case {
   std::vector<double> distance;        ///< [m] true one; not-a-number where there is none
   double allowed = 1e-4;               ///< [m] a foot farther than this from the best one is wrong
   bool bifurcation = false;            ///< the nearest point truly jumps: 5 ms to recover
-  bool unite = true;                   ///< parts that run into each other are one solid
+  bool walk = false;                   ///< through solids: the truth is the nearest of all surfaces, so nothing is held
+  bool alone = false;                  ///< beyond what scenes may hold: traced by the kernel alone
   int direct_steps = 0;                ///< steps a tick of the paper's method; 0: Newton
 };
+
+/// The same in another place: turned and shifted at random.
+Case moved(const Case& c, std::mt19937& random);
+
+/// What a tracer answered in one tick.
+struct Answer {
+  Eigen::Vector3d point{0, 0, 0}, normal{0, 0, 0};
+  bool traced = false;
+  int evaluations = 0;
+};
+
+/// The answers of `hapticd trace`. @param hapticd the program @throws std::exception
+std::vector<Answer> traceThroughDoor(const Case& c, const std::filesystem::path& hapticd);
+/// The answers of the kernel, with a search beside it as in a session.
+std::vector<Answer> traceAlone(const Case& c);
 
 /// Reads one file, see tests/cases/extremes/README.md. @throws std::exception
 Case readCase(const std::filesystem::path& file);

@@ -1,32 +1,32 @@
 // SPDX-License-Identifier: MIT
-/// Traces extreme surfaces and probe paths with the production tracer, in lockstep with the global search as
-/// `hapticd trace` runs it, and prints what came of each. Exit code 1 if any case is not ok.
-///   extremes [--random TICKS] [FOLDER...]   without a folder: tests/cases/extremes, closed forms, walks
+/// Traces extreme surfaces and probe paths with `hapticd trace`, and prints what came of each. The cases of a folder
+/// are traced where they are, and in 12 rigid motions. Exit code 1 if any case is not ok.
+///   extremes HAPTICD [--random TICKS] [FOLDER...]   without a folder: tests/cases/extremes, closed forms, walks
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "extreme_case.hpp"
-#include "kernels/trace/tracer.hpp"
 
 namespace {
 
 using Eigen::Vector3d;
+using hapticd::extremes::Answer;
 using hapticd::extremes::Case;
-using namespace hapticd::trace;
 namespace fs = std::filesystem;
 
-constexpr double kRecovery = 0.005;         // [s] after a true bifurcation
-constexpr double kSearchPeriod = 0.005;     // [s] of the global search beside the servo loop
-constexpr double kMaxProbeSpeed = 10;       // [m/s] faster is a jump, which asks for a search
-constexpr double kActivationRadius = 0.15;  // [m]
+constexpr double kRecovery = 0.005;  // [s] after a true bifurcation
 constexpr int kMostEvaluations = 12;
 constexpr int kDefaultRandomTicks = 50'000;
+constexpr int kMotions = 12;
+
+fs::path hapticd_program;
 
 struct Outcome {
   double worst_excess = 0;  // [m]
@@ -50,51 +50,33 @@ struct Outcome {
   }
 };
 
-void offerAll(const Model& model, Tracer& tracer, const Vector3d& p) {
-  Found found;
-  model.search(p, std::max(kActivationRadius, 2 * model.bounds().diagonal().stableNorm()), found);
-  for (const auto* records : {&found.nearest, &found.rivals})
-    for (const Near& near : *records) tracer.activate(near.surface, near.u, near.v, near.distance);
-}
-
 Outcome run(const Case& c) {
-  const Model model(c.surfaces);
-  Tracer tracer(model);
-  TraceOptions options;
-  options.unite = c.unite;
-  if (c.direct_steps > 0) {
-    options.method = Method::kDirect;
-    options.iterations = c.direct_steps;
-  }
-  if (c.started) tracer.activate(0, c.start_u, c.start_v, 0);
+  const std::vector<Answer> answers = c.alone ? traceAlone(c) : traceThroughDoor(c, hapticd_program);
   Outcome out;
-  Vector3d last = c.probe.front();
-  double next_search = c.started ? kSearchPeriod : 0;
-  bool search = false;
   int bad = 0;
   for (std::size_t i = 0; i < c.probe.size(); ++i) {
-    const Vector3d& p = c.probe[i];
-    const double t = static_cast<double>(i) / c.rate;
-    if (t >= next_search || search) {
-      offerAll(model, tracer, last);  // the search knows the newest probe before this tick
-      if (t >= next_search) next_search += kSearchPeriod;
-    }
-    const Foot foot = tracer.step(p, options);
-    out.worst_evaluations = std::max(out.worst_evaluations, foot.evaluations);
-    search = !p.allFinite() || !((p - last).norm() <= kMaxProbeSpeed / c.rate);
-    if (p.allFinite()) last = p;
+    const Answer& answer = answers.at(i);
+    out.worst_evaluations = std::max(out.worst_evaluations, answer.evaluations);
     if (!std::isfinite(c.distance[i])) continue;
-    const double excess = (p - foot.point).stableNorm() - c.distance[i];
-    out.poisoned = out.poisoned || foot.surface < 0 || !std::isfinite(excess) || !foot.normal.allFinite();
+    const double excess = (c.probe[i] - answer.point).stableNorm() - c.distance[i];
+    out.poisoned = out.poisoned || !answer.traced || !std::isfinite(excess) || !answer.normal.allFinite();
     out.worst_excess = std::max(out.worst_excess, excess);
     // 1e300 m away, a metre is less than rounding.
-    const bool wrong = excess > std::max(c.allowed, 1e-12 * c.distance[i]);
+    const bool wrong = !(excess <= std::max(c.allowed, 1e-12 * c.distance[i]));
     bad = wrong ? bad + 1 : 0;
     out.bad_ticks += wrong ? 1 : 0;
     out.longest_bad = std::max(out.longest_bad, bad);
   }
   out.lost = bad > (c.bifurcation ? kRecovery * c.rate : 0);
   return out;
+}
+
+/// All rigid motions of a case together.
+Outcome runMoved(const Case& c) {
+  std::mt19937 random(16);
+  Outcome all;
+  for (int i = 0; i < kMotions; ++i) all.add(run(moved(c, random)));
+  return all;
 }
 
 bool print(const Case& c, const Outcome& out) {
@@ -118,8 +100,11 @@ bool runFolder(const fs::path& folder) {
   bool all_ok = !files.empty();
   for (const fs::path& file : files) {
     try {
-      const Case c = hapticd::extremes::readCase(file);
+      Case c = hapticd::extremes::readCase(file);
       all_ok = print(c, run(c)) && all_ok;
+      const Outcome in_motions = runMoved(c);
+      c.name += fmt::format(", {} rigid motions", kMotions);
+      all_ok = print(c, in_motions) && all_ok;
     } catch (const std::exception& e) {
       fmt::print("| {} | | | | | FAILED: {} |\n", file.filename().string(), e.what());
       all_ok = false;
@@ -160,9 +145,15 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     if (std::string(argv[i]) == "--random" && i + 1 < argc) {
       random_ticks = std::atoi(argv[++i]);
+    } else if (hapticd_program.empty()) {
+      hapticd_program = argv[i];
     } else {
       folders.emplace_back(argv[i]);
     }
+  }
+  if (hapticd_program.empty()) {
+    fmt::print(stderr, "usage: extremes HAPTICD [--random TICKS] [FOLDER...]\n");
+    return 2;
   }
   const bool all = folders.empty();
   if (all) folders.emplace_back(HAPTICD_SOURCE_DIR "/tests/cases/extremes");

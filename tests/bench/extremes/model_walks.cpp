@@ -38,7 +38,7 @@ Case walkOver(const std::string& model_name, double speed, double deepest) {
   Case c;
   c.surfaces = readModelFile(HAPTICD_SOURCE_DIR "/config/models/" + model_name + ".yaml").surfaces;
   c.bifurcation = true;
-  c.unite = false;  // the truth is the nearest of all surfaces
+  c.walk = true;
   const trace::Model model(c.surfaces);
   trace::Tracer anew(model);
   trace::Found found;
