@@ -58,12 +58,6 @@ Tall scaledTranspose(const Jacobian& J, double length) noexcept {
 
 }  // namespace
 
-Wrench wrenchAt(const Eigen::Vector3d& force, const Eigen::Vector3d& offset) noexcept {
-  Wrench W;
-  W << force, offset.cross(force);
-  return W;
-}
-
 JointVector jointTorques(const Jacobian& J, const Wrench& W) noexcept {
   JointVector tau(J.cols());
   for (Eigen::Index i = 0; i < J.cols(); ++i) tau[i] = J.col(i).dot(W);

@@ -6,9 +6,6 @@
 
 namespace hapticd::kinematics {
 
-/// [any] The wrench at the wrist of a force at a finger tip: [f; r x f] (Eq. 7). @param offset from wrist to tip [m]
-Wrench wrenchAt(const Eigen::Vector3d& force, const Eigen::Vector3d& offset) noexcept;
-
 /// [any] tau = J^T W (Eq. 9): the torques that the motors must produce so that the tip pushes with W.
 JointVector jointTorques(const Jacobian& J, const Wrench& W) noexcept;
 

@@ -32,9 +32,6 @@ Influence influence(std::span<const double> basis, int span, int p_prime, Choice
 struct Split {
   double skeleton = 0;  ///< [m] along the inward normal of the contact
   double radius = 0;    ///< [m] by which the radius shrinks
-
-  double contactShift() const noexcept { return skeleton + radius; }   ///< [m] inward motion of the touched contour
-  double oppositeShift() const noexcept { return radius - skeleton; }  ///< [m] inward motion of the contour opposite
 };
 
 /// [any] The paper's g split: 0 only the radius gives way, 1/2 the opposite side stays, 1 the body moves whole.

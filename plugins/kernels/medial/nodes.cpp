@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "kernels/medial/influence.hpp"
+
 namespace hapticd::medial {
 namespace {
 
@@ -141,7 +143,8 @@ void Nodes::yield(const Hold& contact, std::span<const NodeWeight> felt, std::sp
   Vector4d inward;
   inward << -contact.normal, -1;  // contour shift = inward . (skeleton, radius)
   Vector4d share;
-  share << -options_.split * contact.normal, -(1 - options_.split);
+  const Split unit = splitDepth(1, options_.split);
+  share << -unit.skeleton * contact.normal, -unit.radius;
   Vector4d x = Vector4d::Zero(), v = Vector4d::Zero();
   for (const NodeWeight& part : felt) {
     x += part.weight * nodes_[part.node].x;

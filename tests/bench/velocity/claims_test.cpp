@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "delays.hpp"
+#include "response.hpp"
 #include "servo/velocity/estimator.hpp"
-#include "servo/velocity/response.hpp"
 
 namespace hapticd::velocity_bench {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 constexpr double kRate = 1500;
 
 TEST(PaperClaims, TheWindowIsNotDelayFree) {
-  const velocity::WindowResponse window = velocity::windowResponse(15, kRate, 10);
+  const WindowResponse window = windowResponse(15, kRate, 10);
   EXPECT_NEAR(window.delay, 5e-3, 1e-15);
   EXPECT_NEAR(windowCutoff(15, kRate), 44.3, 0.05);
   EXPECT_NEAR(window.noise_gain, M_SQRT2 / 0.01, 1e-9);
@@ -41,7 +41,7 @@ TEST(PaperClaims, TheIdealDifferentiatorCutShortNeedsItsGainBack) {
   const double gains[][2] = {{2, 1.273}, {4, 0.849}, {8, 0.922}, {16, 0.960}, {32, 0.980}};
   for (const auto& [taps, gain] : gains) EXPECT_NEAR(truncatedGain(static_cast<int>(taps)), gain, 6e-4) << taps;
   EXPECT_NEAR(truncatedNoise(32, kRate) / 2720, 1, 0.03);
-  EXPECT_NEAR(velocity::windowResponse(1, kRate, 10).noise_gain, 2121, 1);
+  EXPECT_NEAR(windowResponse(1, kRate, 10).noise_gain, 2121, 1);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 
-#include "servo/velocity/response.hpp"
+#include "response.hpp"
 
 namespace hapticd::velocity_bench {
 namespace {
@@ -62,13 +62,13 @@ double chebyshevDelay(int order, double ripple_db, double cutoff, double rate) {
 
 double truncatedGain(int taps) {
   double gain = 0;
-  for (const int n : middle(taps)) gain -= (n - 0.5) * velocity::idealTap(n);
+  for (const int n : middle(taps)) gain -= (n - 0.5) * idealTap(n);
   return std::abs(gain);
 }
 
 double truncatedNoise(int taps, double rate) {
   double squares = 0;
-  for (const int n : middle(taps)) squares += velocity::idealTap(n) * velocity::idealTap(n);
+  for (const int n : middle(taps)) squares += idealTap(n) * idealTap(n);
   return std::sqrt(squares) * rate / truncatedGain(taps);
 }
 

@@ -12,8 +12,8 @@
 
 #include "delays.hpp"
 #include "plot/plot.hpp"
+#include "response.hpp"
 #include "servo/velocity/estimator.hpp"
-#include "servo/velocity/response.hpp"
 
 namespace {
 
@@ -117,7 +117,7 @@ std::string table(double rate, double step) {
 
 std::string claims() {
   constexpr double kRate = 1500;
-  const auto window = velocity::windowResponse(15, kRate, 10);
+  const auto window = bench::windowResponse(15, kRate, 10);
   const double cutoff = bench::windowCutoff(15, kRate);
   std::string text = fmt::format(
       "\n## What the paper says of Eq. 5\n\n| statement | found |\n|---|---|\n"
@@ -145,7 +145,7 @@ std::string claims() {
     text += fmt::format("| {} | {:.3f} | {} | {:.0f} |\n", taps, bench::truncatedGain(taps), (taps - 1) / 2.0,
                         bench::truncatedNoise(taps, kRate));
   return text +
-         fmt::format("| plain difference | 1 | 0.5 | {:.0f} |\n", velocity::windowResponse(1, kRate, 10).noise_gain);
+         fmt::format("| plain difference | 1 | 0.5 | {:.0f} |\n", bench::windowResponse(1, kRate, 10).noise_gain);
 }
 
 void draw(const std::string& file) {

@@ -13,11 +13,6 @@ Jacobian random6(int joints, unsigned seed) {
   return Jacobian::Random(6, joints);
 }
 
-TEST(Statics, WrenchOfAFingerForceHasItsMomentAboutTheWrist) {
-  const Wrench W = wrenchAt(Eigen::Vector3d(0, 2, 0), Eigen::Vector3d(3, 0, 0));
-  EXPECT_EQ(W, (Wrench() << 0, 2, 0, 0, 0, 6).finished());
-}
-
 TEST(Statics, PseudoInverseGivesTheSmallestWrenchWhereRankIsMissing) {
   for (unsigned seed = 1; seed < 50; ++seed) {
     Jacobian J = random6(8, seed);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "servo/velocity/response.hpp"
+#include "response.hpp"
 
 #include <cmath>
 
-namespace hapticd::velocity {
+namespace hapticd::velocity_bench {
 
 WindowResponse windowResponse(int n, double rate, double frequency) noexcept {
   const double span = n / rate;
@@ -16,4 +16,4 @@ double idealTap(int n) noexcept {
   return (n % 2 == 0 ? 1 : -1) / (M_PI * x * x);
 }
 
-}  // namespace hapticd::velocity
+}  // namespace hapticd::velocity_bench

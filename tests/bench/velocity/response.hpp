@@ -2,7 +2,7 @@
 /// What a velocity estimate costs: gain, phase, delay and noise, in closed form.
 #pragma once
 
-namespace hapticd::velocity {
+namespace hapticd::velocity_bench {
 
 /// Frequency response of the window of Eq. 5, H = (1 - exp(-j w n T)) / (nT).
 struct WindowResponse {
@@ -18,4 +18,4 @@ WindowResponse windowResponse(int n, double rate, double frequency) noexcept;
 /// (-1)^n / (pi (n - 1/2)^2). Divide by T for 1/s.
 double idealTap(int n) noexcept;
 
-}  // namespace hapticd::velocity
+}  // namespace hapticd::velocity_bench
