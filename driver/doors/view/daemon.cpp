@@ -57,7 +57,7 @@ class DaemonImpl final : public Daemon {
     if (error) return;
     link_->socket.non_blocking(true, error);
     connected_ = true;
-    in_.clear(), out_.clear(), sending_.clear();
+    in_.clear(), out_.clear(), sending_.clear(), memories_.clear();
     receive();
   }
 
@@ -93,7 +93,7 @@ class DaemonImpl final : public Daemon {
     std::vector<Descriptor> descriptors;
     const ssize_t got = receiveWith(link_->socket.native_handle(), buffer, descriptors);
     if (got < 0) return errno == EAGAIN || errno == EINTR;
-    if (!descriptors.empty()) memory_ = std::move(descriptors.front());
+    for (Descriptor& descriptor : descriptors) memories_.push_back(std::move(descriptor));
     if (got == 0) return false;
     in_.append(buffer, static_cast<size_t>(got));
     answer();
@@ -109,9 +109,17 @@ class DaemonImpl final : public Daemon {
       if (pending_.empty()) continue;
       const Answered answered = std::move(pending_.front());
       pending_.pop_front();
-      answered(json, std::exchange(memory_, Descriptor()));
+      answered(json, takeMemory(json));
     }
     in_.erase(0, begin);
+  }
+
+  /// Answers of one read may have come before the one that brought memory: that one says "bytes".
+  Descriptor takeMemory(const Json& answer) {
+    if (memories_.empty() || !answer.contains("bytes")) return {};
+    Descriptor memory = std::move(memories_.front());
+    memories_.pop_front();
+    return memory;
   }
 
   void lost() {
@@ -127,7 +135,7 @@ class DaemonImpl final : public Daemon {
   std::shared_ptr<Link> link_;
   bool connected_ = false;
   std::string in_, out_, sending_;
-  Descriptor memory_;
+  std::deque<Descriptor> memories_;
   std::deque<Answered> pending_;
 };
 

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 class Daemon {
  public:
   /// The answer, {"ok": false, "error": ...} where there is none, and the memory file that came with it.
-  using Answered = std::function<void(const Json& answer, Descriptor memory)>;
+  using Answered = std::function<void(const Json& answer, const Descriptor& memory)>;
 
   virtual ~Daemon() = default;
   /// [main] Sends a request; requests are answered in their order. Never waits, and calls back later, not at once.

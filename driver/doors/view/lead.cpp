@@ -26,7 +26,7 @@ std::unique_ptr<Lead> Lead::ask(boost::asio::io_context& io, const std::string& 
   std::unique_ptr<Lead> lead(new Lead);
   lead->daemon_ = Daemon::at(io, socket);
   lead->daemon_->connect();
-  lead->daemon_->ask(request, [self = lead.get(), taken](const Json& answer, Descriptor memory) {
+  lead->daemon_->ask(request, [self = lead.get(), taken](const Json& answer, const Descriptor& memory) {
     if (answer.value("ok", false)) self->page_ = mapLead(memory.get());
     self->refused_ = self->page_ == nullptr;
     const bool failed = answer.value("ok", false) && self->page_ == nullptr;

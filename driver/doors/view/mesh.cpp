@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "mesh.hpp"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <bit>
 #include <cstring>
 
@@ -32,6 +35,38 @@ bool appendAll(std::string& bytes, const Json& list) {
   return true;
 }
 
+constexpr size_t kMost = size_t{1} << 24;  ///< vertices, and triangles: more no page draws
+
+struct Counts {
+  size_t vertices = 0, triangles = 0;
+  bool normals = false;
+};
+
+/// What an answer says of its memory; nothing where it cannot be so.
+Counts countsOf(const Json& answer) {
+  const auto count = [&](const char* key) {
+    const auto it = answer.find(key);
+    return it != answer.end() && it->is_number_unsigned() ? it->get<size_t>() : kMost + 1;
+  };
+  const auto normals = answer.find("normals");
+  const Counts counts{count("vertices"), count("triangles"), normals != answer.end() && *normals == true};
+  return counts.vertices <= kMost && counts.triangles <= kMost ? counts : Counts{};
+}
+
+/// Read, not mapped: memory that somebody makes shorter would end this process. False: it has fewer bytes.
+bool appendFrom(int memory, size_t count, std::string& bytes) {
+  struct stat info{};
+  if (memory < 0 || fstat(memory, &info) != 0 || info.st_size < static_cast<off_t>(count)) return false;
+  const size_t head = bytes.size();
+  bytes.resize(head + count);
+  for (size_t got = 0; got < count;) {
+    const ssize_t more = pread(memory, bytes.data() + head + got, count - got, static_cast<off_t>(got));
+    if (more <= 0) return false;
+    got += static_cast<size_t>(more);
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string headed(uint32_t a, uint32_t b, uint32_t c, uint32_t d, size_t reserve) {
@@ -41,17 +76,19 @@ std::string headed(uint32_t a, uint32_t b, uint32_t c, uint32_t d, size_t reserv
   return bytes;
 }
 
-Message meshMessage(const Json& answer) {
-  const Json *xyz = numbers(answer, "xyz"), *normals = numbers(answer, "normals"),
-             *corners = numbers(answer, "triangles");
-  if (xyz == nullptr || corners == nullptr || xyz->size() % 3 != 0 || corners->size() % 3 != 0) return nullptr;
-  const bool has_normals = normals != nullptr && normals->size() == xyz->size();
-  std::string bytes =
-      headed(kMeshMessage, static_cast<uint32_t>(xyz->size() / 3), static_cast<uint32_t>(corners->size() / 3),
-             has_normals ? 1 : 0, 4 * (2 * xyz->size() + corners->size()));
-  if (!appendAll<float>(bytes, *xyz)) return nullptr;
-  if (has_normals && !appendAll<float>(bytes, *normals)) return nullptr;
-  if (!appendAll<uint32_t>(bytes, *corners)) return nullptr;
+Message meshMessage(const Json& answer, int memory) {
+  const Counts counts = countsOf(answer);
+  const size_t numbers = 3 * (counts.vertices * (counts.normals ? 2 : 1) + counts.triangles);
+  std::string bytes = headed(kMeshMessage, static_cast<uint32_t>(counts.vertices),
+                             static_cast<uint32_t>(counts.triangles), counts.normals ? 1 : 0);
+  if (counts.vertices == 0 || !appendFrom(memory, 4 * numbers, bytes)) return nullptr;
+  return std::make_shared<const std::string>(std::move(bytes));
+}
+
+Message verticesMessage(const Json& answer, int memory, uint32_t model, uint32_t frame) {
+  const Counts counts = countsOf(answer);
+  std::string bytes = headed(kVerticesMessage + model, frame, static_cast<uint32_t>(counts.vertices), 0);
+  if (counts.vertices == 0 || !appendFrom(memory, 12 * counts.vertices, bytes)) return nullptr;
   return std::make_shared<const std::string>(std::move(bytes));
 }
 

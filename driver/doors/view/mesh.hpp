@@ -15,8 +15,11 @@ namespace hapticd::view {
 
 constexpr uint32_t kMeshMessage = 0x80000000u, kVerticesMessage = 0x100;
 
-/// [main] From an answer of `geometry`. nullptr: it is none.
-Message meshMessage(const Json& answer);
+/// [main] From an answer of `geometry` as memory. nullptr: it is none, or the memory is shorter than the answer says.
+Message meshMessage(const Json& answer, int memory);
+
+/// [main] The vertices alone of such an answer, of a body that deforms. nullptr as there.
+Message verticesMessage(const Json& answer, int memory, uint32_t model, uint32_t frame);
 
 /// [main] From an answer of `vertices`. nullptr: it has no vertices.
 Message verticesMessage(const Json& answer, uint32_t model);

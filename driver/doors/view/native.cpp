@@ -250,7 +250,7 @@ void Native::draw(const Json& id, const Json& request) {
 }
 
 void Native::pass(const Json& id, Json request) {
-  stage_.daemon().ask(request, [this, id, alive = alive_](const Json& said, Descriptor) {
+  stage_.daemon().ask(request, [this, id, alive = alive_](const Json& said, const Descriptor&) {
     if (*alive) answer(id, said);
   });
 }

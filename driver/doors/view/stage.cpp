@@ -26,6 +26,11 @@ void eachModel(const Json& list, Use&& use) {
   }
 }
 
+/// As memory: exact normals, no bound on its size, and nothing turned into text and back.
+Json geometryOf(const std::string& model) {
+  return {{"do", "geometry"}, {"model", model}, {"as", "memory"}};
+}
+
 }  // namespace
 
 Stage::Stage(boost::asio::io_context& io, StageOptions options) : io_(io), options_(std::move(options)) {
@@ -83,7 +88,7 @@ void Stage::tick() {
 }
 
 void Stage::poll() {
-  daemon_->ask({{"do", "list"}}, [this](const Json& answer, Descriptor) {
+  daemon_->ask({{"do", "list"}}, [this](const Json& answer, const Descriptor&) {
     if (!answer.value("ok", false) || answer == list_) return;
     list_ = answer;
     ++list_number_;
@@ -97,7 +102,7 @@ void Stage::poll() {
     soft_ = std::move(soft);
   });
   if (recorded()) return;
-  daemon_->ask({{"do", "status"}}, [this](const Json& answer, Descriptor) {
+  daemon_->ask({{"do", "status"}}, [this](const Json& answer, const Descriptor&) {
     if (!answer.value("ok", false)) return;
     status_ = answer;
     ++status_number_;
@@ -120,7 +125,7 @@ void Stage::pollSoft() {
 void Stage::askVertices(const std::string& name) {
   soft_[name].asked = true;
   daemon_->ask({{"do", "vertices"}, {"model", name}, {"after", live_[name].frame}},
-               [this, name, run = run_](const Json& answer, Descriptor) {
+               [this, name, run = run_](const Json& answer, const Descriptor&) {
                  const auto soft = soft_.find(name);
                  if (run != run_ || soft == soft_.end()) return;
                  soft->second.asked = false;
@@ -133,12 +138,13 @@ void Stage::askVertices(const std::string& name) {
 void Stage::askGeometry(const std::string& name) {
   soft_[name].asked = true;
   soft_[name].next = Clock::now() + kGeometryEvery;
-  daemon_->ask({{"do", "geometry"}, {"model", name}}, [this, name, run = run_](const Json& answer, Descriptor) {
+  daemon_->ask(geometryOf(name), [this, name, run = run_](const Json& answer, const Descriptor& memory) {
     const auto soft = soft_.find(name);
     if (run != run_ || soft == soft_.end()) return;
     soft->second.asked = false;
-    if (Message message = verticesMessage(answer, soft->second.number))
-      live_[name] = {live_[name].frame + 1, std::move(message)};
+    const uint64_t frame = live_[name].frame + 1;
+    if (Message message = verticesMessage(answer, memory.get(), soft->second.number, static_cast<uint32_t>(frame)))
+      live_[name] = {frame, std::move(message)};
   });
 }
 
@@ -174,9 +180,9 @@ void Stage::draw(const std::string& model, std::function<void(const Drawn&)> dra
   const auto known = meshes_.find(model);
   if (known != meshes_.end()) return drawn(known->second);
   const uint64_t run = run_;
-  daemon_->ask({{"do", "geometry"}, {"model", model}}, [this, model, run, drawn](const Json& answer, Descriptor) {
+  daemon_->ask(geometryOf(model), [this, model, run, drawn](const Json& answer, const Descriptor& memory) {
     Drawn result;
-    if (answer.value("ok", false)) result.mesh = meshMessage(answer);
+    if (answer.value("ok", false)) result.mesh = meshMessage(answer, memory.get());
     if (!result.mesh) result.error = answer.value("error", std::string("the model's triangles cannot be read"));
     if (run == run_ && result.mesh && !soft_.contains(model)) meshes_[model] = result;
     drawn(result);

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <vector>
+
+#include "base/sealed_memory.hpp"
 
 namespace hapticd::view {
 namespace {
@@ -15,9 +18,22 @@ T at(const std::string& bytes, size_t offset) {
   return value;
 }
 
+/// Memory as the daemon hands it out: f32 xyz, f32 normals, u32 corners.
+Descriptor memoryOf(const std::vector<float>& places, const std::vector<uint32_t>& corners) {
+  const auto shared = SealedMemory::create("test", 4 * (places.size() + corners.size()), SealedMemory::Writers::kOne);
+  std::memcpy((*shared)->data(), places.data(), 4 * places.size());
+  if (!corners.empty()) std::memcpy((*shared)->data() + 4 * places.size(), corners.data(), 4 * corners.size());
+  auto descriptor = (*shared)->share();
+  return std::move(*descriptor);
+}
+
+Json answerOf(size_t vertices, size_t triangles, bool normals) {
+  return {{"ok", true}, {"bytes", 4096}, {"vertices", vertices}, {"triangles", triangles}, {"normals", normals}};
+}
+
 TEST(MeshMessage, KeepsEveryNumber) {
-  const Json answer = {{"ok", true}, {"xyz", {0.5, 1, 2, 3, 4, 5, 6, 7, 8}}, {"triangles", {0, 1, 2}}};
-  const Message message = meshMessage(answer);
+  const Descriptor memory = memoryOf({0.5f, 1, 2, 3, 4, 5, 6, 7, 8}, {0, 1, 2});
+  const Message message = meshMessage(answerOf(3, 1, false), memory.get());
   ASSERT_NE(message, nullptr);
   ASSERT_EQ(message->size(), 16u + 9 * 4 + 3 * 4);
   EXPECT_EQ(at<uint32_t>(*message, 0), kMeshMessage);
@@ -29,19 +45,34 @@ TEST(MeshMessage, KeepsEveryNumber) {
   EXPECT_EQ(at<uint32_t>(*message, 16 + 9 * 4 + 2 * 4), 2u);
 }
 
-TEST(MeshMessage, BringsNormalsWhereThereAreAsManyAsVertices) {
-  Json answer = {{"xyz", {0, 0, 0}}, {"normals", {0, 1, 0}}, {"triangles", Json::array()}};
-  EXPECT_EQ(at<uint32_t>(*meshMessage(answer), 12), 1u);
-  EXPECT_EQ(at<float>(*meshMessage(answer), 16 + 4 * 4), 1.0f);
-  answer["normals"] = {0, 1};
-  EXPECT_EQ(at<uint32_t>(*meshMessage(answer), 12), 0u);
+TEST(MeshMessage, BringsTheNormalsOfTheModel) {
+  const Descriptor memory = memoryOf({0, 0, 0, 0, 1, 0}, {});
+  const Message message = meshMessage(answerOf(1, 0, true), memory.get());
+  ASSERT_NE(message, nullptr);
+  EXPECT_EQ(at<uint32_t>(*message, 12), 1u);
+  EXPECT_EQ(at<float>(*message, 16 + 4 * 4), 1.0f);
 }
 
 TEST(MeshMessage, IsNoneOfWhatIsNoMesh) {
+  const Descriptor memory = memoryOf({0, 0, 0}, {});
+  EXPECT_NE(meshMessage(answerOf(1, 0, false), memory.get()), nullptr);
+  EXPECT_EQ(meshMessage(answerOf(1, 0, false), -1), nullptr);
+  EXPECT_EQ(meshMessage(answerOf(100'000, 0, false), memory.get()), nullptr) << "more than the memory has";
+  EXPECT_EQ(meshMessage(answerOf(size_t{1} << 62, 0, false), memory.get()), nullptr);
+  EXPECT_EQ(meshMessage(answerOf(0, 0, false), memory.get()), nullptr);
   for (const char* text :
-       {R"({})", R"({"xyz":[1,2],"triangles":[]})", R"({"xyz":[1,2,"3"],"triangles":[]})",
-        R"({"xyz":[1,2,3],"triangles":[0,0]})", R"({"xyz":{},"triangles":[]})", R"({"xyz":[1,2,3]})"})
-    EXPECT_EQ(meshMessage(Json::parse(text)), nullptr) << text;
+       {R"({})", R"({"vertices":1})", R"({"vertices":-1,"triangles":0})", R"({"vertices":"1","triangles":[]})"})
+    EXPECT_EQ(meshMessage(Json::parse(text), memory.get()), nullptr) << text;
+}
+
+TEST(VerticesMessage, TakesThoseOfTheMemoryWithoutNormalsAndCorners) {
+  const Descriptor memory = memoryOf({1, 2, 3, 0, 0, 1}, {0, 0, 0});
+  const Message message = verticesMessage(answerOf(1, 1, true), memory.get(), 5, 9);
+  ASSERT_NE(message, nullptr);
+  ASSERT_EQ(message->size(), 16u + 3 * 4);
+  EXPECT_EQ(at<uint32_t>(*message, 0), kVerticesMessage + 5);
+  EXPECT_EQ(at<uint32_t>(*message, 4), 9u);
+  EXPECT_EQ(at<float>(*message, 16 + 8), 3.0f);
 }
 
 TEST(VerticesMessage, NamesModelAndFrame) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 
 #include "mesh.hpp"
@@ -50,9 +51,12 @@ TEST(Frames, TakeNoRowsThatAreTooShort) {
 }
 
 TEST(SceneUpdate, IsJsonWithEveryTriangle) {
-  const Message mesh = meshMessage(
-      {{"xyz", {0, 0, 0, 1, 0, 0, 0, 1, 0}}, {"normals", {0, 0, 1, 0, 0, 1, 0, 0, 1}}, {"triangles", {0, 1, 2}}});
-  const Json update = Json::parse(sceneUpdate("a \"quoted\" name", *mesh, 1'500'000'000));
+  std::string mesh = headed(kMeshMessage, 3, 1, 1);
+  const std::array<float, 18> places = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+  const std::array<uint32_t, 3> corners = {0, 1, 2};
+  mesh.append(reinterpret_cast<const char*>(places.data()), sizeof places);
+  mesh.append(reinterpret_cast<const char*>(corners.data()), sizeof corners);
+  const Json update = Json::parse(sceneUpdate("a \"quoted\" name", mesh, 1'500'000'000));
   EXPECT_EQ(update["entities"][0]["id"], "a \"quoted\" name");
   EXPECT_EQ(update["entities"][0]["timestamp"]["nsec"], 500'000'000);
   EXPECT_EQ(update["entities"][0]["triangles"][0]["indices"], Json::parse("[0,1,2]"));
