@@ -2,7 +2,7 @@
 // Every scene that ships, looked at in a real browser; the form, the slider, narrow windows and the keyboard.
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
-import {readdirSync, readFileSync} from 'node:fs';
+import {existsSync, readdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
 import {Browser, look, pictures, shown} from './browser.mjs';
@@ -60,6 +60,94 @@ for (const scene of all) {
     }, names);
   });
 }
+
+/** An OBJ file of a ball [m], for a part with as many triangles as a CAD model has. */
+function ball(radius, rings) {
+  const lines = [], sides = 2 * rings, at = (ring, side) => ring * sides + (side % sides) + 1;
+  for (let i = 0; i <= rings; ++i)
+    for (let k = 0; k < sides; ++k) {
+      const polar = 0.02 + i / rings * (Math.PI - 0.04), turn = k / sides * 2 * Math.PI;
+      lines.push(`v ${radius * Math.sin(polar) * Math.cos(turn)} ${radius * Math.cos(polar)} ${radius * Math.sin(polar) * Math.sin(turn)}`);
+    }
+  for (let i = 0; i < rings; ++i)
+    for (let k = 0; k < sides; ++k) lines.push(`f ${at(i, k)} ${at(i, k + 1)} ${at(i + 1, k + 1)}`, `f ${at(i, k)} ${at(i + 1, k + 1)} ${at(i + 1, k)}`);
+  for (const ring of [0, rings]) {
+    const caps = Array.from({length: sides}, (_, k) => at(ring, k));
+    for (let k = 1; k + 1 < sides; ++k) lines.push(ring === 0 ? `f ${caps[0]} ${caps[k + 1]} ${caps[k]}` : `f ${caps[0]} ${caps[k]} ${caps[k + 1]}`);
+  }
+  return `${lines.join('\n')}\n`;
+}
+
+test('a part file of 20 000 triangles is drawn with its normals', async () => {
+  const sandbox = new Sandbox();
+  let page;
+  try {
+    const file = (name) => join(sandbox.folder, name);
+    writeFileSync(file('ball.obj'), ball(0.04, 70));
+    execFileSync(hapticd, ['import', file('ball.obj'), '-o', file('ball.hpart'), '--smooth-angle', '30'], {stdio: 'ignore'});
+    writeFileSync(file('ball.yaml'), `hapticd: 1\nservo: {rate: 1000}\ndevice: ${join(root, 'config', 'devices', 'simulated-premium15.yaml')}\n` +
+      'hand: {radius: 0.046}\nmodels:\n  - {name: ball, plugin: nurbs_rigid, parameters: {geometry: ball.hpart, stiffness: 600}}\n');
+    sandbox.start(['run', file('ball.yaml'), '--name', 'test']);
+    const [url] = await sandbox.start(['view', '--name', 'test']).says(/http:\S+/);
+    page = await browser.page(url);
+    await shown(page);
+    const drawn = await page.evaluate(() => {
+      const model = window.hapticdView.view.models.byIndex.get(0), normal = model.mesh.geometry.getAttribute('normal'), place = model.mesh.geometry.getAttribute('position');
+      let worst = 1;
+      for (let i = 0; i < normal.count; ++i) {
+        const n = [normal.getX(i), normal.getY(i), normal.getZ(i)], p = [place.getX(i), place.getY(i), place.getZ(i)];
+        if (Math.abs(p[1]) < 0.039) worst = Math.min(worst, n.reduce((sum, v, k) => sum + v * p[k], 0) / Math.hypot(...p) / Math.hypot(...n));
+      }
+      return {triangles: model.triangles, worst};
+    });
+    assert.ok(drawn.triangles > 19000, `${drawn.triangles} triangles`);
+    assert.ok(drawn.worst > 0.99, `normals point out of the ball within ${drawn.worst}`);
+    await page.screenshot({path: join(pictures, 'part.png')});
+    assert.deepEqual(page.wrong, []);
+  } finally {
+    await page?.close();
+    await sandbox.close();
+  }
+});
+
+for (const scene of ['teapot', 'compliance', 'two-arms']) {
+  test(`${scene}: the arms are drawn from their joints, and end at the tip`, async () => {
+    await scripted(scene, async (page) => {
+      await until(() => page.evaluate(() => window.hapticdView.view.probes.every((p) => p.links.some((l) => l.bar.visible))), 20, 'links');
+      const far = await page.evaluate(() => {
+        const {armModels, now} = window.hapticdView;
+        return armModels.map((arm, i) => {
+          const {joints, position} = now.arms[i].now, links = arm.links(joints, position);
+          return Math.min(...links.map(({to}) => Math.hypot(to.x - position[0], to.y - position[1], to.z - position[2])));
+        });
+      });
+      for (const distance of far) assert.ok(distance < 1e-3, `a link ends ${distance} m from the tip`);
+      const spaces = await page.evaluate(() => window.hapticdView.armModels.map((arm) => arm.workspace()));
+      for (const box of spaces) assert.ok(box && box.max.x - box.min.x > 0.1, 'what it can reach is a box');
+    });
+  });
+}
+
+test('a soft body deforms live', async () => {
+  await scripted('soft-leaf', async (page) => {
+    const places = () => page.evaluate(() => [...window.hapticdView.view.models.byIndex.get(0).live.getAttribute('position').array]);
+    const first = await places();
+    await until(async () => (await places()).some((x, i) => Math.abs(x - first[i]) > 1e-3), 30, 'a vertex a millimetre from where it was');
+    const wrong = await page.evaluate(() => window.hapticdView.view.models.byIndex.get(0).mesh.geometry.getAttribute('normal').array.some(Number.isNaN));
+    assert.equal(wrong, false, 'every normal is one');
+  });
+});
+
+test('what moves is drawn where its rows say, also for a page that comes later', async () => {
+  await scripted('moving-box', async (page) => {
+    const far = () => page.evaluate(() => {
+      const {view, now} = window.hapticdView, mesh = view.models.byIndex.get(0).mesh, pose = now.poses.get(0);
+      return pose ? Math.hypot(...pose.position.map((p, i) => p - mesh.position.getComponent(i))) : NaN;
+    });
+    await until(async () => !Number.isNaN(await far()), 20, 'a pose');
+    for (let i = 0; i < 5; ++i) assert.ok((await far()) < 0.02, 'the mesh follows its rows');
+  });
+});
 
 test('a parameter that a hand may feel suddenly asks for consent, and then the force follows', async () => {
   await scripted('sphere', async (page) => {
@@ -148,6 +236,37 @@ test('a recording has a slider, and its rows are those of the file', async () =>
     await page.screenshot({path: join(pictures, 'recording.png')});
     assert.deepEqual(page.wrong, []);
     assert.equal(await page.locator('#run-tools').isVisible(), false, 'a recording cannot be changed');
+  } finally {
+    await page?.close();
+    await sandbox.close();
+  }
+});
+
+test('what a crash left is shown, plays in a loop, and its events have times', async () => {
+  const sandbox = new Sandbox();
+  let page;
+  try {
+    const daemon = sandbox.start(['run', scenes('button'), '--name', 'test']);
+    await until(() => existsSync(join(sandbox.folder, 'test.sock')), 30, 'a daemon');
+    await new Promise((resolve) => setTimeout(resolve, 4000));
+    await daemon.end('SIGKILL');
+    const [url] = await sandbox.start(['view', '--file', join(sandbox.folder, 'test.blackbox.h5')]).says(/http:\S+/);
+    page = await browser.page(url);
+    await shown(page);
+    const state = await page.evaluate(() => window.hapticdView.timeline.state);
+    assert.ok(state.to - state.from > 2, `it holds ${state.to - state.from} s`);
+    await page.locator('#speed').selectOption('4');
+    const times = [];
+    await until(async () => {
+      times.push((await look(page)).t);
+      return times.some((t, i) => i > 0 && t < times[i - 1] - 1);
+    }, 30, 'its beginning after its end');
+    await page.locator('#loop').uncheck();
+    await until(() => page.evaluate(() => window.hapticdView.timeline.state.playing === false), 30, 'a stop at the end');
+    await page.getByRole('tab', {name: 'Events'}).click();
+    await page.getByText('button: click').first().waitFor({timeout: 20000});
+    await page.screenshot({path: join(pictures, 'crash.png')});
+    assert.deepEqual(page.wrong, []);
   } finally {
     await page?.close();
     await sandbox.close();

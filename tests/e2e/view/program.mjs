@@ -21,9 +21,9 @@ export async function until(look, seconds = 20, what = 'what was waited for') {
 
 /** A program whose output is kept; end() ends it and waits. */
 export class Program {
-  constructor(args, env = {}) {
+  constructor(args, env = {}, program = hapticd) {
     this.output = '';
-    this.child = spawn(hapticd, args, {env: {...process.env, ...env}, stdio: ['ignore', 'pipe', 'pipe']});
+    this.child = spawn(program, args, {env: {...process.env, ...env}, stdio: ['ignore', 'pipe', 'pipe']});
     for (const pipe of [this.child.stdout, this.child.stderr]) pipe.on('data', (data) => { this.output += data; });
     this.ended = new Promise((resolve) => this.child.on('close', (code) => resolve(code)));
   }
@@ -47,8 +47,8 @@ export class Sandbox {
     this.programs = [];
   }
 
-  start(args) {
-    const program = new Program(args, this.env);
+  start(args, what = hapticd) {
+    const program = new Program(args, this.env, what);
     this.programs.push(program);
     return program;
   }

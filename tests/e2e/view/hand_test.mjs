@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+// The mouse and the keys as a hand: they press what is there, and the servo goes on as if nobody looked.
+import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
+import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {after, before, test} from 'node:test';
+import {Browser, pictures, shown} from './browser.mjs';
+import {hapticd, Sandbox, scenes, until} from './program.mjs';
+
+let browser;
+before(async () => { browser = await Browser.open(); });
+after(async () => { await browser.close(); });
+
+/** A page on `hapticd run SCENE --view`. */
+const guided = async (scene, use, args = []) => {
+  const sandbox = new Sandbox();
+  let page;
+  try {
+    const {daemon, url} = await sandbox.show(scenes(scene), {args});
+    page = await browser.page(url);
+    await shown(page);
+    await page.waitForFunction(() => window.hapticdView.fitted && !window.hapticdView.fitWhenTip, null, {timeout: 20000}); // the camera rests
+    await use(page, sandbox, daemon);
+    assert.deepEqual(page.wrong, [], 'nothing went wrong in the page');
+  } catch (error) {
+    await page?.screenshot({path: join(pictures, `hand-${scene}-failed.png`)});
+    throw error;
+  } finally {
+    await page?.close();
+    await sandbox.close();
+  }
+};
+
+/** Where the tip of an arm, and the middle of everything, are on the page. */
+const places = (page, arm = 0) => page.evaluate((index) => {
+  const {view} = window.hapticdView, box = view.canvas.getBoundingClientRect();
+  const at = (place) => { const p = view.project(place); return {x: p.x + box.left, y: p.y + box.top}; };
+  const middle = view.models.box();
+  return {tip: at(view.probes[index].tipPlace), middle: at(middle.min.clone().add(middle.max).multiplyScalar(0.5))};
+}, arm);
+const force = (page, arm = 0) => page.evaluate((i) => Math.hypot(...window.hapticdView.now.arms[i].now.sent), arm);
+
+/** Drags the tip to the middle of the scene, until it is pressed with that force [N]. */
+async function press(page, newtons, arm = 0) {
+  const {tip, middle} = await places(page, arm);
+  await page.mouse.move(tip.x, tip.y);
+  await page.mouse.down();
+  for (let part = 0.05; part < 1; part += 0.05) {
+    await page.mouse.move(tip.x + part * (middle.x - tip.x), tip.y + part * (middle.y - tip.y));
+    await new Promise((resolve) => setTimeout(resolve, 60));
+    if ((await force(page, arm)) >= newtons) return;
+  }
+  await until(async () => (await force(page, arm)) >= newtons, 10, `${newtons} N`);
+}
+
+/** The rows of a stream as objects, out of the black box that the daemon dumps. */
+function rowsOf(sandbox, stream, columns) {
+  const folder = mkdtempSync(join(tmpdir(), 'hapticd-rows-'));
+  try {
+    const env = {...process.env, ...sandbox.env};
+    const said = execFileSync(hapticd, ['ctl', '--name', 'test', 'dump'], {env, encoding: 'utf8'});
+    const [file] = said.match(/\/[^"\s]+\.h5/);
+    execFileSync(hapticd, ['export', file, '--csv', join(folder, 'rows.csv'), '--stream', stream]);
+    const [head, ...rows] = readFileSync(join(folder, 'rows.csv'), 'utf8').trimEnd().split('\n').map((line) => line.split(','));
+    return rows.map((row) => Object.fromEntries(columns.map((name) => [name, Number(row[head.indexOf(name)])])));
+  } finally {
+    rmSync(folder, {recursive: true, force: true});
+  }
+}
+
+test('the mouse presses the teapot, bounded as every leader is, and no row is missing', async () => {
+  await guided('teapot', async (page, sandbox) => {
+    await page.keyboard.press('3'); // from the right: the hand comes from the front
+    await press(page, 1.0);
+    await page.screenshot({path: join(pictures, 'mouse-press.png')});
+    const ticks = rowsOf(sandbox, 'ticks', ['tick', 'depth']);
+    assert.ok(ticks.every((row, i) => i === 0 || row.tick === ticks[i - 1].tick + 1), 'a row of every tick');
+    const leads = rowsOf(sandbox, 'leads', ['tick', 'x', 'y', 'z']), events = rowsOf(sandbox, 'events', ['tick', 'kind']);
+    assert.ok(leads.length > 3, 'the wishes of the mouse are recorded');
+    const touch = events.filter((e) => e.kind === 2 && e.tick > leads[0].tick)[0];
+    assert.ok(touch, 'the touch is an event');
+
+    // the wish pulled out again: it is not felt, wherever the tip was
+    const {tip, middle} = await places(page);
+    await page.mouse.move(tip.x + 3 * (tip.x - middle.x), tip.y);
+    await until(async () => (await force(page)) === 0, 20, 'no force');
+    await page.mouse.up();
+  });
+});
+
+test('one jump of the mouse into the teapot is felt within 100 ms of the wish', async () => {
+  await guided('teapot', async (page, sandbox) => {
+    await page.keyboard.press('3');
+    const {tip, middle} = await places(page);
+    await page.mouse.move(tip.x, tip.y);
+    await page.mouse.down();
+    // to a place 2 mm before the surface, and from there 7 mm deeper than it at once
+    const {depth: before, pixels} = await page.evaluate(() => {
+      const {view, now} = window.hapticdView;
+      return {depth: now.tick.depth, pixels: 1 / view.orbit.metresPerPixel(view.probes[0].tipPlace, view.canvas.clientHeight)};
+    });
+    assert.ok(before < -0.004, 'it begins outside');
+    const way = Math.sign(middle.x - tip.x);
+    let x = tip.x;
+    await until(async () => {
+      const gap = (await page.evaluate(() => window.hapticdView.now.tick.depth)) + 0.002;
+      if (Math.abs(gap) < 0.0007) return true;
+      x -= way * Math.max(-3, Math.min(3, 0.3 * gap * pixels));
+      await page.mouse.move(x, tip.y);
+      await new Promise((resolve) => setTimeout(resolve, 60));
+      return false;
+    }, 60, 'a tip just before the surface');
+    await new Promise((resolve) => setTimeout(resolve, 300)); // it rests
+    const asked = await page.evaluate(() => window.hapticdView.now.tick.tick);
+    await page.mouse.move(x + way * 0.009 * pixels, tip.y);
+    await until(async () => (await force(page)) > 0.1, 10, 'a force');
+    // the wish is told again and again: the jump is where it is another
+    const leads = rowsOf(sandbox, 'leads', ['tick', 'x', 'y', 'z']), far = (a, b) => Math.hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+    const lead = leads.find((row, i) => row.tick > asked && i > 0 && far(row, leads[i - 1]) > 0.004), touch = rowsOf(sandbox, 'ticks', ['tick', 'depth']).find((row) => row.tick > asked && row.depth > 0);
+    assert.ok(touch.tick - lead.tick <= 100, `touched ${touch.tick - lead.tick} ms after the wish`);
+    await page.mouse.up();
+  });
+});
+
+test('the keys alone press the teapot', async () => {
+  await guided('teapot', async (page) => {
+    for (let i = 0; i < 40 && (await page.evaluate(() => document.activeElement.id)) !== 'canvas'; ++i) await page.keyboard.press('Tab');
+    await page.keyboard.press('1'); // from the front: Page Up moves the hand away from the viewer, into the teapot
+    for (let i = 0; i < 60 && (await force(page)) < 0.5; ++i) {
+      await page.keyboard.press('PageUp');
+      await new Promise((resolve) => setTimeout(resolve, 30));
+    }
+    await until(async () => (await force(page)) > 0.5, 10, '0.5 N');
+    await page.keyboard.press('Space');
+    await until(async () => (await force(page)) === 0, 10, 'no force while it is held');
+    await page.keyboard.press('Space');
+    await until(async () => (await force(page)) > 0.3, 20, 'the force again');
+  });
+});
+
+test('each of two hands is led by itself, by the mouse and by the keys', async () => {
+  await guided('two-arms', async (page) => {
+    await page.keyboard.press('3');
+    await press(page, 0.5, 1);
+    assert.ok((await force(page, 0)) < 0.3, 'the other one rests');
+    await page.screenshot({path: join(pictures, 'two-hands.png')});
+    await page.mouse.up();
+    assert.equal(await page.locator('.of-arm').count(), 2, 'a force for each');
+    await page.locator('#canvas').focus();
+    await page.keyboard.press('n');
+    const before = await page.evaluate(() => window.hapticdView.now.arms[0].now.position[1]);
+    for (let i = 0; i < 10; ++i) await page.keyboard.press('ArrowUp');
+    await until(async () => (await page.evaluate(() => window.hapticdView.now.arms[0].now.position[1])) > before + 0.006, 10, 'the first arm 10 mm up');
+  });
+});
+
+test('a second page may not take a hand that is led, and gets it when the first has gone', async () => {
+  await guided('sphere', async (page, sandbox, daemon) => {
+    const [url] = await daemon.says(/http:\S+/);
+    const other = await browser.page(url);
+    await shown(other);
+    await page.locator('#canvas').focus();
+    await page.keyboard.press('ArrowUp');
+    await until(() => page.evaluate(() => window.hapticdView.hand.leads), 20, 'the lead');
+    await other.bringToFront();
+    await other.locator('#canvas').focus();
+    await other.keyboard.press('ArrowUp');
+    await other.locator('#notice').waitFor({timeout: 20000});
+    assert.match(await other.locator('#notice').textContent(), /lead|led/);
+    await page.goto('about:blank');
+    await until(async () => {
+      await other.keyboard.press('ArrowUp');
+      await new Promise((resolve) => setTimeout(resolve, 300));
+      return other.evaluate(() => window.hapticdView.hand.leads);
+    }, 20, 'the lead of the page that has gone');
+    assert.deepEqual(other.wrong, []);
+    await other.close();
+  });
+});
