@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT */
+/* lead_model.c - moves a kinematic model up and down, and tells the force that the hand feels meanwhile.
+ *
+ *     cc lead_model.c -o lead_model $(pkg-config --cflags --libs hapticd-client) -lm
+ *     hapticd run SCENE        with a model that has `motion: kinematic` and a path
+ *     ./lead_model MODEL [NAME [SECONDS]]
+ */
+#include <hapticd/client_library.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* The place of a column in a row; -1: there is none of that name. */
+static long place(hapticd_client* client, int stream, const char* name) {
+  const hapticd_column* columns;
+  const long count = hapticd_columns(client, stream, &columns, NULL);
+  for (long i = 0; i < count; ++i)
+    if (strcmp(columns[i].name, name) == 0) return columns[i].offset;
+  return -1;
+}
+
+int main(int argc, char** argv) {
+  const double seconds = argc > 3 ? atof(argv[3]) : 10, turn = 3.14159; /* rad/s */
+  const struct timespec frame = {0, 16000000};
+  hapticd_error error;
+  if (argc < 2) return fprintf(stderr, "usage: lead_model MODEL [NAME [SECONDS]]\n"), 2;
+  hapticd_client* client = hapticd_connect(argc > 2 ? argv[2] : NULL, &error);
+  if (client == NULL) return fprintf(stderr, "error: %s\n", error.text), 1;
+  hapticd_lead* lead = hapticd_lead_model(client, argv[1], &error);
+  if (lead == NULL) {
+    fprintf(stderr, "error: %s\n", error.text);
+    hapticd_close(client);
+    return 1;
+  }
+  const int ticks = hapticd_stream(client, "ticks");
+  const long force = place(client, ticks, "arm0_sent_fy");
+  char row[4096];
+  const double begun = now();
+  for (double t = 0; t < seconds; t = now() - begun) {
+    const hapticd_target target = {.position = {0, -0.3 + 0.02 * sin(turn * t), 0},
+                                   .orientation = {1, 0, 0, 0},
+                                   .linear = {0, 0.02 * turn * cos(turn * t), 0},
+                                   .time = now()};
+    hapticd_lead_put(lead, &target);
+    uint64_t newest = hapticd_written(client, ticks) - 1;
+    double felt;
+    if (force >= 0 && hapticd_read(client, ticks, &newest, row, 1) == 1) {
+      memcpy(&felt, row + force, sizeof felt);
+      printf("%6.2f s %+.3f N\n", t, felt);
+    }
+    nanosleep(&frame, NULL);
+  }
+  hapticd_lead_end(lead);
+  hapticd_close(client);
+  return 0;
+}
