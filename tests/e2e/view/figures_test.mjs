@@ -121,7 +121,7 @@ test('a scene costs a frame no more than three times an empty one, and is painte
     await page.evaluate(() => { window.hapticdView.view.models.group.visible = false; });
     const empty = await paceOf(page, browser, 5);
     const paints = [];
-    for (let i = 0; i < 5; ++i) {
+    for (let i = 0; i < 3; ++i) {
       await page.reload();
       await shown(page);
       paints.push(await page.evaluate(() => [performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? NaN, window.hapticdView.paints.scene]));
@@ -129,7 +129,7 @@ test('a scene costs a frame no more than three times an empty one, and is painte
     const [text, scene] = [0, 1].map((i) => median(paints.map((p) => p[i])));
     const load = readFileSync('/proc/loadavg', 'utf8').split(' ')[0];
     console.log(`page at 1280x720, ${triangles} triangles, load ${load}: ${full.rate.toFixed(1)} frames/s, ${(1e3 * full.cpu).toFixed(1)} ms of CPU a frame; without the model ` +
-      `${empty.rate.toFixed(1)} frames/s, ${(1e3 * empty.cpu).toFixed(1)} ms; first paint ${text.toFixed(0)} ms, of the scene ${scene.toFixed(0)} ms (warm, median of 5)`);
+      `${empty.rate.toFixed(1)} frames/s, ${(1e3 * empty.cpu).toFixed(1)} ms; first paint ${text.toFixed(0)} ms, of the scene ${scene.toFixed(0)} ms (warm, median of 3)`);
     assert.ok(full.rate > 3, 'updates are seen');
     assert.ok(full.cpu < 3 * empty.cpu, 'a frame with the model costs little more than one without');
     assert.ok(text < scene, 'the page comes before the scene');
