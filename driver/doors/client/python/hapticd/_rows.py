@@ -75,16 +75,12 @@ class Stream:
         return self.read(max(self.written - count, 0))[1]
 
     def _copy(self, first: int, count: int) -> bytearray:
-        data = bytearray(count * self.row_bytes)
-        for done in range(0, count):
-            if done and (first + done) % self.capacity:
-                continue
-            at = (first + done) % self.capacity
-            run = min(count - done, self.capacity - at)
-            begin = self._rows_at + at * self.row_bytes
-            data[done * self.row_bytes:(done + run) * self.row_bytes] = self._memory[begin:begin + run * self.row_bytes]
-            if done + run == count:
-                break
+        at = first % self.capacity
+        before_the_end = min(count, self.capacity - at)
+        begin = self._rows_at + at * self.row_bytes
+        data = bytearray(self._memory[begin:begin + before_the_end * self.row_bytes])
+        if before_the_end < count:
+            data += self._memory[self._rows_at:self._rows_at + (count - before_the_end) * self.row_bytes]
         return data
 
     def _parsed(self, data: bytearray, count: int) -> Any:
