@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <functional>
@@ -79,6 +80,7 @@ std::vector<Variation> variations(const Subject& subject, const Protocol& protoc
 }
 
 int evaluate(int argc, char** argv) {
+  setenv("HAPTICD_INSTRUCTIONS", "portable", 1);  // the same numbers on every processor
   const auto begun = std::chrono::steady_clock::now();
   const Protocol protocol = protocolOf(argc, argv);
   const std::filesystem::path work =
