@@ -42,4 +42,8 @@ for file in files:
     missing = [f"line {n}: {words}" for n, words in wanted.items() if not any(words in text for text in told.get(n, []))]
     more = [f"line {n}: {text}" for n, texts in told.items() if n not in wanted for text in texts]
     check(os.path.basename(file), done.returncode == 2 and wanted and not missing and not more, f"missing {missing}, more {more}\n{done.stdout}{done.stderr}")
+
+for name in ("part.step", "part.IGES", "part.glb"):
+    done = subprocess.run([HAPTICD, "import", name, "-o", "part.hpart"], capture_output=True, text=True, timeout=120)
+    check(f"import of {name} says which way leads here", done.returncode == 2 and "hapticd import PART.stl -o PART.hpart" in done.stderr, done.stderr)
 finish()
