@@ -118,7 +118,7 @@ constexpr Key kLimitKeys[] = {
     real<&Limits::power>("power", {0, 1e4, "W"}, "0", "Largest power that the arm gives to the hand; 0: no limit."),
     real<&Limits::impulse>(
         "impulse", {0, 100, "N s"}, "0",
-        "Largest impulse within 0.1 s; it bounds a constant force to ten times as many N; 0: no limit."),
+        "Largest impulse within any 0.1 s; it bounds a constant force to five times as many N; 0: no limit."),
     real<&Limits::velocity>("velocity", {0, 100, "m/s"}, "0", "A faster tip latches a fault; 0: no limit."),
     real<&Limits::workspace>("workspace", {0, 100, "m"}, "0",
                              "Forces fade outside this radius about the device's origin; 0: no limit."),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace hapticd::servo {
@@ -20,6 +21,14 @@ using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HD
 
 constexpr double kAssumedMass =
     0.05;  ///< [kg] of a light arm: the damping that the passivity controller may add stays small
+
+/// [s] How far a velocity estimate lags at most, for a margin.
+double delayOf(const scene::Velocity& velocity, double rate) {
+  if (velocity.estimator == "butterworth")
+    return 0.5 / rate + 1 / (std::numbers::sqrt2 * std::numbers::pi * velocity.parameter);
+  if (velocity.estimator == "kalman") return 4 / rate;
+  return velocity.parameter / (2 * rate);
+}
 
 }  // namespace
 
@@ -43,13 +52,14 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   const Limiter limiter(described.limits, (*device)->info().max_force);
   std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter));
   arm->watches_jumps_ |= !arm->simulated();
+  const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
+  arm->limiter_.expectMotion(delayOf(servo.velocity, options.rate), mass);
   if (described.admittance) {
     if (const std::string no = Admittance::refusal(arm->info()); !no.empty())
       return Error{"device '" + described.name + "': " + no};
     arm->admittance_.emplace(*described.admittance, *arm->device_);
   }
   if (described.limits.passivity.value_or((arm->info().capabilities & HDV_C_UNVERIFIED) != 0)) {
-    const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
     arm->passivity_.emplace(passivity::stableDamping(mass, 1 / options.rate), arm->info().damping,
                             arm->info().resolution_m);
   }

@@ -69,6 +69,10 @@ void Limiter::apply(Vector3d& force, Vector3d& torque, const Vector3d& position,
     torque.setZero();
   }
   clipped_ = false;
+  power_.pass(dt);
+  // What was sent in the last tick was held until now, however late this one is.
+  const double held = std::min(dt, kImpulseWindow);
+  impulse_ += (last_force_.norm() - impulse_ / kImpulseWindow) * held;
   follow(slow_force_, last_force_, limits_.slew, dt);
   follow(slow_torque_, last_torque_, limits_.torque_slew, dt);
   if (fault() != Fault::kNone) {
@@ -81,7 +85,6 @@ void Limiter::apply(Vector3d& force, Vector3d& torque, const Vector3d& position,
     ramp(force, torque, dt);
     limit(force, torque, position, dt);
   }
-  impulse_ = std::max(0.0, impulse_ + (force.norm() - impulse_ / kImpulseWindow) * std::min(dt, kImpulseWindow));
   last_force_ = force;
   last_torque_ = torque;
 }
@@ -112,17 +115,17 @@ void Limiter::limit(Vector3d& force, Vector3d& torque, const Vector3d& position,
 }
 
 void Limiter::limitPower(Vector3d& force) noexcept HSP_RT {
-  const double power = force.dot(velocity_);  // what the arm does on the hand; what the hand does is its own
-  if (power <= limits_.power) return;
-  force *= limits_.power / power;
-  count(Limit::kPower);
+  const double asked = force.norm();  // what the arm does on the hand; what the hand does is its own
+  if (asked > 0 && cap(force, power_.most(force / asked, limits_.power))) count(Limit::kPower);
 }
 
 void Limiter::limitImpulse(Vector3d& force, double dt) noexcept HSP_RT {
-  // The cap falls as the window fills, so that a held force ends at impulse / window without a step.
+  // A leaky book of the time constant of the window: what flows in during a window is at most what the book holds at
+  // its end and what leaked meanwhile, so twice its size. Half the limit, then, bounds every window, wherever it
+  // begins. The cap falls as the book fills, so that a held force ends at its size / window without a step.
   constexpr double kApproach = 0.01;  // [s]
-  const double left = std::max(0.0, limits_.impulse - impulse_);
-  const double most = left / std::max(kApproach, dt) + impulse_ / kImpulseWindow;
+  const double size = limits_.impulse / 2, booked = std::min(impulse_, size);
+  const double most = (size - booked) / std::max(kApproach, dt) + booked / kImpulseWindow;
   if (cap(force, most)) count(Limit::kImpulse);
 }
 
@@ -144,7 +147,7 @@ void Limiter::watchSpeed(double speed) noexcept HSP_RT {
 
 void Limiter::watchVelocity(const Vector3d& velocity) noexcept HSP_RT {
   watchSpeed(velocity.norm());
-  velocity_ = velocity.allFinite() ? velocity : Vector3d(Vector3d::Zero());
+  power_.watch(velocity);
 }
 
 void Limiter::watchButtons(std::optional<uint32_t> buttons) noexcept HSP_RT {

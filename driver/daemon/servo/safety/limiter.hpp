@@ -11,6 +11,7 @@
 #include "description/scene.hpp"
 #include "hapticd/abi.h"
 #include "servo/safety/fault.hpp"
+#include "servo/safety/power_bound.hpp"
 
 namespace hapticd::servo {
 
@@ -27,7 +28,7 @@ struct Clips {
 
 class Limiter {
  public:
-  static constexpr double kImpulseWindow = 0.1;  ///< [s] over which limits.impulse is counted
+  static constexpr double kImpulseWindow = 0.1;  ///< [s] within which limits.impulse holds
   /// [s] over which limits.slew is counted: a step of an encoder is as large at 20 kHz as at 1 kHz, so a bound on each
   /// tick would clip good contact the more, the faster the servo.
   static constexpr double kSlewWindow = 0.001;
@@ -45,6 +46,9 @@ class Limiter {
   void watchVelocity(const Eigen::Vector3d& velocity) noexcept HSP_RT;
   /// [rt] The buttons of the newest sample, for the enable switch; nullopt: there is no good one.
   void watchButtons(std::optional<uint32_t> buttons) noexcept HSP_RT;
+  /// [main] What limits.power must reckon with. @param lag [s] of the velocity that watchVelocity() gets
+  /// @param mass [kg] of the arm at its tip, 0: unknown
+  void expectMotion(double lag, double mass) { power_.expect(lag, mass); }
   /// [rt] What the motors leave of the force, 0 to 1: it holds from the next tick on.
   void spareMotors(double factor) noexcept HSP_RT { heat_factor_ = factor; }
   /// [rt] The motors' own limit, or that of the arm's weight, made the torques of this tick smaller.
@@ -95,7 +99,7 @@ class Limiter {
   bool cleared_ = false;                          // by the user, while the force was still on its way down
   double heat_factor_ = 1, impulse_ = 0;
   Clips clips_;
-  Vector3d velocity_ = Vector3d::Zero();
+  PowerBound power_;
   Vector3d fault_force_ = Vector3d::Zero(), fault_torque_ = Vector3d::Zero();
   Vector3d last_force_ = Vector3d::Zero(), last_torque_ = Vector3d::Zero();
   Vector3d slow_force_ = Vector3d::Zero(), slow_torque_ = Vector3d::Zero();  // follow the last ones at limits.slew
