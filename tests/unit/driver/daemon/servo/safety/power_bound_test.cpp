@@ -18,10 +18,6 @@ TEST(PowerBound, IsPowerOverSpeedWhereNothingLagsAndNothingAccelerates) {
   bound.pass(1e-3);
   EXPECT_NEAR(bound.most(kAlong, 1), 2, 1e-12);
   EXPECT_EQ(bound.most(-kAlong, 1), HUGE_VAL) << "what the hand does is its own";
-  PowerBound none;
-  none.watch({std::nan(""), 0, 0});
-  none.pass(1e-3);
-  EXPECT_EQ(none.most(kAlong, 1), HUGE_VAL) << "no number counts as rest";
 }
 
 TEST(PowerBound, ReckonsWithTheLagAndTheAccelerationsOfLate) {
