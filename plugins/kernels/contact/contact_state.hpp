@@ -65,8 +65,7 @@ class ContactState {
   bool passesBy(double height, double distance, const Eigen::Vector3d& last, const Eigen::Vector3d& p,
                 const ContactRule& rule) noexcept {
     const double side = rule.sides == Sides::kBoth ? side_ : (rule.sides == Sides::kFront ? 1 : -1);
-    if (phase_ != Phase::kOutside || from_ != last || !(side * height > kTouching))
-      return false;
+    if (phase_ != Phase::kOutside || from_ != last || !(side * height > kTouching)) return false;
     from_ = p;
     clearance_ = kSure * distance;
     return true;
