@@ -7,9 +7,9 @@ namespace hapticd::cli {
 
 using AddCommand = void(CLI::App& app, int& exit_code);
 
-AddCommand addCheck, addCompletion, addCtl, addDevice, addDeviceCalibrate, addDeviceKinematics, addDoctor, addExplain,
-    addExport, addImport, addManual, addPart, addPlot, addPlugin, addPluginCheck, addPluginNew, addReplay, addRun, addTop,
-    addTrace, addTune, addView;
+AddCommand addCheck, addCompletion, addCtl, addDevice, addDeviceCalibrate, addDeviceControls, addDeviceKinematics,
+    addDoctor, addExplain, addExport, addImport, addManual, addPart, addPlot, addPlugin, addPluginCheck, addPluginNew,
+    addReplay, addRun, addTop, addTrace, addTune, addView;
 
 /// A command that hangs under another one ("device calibrate") comes after it.
 constexpr AddCommand* kCommands[] = {
@@ -18,6 +18,7 @@ constexpr AddCommand* kCommands[] = {
     addCtl,
     addDevice,
     addDeviceCalibrate,
+    addDeviceControls,
     addDeviceKinematics,
     addDoctor,
     addExplain,

@@ -23,6 +23,7 @@ struct TemplateBall : hapticd::Shape {
   /// May allocate, and throw std::exception with a message for the user. Claims what the host may rely on.
   void activate(const hsp_activation&, hsp_report& report) {
     report.max_stiffness = stiffness;
+    report.flags = HSP_R_PUSHES;  // without friction: a force that pulls inward is then found to be a mistake
     report.size_m = 2 * radius;
     report.typical_ns = 50;
     report.worst_ns = 2000;

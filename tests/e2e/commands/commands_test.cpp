@@ -250,6 +250,19 @@ TEST_F(Commands, CheckPlacesWhatADeviceModuleRefusesInTheFile) {
   EXPECT_TRUE(has(problem("address: 0x100000", "address: 0x100001"), "expected a multiple of 64 KiB"));
 }
 
+TEST_F(Commands, DeviceControlsSaysWhichControlsOneArmHas) {
+  const Outcome simulated =
+      run("device controls " HAPTICD_SOURCE_DIR "/config/devices/simulated-premium15.yaml", kShipped);
+  EXPECT_EQ(simulated.exit_code, 0) << simulated.text;
+  EXPECT_TRUE(has(simulated.text, "simulated Premium 1.5: plugged in")) << simulated.text;
+  EXPECT_TRUE(has(simulated.text, "8.5 N")) << simulated.text;
+  const Outcome real = run("device controls " HAPTICD_SOURCE_DIR "/config/devices/woodenhaptics.yaml", kShipped);
+  EXPECT_EQ(real.exit_code, 0) << real.text;
+  for (const char* line : {"not plugged in", "speed between samples          H1 H2                     5 m/s",
+                           "unknown  the hardware's own watchdog"})
+    EXPECT_TRUE(has(real.text, line)) << line << "\n" << real.text;
+}
+
 TEST_F(Commands, DeviceInfoPrintsTheParametersWhenAsked) {
   const std::string arm = put("arm.yaml", kArm);
   const Outcome plain = run("device info " + arm), full = run("device info --parameters " + arm);
@@ -277,8 +290,7 @@ TEST_F(Commands, KinematicsWarnsOfJointsBeyondTheArmsLimits) {
   const Outcome outside =
       run("device kinematics " + arm + " --joints " + put("out.csv", "q1,q2,q3\n0,1,1.5\n1.6,1,1.5\n"), kShipped);
   EXPECT_EQ(outside.exit_code, 0) << outside.text;
-  EXPECT_TRUE(has(outside.text, "in 1 of 2 rows the tip is beyond the arm's joint limits"))
-      << outside.text;
+  EXPECT_TRUE(has(outside.text, "in 1 of 2 rows the tip is beyond the arm's joint limits")) << outside.text;
 }
 
 /// The number in a column of the one row of a CSV text.

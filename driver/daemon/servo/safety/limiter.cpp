@@ -52,8 +52,9 @@ void follow(Vector3d& slow, const Vector3d& last, double slew, double dt) noexce
 }  // namespace
 
 const char* nameOf(Limit limit) {
-  static constexpr const char* kNames[kLimitCount] = {
-      "workspace", "motors (heat)", "force", "torque", "power", "impulse", "slew", "motors (torque)", "weight"};
+  static constexpr const char* kNames[kLimitCount] = {"workspace", "motors (heat)",    "force", "torque",
+                                                      "power",     "impulse",          "slew",  "motors (torque)",
+                                                      "weight",    "age of the sample"};
   return kNames[static_cast<size_t>(limit)];
 }
 
@@ -69,11 +70,15 @@ void Limiter::apply(Vector3d& force, Vector3d& torque, const Vector3d& position,
     torque.setZero();
   }
   clipped_ = false;
+  power_.pass(dt);
+  // What was sent in the last tick was held until now, however late this one is.
+  const double held = std::min(dt, kImpulseWindow);
+  impulse_ += (last_force_.norm() - impulse_ / kImpulseWindow) * held;
   follow(slow_force_, last_force_, limits_.slew, dt);
   follow(slow_torque_, last_torque_, limits_.torque_slew, dt);
   if (fault() != Fault::kNone) {
     // Fade along the last force: the new one may be the fault itself.
-    fade_ = rampedDown(fade_, dt, limits_.ramp_out);
+    fade_ = rampedDown(fade_, dt, faultRamp());
     force = fade_ * fault_force_;
     torque = fade_ * fault_torque_;
     if (fade_ == 0 && cleared_) clear();
@@ -81,15 +86,22 @@ void Limiter::apply(Vector3d& force, Vector3d& torque, const Vector3d& position,
     ramp(force, torque, dt);
     limit(force, torque, position, dt);
   }
-  impulse_ = std::max(0.0, impulse_ + (force.norm() - impulse_ / kImpulseWindow) * std::min(dt, kImpulseWindow));
   last_force_ = force;
   last_torque_ = torque;
 }
 
+/// [s] What was planned may take its time.
+double Limiter::faultRamp() const noexcept HSP_RT {
+  return fault() == Fault::kStopped ? limits_.ramp_out : std::min(limits_.ramp_out, kFaultRamp);
+}
+
 void Limiter::ramp(Vector3d& force, Vector3d& torque, double dt) noexcept HSP_RT {
-  ramp_ = enabled_ ? rampedUp(ramp_, dt, limits_.ramp_in) : rampedDown(ramp_, dt, limits_.ramp_out);
-  force *= ramp_;
-  torque *= ramp_;
+  ramp_ =
+      enabled_ ? rampedUp(ramp_, dt, limits_.ramp_in) : rampedDown(ramp_, dt, std::min(limits_.ramp_out, kFaultRamp));
+  fresh_ = std::min(trusted_, rampedUp(fresh_, dt, kFreshRamp));
+  if (fresh_ < 1 && !(force.isZero(0) && torque.isZero(0))) count(Limit::kSample);
+  force *= ramp_ * fresh_;
+  torque *= ramp_ * fresh_;
   if (enabled_) return;
   cap(force, last_force_.norm());  // a switch let go lets nothing grow
   cap(torque, last_torque_.norm());
@@ -112,17 +124,17 @@ void Limiter::limit(Vector3d& force, Vector3d& torque, const Vector3d& position,
 }
 
 void Limiter::limitPower(Vector3d& force) noexcept HSP_RT {
-  const double power = force.dot(velocity_);  // what the arm does on the hand; what the hand does is its own
-  if (power <= limits_.power) return;
-  force *= limits_.power / power;
-  count(Limit::kPower);
+  const double asked = force.norm();  // what the arm does on the hand; what the hand does is its own
+  if (asked > 0 && cap(force, power_.most(force / asked, limits_.power))) count(Limit::kPower);
 }
 
 void Limiter::limitImpulse(Vector3d& force, double dt) noexcept HSP_RT {
-  // The cap falls as the window fills, so that a held force ends at impulse / window without a step.
+  // A leaky book of the time constant of the window: what flows in during a window is at most what the book holds at
+  // its end and what leaked meanwhile, so twice its size. Half the limit, then, bounds every window, wherever it
+  // begins. The cap falls as the book fills, so that a held force ends at its size / window without a step.
   constexpr double kApproach = 0.01;  // [s]
-  const double left = std::max(0.0, limits_.impulse - impulse_);
-  const double most = left / std::max(kApproach, dt) + impulse_ / kImpulseWindow;
+  const double size = limits_.impulse / 2, booked = std::min(impulse_, size);
+  const double most = (size - booked) / std::max(kApproach, dt) + booked / kImpulseWindow;
   if (cap(force, most)) count(Limit::kImpulse);
 }
 
@@ -139,12 +151,13 @@ void Limiter::count(Limit limit) noexcept HSP_RT {
 }
 
 void Limiter::watchSpeed(double speed) noexcept HSP_RT {
-  if (limits_.velocity > 0 && !(speed <= limits_.velocity)) trip(Fault::kTooFast, speed);
+  const double most = limits_.velocity.value_or(0);
+  if (most > 0 && !(speed <= most)) trip(Fault::kTooFast, speed);
 }
 
 void Limiter::watchVelocity(const Vector3d& velocity) noexcept HSP_RT {
   watchSpeed(velocity.norm());
-  velocity_ = velocity.allFinite() ? velocity : Vector3d(Vector3d::Zero());
+  power_.watch(velocity);
 }
 
 void Limiter::watchButtons(std::optional<uint32_t> buttons) noexcept HSP_RT {

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "servo/safety/power_bound.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace hapticd::servo {
+namespace {
+
+using Eigen::Vector3d;
+const Vector3d kAlong = Vector3d::UnitX();
+
+TEST(PowerBound, IsPowerOverSpeedWhereNothingLagsAndNothingAccelerates) {
+  PowerBound bound;
+  EXPECT_EQ(bound.most(kAlong, 1), HUGE_VAL) << "at rest";
+  bound.watch({0.5, 3, 0});
+  bound.pass(1e-3);
+  EXPECT_NEAR(bound.most(kAlong, 1), 2, 1e-12);
+  EXPECT_EQ(bound.most(-kAlong, 1), HUGE_VAL) << "what the hand does is its own";
+  bound.watch({std::nan(""), 0, 0});
+  EXPECT_EQ(bound.most(kAlong, 1), HUGE_VAL) << "no number counts as rest";
+}
+
+TEST(PowerBound, ReckonsWithTheLagAndTheAccelerationsOfLate) {
+  PowerBound bound;
+  bound.expect(2e-3, 0);
+  bound.watch(Vector3d::Zero());
+  bound.pass(1e-3);
+  bound.watch({0.01, 0, 0});  // 10 m/s^2
+  EXPECT_NEAR(1 / bound.most(kAlong, 1), 0.01 + PowerBound::kMargin * 10 * 3e-3, 1e-9) << "lag and a tick";
+  bound.pass(1e-3);
+  const double later = 10 * (1 - 1e-3 / PowerBound::kRemember);
+  EXPECT_NEAR(1 / bound.most(kAlong, 1), 0.01 + PowerBound::kMargin * later * 4e-3, 1e-9) << "and its age";
+  for (int i = 0; i < 1000; ++i) {
+    bound.watch({0.01, 0, 0});
+    bound.pass(1e-3);
+  }
+  EXPECT_NEAR(1 / bound.most(kAlong, 1), 0.01, 1e-6) << "and forgets";
+  bound.pass(1);
+  EXPECT_LE(bound.most(kAlong, 1), 100 * (1 + 1e-6));
+}
+
+TEST(PowerBound, ReckonsWithWhatTheForceDoesToALightArm) {
+  PowerBound bound;
+  bound.expect(1e-3, 0.05);
+  bound.watch({0.2, 0, 0});
+  bound.pass(1e-3);
+  const double ahead = 3e-3, force = bound.most(kAlong, 0.3);
+  EXPECT_NEAR(force * (0.2 + force * ahead / 0.05), 0.3, 1e-9);
+  const double against = bound.most(-kAlong, 0.3);
+  EXPECT_NEAR(against * (-0.2 + against * ahead / 0.05), 0.3, 1e-9);
+  EXPECT_GT(against, force);
+}
+
+}  // namespace
+}  // namespace hapticd::servo
