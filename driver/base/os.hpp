@@ -91,6 +91,10 @@ int threadId() noexcept;
 /// [any] The thread lost its processor since it last asked: what it did took time of others. A system call.
 bool wasPreempted() noexcept;
 
+/// [rt] Wakes at most `most` threads, of any process, that wait for a word of shared memory to change; never waits.
+/// @return how many were woken
+int wakeWaiting(uint32_t* word, int most) noexcept;
+
 /// Installs a handler for SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT and SIGXCPU; nullptr: the system's own again.
 void onCrashSignals(void (*handler)(int));
 

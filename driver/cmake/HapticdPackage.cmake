@@ -16,5 +16,6 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/driver/package/postinst;${PROJECT_SOURCE_DIR}/driver/package/conffiles")
 set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_SUGGESTS "python3, python3-numpy") # the package hapticd for Python
+set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_GENERATE_SHLIBS ON)               # libhapticd.so.0
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "hapticd (= ${PROJECT_VERSION}), g++, cmake, make")
 include(CPack)

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <cstdlib>
+#include <cstring>
+
 #include "kernels/spline/kernel.hpp"
 
 namespace hapticd::spline {
@@ -9,8 +12,11 @@ const KernelSet& portableKernels() noexcept;  // kernel_portable.cpp
 const KernelSet& avx2Kernels() noexcept;  // kernel_avx2.cpp
 
 const KernelSet& kernels(Instructions instructions) noexcept {
-  static const bool has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  return instructions == Instructions::kFastest && has_avx2 ? avx2Kernels() : portableKernels();
+  // The host's choice for the whole process: portable results are the same bits on every machine.
+  static const char* const wanted = std::getenv("HAPTICD_INSTRUCTIONS");
+  static const bool may_avx2 = (wanted == nullptr || std::strcmp(wanted, "portable") != 0) &&
+                               __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  return instructions == Instructions::kFastest && may_avx2 ? avx2Kernels() : portableKernels();
 }
 #else
 const KernelSet& kernels(Instructions) noexcept {

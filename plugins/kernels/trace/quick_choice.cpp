@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+#include <cstdlib>
+#include <cstring>
+
 #include "kernels/trace/quick.hpp"
 
 namespace hapticd::trace {
@@ -9,8 +12,11 @@ const QuickKernels& portableQuick() noexcept;  // quick_portable.cpp
 const QuickKernels& avx2Quick() noexcept;  // quick_avx2.cpp
 
 const QuickKernels& quickKernels(spline::Instructions instructions) noexcept {
-  static const bool has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  return instructions == spline::Instructions::kFastest && has_avx2 ? avx2Quick() : portableQuick();
+  // The host's choice for the whole process: portable results are the same bits on every machine.
+  static const char* const wanted = std::getenv("HAPTICD_INSTRUCTIONS");
+  static const bool may_avx2 = (wanted == nullptr || std::strcmp(wanted, "portable") != 0) &&
+                               __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  return instructions == spline::Instructions::kFastest && may_avx2 ? avx2Quick() : portableQuick();
 }
 #else
 const QuickKernels& quickKernels(spline::Instructions) noexcept {

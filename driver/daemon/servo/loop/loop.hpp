@@ -9,6 +9,7 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "servo/arm/arm.hpp"
+#include "servo/loop/door.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "servo/loop/tick_log.hpp"
 
@@ -45,6 +46,9 @@ class Loop {
   /// [any] Asks for an end: forces ramp to zero first. Async-signal-safe.
   void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
 
+  /// [any] What programs outside are told beside the rows.
+  Door& door() noexcept { return door_; }
+
   /// [any] Dry cycles that woke a period late or more; final once there were ticks.
   uint64_t lateDryCycles() const noexcept { return late_dry_cycles_.load(std::memory_order_relaxed); }
 
@@ -61,7 +65,8 @@ class Loop {
   bool finished() const noexcept { return finished_.load(std::memory_order_acquire); }
 
  private:
-  void tick(Nanoseconds now, double t, double dt) noexcept HSP_RT;
+  void tick(const TickTime& tick) noexcept HSP_RT;
+  void write(uint32_t index, const TickTime& tick) noexcept HSP_RT;
   void runDry() noexcept HSP_RT;
   void obey(double t) noexcept HSP_RT;
   void obey(const Order& order, Arm& arm) noexcept HSP_RT;
@@ -81,6 +86,7 @@ class Loop {
   LoopSettings settings_;
   TickLog& log_;
   Lockstep lockstep_;
+  Door door_;
   std::vector<Probe> probes_;
   uint64_t ramp_ticks_ = 0;
   double epoch_ = 0;  ///< [s] CLOCK_MONOTONIC of the first tick, in a run on the real clock

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+/// Connection and requests.
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "internal.hpp"
+#include "status/page_file.hpp"
+
+namespace hapticd::client {
+
+using Json = nlohmann::json;
+
+Mapping::Mapping(int fd, size_t bytes, int protection) : bytes_(bytes) {
+  struct stat info{};
+  if (fstat(fd, &info) != 0) return;
+  const auto size = static_cast<size_t>(info.st_size);
+  if (bytes_ == 0) bytes_ = size;
+  if (bytes_ == 0 || bytes_ > size) {
+    errno = EINVAL;
+    return;
+  }
+  void* memory = mmap(nullptr, bytes_, protection, MAP_SHARED, fd, 0);
+  if (memory != MAP_FAILED) data_ = static_cast<std::byte*>(memory);
+}
+
+Mapping::~Mapping() {
+  if (data_ != nullptr) munmap(data_, bytes_);
+}
+
+void tell(hapticd_error* error, const char* code, const std::string& text) {
+  if (error == nullptr) return;
+  *error = {};
+  std::strncpy(error->code, code, sizeof error->code - 1);
+  std::strncpy(error->text, text.c_str(), sizeof error->text - 1);
+}
+
+namespace {
+
+/// The socket of `name`, in the folder that programs look in; under systemd also in the system's.
+std::string baseOf(const std::string& name) {
+  const std::string own = status::runtimeFolder(false) + "/" + name, system = "/run/hapticd/" + name;
+  const auto isThere = [](const std::string& base) { return access((base + ".sock").c_str(), F_OK) == 0; };
+  return !isThere(own) && isThere(system) ? system : own;
+}
+
+hapticd_client* connect(const std::string& name, hapticd_error* error) {
+  const std::string base = baseOf(name);
+  auto line = control::Client::connect(base + ".sock");
+  if (!line) return tell(error, "gone", line.error()), nullptr;
+  auto rows = Rows::open(base + ".blackbox.h5");
+  if (!rows) return tell(error, "damaged", rows.error()), nullptr;
+  return new hapticd_client(base, std::move(*line), std::move(*rows));
+}
+
+bool refused(const std::string& line, hapticd_error* error) {
+  const Json json = Json::parse(line, nullptr, false);
+  if (json.is_object() && json.value("ok", false)) return false;
+  if (!json.is_object()) return tell(error, "damaged", "the answer is no JSON: " + line), true;
+  tell(error, json.value("code", std::string("failed")).c_str(), json.value("error", std::string("refused")));
+  return true;
+}
+
+}  // namespace
+
+}  // namespace hapticd::client
+
+using hapticd::client::Answer;
+using hapticd::client::tell;
+
+bool hapticd_client::ask(const std::string& request, Answer& answer, hapticd_error* error) {
+  const std::lock_guard lock(asking);
+  auto reply = line.askForMore(request);
+  if (!reply) return tell(error, "gone", reply.error()), false;
+  answer = {std::move(reply->line), std::move(reply->descriptor)};
+  return !hapticd::client::refused(answer.line, error);
+}
+
+std::byte* hapticd_client::page(const char* request, hapticd::client::Mapping& kept, size_t least, int protection) {
+  const std::lock_guard lock(mapping);
+  if (kept.data() != nullptr) return kept.data();
+  Answer answer;
+  if (!ask(request, answer, nullptr) || !answer.descriptor) return nullptr;
+  hapticd::client::Mapping memory(answer.descriptor.get(), 0, protection);
+  if (memory.data() == nullptr || memory.bytes() < least) return nullptr;
+  kept = std::move(memory);
+  return kept.data();
+}
+
+const char* hapticd_version(void) {
+  return HAPTICD_VERSION;
+}
+
+hapticd_client* hapticd_connect(const char* name, hapticd_error* error) try {
+  tell(error, "", "");
+  return hapticd::client::connect(name != nullptr ? name : "hapticd", error);
+} catch (const std::exception& problem) {
+  tell(error, "failed", problem.what());
+  return nullptr;
+}
+
+void hapticd_close(hapticd_client* client) {
+  if (client == nullptr) return;
+  for (const hapticd_lead* lead : client->leads) delete lead;  // the connection's end ends them
+  delete client;
+}
+
+int hapticd_alive(hapticd_client* client) {
+  const std::string file = client->base + ".lock";
+  const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  // Another user's lock cannot be opened; its socket goes with it.
+  if (fd < 0) return errno == EACCES && access((client->base + ".sock").c_str(), F_OK) == 0 ? 1 : 0;
+  const bool free = flock(fd, LOCK_SH | LOCK_NB) == 0;
+  close(fd);
+  return free ? 0 : 1;
+}
+
+long hapticd_ask(hapticd_client* client, const char* request, char* answer, size_t bytes, hapticd_error* error) try {
+  tell(error, "", "");
+  if (std::strchr(request, '\n') != nullptr)
+    return tell(error, "bad_request", "a request is one line, this one has several"), -1;
+  Answer got;
+  const bool done = client->ask(request, got, error);
+  if (answer != nullptr && bytes > 0) {
+    const size_t length = std::min(got.line.size(), bytes - 1);
+    std::memcpy(answer, got.line.data(), length);
+    answer[length] = '\0';
+  }
+  return done ? static_cast<long>(got.line.size()) : -1;
+} catch (const std::exception& problem) {
+  tell(error, "failed", problem.what());
+  return -1;
+}
+
+const char* hapticd_about(hapticd_client* client) {
+  return client->rows.about().c_str();
+}
+
+int hapticd_device(hapticd_client* client, const char* name) {
+  const auto& devices = client->rows.devices();
+  const auto found = std::find(devices.begin(), devices.end(), name);
+  return found != devices.end() ? static_cast<int>(found - devices.begin()) : -1;
+}
+
+const char* hapticd_device_name(hapticd_client* client, int device) {
+  const auto& devices = client->rows.devices();
+  return device >= 0 && static_cast<size_t>(device) < devices.size() ? devices[static_cast<size_t>(device)].c_str()
+                                                                     : nullptr;
+}

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+/// What the files of the client library share. Nothing of it is seen outside.
+#pragma once
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/descriptors.hpp"
+#include "base/result.hpp"
+#include "control/client.hpp"
+#include "hapticd/client.h"
+
+namespace hapticd::client {
+
+/// Memory of the daemon in this process.
+class Mapping {
+ public:
+  Mapping() = default;
+  /// @param bytes 0: all of the file. An error leaves nothing mapped: data() is nullptr, errno says why
+  Mapping(int fd, size_t bytes, int protection);
+  Mapping(Mapping&& other) noexcept : data_(std::exchange(other.data_, nullptr)), bytes_(other.bytes_) {}
+  Mapping& operator=(Mapping&& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(bytes_, other.bytes_);
+    return *this;
+  }
+  ~Mapping();
+  std::byte* data() const { return data_; }
+  size_t bytes() const { return bytes_; }
+  /// nullptr: it is not all inside.
+  std::byte* at(size_t place, size_t bytes) const {
+    return place <= bytes_ && bytes <= bytes_ - place ? data_ + place : nullptr;
+  }
+
+ private:
+  std::byte* data_ = nullptr;
+  size_t bytes_ = 0;
+};
+
+/// One stream of the black box.
+struct Stream {
+  std::string name;
+  uint64_t* written = nullptr;  ///< in the mapping
+  uint64_t* rows = nullptr;
+  uint64_t capacity = 0;
+  size_t row_words = 0;
+  std::list<std::string> texts;  ///< that the columns point to
+  std::vector<hapticd_column> columns;
+};
+
+/// The black box of a daemon.
+class Rows {
+ public:
+  static Result<Rows> open(const std::string& file);
+  const std::string& about() const { return about_; }
+  const std::vector<std::string>& devices() const { return devices_; }
+  std::vector<Stream>& streams() { return streams_; }
+  static uint64_t written(const Stream& stream);
+  static long read(const Stream& stream, uint64_t& row, void* rows, size_t most);
+
+ private:
+  Result<void> readStreams();
+  Result<void> readAbout();
+  Mapping memory_;
+  std::string about_;
+  std::vector<Stream> streams_;
+  std::vector<std::string> devices_;
+};
+
+/// What a request got.
+struct Answer {
+  std::string line;
+  Descriptor descriptor;
+};
+
+void tell(hapticd_error* error, const char* code, const std::string& text);
+
+}  // namespace hapticd::client
+
+/// Names as in client.h.
+struct hapticd_client {
+  hapticd_client(std::string where, hapticd::control::Client on, hapticd::client::Rows box)
+      : base(std::move(where)), line(std::move(on)), rows(std::move(box)) {}
+  /// A request whose answer says that it was done.
+  bool ask(const std::string& request, hapticd::client::Answer& answer, hapticd_error* error);
+  /// The memory of a request, mapped once. nullptr: it cannot be had
+  std::byte* page(const char* request, hapticd::client::Mapping& kept, size_t least, int protection);
+
+  std::string base;  ///< of the daemon's files, "/run/hapticd/NAME"
+  hapticd::control::Client line;
+  hapticd::client::Rows rows;
+  std::mutex asking, mapping;
+  hapticd::client::Mapping bell, states;
+  std::list<hapticd_lead*> leads;
+};
+
+struct hapticd_lead {
+  hapticd_client* client;
+  std::string unlead;  ///< the request that ends it
+  bool pushes;
+  hapticd::client::Mapping memory;
+};

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+/// Leads: memory that this program writes and the servo looks at once a tick.
+#include <nlohmann/json.hpp>
+
+#include "internal.hpp"
+#include "link/lead.hpp"
+
+namespace {
+
+using hapticd::client::Answer;
+using hapticd::client::tell;
+
+hapticd_lead* leadOf(hapticd_client* client, const char* what, const char* name, hapticd_error* error) try {
+  tell(error, "", "");
+  nlohmann::json request = {{"do", "lead"}, {what, name}};
+  Answer answer;
+  if (!client->ask(request.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), answer, error))
+    return nullptr;
+  hapticd::client::Mapping memory(answer.descriptor.get(), HAPTICD_LEAD_BYTES, PROT_READ | PROT_WRITE);
+  if (memory.data() == nullptr) return tell(error, "damaged", "the memory of the lead cannot be mapped"), nullptr;
+  request["do"] = "unlead";
+  auto* lead = new hapticd_lead{client, request.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
+                                std::string_view(what) == "force", std::move(memory)};
+  client->leads.push_back(lead);
+  return lead;
+} catch (const std::exception& problem) {
+  tell(error, "failed", problem.what());
+  return nullptr;
+}
+
+}  // namespace
+
+hapticd_lead* hapticd_lead_model(hapticd_client* client, const char* model, hapticd_error* error) {
+  return leadOf(client, "model", model, error);
+}
+
+hapticd_lead* hapticd_lead_hand(hapticd_client* client, const char* device, hapticd_error* error) {
+  return leadOf(client, "hand", device, error);
+}
+
+hapticd_lead* hapticd_lead_force(hapticd_client* client, const char* device, hapticd_error* error) {
+  return leadOf(client, "force", device, error);
+}
+
+int hapticd_lead_put(hapticd_lead* lead, const hapticd_target* target) {
+  if (lead->pushes) return -1;
+  reinterpret_cast<hapticd::link::PoseSlot*>(lead->memory.data())->put(*target);
+  return 0;
+}
+
+int hapticd_lead_push(hapticd_lead* lead, const hapticd_push* push) {
+  if (!lead->pushes) return -1;
+  reinterpret_cast<hapticd::link::PushSlot*>(lead->memory.data())->put(*push);
+  return 0;
+}
+
+void hapticd_lead_end(hapticd_lead* lead) try {
+  if (lead == nullptr) return;
+  Answer answer;
+  (void)lead->client->ask(lead->unlead, answer, nullptr);  // refused: it has ended with the daemon or with the model
+  lead->client->leads.remove(lead);
+  delete lead;
+} catch (const std::exception&) {
+}
