@@ -2,11 +2,14 @@
 /// `hapticd check`: validates files and prints every problem, warns of what cannot be stable; also prints the JSON
 /// Schema of a format.
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <vector>
 
+#include "cli/colour.hpp"
 #include "cli/command.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/model_trial.hpp"
+#include "document/reader.hpp"
 #include "host/device_instance.hpp"
 #include "tune/stability.hpp"
 
@@ -15,10 +18,12 @@ namespace hapticd::cli {
 using namespace diagnostics;
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct Options {
   std::vector<std::string> files;
   std::string schema;
-  bool quiet = false, files_only = false;
+  bool quiet = false, files_only = false, json = false;
 };
 
 int printSchema(const std::string& format) {
@@ -42,24 +47,99 @@ document::Problems unstable(const scene::Scene& scene, const std::vector<double>
   return warnings;
 }
 
+/// A model so far away that no arm reaches it was meant in other units.
+document::Problems farModels(const scene::Scene& scene) {
+  constexpr double kFar = 10;  // [m]
+  document::Problems warnings;
+  for (size_t i = 0; i < scene.models.size(); ++i)
+    if (const double away = scene.models[i].pose.position.norm(); away > kFar)
+      document::report(
+          warnings, scene.models[i].place, "models[" + std::to_string(i) + "].pose.position",
+          document::numberText(away) + " m from the world's origin, where no arm reaches; expected metres");
+  return warnings;
+}
+
+/// A device whose force may be larger than its arm can give. Nothing is known of an arm that gives 0.
+document::Problems limitsBeyond(const std::string& file) {
+  document::Problems warnings;
+  const scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
+  if (!loaded.device) return warnings;
+  for (const scene::Value& value : loaded.device->parameters) {
+    const bool force = value.id == "device.max_force" || value.id == "max_force";
+    if (force && value.number > 0 && loaded.device->limits.force > value.number)
+      document::report(warnings, value.place, "limits.force",
+                       document::numberText(loaded.device->limits.force) + " N is more than the arm's " + value.id +
+                           " of " + document::numberText(value.number) + " N, expected no more");
+  }
+  return warnings;
+}
+
+/// What one file is told.
+struct Verdict {
+  std::string file;
+  document::Problems problems, warnings;
+};
+
+Verdict checkOne(const std::string& file, const Options& options) {
+  std::optional<scene::Scene> scene;
+  Verdict verdict{file, scene::checkFile(file, catalog(), &scene), {}};
+  document::Problems& found = verdict.problems;
+  ModelTrial trial;
+  if (scene && !options.files_only) trial = tryModels(*scene);
+  found.insert(found.end(), trial.problems.begin(), trial.problems.end());
+  if (!scene) {
+    const document::Problems more = tryDevice(file, catalog(), found);
+    found.insert(found.end(), more.begin(), more.end());
+    document::sortByPlace(found);
+  }
+  verdict.warnings = trial.warnings;
+  if (!scene && found.empty()) verdict.warnings = limitsBeyond(file);
+  if (!scene || !found.empty()) return verdict;
+  document::Problems more = unstable(*scene, trial.stiffness);
+  for (const document::Problem& far : farModels(*scene)) more.push_back(far);
+  verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());
+  return verdict;
+}
+
+void print(const Verdict& verdict, bool quiet) {
+  printProblems(verdict.problems, stdout);
+  printWarnings(verdict.warnings, stdout);
+  if (verdict.problems.empty() && !quiet)
+    std::printf("%s: %s\n", verdict.file.c_str(), coloured("ok", Colour::kGood).c_str());
+}
+
+Json toJson(const document::Problems& problems) {
+  Json list = Json::array();
+  for (const document::Problem& problem : problems)
+    list.push_back({{"file", problem.place.file},
+                    {"line", problem.place.line},
+                    {"column", problem.place.column},
+                    {"key", problem.key},
+                    {"what", problem.what}});
+  return list;
+}
+
 int check(const Options& options) {
   if (!options.schema.empty()) return printSchema(options.schema);
   if (options.files.empty()) return fail(kBadInput, "no file given, expected `hapticd check FILE...`");
   size_t problems = 0, bad_files = 0;
+  Json files = Json::array();
   for (const std::string& file : options.files) {
-    std::optional<scene::Scene> scene;
-    document::Problems found = scene::checkFile(file, catalog(), &scene);
-    ModelTrial trial;
-    if (scene && !options.files_only) trial = tryModels(*scene);
-    found.insert(found.end(), trial.problems.begin(), trial.problems.end());
-    if (!scene && found.empty()) found = tryDevice(file, catalog());
-    printProblems(found, stdout);
-    printWarnings(trial.warnings, stdout);
-    if (scene && found.empty()) printWarnings(unstable(*scene, trial.stiffness), stdout);
-    if (found.empty() && !options.quiet) std::printf("%s: ok\n", file.c_str());
-    problems += found.size();
-    bad_files += found.empty() ? 0 : 1;
+    const Verdict verdict = checkOne(file, options);
+    if (options.json)
+      files.push_back({{"file", file},
+                       {"ok", verdict.problems.empty()},
+                       {"problems", toJson(verdict.problems)},
+                       {"warnings", toJson(verdict.warnings)}});
+    else
+      print(verdict, options.quiet);
+    problems += verdict.problems.size();
+    bad_files += verdict.problems.empty() ? 0 : 1;
   }
+  if (options.json)
+    std::printf(
+        "%s\n",
+        Json{{"problems", problems}, {"files", files}}.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
   if (problems == 0) return kWorked;
   std::fflush(stdout);
   std::fprintf(stderr, "%zu problem%s in %zu of %zu file%s\n", problems, problems == 1 ? "" : "s", bad_files,
@@ -76,6 +156,7 @@ void addCheck(CLI::App& app, int& exit_code) {
   command->add_option("--schema", options->schema, "print the JSON Schema of a format instead, for editors")
       ->check(CLI::IsMember({"scene", "device", "daemon"}));
   command->add_flag("--quiet,-q", options->quiet, "print nothing about files without problems");
+  command->add_flag("--json", options->json, "print JSON: each problem and warning with file, line, column and key");
   command->add_flag("--files-only", options->files_only, "only read the files; do not set up the models of a scene");
   command->footer(
       "Each problem is one line: file:line:column: key: what is wrong, and what was expected.\nThe exit code is 2 if "

@@ -2,8 +2,10 @@
 #include "cli/class_info.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "document/reader.hpp"
 #include "document/suggestion.hpp"
@@ -11,6 +13,8 @@
 
 namespace hapticd::cli {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 std::string typeText(const host::ParamInfo& p) {
   switch (p.kind) {
@@ -69,9 +73,53 @@ void printParam(const host::ParamInfo& p) {
   std::printf("  %-20s %s\n  %-20s %s\n", p.id.c_str(), facts.c_str(), "", p.doc.c_str());
 }
 
+Json paramJson(const host::ParamInfo& p) {
+  Json json{{"id", p.id}, {"type", typeText(p)}, {"unit", p.unit}, {"doc", p.doc}};
+  const bool ranged = p.kind == HSP_REAL || p.kind == HSP_INT || p.kind == HSP_ARRAY;
+  if (ranged && std::isfinite(p.min)) json["min"] = p.min;
+  if (ranged && std::isfinite(p.max)) json["max"] = p.max;
+  if (p.kind == HSP_ENUM) json["choices"] = p.choices;
+  if (p.kind == HSP_REAL || p.kind == HSP_INT) json["default"] = p.def;
+  if (p.kind == HSP_BOOL) json["default"] = p.def != 0;
+  if (p.kind > HSP_INT && p.kind != HSP_BOOL) json["default"] = defaultText(p);
+  json["required"] = (p.flags & HSP_P_REQUIRED) != 0;
+  json["live"] = (p.flags & HSP_P_LIVE) != 0;
+  return json;
+}
+
 }  // namespace
 
-void printClasses(const std::vector<const host::CatalogFile*>& files, host::Kind kind, bool details) {
+nlohmann::ordered_json classJson(const host::ClassInfo& info) {
+  auto params = Json::array();
+  for (const host::ParamInfo& p : info.params) params.push_back(paramJson(p));
+  return {{"name", info.name},
+          {"id", info.id},
+          {"version", info.version},
+          {"licence", info.license},
+          {"doc", info.doc},
+          {"file", info.file.string()},
+          {"moves", (info.flags & HSP_C_MOVES) != 0},
+          {"deforms", (info.flags & HSP_C_DEFORMS) != 0},
+          {"parameters", params}};
+}
+
+nlohmann::ordered_json classesJson(const std::vector<const host::CatalogFile*>& files, host::Kind kind) {
+  auto plugins = Json::array(), unusable = Json::array();
+  std::map<std::string, std::string> first;
+  for (const host::CatalogFile* file : files) {
+    if (!file->error.empty()) unusable.push_back(file->error);
+    for (const host::ClassInfo& info : file->classes) {
+      if (info.kind != kind) continue;
+      const auto [winner, is_first] = first.emplace(info.name, file->path.string());
+      plugins.push_back(classJson(info));
+      plugins.back()["hidden_by"] = is_first ? Json() : Json(winner->second);
+    }
+  }
+  return {{"plugins", plugins}, {"unusable", unusable}};
+}
+
+void printClasses(const std::vector<const host::CatalogFile*>& files, host::Kind kind, bool details,
+                  const std::map<std::string, std::string>& notes) {
   std::map<std::string, std::string> first;  // name to the file that wins
   for (const host::CatalogFile* file : files) {
     for (const host::ClassInfo& info : file->classes) {
@@ -79,6 +127,8 @@ void printClasses(const std::vector<const host::CatalogFile*>& files, host::Kind
       const auto [winner, is_first] = first.emplace(info.name, file->path.string());
       const std::string note = is_first ? "" : " (hidden by " + winner->second + ")";
       std::printf("%-18s %-8s %s%s\n", info.name.c_str(), info.version.c_str(), info.doc.c_str(), note.c_str());
+      if (const auto more = notes.find(info.name); more != notes.end())
+        std::printf("%-18s %-8s %s\n", "", "", more->second.c_str());
       if (details)
         std::printf("%-18s %-8s %s, %s, %s\n", "", "", info.id.c_str(), info.license.c_str(), file->path.c_str());
     }

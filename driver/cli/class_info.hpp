@@ -2,6 +2,8 @@
 /// Plugins and modules on the terminal.
 #pragma once
 #include <filesystem>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -10,7 +12,13 @@
 namespace hapticd::cli {
 
 /// One line a class: name, version, first sentence. @param details file and licence below it
-void printClasses(const std::vector<const host::CatalogFile*>& files, host::Kind kind, bool details);
+/// @param notes what else is to be said of a name, behind its line
+void printClasses(const std::vector<const host::CatalogFile*>& files, host::Kind kind, bool details,
+                  const std::map<std::string, std::string>& notes = {});
+
+/// The same facts for programs: {"plugins": [...], "unusable": [...]}; with the parameters of each.
+nlohmann::ordered_json classesJson(const std::vector<const host::CatalogFile*>& files, host::Kind kind);
+nlohmann::ordered_json classJson(const host::ClassInfo& info);
 
 /// Files that could not be described, with the reason.
 void printUnusable(const std::vector<const host::CatalogFile*>& files);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "cli/class_info.hpp"
@@ -17,6 +18,8 @@ namespace hapticd::cli {
 
 using namespace diagnostics;
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 void printShippedFiles() {
   const auto one = host::shippedFile(scene::kDefaultDevice);
@@ -49,6 +52,31 @@ void printBuses() {
           device.node.c_str());
   }
   if (found.empty()) std::printf("  no known haptic device (USB and VME scanned)\n");
+}
+
+Json listJson() {
+  Json modules = classesJson(catalog().files(host::Kind::kDevice), host::Kind::kDevice), files = Json::array(),
+       found = Json::array();
+  if (const auto one = host::shippedFile(scene::kDefaultDevice))
+    for (const auto& entry : std::filesystem::directory_iterator(one->parent_path())) {
+      if (entry.path().extension() != ".yaml") continue;
+      const scene::LoadedDevice loaded = scene::loadDevice(entry.path(), catalog());
+      files.push_back({{"file", entry.path().string()}, {"ok", loaded.device.has_value()}});
+      if (loaded.device) files.back().update({{"name", loaded.device->name}, {"module", loaded.device->module}});
+    }
+  for (const BusDevice& device : scanBuses())
+    found.push_back({{"bus", device.bus},
+                     {"id", device.id},
+                     {"product", device.product},
+                     {"module", device.module.empty() ? Json() : Json(device.module)},
+                     {"may_open", device.may_open},
+                     {"node", device.node}});
+  return {{"modules", modules["plugins"]}, {"unusable", modules["unusable"]}, {"files", files}, {"plugged_in", found}};
+}
+
+int printJson(const Json& json) {
+  std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+  return kWorked;
 }
 
 int list() {
@@ -135,7 +163,42 @@ void logButNoErrors(int level, const std::string& who, const std::string& text) 
   if (level != HSP_LOG_ERROR) logToTerminal(level, who, text);
 }
 
-int info(const std::string& file, bool with_parameters) {
+/// The facts for programs. Opens the arm if it is plugged in.
+Json infoJson(const scene::Device& description, host::DeviceInstance& device) {
+  const Eigen::Vector3d& p = description.mount.position;
+  const Eigen::Quaterniond& q = description.mount.orientation;
+  const auto opened = device.open();
+  Json json{{"name", description.name},
+            {"file", description.file.string()},
+            {"module", description.module},
+            {"joints", device.kinematics().joint_count},
+            {"mount", {{"position", {p.x(), p.y(), p.z()}}, {"orientation", {q.w(), q.x(), q.y(), q.z()}}}},
+            {"limits",
+             {{"force", description.limits.force},
+              {"torque", description.limits.torque},
+              {"slew", description.limits.slew},
+              {"velocity", description.limits.velocity},
+              {"workspace", description.limits.workspace}}},
+            {"available", static_cast<bool>(opened)}};
+  if (!opened) return json["why"] = opened.error(), json;
+  const hdv_info& info = device.info();
+  json["hardware"] = {{"product", info.product},
+                      {"serial", info.serial},
+                      {"firmware", info.firmware},
+                      {"rate_hz", info.rate_hz},
+                      {"max_force", info.max_force},
+                      {"continuous_force", info.continuous_force},
+                      {"max_stiffness", info.max_stiffness},
+                      {"resolution_m", info.resolution_m},
+                      {"mass_kg", info.mass_kg},
+                      {"damping", info.damping},
+                      {"buttons", info.buttons},
+                      {"simulated", (info.capabilities & HDV_C_SIMULATED) != 0},
+                      {"verified", (info.capabilities & HDV_C_UNVERIFIED) == 0}};
+  return json;
+}
+
+int info(const std::string& file, bool with_parameters, bool as_json) {
   const scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
   printProblems(loaded.problems, stderr);
   if (!loaded.device) return kBadInput;
@@ -145,6 +208,7 @@ int info(const std::string& file, bool with_parameters) {
   if (!wrong.empty()) return kBadInput;
   auto device = host::DeviceInstance::create(description, logButNoErrors);
   if (!device) return fail(kFailed, device.error());
+  if (as_json) return printJson(infoJson(description, **device));
   const hdv_class& module = (*device)->description();
   std::printf("%s\n  file    %s\n  module  %s %s (%s)\n  %s\n  joints  %u\n", description.name.c_str(),
               description.file.c_str(), module.name, module.version, description.library.c_str(), module.doc,
@@ -170,8 +234,10 @@ void addDevice(CLI::App& app, int& exit_code) {
 
   CLI::App* list_command =
       command->add_subcommand("list", "List device modules, device files, and known devices on the buses.");
+  auto json = std::make_shared<bool>(false);
+  list_command->add_flag("--json", *json, "print JSON");
   list_command->footer("Example:\n  hapticd device list");
-  list_command->callback([&exit_code] { exit_code = list(); });
+  list_command->callback([json, &exit_code] { exit_code = *json ? printJson(listJson()) : list(); });
 
   auto file = std::make_shared<std::string>();
   CLI::App* info_command = command->add_subcommand(
@@ -180,7 +246,8 @@ void addDevice(CLI::App& app, int& exit_code) {
   info_command->footer("Example:\n  hapticd device info config/devices/simulated-premium15.yaml");
   auto parameters = std::make_shared<bool>(false);
   info_command->add_flag("--parameters", *parameters, "also print every parameter of the module");
-  info_command->callback([file, parameters, &exit_code] { exit_code = info(*file, *parameters); });
+  info_command->add_flag("--json", *json, "print JSON");
+  info_command->callback([file, parameters, json, &exit_code] { exit_code = info(*file, *parameters, *json); });
 }
 
 }  // namespace hapticd::cli

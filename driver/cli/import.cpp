@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd import`: converts Bezier patches into a model file, triangle meshes into parts, and closed surfaces into
 /// soft bodies.
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -28,7 +29,27 @@ struct Options {
   bool json = false;
 };
 
+/// Formats that people have and that are not read: the way that leads here. "": not one of them.
+std::string otherWay(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const auto is = [&](std::initializer_list<const char*> endings) {
+    return std::any_of(endings.begin(), endings.end(), [&](const char* one) { return ending == one; });
+  };
+  if (is({".step", ".stp", ".iges", ".igs", ".brep", ".fcstd", ".sldprt", ".x_t", ".3dm"}))
+    return file + ": CAD files (" + ending +
+           ") are not read\n  two ways: in a CAD program export a mesh, then: hapticd import PART.stl -o PART.hpart "
+           "--scale 0.001\n  or, for exact untrimmed faces, the FreeCAD script of driver/docs/models.md, \"Getting "
+           "models "
+           "in\"";
+  if (is({".gltf", ".glb", ".fbx", ".dae", ".blend", ".3mf", ".off", ".wrl", ".x3d"}))
+    return file + ": " + ending +
+           " files are not read\n  export the mesh as .obj, .stl or .ply, then: hapticd import PART.stl -o PART.hpart";
+  return "";
+}
+
 int importModel(const Options& options) {
+  if (const std::string way = otherWay(options.file); !way.empty()) return fail(kBadInput, way);
   if (options.medial) {
     MedialImport body = options.body;
     body.file = options.file;

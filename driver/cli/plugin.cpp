@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd plugin list|info`: what is there, and the documentation that its parameter table holds.
 #include <algorithm>
+#include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "cli/class_info.hpp"
@@ -11,18 +13,54 @@
 namespace hapticd::cli {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
+/// Why runs leave a plugin out, by its name.
+std::map<std::string, std::string> quarantineNotes() {
+  std::map<std::string, std::string> notes;
+  const auto dir = watch::stateDir();
+  if (dir.empty()) return notes;
+  for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir))
+    notes[entry.plugin] =
+        "IN QUARANTINE: " + entry.reason + "; runs leave it out until: hapticd plugin clear " + entry.plugin;
+  return notes;
+}
+
+int printJson(const Json& json) {
+  std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+  return kWorked;
+}
+
+int listJson() {
+  Json json = classesJson(catalog().files(host::Kind::kShape), host::Kind::kShape);
+  const auto notes = quarantineNotes();
+  for (Json& plugin : json["plugins"]) {
+    const auto note = notes.find(plugin["name"].get<std::string>());
+    plugin["quarantine"] = note != notes.end() ? Json(note->second) : Json();
+  }
+  return printJson(json);
+}
+
 int list(bool details) {
   const auto files = catalog().files(host::Kind::kShape);
-  printClasses(files, host::Kind::kShape, details);
+  printClasses(files, host::Kind::kShape, details, quarantineNotes());
   printUnusable(files);
   if (files.empty()) return fail(kFailed, "no plugin found\n" + searchedText(catalog().searchPath().plugins));
   return kWorked;
 }
 
-int info(const std::string& name) {
+int info(const std::string& name, bool json) {
   auto found = catalog().shape(name);
   if (!found) return fail(kBadInput, found.error());
+  const auto notes = quarantineNotes();
+  const auto note = notes.find((*found)->name);
+  if (json) {
+    Json facts = classJson(**found);
+    facts["quarantine"] = note != notes.end() ? Json(note->second) : Json();
+    return printJson(facts);
+  }
   printClass(**found);
+  if (note != notes.end()) std::printf("\n%s\n", note->second.c_str());
   return kWorked;
 }
 
@@ -55,7 +93,9 @@ void addPlugin(CLI::App& app, int& exit_code) {
       command->add_subcommand("list", "List every plugin that a scene can name, and every file that cannot be used.");
   list_command->add_flag("--files", *details, "show the file and licence of each");
   list_command->footer("Example:\n  HAPTICD_PLUGIN_PATH=~/my-plugins/build hapticd plugin list --files");
-  list_command->callback([details, &exit_code] { exit_code = list(*details); });
+  auto json = std::make_shared<bool>(false);
+  list_command->add_flag("--json", *json, "print JSON, with the parameters of each");
+  list_command->callback([details, json, &exit_code] { exit_code = *json ? listJson() : list(*details); });
 
   auto crashed = std::make_shared<std::string>();
   CLI::App* clear_command =
@@ -68,8 +108,9 @@ void addPlugin(CLI::App& app, int& exit_code) {
   CLI::App* info_command =
       command->add_subcommand("info", "Show the parameters of a plugin with unit, range and default.");
   info_command->add_option("name", *name, "name or id of the plugin")->required();
+  info_command->add_flag("--json", *json, "print JSON");
   info_command->footer("Example:\n  hapticd plugin info nurbs_rigid");
-  info_command->callback([name, &exit_code] { exit_code = info(*name); });
+  info_command->callback([name, json, &exit_code] { exit_code = info(*name, *json); });
 }
 
 }  // namespace hapticd::cli

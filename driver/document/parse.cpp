@@ -168,6 +168,62 @@ Place placeOf(const YAML::Mark& mark, const std::string& file) {
   return {file, std::max(mark.line, 0) + 1, std::max(mark.column, 0) + 1};
 }
 
+/// A line of block style: how far it is indented, and where what it holds begins ("- - a" holds at 4).
+struct Line {
+  int number = 0, indent = 0, inner = 0;
+  bool opens = false;  ///< a deeper line may follow
+};
+
+/// The lines up to `last` that hold something. Flow style and block texts have no indentation to be wrong.
+std::vector<Line> blockLines(const std::string& text, int last) {
+  std::vector<Line> lines;
+  std::istringstream in(text);
+  int number = 0, brackets = 0;
+  for (std::string line; number < last && std::getline(in, line);) {
+    ++number;
+    const bool inside = brackets > 0;
+    if (const size_t comment = line.find(" #"); comment != std::string::npos) line.erase(comment);
+    for (const char c : line) brackets += c == '[' || c == '{' ? 1 : c == ']' || c == '}' ? -1 : 0;
+    line.erase(line.find_last_not_of(" \r") + 1);
+    const size_t first = line.find_first_not_of(' ');
+    if (inside || first == std::string::npos || line[first] == '#' || line[first] == '\t') continue;
+    Line one{number, static_cast<int>(first), static_cast<int>(first), false};
+    size_t at = first;
+    while (at + 1 < line.size() && line[at] == '-' && line[at + 1] == ' ') at = line.find_first_not_of(' ', at + 1);
+    one.inner = static_cast<int>(at);
+    const char end = line.back();
+    one.opens = end == ':' || end == '-' || end == '|' || end == '>' || brackets > 0;
+    lines.push_back(one);
+  }
+  return lines;
+}
+
+/// What is wrong with the indentation of one of the lines up to `last`, and where: what a parser says of it comes late,
+/// and in its own words.
+std::optional<Problem> wrongIndent(const std::string& text, int last, const std::string& file) {
+  const auto wrong = [&](const Line& line, const std::string& expected) {
+    return Problem{{file, line.number, line.indent + 1},
+                   "",
+                   "not YAML: indented by " + std::to_string(line.indent) + ", expected " + expected};
+  };
+  std::vector<int> open;
+  bool may_go_deeper = true;
+  for (const Line& line : blockLines(text, last)) {
+    const bool deeper = open.empty() || line.indent > open.back();
+    if (deeper && !may_go_deeper)
+      return wrong(line, std::to_string(open.back()) +
+                             " as the line before it, which opens nothing (a line that does ends with a colon)");
+    std::string all;
+    for (const int indent : open) all += (all.empty() ? "" : " or ") + std::to_string(indent);
+    while (open.size() > 1 && open.back() > line.indent) open.pop_back();
+    if (!deeper && open.back() != line.indent) return wrong(line, all + " as a line above it");
+    if (deeper) open.push_back(line.indent);
+    if (line.inner > line.indent) open.push_back(line.inner);
+    may_go_deeper = line.opens;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<Node> parseText(const std::string& text, const std::string& file, Problems& problems) {
@@ -197,7 +253,10 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
   } catch (const Refused& refused) {
     report(problems, placeOf(refused.mark, file), "", refused.what);
   } catch (const YAML::Exception& error) {
-    report(problems, placeOf(error.mark, file), "", "not YAML: " + error.msg);
+    if (const auto indent = wrongIndent(text, std::max(error.mark.line, 0) + 1, file))
+      problems.push_back(*indent);
+    else
+      report(problems, placeOf(error.mark, file), "", "not YAML: " + error.msg);
   } catch (const std::exception& error) {
     report(problems, file, 1, 1, "", std::string("not YAML: ") + error.what());
   }

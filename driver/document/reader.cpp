@@ -148,12 +148,20 @@ std::optional<Eigen::Vector3d> Reader::vector3(const Node& node, const std::stri
 }
 
 std::optional<Eigen::Quaterniond> Reader::quaternion(const Node& node, const std::string& key) {
+  constexpr const char* kNoDegrees =
+      "expected a unit quaternion [w, x, y, z]; 90 degrees about y are [0.7071068, 0, 0.7071068, 0]";
   if (!node.isSequence() || node.items.size() != 4) {
-    problem(node, key,
-            (node.isSequence() ? "a list of " + std::to_string(node.items.size()) : describe(node)) +
-                ", expected a unit quaternion [w, x, y, z]");
+    problem(
+        node, key,
+        (node.isSequence() ? "a list of " + std::to_string(node.items.size()) : describe(node)) + ", " + kNoDegrees);
     return std::nullopt;
   }
+  for (const Node& item : node.items)
+    if (const auto value = toNumber(item.scalar);
+        item.isScalar() && value && std::isfinite(*value) && std::abs(*value) > 2) {
+      problem(item, key, item.scalar + " is no part of a rotation, " + kNoDegrees);
+      return std::nullopt;
+    }
   std::array<double, 4> v{};
   for (size_t i = 0; i < 4; ++i) {
     const auto value = number(node.items[i], key + "[" + std::to_string(i) + "]", {-2, 2});
@@ -176,7 +184,7 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
     const std::string path = joined(key, entry.key.scalar);
     if (const Key* known = table.find(entry.key.scalar)) {
       if (entry.value.isNull())
-        problem(entry.key, path, std::string("empty, expected ") + known->expected());
+        problem(entry.key, path, std::string("no value given, expected ") + known->expected());
       else
         known->store(*this, entry.value, path, *known, object);
     } else {

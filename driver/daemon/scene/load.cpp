@@ -2,6 +2,7 @@
 #include "scene/load.hpp"
 
 #include "document/suggestion.hpp"
+#include "scene/device_draft.hpp"
 #include "scene/loader.hpp"
 
 namespace hapticd::scene {
@@ -14,7 +15,9 @@ void checkRoot(const Node& root, Reader& in, host::Catalog& catalog, std::option
   if (format == nullptr) {
     detail::hasFormat(root, nullptr, in);
   } else if (format->table == &kSceneTable) {
-    std::optional<Scene> loaded = detail::loadScene(root, in, catalog, {.default_device = false, .device_file = {}});
+    // A hand is read against the arm that `run` takes where the scene names none.
+    const bool default_arm = root.find("hand") != nullptr;
+    auto loaded = detail::loadScene(root, in, catalog, {.default_device = default_arm, .device_file = {}});
     if (scene != nullptr) *scene = std::move(loaded);
   } else if (format->table == &kDeviceTable) {
     detail::loadDevice(root, in, {in.file(), "", {}, nullptr}, catalog, nullptr, nullptr, nullptr);
@@ -79,6 +82,11 @@ LoadedDevice loadDevice(const std::filesystem::path& file, host::Catalog& catalo
   if (!loaded.problems.empty()) loaded.device.reset();
   sortByPlace(loaded.problems);
   return loaded;
+}
+
+std::optional<Device> deviceDraft(const std::filesystem::path& file, host::Catalog& catalog) {
+  Problems known;
+  return detail::loadDeviceFile({file, "", {}, nullptr}, catalog, known, nullptr, nullptr, nullptr);
 }
 
 LoadedDaemon loadDaemon(const std::filesystem::path& file) {

@@ -43,13 +43,30 @@ void ParameterReader::read(const Node& node, const std::string& key, const std::
     if (!skip.empty() && entry.key.scalar == skip) continue;
     const std::string id = joined(prefix, entry.key.scalar), path = joined(key, entry.key.scalar);
     const int index = info_.indexOf(id);
-    if (index >= 0)
-      readOne(entry.value.isNull() ? entry.key : entry.value, path, static_cast<uint32_t>(index));
+    if (index >= 0 && entry.value.isNull())
+      nothing(entry, path, static_cast<uint32_t>(index));
+    else if (index >= 0)
+      readOne(entry.value, path, static_cast<uint32_t>(index));
     else if (isGroup(info_, id))
       read(entry.value, path, id);
     else
       unknown(entry, path, id);
   }
+}
+
+void ParameterReader::nothing(const Entry& entry, const std::string& key, uint32_t index) {
+  const host::ParamInfo& param = info_.params[index];
+  given_[index] = entry.key.line;
+  seen_[index] = true;
+  std::string expected = "a text";
+  if (param.kind == HSP_REAL || param.kind == HSP_INT)
+    expected = document::expectedOf({param.min, param.max, param.unit.c_str()});
+  if (param.kind == HSP_BOOL) expected = "true or false";
+  if (param.kind == HSP_ENUM) expected = "one of " + document::listed(param.choices, 40);
+  if (param.kind == HSP_PATH) expected = "the path of a file";
+  if (param.kind == HSP_ARRAY) expected = "a list of " + countText(param);
+  if (param.kind == HSP_DATA) expected = "a mapping";
+  in_->problem(entry.key, key, "no value given, expected " + expected);
 }
 
 void ParameterReader::unknown(const Entry& entry, const std::string& key, const std::string& id) {

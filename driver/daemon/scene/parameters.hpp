@@ -35,6 +35,7 @@ class ParameterReader {
   std::vector<Value> take() { return std::move(values_); }
 
  private:
+  void nothing(const Entry& entry, const std::string& key, uint32_t index);
   void unknown(const Entry& entry, const std::string& key, const std::string& id);
   bool readValue(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value);
   bool readArray(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value);

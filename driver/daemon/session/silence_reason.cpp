@@ -29,6 +29,10 @@ std::string silenceReason(const std::string& model, Trouble trouble, int32_t fai
       return who +
              "gave forces that jumped beyond its claimed stiffness; it was silenced; test it with: hapticd plugin "
              "check FILE.so";
+    case Trouble::kPull:
+      return who +
+             "draws the hand deeper instead of pushing it out: its force has the wrong sign; it was silenced; test it "
+             "with: hapticd plugin check FILE.so";
   }
   return "";
 }

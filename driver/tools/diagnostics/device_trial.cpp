@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "diagnostics/device_trial.hpp"
 
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
 #include "document/node.hpp"
 #include "host/device_instance.hpp"
-#include "scene/load.hpp"
+#include "scene/device_draft.hpp"
 
 namespace hapticd::diagnostics {
 namespace {
@@ -41,22 +46,45 @@ std::string keyIn(const std::string& message, const Node& parameters, size_t& be
   return "";
 }
 
+/// True for what the module says of a value that it did not get because it was wrong or missing.
+bool follows(const std::string& key, const document::Problems& known) {
+  if (key.empty()) return !known.empty();
+  return std::any_of(known.begin(), known.end(), [&](const document::Problem& problem) {
+    const std::string above = problem.key, all = "parameters." + key;
+    const bool inside = above.rfind(all, 0) == 0 || all.rfind(above, 0) == 0;
+    return inside && above.size() > std::string("parameters").size();
+  });
+}
+
+/// A module tells all that is wrong with its parameters, a line each.
+std::vector<std::string> linesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
 }  // namespace
 
-document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& catalog) {
+document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& catalog,
+                             const document::Problems& known) {
   document::Problems problems;
-  const scene::LoadedDevice loaded = scene::loadDevice(file, catalog);
-  if (!loaded.device) return problems;  // a scene, or problems that are known already
-  const auto made = host::DeviceInstance::create(*loaded.device, nullptr);
+  const auto draft = scene::deviceDraft(file, catalog);
+  if (!draft) return problems;  // a scene, or its module is not known
+  const auto made = host::DeviceInstance::create(*draft, nullptr);
   const auto root = made ? std::nullopt : document::parseFile(file, problems);
   const Node* parameters = root ? root->find("parameters") : nullptr;
   if (parameters == nullptr) return problems;
-  size_t begin = 0;
-  const std::string message = made.error(), key = keyIn(message, *parameters, begin);
-  const Node* at = walk(parameters, key);
-  const std::string what = key.empty() ? message : message.substr(begin + key.size() + 2);
-  document::report(problems, file.string(), at->line, at->column, key.empty() ? "parameters" : "parameters." + key,
-                   what);
+  for (const std::string& message : linesOf(made.error())) {
+    size_t begin = 0;
+    const std::string key = keyIn(message, *parameters, begin);
+    const Node* at = walk(parameters, key);
+    if (follows(key, known)) continue;
+    const std::string what = key.empty() ? message : message.substr(begin + key.size() + 2);
+    document::report(problems, file.string(), at->line, at->column, key.empty() ? "parameters" : "parameters." + key,
+                     what);
+  }
+  document::sortByPlace(problems);
   return problems;
 }
 

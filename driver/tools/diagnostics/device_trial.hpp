@@ -9,6 +9,8 @@
 namespace hapticd::diagnostics {
 
 /// [main] Gives the parameters to the module; what it refuses is placed in the file by the key that it names.
-document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& catalog);
+/// @param known what reading the file has told already: a module's words about that are left out
+document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& catalog,
+                             const document::Problems& known = {});
 
 }  // namespace hapticd::diagnostics

@@ -34,6 +34,7 @@ Core::Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& 
       probe_count_(probe_count),
       models_(models.size() + settings.spare_models),
       claims_(models_.size() * probe_count),
+      pulls_(models_.size() * probe_count),
       contacts_(models_.size() * probe_count),
       inputs_(probe_count),
       outputs_(probe_count),
@@ -276,7 +277,7 @@ void Core::fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP
   Map(last.world.torque) *= part;
 }
 
-/// What a healthy answer may still break: the time it was given, and the stiffness that was claimed for it.
+/// What a healthy answer may still break: the time it was given, the stiffness that was claimed for it, and its sign.
 Trouble Core::holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
   constexpr int kJumps = 3;
   Trouble trouble = Trouble::kNone;
@@ -284,6 +285,8 @@ Trouble Core::holdToClaims(ModelState& model, uint32_t index, double dt) noexcep
   for (uint32_t i = 0; i < probe_count_; ++i) {
     const Vector3d p_model =
         moves_itself ? model.frame.pointToModel(last_position_[i]) : Vector3d(ConstMap(inputs_[i].position));
+    if (pulls_[size_t{index} * probe_count_ + i].judge(inputs_[i], outputs_[i], p_model, model.stiffness))
+      trouble = model.guard.strike(Trouble::kPull, 1);
     const double part = claims_[size_t{index} * probe_count_ + i].judge(inputs_[i], outputs_[i], p_model,
                                                                         model.stiffness, model.damping, dt);
     if (part >= 1) continue;
@@ -347,6 +350,7 @@ void Core::clearContacts(uint32_t index) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     contacts_[size_t{index} * probe_count_ + i] = Contact{};
     claims_[size_t{index} * probe_count_ + i].forget();
+    pulls_[size_t{index} * probe_count_ + i].forget();
   }
 }
 

@@ -21,6 +21,7 @@
 #include "servo/safety/claim.hpp"
 #include "servo/safety/guard.hpp"
 #include "servo/safety/passivity/controller.hpp"
+#include "servo/safety/pull.hpp"
 
 namespace hapticd::servo {
 
@@ -173,6 +174,7 @@ class Core {
   std::vector<Load> loads_;     // of the models that were stepped
   LoadShedding shedding_;
   std::vector<Claim> claims_;  // [model * probe_count + probe]
+  std::vector<Pull> pulls_;    // as claims_
   std::atomic<int32_t> stepping_{-1};
   std::vector<Contact> contacts_;  // [model * probe_count + probe]
   std::vector<hsp_probe> inputs_;  // of the model being stepped

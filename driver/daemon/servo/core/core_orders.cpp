@@ -67,7 +67,10 @@ bool Core::change(ModelState& model, const Order& order) noexcept HSP_RT {
   if (host::stiffens(plugin, order.param) && model.stiffness > 0)
     model.stiffness = std::max(model.stiffness, order.value);
   // What was asked for may change the force under a probe that rests: no jump of the plugin's own making.
-  for (uint32_t i = 0; i < probe_count_; ++i) claims_[size_t{order.target} * probe_count_ + i].forget();
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    claims_[size_t{order.target} * probe_count_ + i].forget();
+    pulls_[size_t{order.target} * probe_count_ + i].forget();
+  }
   return true;
 }
 

@@ -17,7 +17,8 @@ enum class Trouble : uint8_t {
   kNotFinite,  ///< a force or a pose that is not a number: never trusted again
   kBadStatus,  ///< a status that the ABI does not know for step: never trusted again
   kOverrun,    ///< its steps took longer than all shapes may in a tick, again and again: never trusted again
-  kJump        ///< its force jumped beyond the stiffness it claims, again and again: never trusted again
+  kJump,       ///< its force jumped beyond the stiffness it claims, again and again: never trusted again
+  kPull        ///< its force draws the probe deeper: the wrong sign; never trusted again
 };
 
 /// Fades the force of one shape. All times in seconds of the tick.

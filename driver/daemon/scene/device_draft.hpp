@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+/// A device file with problems, as far as it could be read: for those who look for more of them.
+#pragma once
+#include <filesystem>
+#include <optional>
+
+#include "description/scene.hpp"
+#include "host/catalog.hpp"
+
+namespace hapticd::scene {
+
+/// [main] The device with the parameters that are right; nothing where the file is none, or its module is unknown.
+std::optional<Device> deviceDraft(const std::filesystem::path& file, host::Catalog& catalog);
+
+}  // namespace hapticd::scene

@@ -1,0 +1,45 @@
+#!/usr/bin/env python3
+"""Files as new users get them wrong: every problem is told at once and at its line, and nothing else is.
+
+A line of a file that has "# wrong: WORDS" must have a problem whose text has the words; no other line may have one. A file with "# warns:
+WORDS" must have a warning.
+
+Usage: wrong_files.py HAPTICD FOLDER       prints a line a file; exit 1 when one is off
+"""
+import glob
+import os
+import re
+import subprocess
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish
+
+HAPTICD, FOLDER = sys.argv[1:3]
+
+
+def expected(file):
+    """Words by line."""
+    found = {}
+    for number, line in enumerate(open(file), 1):
+        if mark := re.search(r"# wrong: (.*)$", line):
+            found[number] = mark[1]
+    return found
+
+
+files = sorted(glob.glob(os.path.join(FOLDER, "*.yaml")))
+check("sixty of them", len(files) >= 60, len(files))
+for file in files:
+    done = subprocess.run([HAPTICD, "check", file], capture_output=True, text=True, timeout=120)
+    told = {}
+    for line in done.stdout.splitlines():
+        if (place := re.match(re.escape(file) + r":(\d+):(\d+): (.*)$", line)) and "warning:" not in line:
+            told.setdefault(int(place[1]), []).append(place[3])
+    wanted = expected(file)
+    if warns := re.search(r"# warns: (.*)", open(file).read()):
+        check(os.path.basename(file), done.returncode == 0 and "warning: " in done.stdout and warns[1] in done.stdout, done.stdout)
+        continue
+    missing = [f"line {n}: {words}" for n, words in wanted.items() if not any(words in text for text in told.get(n, []))]
+    more = [f"line {n}: {text}" for n, texts in told.items() if n not in wanted for text in texts]
+    check(os.path.basename(file), done.returncode == 2 and wanted and not missing and not more, f"missing {missing}, more {more}\n{done.stdout}{done.stderr}")
+finish()
