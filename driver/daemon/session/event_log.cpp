@@ -92,9 +92,9 @@ EventLog::Message EventLog::messageOfArm(const hapticd_event& event) const {
   if (event.kind == HAPTICD_CLEARED) return {HSP_LOG_INFO, device(event), "the fault is over; its forces come back"};
   const auto fault = static_cast<Fault>(event.code);
   if (fault == Fault::kStopped) return {HSP_LOG_DEBUG, "", ""};  // the run itself says how it ends
-  return {HSP_LOG_ERROR, "",
-          "fault: " + faultMessage(device(event), fault, event.value,
-                                   arms_[static_cast<size_t>(event.probe)]->troubleOf(fault))};
+  const auto arm = static_cast<size_t>(event.probe);
+  const char* trouble = event.probe >= 0 && arm < arms_.size() ? arms_[arm]->troubleOf(fault) : nullptr;
+  return {HSP_LOG_ERROR, "", "fault: " + faultMessage(device(event), fault, event.value, trouble)};
 }
 
 EventLog::Message EventLog::messageOfLeader(const hapticd_event& event) const {

@@ -54,6 +54,12 @@ TEST_F(EventWords, KeepTheNameOfAModelThatHasLeft) {
   EXPECT_EQ(of(HAPTICD_LEFT).who, "door");
 }
 
+TEST_F(EventWords, OfAFaultStandWhereTheArmIsNotThere) {
+  const auto message = of(HAPTICD_FAULT, static_cast<uint32_t>(Fault::kLate), 0.15);
+  EXPECT_EQ(message.level, HSP_LOG_ERROR);
+  EXPECT_NE(message.text.find("fault: device phantom: too many ticks"), std::string::npos) << message.text;
+}
+
 TEST_F(EventWords, OfAKindThatIsNotKnownAreNone) {
   EXPECT_TRUE(of(HAPTICD_EVENT_KINDS).text.empty());
 }
