@@ -82,12 +82,7 @@ control::Reply RequestHandler::answer(const control::Peer& peer, const std::stri
   }
 }
 
-Result<std::string> RequestHandler::obey(const control::Peer& peer, const Request& request) {
-  const std::string good = text({{"ok", true}});
-  const auto plain = [&](Result<void> done) -> Result<std::string> {
-    if (!done) return Error{done.error()};
-    return good;
-  };
+Result<std::string> RequestHandler::tell(const control::Peer& peer, const Request& request) {
   switch (request.kind) {
     case Request::Kind::kStatus:
       return statusAnswer(session());
@@ -104,6 +99,39 @@ Result<std::string> RequestHandler::obey(const control::Peer& peer, const Reques
       if (!place) return Error{place.error()};
       return valuesAnswer(session(), *place, request.parameter);
     }
+    case Request::Kind::kGeometry: {
+      const auto place = placeOf(request.model);
+      if (!place) return Error{place.error()};
+      const host::ShapeInstance& shape = *runner_.world().shapes()[*place];
+      return request.as_memory ? geometryInMemory(shape, request.tolerance, attached_)
+                               : geometryAnswer(shape, request.tolerance);
+    }
+    case Request::Kind::kVertices: {
+      const auto place = placeOf(request.model);
+      if (!place) return Error{place.error()};
+      return verticesAnswer(*runner_.world().shapes()[*place], request.after);
+    }
+    default:
+      return Error{"this request asks for nothing"};
+  }
+}
+
+Result<std::string> RequestHandler::obey(const control::Peer& peer, const Request& request) {
+  const std::string good = text({{"ok", true}});
+  const auto plain = [&](Result<void> done) -> Result<std::string> {
+    if (!done) return Error{done.error()};
+    return good;
+  };
+  switch (request.kind) {
+    case Request::Kind::kStatus:
+    case Request::Kind::kList:
+    case Request::Kind::kSnapshot:
+    case Request::Kind::kEvents:
+    case Request::Kind::kSubscribe:
+    case Request::Kind::kGet:
+    case Request::Kind::kGeometry:
+    case Request::Kind::kVertices:
+      return tell(peer, request);
     case Request::Kind::kEnable:
       return plain(able(request.model, true));
     case Request::Kind::kDisable:
@@ -128,18 +156,6 @@ Result<std::string> RequestHandler::obey(const control::Peer& peer, const Reques
       auto file = dump("asked for");
       if (!file) return Error{file.error()};
       return text({{"ok", true}, {"file", *file}});
-    }
-    case Request::Kind::kGeometry: {
-      const auto place = placeOf(request.model);
-      if (!place) return Error{place.error()};
-      const host::ShapeInstance& shape = *runner_.world().shapes()[*place];
-      return request.as_memory ? geometryInMemory(shape, request.tolerance, attached_)
-                               : geometryAnswer(shape, request.tolerance);
-    }
-    case Request::Kind::kVertices: {
-      const auto place = placeOf(request.model);
-      if (!place) return Error{place.error()};
-      return verticesAnswer(*runner_.world().shapes()[*place], request.after);
     }
     case Request::Kind::kLead:
       return lead(peer, request);

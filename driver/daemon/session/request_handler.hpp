@@ -43,6 +43,8 @@ class RequestHandler {
     return Error{std::move(why)};
   }
   Result<std::string> obey(const control::Peer& peer, const control::Request& request);
+  /// Requests that ask and change nothing.
+  Result<std::string> tell(const control::Peer& peer, const control::Request& request);
   Session session() const { return {runner_, places_, leads_, scene_file_}; }
   Result<std::string> eventsAfter(double after) const;
   Result<std::string> subscribe(const control::Peer& peer);
