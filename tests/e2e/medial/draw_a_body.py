@@ -84,8 +84,9 @@ with tempfile.TemporaryDirectory() as folder:
         out.write(f"hapticd: 1\nservo: {{rate: 1000}}\nhand: {{script: press, radius: 0.033, rise: 0.01, rate: 0.5}}\n"
                   f"models:\n  - name: plate\n    plugin: mat_deformable\n    pose: {{position: [0, 0, 0.02]}}\n"
                   f"    parameters: {{geometry: {os.path.join(CONFIG, 'models', 'soft-plate.yaml')}, display_tolerance: 0.001}}\n")
+    said = os.path.join(folder, "said.txt")
     run = subprocess.Popen([HAPTICD, "run", scene, "--for", "100", "--name", "drawn"],
-                           env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                           env=environment, stdout=open(said, "w", encoding="utf-8"), stderr=subprocess.STDOUT)
     try:
         end = time.monotonic() + 60
         while time.monotonic() < end and run.poll() is None and ctl("status")[0] != 0:
@@ -123,7 +124,7 @@ with tempfile.TemporaryDirectory() as folder:
             code, out, err = ctl(*arguments)
             check(" ".join(arguments) + " is refused with its reason", code == 1 and why in err, (code, out[:200], err))
         code, out, err = ctl("stop")
-        check("the run ends in order", code == 0 and run.wait(timeout=30) == 0, err)
+        check("the run ends in order", code == 0 and run.wait(timeout=30) == 0, err + open(said, encoding="utf-8").read())
     finally:
         run.kill()
 finish()
