@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "base/clock.hpp"
+#include "cli/colour.hpp"
 #include "cli/command.hpp"
+#include "cli/set_option.hpp"
 #include "conformance/conformance.hpp"
 #include "host/child.hpp"
 #include "host/describe.hpp"
@@ -17,84 +19,106 @@ namespace hapticd::cli {
 using namespace conformance;
 namespace {
 
-constexpr int kLimitMs = 120'000;
-
 struct Options {
   std::string file;
   std::vector<std::string> set;
   bool json = false;
-  double fuzz = 0;
+  double fuzz = 0, timeout = 5;
   uint64_t seed = 1;
+  int limitMs(int parts = 1) const { return static_cast<int>(timeout * 1000) * parts; }
 };
 
 struct Outcome {
   std::string plugin, name, why;
-  bool passed = false, skipped = false;
+  bool passed = false, skipped = false, hung = false;
 };
 
-/// A plugin that must be given a model gets one of ours.
-Result<Recipe> recipeFor(const host::ClassInfo& info, const Options& options) {
-  Recipe recipe{options.file, info.name, {}};
-  for (const std::string& pair : options.set) {
-    const size_t equals = pair.find('=');
-    if (equals == std::string::npos) return Error{"--set " + pair + ": expected id=value"};
-    recipe.set[pair.substr(0, equals)] = pair.substr(equals + 1);
-  }
-  for (const host::ParamInfo& param : info.params) {
-    if ((param.flags & HSP_P_REQUIRED) == 0 || recipe.set.count(param.id) > 0) continue;
-    const bool soft = (info.flags & HSP_C_DEFORMS) != 0;
-    const auto model = host::shippedFile(soft ? "models/pebble.yaml" : "models/sphere.yaml");
-    if (param.kind != HSP_PATH || !model)
-      return Error{"plugin '" + info.name + "' requires the parameter '" + param.id + "'; give it with --set " +
-                   param.id + "=VALUE"};
-    recipe.set[param.id] = model->string();
-  }
-  return recipe;
+/// A plugin of ours that must be given a model gets one of ours, and says so.
+void addModelOfOurs(const host::ClassInfo& info, Recipe& recipe) {
+  const int index = info.indexOf("geometry");
+  const bool ours = info.id.rfind("org.hapticd.", 0) == 0;
+  if (!ours || index < 0 || recipe.find("geometry") != nullptr) return;
+  const host::ParamInfo& param = info.params[static_cast<size_t>(index)];
+  if (param.kind != HSP_PATH || (param.flags & HSP_P_REQUIRED) == 0) return;
+  const bool soft = (info.flags & HSP_C_DEFORMS) != 0;
+  const auto model = host::shippedFile(soft ? "models/pebble.yaml" : "models/sphere.yaml");
+  if (!model) return;
+  scene::Value value;
+  value.id = param.id;
+  value.index = static_cast<uint32_t>(index);
+  value.kind = HSP_PATH;
+  value.text = model->string();
+  recipe.set.push_back(std::move(value));
 }
 
-Outcome tryOne(const Recipe& recipe, const ConformanceTest& test, uint64_t seed) {
-  Outcome outcome{recipe.class_name, test.name, "", false, false};
-  const auto said = host::runInChild([&] { return "=" + test.run(recipe, seed); }, kLimitMs);
+/// What each class is tested with; `problems` has all that is wrong with it.
+std::vector<Recipe> recipesFor(const std::vector<host::ClassInfo>& classes, const Options& options,
+                               std::vector<std::string>& problems) {
+  SetOption set(options.set, classes);
+  std::vector<Recipe> recipes;
+  for (const host::ClassInfo& info : classes) {
+    if (info.kind != host::Kind::kShape) {
+      problems.push_back(options.file + " is a device module, expected a shape plugin");
+      return {};
+    }
+    recipes.push_back({options.file, info.name, set.valuesFor(info)});
+    addModelOfOurs(info, recipes.back());
+    if (!set.problems().empty()) continue;  // what was refused is not missing
+    for (const std::string& one : missing(info, recipes.back().set)) problems.push_back(one);
+  }
+  problems.insert(problems.begin(), set.problems().begin(), set.problems().end());
+  return recipes;
+}
+
+Outcome tryOne(const Recipe& recipe, const ConformanceTest& test, const Options& options) {
+  Outcome outcome{recipe.class_name, test.name, "", false, false, false};
+  const auto said = host::runInChild([&] { return "=" + test.run(recipe, options.seed); }, options.limitMs());
   outcome.why = said ? said->substr(1) : "it " + said.error();
+  outcome.hung = !said && said.error().rfind("took longer", 0) == 0;
   outcome.skipped = outcome.why.rfind("skip: ", 0) == 0;
   outcome.passed = outcome.why.empty() || outcome.skipped;
   if (outcome.skipped) outcome.why.erase(0, 6);
   return outcome;
 }
 
+/// Some runs of random input in one child. @return "=": nothing was wrong
+Result<std::string> fuzzSome(const Recipe& recipe, const Options& options, uint64_t first, int count) {
+  return host::runInChild(
+      [&recipe, first, count] {
+        for (uint64_t s = first; s < first + static_cast<uint64_t>(count); ++s)
+          if (const std::string wrong = fuzzOnce(recipe, s); !wrong.empty())
+            return "seed " + std::to_string(s) + ": " + wrong;
+        return std::string("=");
+      },
+      options.limitMs(count));
+}
+
 /// Runs of random input until the time is over; the seed of a failure repeats it.
 Outcome fuzz(const Recipe& recipe, const Options& options) {
-  constexpr uint64_t kRunsAChild = 20;
+  constexpr int kRunsAChild = 20;
   const Nanoseconds end = monotonicNow() + static_cast<Nanoseconds>(options.fuzz * 1e9);
-  Outcome outcome{recipe.class_name, "fuzz", "", true, false};
+  Outcome outcome{recipe.class_name, "fuzz", "", true, false, false};
   uint64_t seed = options.seed;
   for (; monotonicNow() < end && outcome.passed; seed += kRunsAChild) {
-    const auto many = [&](uint64_t first, uint64_t count) {
-      return host::runInChild(
-          [&recipe, first, count] {
-            for (uint64_t s = first; s < first + count; ++s)
-              if (const std::string wrong = fuzzOnce(recipe, s); !wrong.empty())
-                return "seed " + std::to_string(s) + ": " + wrong;
-            return std::string("=");
-          },
-          kLimitMs);
-    };
-    const auto said = many(seed, kRunsAChild);
+    const auto said = fuzzSome(recipe, options, seed, kRunsAChild);
     if (said && *said == "=") continue;
     outcome.passed = false;
     outcome.why = said ? *said : "it " + said.error();
-    for (uint64_t s = seed; !said && s < seed + kRunsAChild; ++s)
-      if (!many(s, 1)) outcome.why = "seed " + std::to_string(s) + ": it " + many(s, 1).error();
+    for (uint64_t s = seed; !said && s < seed + kRunsAChild; ++s) {
+      const auto one = fuzzSome(recipe, options, s, 1);
+      if (one) continue;
+      outcome.why = "seed " + std::to_string(s) + ": it " + one.error();
+      break;
+    }
   }
   if (outcome.passed) outcome.why = std::to_string(seed - options.seed) + " runs of 500 steps";
   return outcome;
 }
 
 void print(const Outcome& outcome) {
-  std::printf("%-5s %-31s %s\n",
-              outcome.skipped  ? "skip"
-              : outcome.passed ? "ok"
-                               : "FAIL",
+  const std::string word = outcome.skipped ? "skip" : outcome.passed ? "ok" : "FAIL";
+  const Colour colour = outcome.skipped ? Colour::kWarning : outcome.passed ? Colour::kGood : Colour::kBad;
+  std::printf("%s%-*s %-31s %s\n", coloured(word, colour).c_str(), static_cast<int>(5 - word.size()), "",
               outcome.name.c_str(), outcome.why.c_str());
   std::fflush(stdout);
 }
@@ -105,47 +129,62 @@ std::vector<Outcome> unusable(const std::string& why) {
   return {{"", slow ? "scan-time-limit" : "descriptor-complete", why, false, false}};
 }
 
+/// All tests of one class, up to the first that hangs: those after it would hang too. @return how many were not run
+size_t testClass(const Recipe& recipe, const Options& options, std::vector<Outcome>& outcomes) {
+  const auto& tests = conformanceTests();
+  for (size_t i = 0; i < tests.size(); ++i) {
+    outcomes.push_back(tryOne(recipe, tests[i], options));
+    if (!options.json) print(outcomes.back());
+    if (!outcomes.back().hung) continue;
+    const size_t left = tests.size() - i - 1;
+    if (!options.json)
+      std::printf("stopped at the first hang: %zu tests were not run; for a plugin that is slow: --timeout SECONDS\n",
+                  left);
+    return left;
+  }
+  if (options.fuzz > 0) {
+    outcomes.push_back(fuzz(recipe, options));
+    if (!options.json) print(outcomes.back());
+  }
+  return 0;
+}
+
+int sum(const std::vector<Outcome>& outcomes, size_t not_run, const Options& options) {
+  size_t failed = 0;
+  auto tests = nlohmann::ordered_json::array();
+  for (const Outcome& o : outcomes) {
+    failed += o.passed ? 0 : 1;
+    const char* result = o.skipped ? "skip" : o.passed ? "pass" : "fail";
+    tests.push_back({{"plugin", o.plugin}, {"name", o.name}, {"result", result}, {"why", o.why}});
+  }
+  const nlohmann::ordered_json all{
+      {"file", options.file}, {"seed", options.seed}, {"failed", failed}, {"not_run", not_run}, {"tests", tests}};
+  if (options.json)
+    std::printf("%s\n", all.dump(2).c_str());
+  else
+    std::printf("%zu tests, %zu failed%s\n", outcomes.size(), failed,
+                not_run > 0 ? (", " + std::to_string(not_run) + " not run").c_str() : "");
+  return failed == 0 ? kWorked : kFailed;
+}
+
 int check(const Options& options) {
   std::vector<Outcome> outcomes;
   const auto classes = host::describeInChild(options.file);
   if (!classes) outcomes = unusable(classes.error());
   if (classes && classes->empty()) outcomes = unusable("the file holds no shape class");
   if (!options.json && !outcomes.empty()) print(outcomes.front());
-  for (size_t i = 0; classes && i < classes->size(); ++i) {
+  std::vector<std::string> problems;
+  std::vector<Recipe> recipes;
+  if (classes) recipes = recipesFor(*classes, options, problems);
+  for (const std::string& problem : problems) fail(kBadInput, problem);
+  if (!problems.empty()) return kBadInput;
+  size_t not_run = 0;
+  for (size_t i = 0; i < recipes.size(); ++i) {
     const host::ClassInfo& info = (*classes)[i];
-    if (info.kind != host::Kind::kShape)
-      return fail(kBadInput, options.file + " is a device module, expected a shape plugin");
-    const auto recipe = recipeFor(info, options);
-    if (!recipe) return fail(kBadInput, recipe.error());
     if (!options.json) std::printf("%s %s (%s)\n", info.name.c_str(), info.version.c_str(), info.id.c_str());
-    for (const ConformanceTest& test : conformanceTests()) {
-      outcomes.push_back(tryOne(*recipe, test, options.seed));
-      if (!options.json) print(outcomes.back());
-    }
-    if (options.fuzz <= 0) continue;
-    outcomes.push_back(fuzz(*recipe, options));
-    if (!options.json) print(outcomes.back());
+    not_run += testClass(recipes[i], options, outcomes);
   }
-  size_t failed = 0;
-  auto tests = nlohmann::ordered_json::array();
-  for (const Outcome& o : outcomes) {
-    failed += o.passed ? 0 : 1;
-    tests.push_back({{"plugin", o.plugin},
-                     {"name", o.name},
-                     {"result", o.skipped  ? "skip"
-                                : o.passed ? "pass"
-                                           : "fail"},
-                     {"why", o.why}});
-  }
-  if (options.json)
-    std::printf(
-        "%s\n",
-        nlohmann::ordered_json{{"file", options.file}, {"seed", options.seed}, {"failed", failed}, {"tests", tests}}
-            .dump(2)
-            .c_str());
-  else
-    std::printf("%zu tests, %zu failed\n", outcomes.size(), failed);
-  return failed == 0 ? kWorked : kFailed;
+  return sum(outcomes, not_run, options);
 }
 
 }  // namespace
@@ -155,14 +194,21 @@ void addPluginCheck(CLI::App& app, int& exit_code) {
   CLI::App* command = app.get_subcommand("plugin")->add_subcommand(
       "check", "Run the conformance tests of a plugin file, each in its own process.");
   command->add_option("file", options->file, "plugin file (.so)")->required()->check(CLI::ExistingFile);
-  command->add_option("--set", options->set, "set a parameter: ID=VALUE; may be repeated");
+  command->add_option("--set", options->set, "set a parameter: ID=VALUE, VALUE as in a scene; may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--timeout", options->timeout, "longest time of one test [s]; a longer one counts as a hang")
+      ->capture_default_str()
+      ->check(within(0.1, 3600.0));
   command->add_flag("--json", options->json, "print the results as JSON");
   command->add_option("--fuzz", options->fuzz, "after the tests, try random parameters and probes for this time [s]")
       ->check(within(0.0, 1e6));
   command->add_option("--seed", options->seed, "seed of all random numbers; a failure names the seed that repeats it")
       ->capture_default_str();
   command->footer(
-      "The exit code is 1 if a test fails.\n\nExample:\n  hapticd plugin check ./my_shape.so --fuzz 60 --seed 7");
+      "The exit code is 1 if a test fails, 2 if a parameter is wrong. The first test that hangs is the last of its "
+      "plugin.\n\n"
+      "Examples:\n  hapticd plugin check ./my_shape.so --fuzz 60 --seed 7\n"
+      "  hapticd plugin check ./relief.so --set heights=hills.csv --set 'origin=[0, 0.1, 0]'");
   command->callback([options, &exit_code] { exit_code = check(*options); });
 }
 

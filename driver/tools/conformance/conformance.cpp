@@ -27,7 +27,7 @@ std::string fuzzOnce(const Recipe& recipe, uint64_t seed) {
   const hsp_class& c = (*made)->description();
   for (uint32_t i = 0; i < c.param_count; ++i) {
     const hsp_param& p = paramAt(c, i);
-    if (p.kind > HSP_ENUM || recipe.set.count(p.id) > 0 || unit(random) < 0.5) continue;
+    if (p.kind > HSP_ENUM || recipe.find(p.id) != nullptr || unit(random) < 0.5) continue;
     hsp_value value{};
     value.kind = p.kind;
     const double most = p.kind == HSP_ENUM ? p.choice_count - 1.0 : p.max, least = p.kind == HSP_ENUM ? 0 : p.min;

@@ -112,12 +112,37 @@ std::string forceOutward(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   double along_normal = 0;
+  bool touched = false;
   along(*made.subject, [&](const Answer& answer, const Vector3d&) {
     const hsp_contact& c = answer.contacts[0];
+    touched |= (c.flags & HSP_OUT_CONTACT) != 0;
     if ((c.flags & HSP_OUT_CONTACT) != 0 && c.depth_m > 0) along_normal += Vector3d(c.force).dot(Vector3d(c.normal));
     return std::string();
   });
+  if (!touched) return "skip: the probe was never in contact within 13 cm of the origin, or 1.3 times the bounds";
   return along_normal >= 0 ? "" : "forces in contact point against the outward normal: they pull the hand in";
+}
+
+/// Where the probe moves along the normal, depth falls by as much: else depth or normal has the wrong sign, and with it
+/// the force that is made of them.
+std::string depthOutward(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  if (made.subject->moves()) return "skip: it moves, and its depth with it";
+  double agrees = 0, depth = 0;
+  Vector3d last = Vector3d::Zero();
+  bool known = false;
+  along(*made.subject, [&](const Answer& answer, const Vector3d& p) {
+    const hsp_contact& c = answer.contacts[0];
+    const bool traced = (c.flags & HSP_OUT_TRACED) != 0;
+    const double out = Vector3d(c.normal).dot(p - last), way = (p - last).norm();
+    if (traced && known) agrees -= out * std::clamp(c.depth_m - depth, -way, way);
+    known = traced;
+    depth = c.depth_m;
+    last = p;
+    return std::string();
+  });
+  return agrees >= 0 ? "" : "depth grows toward the outward normal: depth or normal has the wrong sign";
 }
 
 std::string energyNonIncreasing(const Recipe& recipe, uint64_t) {
@@ -157,6 +182,7 @@ std::vector<ConformanceTest> stepTests() {
       {"force-continuous", "forces follow the claimed stiffness", &forceContinuous},
       {"normal-unit-length", "normals are unit vectors", &normalUnit},
       {"force-outward", "forces in contact push out of the shape", &forceOutward},
+      {"depth-falls-outward", "depth falls where the probe moves along the outward normal", &depthOutward},
       {"energy-non-increasing", "a closed path gives no energy", &energyNonIncreasing},
   };
 }

@@ -20,20 +20,12 @@ const hsp_param& paramAt(const hsp_class& c, uint32_t index) {
   return *HSP_AT(const hsp_param, c.params, c.params[0].struct_size, index);
 }
 
-/// A text of the user as the value of a parameter.
-hsp_value valueOf(const hsp_param& param, const std::string& text) {
-  hsp_value value{};
-  value.kind = param.kind;
-  value.text = text.c_str();
-  char* end = nullptr;
-  value.number = std::strtod(text.c_str(), &end);
-  if (param.kind == HSP_BOOL && text == "true") value.number = 1;
-  for (uint32_t i = 0; param.kind == HSP_ENUM && i < param.choice_count; ++i)
-    if (text == param.choices[i]) value.number = i;
-  return value;
-}
-
 }  // namespace
+
+const scene::Value* Recipe::find(const char* id) const {
+  const auto found = std::find_if(set.begin(), set.end(), [&](const scene::Value& value) { return value.id == id; });
+  return found != set.end() ? &*found : nullptr;
+}
 
 bool sameBits(const Answer& a, const Answer& b) {
   return a.status == b.status && a.contacts.size() == b.contacts.size() &&
@@ -65,16 +57,13 @@ Result<std::unique_ptr<Subject>> Subject::make(const Recipe& recipe) {
   subject->shape_ = c.create(&c, subject->services_->abi());
   if (subject->shape_ == nullptr) return Error{"create() made no instance: " + subject->services_->lastError()};
   for (uint32_t i = 0; i < c.param_count; ++i) {
-    const auto given = recipe.set.find(paramAt(c, i).id);
-    const bool damps = host::damps(c, i);
-    if (given == recipe.set.end()) {
-      if (damps) subject->damping_ = std::max(subject->damping_, paramAt(c, i).def);
-      continue;
-    }
-    const hsp_value value = valueOf(paramAt(c, i), given->second);
-    if (damps) subject->damping_ = std::max(subject->damping_, value.number);
+    const scene::Value* given = recipe.find(paramAt(c, i).id);
+    if (host::damps(c, i))
+      subject->damping_ = std::max(subject->damping_, given != nullptr ? given->number : paramAt(c, i).def);
+    if (given == nullptr) continue;
+    const hsp_value value = host::toAbi(*given);
     if (c.set(subject->shape_, i, &value) < 0)
-      return Error{"set(" + given->first + ", " + given->second + "): " + subject->services_->lastError()};
+      return Error{"set(" + given->id + "): " + subject->services_->lastError()};
   }
   return subject;
 }

@@ -2,13 +2,13 @@
 /// One instance of a shape under test, driven through the C ABI alone: what a conformance test works with.
 #pragma once
 #include <Eigen/Core>
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/result.hpp"
+#include "description/scene.hpp"
 #include "hapticd/shape.h"
 #include "host/library.hpp"
 #include "host/services.hpp"
@@ -18,7 +18,10 @@ namespace hapticd::conformance {
 /// What every instance of a check is made from.
 struct Recipe {
   std::string file, class_name;
-  std::map<std::string, std::string> set;  ///< parameters as the user gives them; the rest keeps its default
+  std::vector<scene::Value> set;  ///< parameters that were checked against the table; the rest keeps its default
+
+  /// The value of a parameter, or nullptr.
+  const scene::Value* find(const char* id) const;
 };
 
 /// The answer to one step; compared bit for bit where a test says so.

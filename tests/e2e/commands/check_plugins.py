@@ -8,6 +8,7 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 from e2e import check, finish
@@ -28,7 +29,7 @@ def examined(file, *more):
 shipped = sorted(glob.glob(os.path.join(SHIPPED, "*.so")))
 check("plugins ship", len(shipped) >= 4, shipped)
 for file in shipped:
-    code, tests, failed, err = examined(file)
+    code, tests, failed, err = examined(file, "--timeout", "120")  # a loaded machine is no hang
     check(f"{os.path.basename(file)} passes", len(tests) >= 25 and not failed, (code, failed, err[-300:]))
 
 for name, test in (("bad_crash", "descriptor-complete"), ("bad_no_symbol", "descriptor-complete"),
@@ -40,4 +41,36 @@ code, tests, failed, err = examined(SHAPES)
 for shape, test in (("allocating", "no-allocation-in-step"), ("rude", "no-lock-in-step"), ("misbehaving", "finite-outputs"),
                     ("pulling", "force-outward")):
     check(f"{shape} fails by {test}", code == 1 and (shape, test) in failed, (code, sorted(failed), err[-300:]))
+
+# A hang is found once: not by each of 26 tests in turn.
+done = subprocess.run([HAPTICD, "plugin", "check", os.path.join(BROKEN, "hanging.so"), "--timeout", "1.5"], capture_output=True, text=True, timeout=120)
+check("a plugin that hangs fails", done.returncode == 1 and "took longer than 1.5" in done.stdout, done.stdout)
+check("only once, and the rest is not run", done.stdout.count("took longer") == 1 and "stopped at the first hang" in done.stdout, done.stdout)
+code, tests, failed, err = examined(os.path.join(BROKEN, "hanging.so"), "--timeout", "1")
+check("as JSON too", code == 1 and len(failed) == 1, failed)
+
+# Parameters are checked as those of a scene, before any test runs, and all of them at once.
+NEEDY = os.path.join(BROKEN, "needy.so")
+
+
+def refused(*options):
+    done = subprocess.run([HAPTICD, "plugin", "check", *options, NEEDY], capture_output=True, text=True, timeout=120)
+    return done.returncode, done.stdout + done.stderr
+
+
+code, said = refused()
+check("required parameters are asked for", code == 2 and "give --set heights=FILE" in said and "give --set geometry=FILE" in said, said)
+code, said = refused("--set", "stiffnes=3", "--set", "stiffness=soft", "--set", "rows=2.5", "--set", "law=cubic", "--set", "felt=perhaps",
+                     "--set", "axis=[0, 1]", "--set", "heights=/no/such/file", "--set", "empty")
+for words in ('did you mean "stiffness"', "stiffness=soft", "rows=2.5", "law=cubic", "felt=perhaps", "expected 3 numbers", "/no/such/file",
+              "expected ID=VALUE"):
+    check(f"--set: {words} is refused", code == 2 and words in said, said)
+code, said = refused("--set", "stiffness=50000")
+check("a value out of range is bad input", code == 2 and "expected 0 to 5000 N/m" in said and "tests" not in said, said)
+with tempfile.TemporaryDirectory() as folder:
+    path = os.path.join(folder, "hills.csv")
+    open(path, "w").write("heights 1 2 3\n")
+    code, tests, failed, err = examined(NEEDY, "--set", "heights=" + path, "--set", "geometry=" + path, "--set", "axis=[0, 1, 0]", "--timeout", "60")
+    check("with paths and arrays it passes", code == 1 and not [t for p, t in failed if p == "needy"], (failed, err))
+    check("a depth of the wrong sign is found", ("upside_down", "depth-falls-outward") in failed, failed)
 finish()

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "cli/set_option.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "document/node.hpp"
+#include "document/reader.hpp"
+#include "document/suggestion.hpp"
+#include "hapticd/abi.h"
+#include "scene/parameters.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+using document::Problem;
+
+/// What stands for a value in a message about a parameter that has none.
+const char* placeholder(uint32_t kind) {
+  switch (kind) {
+    case HSP_PATH:
+      return "FILE";
+    case HSP_ARRAY:
+      return "[NUMBER, ...]";
+    case HSP_REAL:
+    case HSP_INT:
+      return "NUMBER";
+    default:
+      return "VALUE";
+  }
+}
+
+std::vector<std::string> namesOf(const std::vector<host::ClassInfo>& classes) {
+  std::set<std::string> names;
+  for (const host::ClassInfo& info : classes)
+    for (const host::ParamInfo& param : info.params) names.insert(param.id);
+  return {names.begin(), names.end()};
+}
+
+}  // namespace
+
+SetOption::SetOption(const std::vector<std::string>& pairs, const std::vector<host::ClassInfo>& classes) {
+  const std::vector<std::string> names = namesOf(classes);
+  for (const std::string& pair : pairs) {
+    const size_t equals = pair.find('=');
+    const std::string id = pair.substr(0, equals);
+    if (equals == std::string::npos)
+      problems_.push_back("--set " + pair + ": has no value, expected ID=VALUE");
+    else if (std::find(names.begin(), names.end(), id) == names.end())
+      problems_.push_back("--set " + pair + ": unknown parameter, expected one of " + document::listed(names, 24) +
+                          document::suggestion(id, names));
+    else if (!given_.emplace(id, pair.substr(equals + 1)).second)
+      problems_.push_back("--set " + pair + ": " + id + " is given twice, expected once");
+  }
+}
+
+std::vector<scene::Value> SetOption::valuesFor(const host::ClassInfo& info) {
+  document::Problems wrong;
+  document::Reader in(std::filesystem::current_path() / "--set", wrong);  // paths are seen from its folder
+  scene::ParameterReader reader(in, info);
+  for (const auto& [id, text] : given_) {
+    const int index = info.indexOf(id);
+    if (index < 0) continue;
+    const size_t before = wrong.size();
+    const auto node = document::parseText(text, in.file().string(), wrong);
+    if (node && !node->isNull()) reader.readOne(*node, id, static_cast<uint32_t>(index));
+    if (node && node->isNull()) document::report(wrong, in.place(*node), id, "no value given, expected ID=VALUE");
+    for (size_t i = before; i < wrong.size(); ++i)
+      problems_.push_back("--set " + id + "=" + text + ": " + (wrong[i].key == id ? "" : wrong[i].key + ": ") +
+                          wrong[i].what);
+  }
+  std::vector<scene::Value> values = reader.take();
+  for (scene::Value& value : values) value.place = {};
+  return values;
+}
+
+std::vector<std::string> missing(const host::ClassInfo& info, const std::vector<scene::Value>& values) {
+  std::vector<std::string> missing;
+  for (const host::ParamInfo& param : info.params) {
+    const bool has = std::any_of(values.begin(), values.end(), [&](const auto& value) { return value.id == param.id; });
+    if (has || (param.flags & HSP_P_REQUIRED) == 0) continue;
+    missing.push_back("plugin '" + info.name + "' needs the parameter " + param.id + " (" + param.doc +
+                      "); give --set " + param.id + "=" + placeholder(param.kind));
+  }
+  return missing;
+}
+
+}  // namespace hapticd::cli
