@@ -8,7 +8,8 @@ namespace hapticd::cli {
 using AddCommand = void(CLI::App& app, int& exit_code);
 
 // clang-format off: a command is a line
-AddCommand addCheck, addCompletion, addCtl, addDevice, addDeviceCalibrate, addDeviceKinematics, addDoctor, addExplain,
+AddCommand addCheck, addCompletion, addCtl, addDevice, addDeviceCalibrate, addDeviceDecode, addDeviceKinematics,
+    addDeviceNew, addDeviceRecord, addDoctor, addExplain,
     addExport, addImport, addManual, addPart, addPlot, addPlugin, addPluginCheck, addPluginNew, addReplay, addRun, addTop,
     addTrace, addTune, addView;
 
@@ -19,7 +20,10 @@ constexpr AddCommand* kCommands[] = {
     addCtl,
     addDevice,
     addDeviceCalibrate,
+    addDeviceDecode,
     addDeviceKinematics,
+    addDeviceNew,
+    addDeviceRecord,
     addDoctor,
     addExplain,
     addExport,

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd device decode` and `encode`: the wire format of a device file, tried on bytes without the arm.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "capture/report_table.hpp"
+#include "cli/command.hpp"
+#include "diagnostics/device_trial.hpp"
+#include "document/csv.hpp"
+#include "document/node.hpp"
+#include "host/device_instance.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+struct Options {
+  std::string file, input = "-", out = "-";
+  bool hex = false, raw = false, from_arm = false;
+};
+
+/// A device file's wire format, and how many joints its arm has.
+struct Described {
+  codec::Wire wire;
+  size_t joints = 0;
+};
+
+/// All problems of the file are printed where there are any.
+std::optional<Described> describedIn(const std::string& file, int& exit_code) {
+  exit_code = kBadInput;
+  const scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
+  printProblems(loaded.problems, stderr);
+  if (!loaded.device) return std::nullopt;
+  if (const document::Problems wrong = diagnostics::tryDevice(file, catalog()); !wrong.empty()) {
+    printProblems(wrong, stderr);
+    return std::nullopt;
+  }
+  auto device = host::DeviceInstance::create(*loaded.device, logToTerminal);
+  if (!device) return exit_code = fail(kFailed, device.error()), std::nullopt;
+  for (const scene::Value& value : loaded.device->parameters)
+    if (value.id == "wire") {
+      const size_t joints = (*device)->kinematics().joint_count;
+      return Described{codec::readWire(value.text, joints), joints};
+    }
+  exit_code = fail(kBadInput, file + ": its module " + loaded.device->module +
+                                  " has no parameter wire, expected a device file of usb_hid, usb_bulk or vme");
+  return std::nullopt;
+}
+
+std::optional<std::string> contentOf(const std::string& file) {
+  if (file == "-") return std::string(std::istreambuf_iterator<char>(std::cin), {});
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return std::nullopt;
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+int writeOut(const std::string& file, const std::string& text) {
+  std::FILE* out = file == "-" ? stdout : std::fopen(file.c_str(), "wb");
+  const bool written = out != nullptr && std::fwrite(text.data(), 1, text.size(), out) == text.size();
+  const bool closed = out != nullptr && (out == stdout ? std::fflush(out) : std::fclose(out)) == 0;
+  return written && closed ? kWorked : fail(kFailed, file + ": cannot be written");
+}
+
+int decode(const Options& options) {
+  int exit_code = kWorked;
+  const auto described = describedIn(options.file, exit_code);
+  if (!described) return exit_code;
+  const auto bytes = contentOf(options.input);
+  if (!bytes) return fail(kBadInput, options.input + ": cannot be read, expected a capture");
+  const auto form = options.hex ? capture::Form::kHex : options.raw ? capture::Form::kRaw : capture::Form::kGuess;
+  const auto taken = capture::readCapture(*bytes, form);
+  if (!taken) return fail(kBadInput, options.input + ": " + taken.error());
+  const capture::Decoded decoded = capture::decodeCapture(described->wire, *taken);
+  if (const int failed = writeOut(options.out, capture::csvOf(described->wire, described->joints, decoded));
+      failed != 0)
+    return failed;
+  std::fprintf(stderr, "%s (read as %s)\n", capture::summaryOf(decoded).c_str(),
+               taken->text ? "hexadecimal text" : "raw bytes");
+  if (decoded.reports.empty())
+    return fail(kFailed, "no report in " + std::to_string(bytes->size()) + " bytes, expected " +
+                             std::to_string(described->wire.input.bytes()) + " bytes a report");
+  return decoded.good() == decoded.reports.size() && decoded.lost == 0 ? kWorked : kFailed;
+}
+
+/// The names of a table's columns: its first line, or those that an order or a state begins with.
+std::vector<std::string> namesIn(const std::string& text, const std::vector<std::string>& known, size_t joints) {
+  std::istringstream in(text);
+  std::string line, name;
+  while (std::getline(in, line) && (line.empty() || line[0] == '#')) line.clear();
+  std::vector<std::string> names;
+  std::istringstream fields(line);
+  while (std::getline(fields, name, ',')) {
+    name.erase(0, name.find_first_not_of(" \t\r"));
+    name.erase(name.find_last_not_of(" \t\r") + 1);
+    names.push_back(name);
+  }
+  const bool numbers = !names.empty() && document::toNumber(names[0]).has_value();
+  if (numbers || names.empty()) names.assign(known.begin(), known.begin() + static_cast<long>(joints));
+  return names;
+}
+
+int encode(const Options& options) {
+  int exit_code = kWorked;
+  const auto described = describedIn(options.file, exit_code);
+  if (!described) return exit_code;
+  const auto text = contentOf(options.input);
+  if (!text) return fail(kBadInput, options.input + ": cannot be read, expected a CSV");
+  const auto known = capture::columnsOf(described->wire, described->joints, !options.from_arm);
+  const auto names = namesIn(*text, known, described->joints);
+  std::string header, all;
+  for (const std::string& name : names) header += (header.empty() ? "" : ",") + name;
+  for (const std::string& name : known) all += (all.empty() ? "" : ",") + name;
+  for (const std::string& name : names)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      return fail(kBadInput, options.input + ": column " + name + " is not in the report, expected some of " + all);
+  document::Problems problems;
+  const auto table = document::parseCsv(*text, options.input, {{header}}, problems);
+  printProblems(problems, stderr);
+  if (!table) return kBadInput;
+  std::string out;
+  for (size_t i = 0; i < table->rows(); ++i) {
+    const auto bytes =
+        capture::encodeRow(described->wire, !options.from_arm, names, table->row(i), static_cast<uint32_t>(i + 1));
+    if (!bytes) return fail(kBadInput, bytes.error());
+    if (options.raw)
+      out.append(bytes->begin(), bytes->end());
+    else
+      out += capture::hexText(bytes->data(), bytes->size()) + "\n";
+  }
+  return writeOut(options.out, out);
+}
+
+void addDecode(CLI::App& device, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      device.add_subcommand("decode", "Show a captured stream of an arm as numbers, as its device file reads it.");
+  command->add_option("file", options->file, "device file (YAML)")->required();
+  command->add_option("capture", options->input, "captured bytes; - for standard input")->capture_default_str();
+  auto* hex = command->add_flag("--hex", options->hex, "the capture is text: a transfer a line, two digits a byte");
+  command->add_flag("--raw", options->raw, "the capture is the bytes themselves, even if they read as text")
+      ->excludes(hex);
+  command->add_option("-o,--out", options->out, "CSV file to write; - for standard output");
+  command->footer(
+      "A capture is raw bytes, or text with one transfer a line: \"01 ff 3c\", the E: lines of hid-recorder, or what\n"
+      "`hapticd device record` writes. One row a report: positions, torques, buttons in SI units, or why it is no "
+      "report.\nThe exit code is 1 if a report is bad.\n\n"
+      "Examples:\n  hapticd device decode my-arm.yaml capture.bin\n"
+      "  printf '00 01 00 02 00 03 00 00 00 00 00 00 00 00\\n' | hapticd device decode "
+      "config/devices/woodenhaptics.yaml --hex");
+  command->callback([options, &exit_code] { exit_code = decode(*options); });
+}
+
+void addEncode(CLI::App& device, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = device.add_subcommand("encode", "Write numbers as the bytes of an arm's reports.");
+  command->add_option("file", options->file, "device file (YAML)")->required();
+  command->add_option("numbers", options->input, "CSV; - for standard input")->capture_default_str();
+  command->add_flag("--from-arm", options->from_arm, "write what the arm would send, instead of what it is sent");
+  command->add_flag("--raw", options->raw, "write the bytes themselves instead of hexadecimal text");
+  command->add_option("-o,--out", options->out, "file to write; - for standard output");
+  command->footer(
+      "A row of the CSV is a report. Its header names columns: torque1,torque2 [N m, N], reference1, enable, follow,\n"
+      "calibrate; with --from-arm position1, velocity1, torque1, buttons, sequence, starts, fault, calibrated. Without "
+      "a\nheader they are the torques or, with --from-arm, the positions of all joints. Constants, counters, checksums "
+      "and\nescapes are added.\n\n"
+      "Example:\n  echo 0.1,0,-0.1 | hapticd device encode config/devices/woodenhaptics.yaml\n"
+      "  echo 0.1,1.5,1.6 | hapticd device encode --from-arm config/devices/woodenhaptics.yaml | "
+      "hapticd device decode config/devices/woodenhaptics.yaml");
+  command->callback([options, &exit_code] { exit_code = encode(*options); });
+}
+
+}  // namespace
+
+void addDeviceDecode(CLI::App& app, int& exit_code) {
+  addDecode(*app.get_subcommand("device"), exit_code);
+  addEncode(*app.get_subcommand("device"), exit_code);
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd device new`: a commented device file to start from, from a few questions or options.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/command.hpp"
+#include "diagnostics/device_trial.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string name, out, bus = "hid", kind = "phantom", id = "1234:0006";
+  std::vector<double> lengths;
+  int joints = 3, bits = 16, buttons = 1;
+  double counts = 2000, gear = 10, torque = 0.5, force = 2;
+  bool no_questions = false;
+};
+
+/// Asks for what no option gave; an empty answer keeps what is there.
+class Questions {
+ public:
+  explicit Questions(const CLI::App& command) : command_(command) {}
+
+  template <class Value>
+  void ask(const char* option, const char* question, Value& value) {
+    if (command_.count(option) > 0) return;
+    std::cout << question << " [" << value << "]: " << std::flush;
+    std::string answer;
+    if (!std::getline(std::cin, answer) || answer.empty()) return;
+    Value given{};
+    if (CLI::detail::lexical_cast(answer, given))
+      value = given;
+    else
+      std::cout << "  that is no such value; " << value << " stays\n";
+  }
+
+ private:
+  const CLI::App& command_;
+};
+
+void askAll(const CLI::App& command, Options& options) {
+  Questions questions(command);
+  questions.ask("--bus", "Bus: hid, bulk (USB)", options.bus);
+  questions.ask("--id", "USB vendor and product, hexadecimal (lsusb prints them)", options.id);
+  questions.ask("--kind", "Mechanism: phantom (two links on a turning base), delta, chain (any serial arm)",
+                options.kind);
+  if (options.kind == "chain") questions.ask("--joints", "Joints", options.joints);
+  questions.ask("--counts", "Encoder counts of one motor turn (four times its lines)", options.counts);
+  questions.ask("--gear", "Motor turns of one joint turn", options.gear);
+  questions.ask("--bits", "Bits of a position in a report", options.bits);
+  questions.ask("--torque", "Largest torque of a joint [N m]", options.torque);
+  questions.ask("--force", "Largest force at the tip, to begin with [N]", options.force);
+}
+
+std::string wrongIn(const Options& o) {
+  const bool hid = o.bus == "hid", bulk = o.bus == "bulk";
+  if (!hid && !bulk) return "--bus " + o.bus + ": expected hid or bulk";
+  if (o.kind != "phantom" && o.kind != "delta" && o.kind != "chain")
+    return "--kind " + o.kind + ": expected phantom, delta or chain";
+  if (o.kind != "chain" && o.joints != 3) return "--joints " + std::to_string(o.joints) + ": a " + o.kind + " has 3";
+  if (o.joints < 1 || o.joints > 16) return "--joints " + std::to_string(o.joints) + ": expected 1 to 16";
+  if (o.bits < 2 || o.bits > 64) return "--bits " + std::to_string(o.bits) + ": expected 2 to 64";
+  const size_t lengths = o.kind == "phantom" ? 2 : o.kind == "delta" ? 8 : static_cast<size_t>(o.joints);
+  if (!o.lengths.empty() && o.lengths.size() != lengths)
+    return fmt::format("--lengths: {} numbers, expected {} for a {}", o.lengths.size(), lengths, o.kind);
+  for (const double value : {o.counts, o.gear, o.torque, o.force})
+    if (!(value > 0)) return "--counts, --gear, --torque and --force: expected numbers above 0";
+  return "";
+}
+
+std::string listOf(const std::vector<double>& numbers) {
+  return fmt::format("[{:g}]", fmt::join(numbers, ", "));
+}
+
+std::string armOf(const Options& o) {
+  std::string text = fmt::format("  arm:\n    kind: {}\n", o.kind);
+  if (o.kind == "phantom") {
+    std::vector<double> all = o.lengths.empty() ? std::vector<double>{0.2, 0.2} : o.lengths;
+    all.insert(all.end(), {0, 0, 0});
+    text += fmt::format("    lengths: {}     # m: upper arm, forearm; then l3, l5, l6 for the weight, see devices.md\n",
+                        listOf(all));
+    text += "    # masses: [0, 0, 0, 0]        # kg: ma, mc, mbe, mdf; without them its weight is not carried\n";
+  } else if (o.kind == "delta") {
+    text += o.lengths.empty() ? "    # lengths: [a, b, c, d, e, f, r, s]    # m; left out: the Falcon's\n"
+                              : fmt::format("    lengths: {}    # m: a, b, c, d, e, f, r, s\n", listOf(o.lengths));
+  } else {
+    text +=
+        "    dh:                           # a, alpha, d, theta: m, rad (standard Denavit-Hartenberg), a row a joint\n";
+    for (int i = 0; i < o.joints; ++i)
+      text += fmt::format("      - [{:g}, 0, 0, 0]\n", o.lengths.empty() ? 0.2 : o.lengths[static_cast<size_t>(i)]);
+  }
+  text += fmt::format(
+      "    # limits: [[-1, 1], ...]      # rad, a row a joint; left out: the mechanism's own\n"
+      "    max_torque: [{:g}]             # N m at the joint: motor's * turns of one joint turn\n",
+      o.torque);
+  return text;
+}
+
+std::string wireOf(const Options& o) {
+  const double scale = 2 * M_PI / (o.counts * o.gear);
+  std::string text = fmt::format(
+      "  wire:                           # driver/docs/devices.md has every key\n"
+      "    exchange: stream              # or poll: the arm answers each command\n    rate: 1000                    # "
+      "Hz\n"
+      "    # watchdog: 0.02              # s after which its own hardware switches the motors off, if it does\n{}"
+      "    input:                        # what the arm sends; bytes counted without a report id\n",
+      o.bus == "bulk" ? "    endpoints: {in: 0x81, out: 0x02}\n" : "");
+  int bit = 16;
+  std::string fields = "        - {is: counter, at: 0, type: u16}               # goes up with each report\n";
+  for (int i = 0; i < o.joints; ++i, bit += o.bits) {
+    const std::string place = bit % 8 == 0 ? fmt::format("at: {}", bit / 8) : fmt::format("bit_offset: {}", bit);
+    fields += fmt::format("        - {{is: position, joint: {}, {}, type: i{}, scale: {:.9g}{}}}\n", i + 1, place,
+                          o.bits, scale, o.bits <= 24 ? ", wraps: true" : "");
+  }
+  for (int i = 0; i < o.buttons; ++i, ++bit)
+    fields += fmt::format("        - {{is: button, button: {}, bit_offset: {}, type: u1}}\n", i + 1, bit);
+  const int size = (bit + 7) / 8;
+  fields += fmt::format(
+      "        # - {{is: checksum, at: {}, type: u16, method: crc16-modbus, from: 0, to: {}}}      # then size: {}\n",
+      size, size, size + 2);
+  text += fmt::format(
+      "      size: {}\n      fields:                     # rad = raw * scale: 2 pi / (counts * turns of one joint "
+      "turn)\n{}",
+      size, fields);
+  text += fmt::format(
+      "    output:                       # what the arm gets\n      size: {}\n      fields:                     # N m "
+      "= raw * scale\n",
+      2 * o.joints + 2);
+  for (int i = 0; i < o.joints; ++i)
+    text += fmt::format("        - {{is: torque, joint: {}, at: {}, type: i16, scale: {:.6g}}}\n", i + 1, 2 * i,
+                        o.torque / 32767);
+  text += fmt::format("        - {{is: enable, at: {}, type: u8}}\n        - {{is: counter, at: {}, type: u8}}\n",
+                      2 * o.joints, 2 * o.joints + 1);
+  return text;
+}
+
+std::string textOf(const Options& o) {
+  std::string pose;
+  for (int i = 0; i < o.joints; ++i) pose += i > 0 ? ", 0" : "0";
+  return fmt::format(
+      "# {0}. Written by `hapticd device new`; each number is a guess until you have measured it.\n"
+      "hapticd-device: 1\nmodule: usb_{1}\nname: {0}\n"
+      "# mount: {{position: [0, 0, 0]}}        # where its frame stands in the world, m\n"
+      "limits: {{force: {2:g}, passivity: true}}   # N: begin low, and raise it when the signs are right\n"
+      "parameters:\n  usb: {{id: \"{3}\"}}\n"
+      "  # device: {{max_force: 5, max_stiffness: 1000, mass: 0.2}}      # what `check` and `tune` may rely on\n{4}"
+      "  calibration:\n    method: pose                  # or none: absolute encoders; device: it finds its zero "
+      "itself\n"
+      "    pose: [{5}]{6}# rad in the pose below\n    instructions: \"Hold every joint at its zero.\"\n{7}",
+      o.name, o.bus, o.force, o.id, armOf(o), pose, "               ", wireOf(o));
+}
+
+bool usable(const std::string& name) {
+  for (const char c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-') return false;
+  return !name.empty() && name.size() <= 40;
+}
+
+int makeNew(const CLI::App& command, Options options) {
+  if (!usable(options.name))
+    return fail(kBadInput,
+                "\"" + options.name + "\" is not a valid name of a device, expected letters, digits, _ and -");
+  const fs::path file = options.out.empty() ? fs::path(options.name + ".yaml") : fs::path(options.out);
+  std::error_code error;
+  if (fs::exists(file, error))
+    return fail(kBadInput, file.string() + " exists already, expected the name of a new file");
+  if (!options.no_questions && isatty(STDIN_FILENO) != 0) askAll(command, options);
+  if (const std::string wrong = wrongIn(options); !wrong.empty()) return fail(kBadInput, wrong);
+  std::ofstream out(file);
+  out << textOf(options) << std::flush;
+  if (!out) return fail(kFailed, file.string() + " is not writable");
+  document::Problems problems = scene::loadDevice(file, catalog()).problems;
+  if (problems.empty()) problems = diagnostics::tryDevice(file, catalog());
+  printProblems(problems, stderr);
+  const std::string name = file.string();
+  std::printf(
+      "%s\n\nthen, step by step (driver/docs/devices.md, \"A new arm, step by step\"):\n"
+      "  hapticd check %s                       # after each change\n"
+      "  hapticd device decode %s CAPTURE       # captured bytes as joint positions\n"
+      "  hapticd device record %s               # what the arm sends, motors off\n"
+      "  hapticd device calibrate %s\n"
+      "  hapticd run SCENE.yaml --device %s --view       # the arm in a page\n",
+      name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str());
+  return problems.empty() ? kWorked : kFailed;
+}
+
+}  // namespace
+
+void addDeviceNew(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.get_subcommand("device")->add_subcommand(
+      "new", "Write a commented device file to start from; asks on a terminal for what no option gives.");
+  command->add_option("name", options->name, "name of the arm: letters, digits, _ and -")->required();
+  command->add_option("-o,--out", options->out, "file to write; default: NAME.yaml in the current folder");
+  command->add_option("--bus", options->bus, "hid or bulk, both USB")->capture_default_str();
+  command->add_option("--id", options->id, "USB vendor:product, hexadecimal")->capture_default_str();
+  command->add_option("--kind", options->kind, "phantom, delta or chain")->capture_default_str();
+  command->add_option("--joints", options->joints, "joints of a chain")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 16));
+  command->add_option("--lengths", options->lengths, "link lengths [m], separated by commas")->delimiter(',');
+  command->add_option("--counts", options->counts, "encoder counts of one motor turn")->capture_default_str();
+  command->add_option("--gear", options->gear, "motor turns of one joint turn")->capture_default_str();
+  command->add_option("--bits", options->bits, "bits of a position in a report")->capture_default_str();
+  command->add_option("--buttons", options->buttons, "buttons")->capture_default_str()->check(CLI::Range(0, 32));
+  command->add_option("--torque", options->torque, "largest torque of a joint [N m]")->capture_default_str();
+  command->add_option("--force", options->force, "limit of the force at the tip [N]")->capture_default_str();
+  command->add_flag("--no-questions", options->no_questions, "ask nothing, take the defaults");
+  command->footer(
+      "The file is checked as soon as it is written. Every number in it is a guess until you have measured it.\n\n"
+      "Examples:\n  hapticd device new my-arm\n"
+      "  hapticd device new my-arm --kind phantom --id 16c0:0486 --lengths 0.21,0.17 --counts 4000 --gear 9.5 --bits "
+      "24");
+  command->callback([command, options, &exit_code] { exit_code = makeNew(*command, *options); });
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "capture/capture.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <sstream>
+
+namespace hapticd::capture {
+namespace {
+
+int digitOf(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+/// "01 ff", "01,FF" or "0x01 0xff"; nothing for anything else.
+std::optional<std::vector<uint8_t>> bytesIn(const std::string& text) {
+  std::vector<uint8_t> bytes;
+  for (size_t i = 0; i < text.size();) {
+    if (text[i] == ' ' || text[i] == '\t' || text[i] == ',' || text[i] == ':' || text[i] == '\r') {
+      ++i;
+      continue;
+    }
+    if (text[i] == '0' && i + 1 < text.size() && (text[i + 1] == 'x' || text[i + 1] == 'X')) i += 2;
+    const int high = i < text.size() ? digitOf(text[i]) : -1, low = i + 1 < text.size() ? digitOf(text[i + 1]) : -1;
+    if (high < 0 || low < 0) return std::nullopt;
+    bytes.push_back(static_cast<uint8_t>(high * 16 + low));
+    i += 2;
+  }
+  return bytes;
+}
+
+/// "E: 000012.345678 9 01 ...": hid-recorder gives seconds, a count and the bytes.
+bool takeEvent(std::string& line, double& time) {
+  if (line.rfind("E:", 0) != 0) return false;
+  char* end = nullptr;
+  time = std::strtod(line.c_str() + 2, &end);
+  (void)std::strtol(end, &end, 10);
+  line = end;
+  return true;
+}
+
+/// "@0.001234 01 ...": as `hapticd device record` writes it.
+void takeTime(std::string& line, double& time) {
+  if (line.empty() || line[0] != '@') return;
+  char* end = nullptr;
+  time = std::strtod(line.c_str() + 1, &end);
+  line = end;
+}
+
+/// What hid-recorder says of the device before its first event.
+bool isHeading(const std::string& line) {
+  return line.size() > 1 && line[1] == ':' && std::string("DRNIP").find(line[0]) != std::string::npos;
+}
+
+Result<Capture> readText(const std::string& text) {
+  Capture capture;
+  capture.text = true;
+  std::istringstream in(text);
+  int number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    line.erase(std::min(line.find('#'), line.size()));
+    line.erase(0, line.find_first_not_of(" \t\r"));
+    if (line.empty() || line[0] == '>' || isHeading(line)) continue;
+    if (line[0] == '<') line.erase(0, 1), line.erase(0, line.find_first_not_of(' '));
+    Transfer transfer;
+    if (!takeEvent(line, transfer.time)) takeTime(line, transfer.time);
+    auto bytes = bytesIn(line);
+    if (!bytes)
+      return Error{"line " + std::to_string(number) + ": \"" + line.substr(0, 40) +
+                   "\" is not hexadecimal, expected two digits a byte: 01 ff 3c"};
+    transfer.bytes = std::move(*bytes);
+    if (!transfer.bytes.empty()) capture.transfers.push_back(std::move(transfer));
+  }
+  return capture;
+}
+
+}  // namespace
+
+Result<Capture> readCapture(const std::string& bytes, Form form) {
+  const bool printable = std::all_of(
+      bytes.begin(), bytes.end(), [](char c) { return (c >= ' ' && c <= '~') || c == '\n' || c == '\r' || c == '\t'; });
+  if (form == Form::kHex) return readText(bytes);
+  if (form == Form::kGuess && printable)
+    if (auto text = readText(bytes)) return text;
+  Capture capture;
+  if (!bytes.empty()) capture.transfers.push_back({-1, {bytes.begin(), bytes.end()}});
+  return capture;
+}
+
+std::string hexText(const uint8_t* bytes, size_t count) {
+  static const char kDigits[] = "0123456789abcdef";
+  std::string text;
+  for (size_t i = 0; i < count; ++i) {
+    if (i > 0) text += ' ';
+    text += kDigits[bytes[i] >> 4];
+    text += kDigits[bytes[i] & 15];
+  }
+  return text;
+}
+
+}  // namespace hapticd::capture

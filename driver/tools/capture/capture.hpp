@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+/// Captured bytes of an arm: as they were on the wire, or as text.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+
+namespace hapticd::capture {
+
+enum class Form : uint8_t {
+  kGuess,  ///< text if every line reads as such
+  kRaw,    ///< the bytes themselves
+  kHex,    ///< a transfer a line: two hexadecimal digits a byte; # begins a comment. Also hid-recorder's "E:" lines.
+};
+
+/// One transfer: a HID report, a packet of an endpoint. A raw capture is one long transfer.
+struct Transfer {
+  double time = -1;  ///< [s], -1: not known
+  std::vector<uint8_t> bytes;
+};
+
+struct Capture {
+  bool text = false;
+  std::vector<Transfer> transfers;
+};
+
+/// [main] Reads a capture. An error names the line. Lines that begin with "> " went to the arm and are left out.
+Result<Capture> readCapture(const std::string& bytes, Form form);
+
+/// [any] "01 ff 3c".
+std::string hexText(const uint8_t* bytes, size_t count);
+
+}  // namespace hapticd::capture

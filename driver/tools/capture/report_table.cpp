@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: MIT
+#include "capture/report_table.hpp"
+
+#include <algorithm>
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <optional>
+
+#include "codec/framer.hpp"
+
+namespace hapticd::capture {
+namespace {
+
+using codec::Field;
+using codec::Role;
+using codec::Verdict;
+
+const char* wordOf(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kGood:
+      return "good";
+    case Verdict::kWrongSize:
+      return "size";
+    case Verdict::kWrongId:
+      return "id";
+    case Verdict::kWrongFirmware:
+      return "firmware";
+    case Verdict::kCorrupt:
+      return "corrupt";
+    case Verdict::kTorn:
+      return "torn";
+  }
+  return "?";
+}
+
+bool has(const codec::Report& report, Role role) {
+  return std::any_of(report.fields.begin(), report.fields.end(), [&](const Field& f) { return f.role == role; });
+}
+
+std::string hex(uint64_t value) {
+  char text[24];
+  std::snprintf(text, sizeof text, "0x%" PRIx64, value);
+  return text;
+}
+
+/// Why one field made a report a bad one.
+std::string whyWrong(const Field& field, std::span<const uint8_t> body) {
+  const std::string at = " at byte " + std::to_string(field.at);
+  const std::string is = hex(codec::codeAt(field, body));
+  switch (field.role) {
+    case Role::kChecksum:
+      return "checksum" + at + " is " + is + ", of the bytes " + std::to_string(field.from) + " to " +
+             std::to_string(field.to - 1) + " it is " + hex(codec::checksumAt(field, body));
+    case Role::kFirmware:
+    case Role::kConstant:
+      return (field.role == Role::kFirmware ? "firmware" : "constant") + at + " is " + is + ", expected " +
+             hex(field.code);
+    case Role::kSequence:
+      return "counter" + at + " is " + is + ", which is another than the one before it, or beyond its modulo";
+    default:
+      return "the number" + at + " is not one";
+  }
+}
+
+class Reader {
+ public:
+  explicit Reader(const codec::Wire& wire) : wire_(wire), framer_(wire.framing, wire.input.bytes()) {}
+
+  void take(const Transfer& transfer, bool text, size_t index) {
+    const std::span<const uint8_t> bytes(transfer.bytes);
+    if (wire_.framing.used) return stream(transfer, text, index);
+    if (text) return report(bytes, transfer.time, index + 1);
+    // Raw bytes without marks: one report after the other.
+    const size_t size = wire_.input.bytes();
+    for (size_t at = 0; at < bytes.size(); at += size)
+      report(bytes.subspan(at, std::min(size, bytes.size() - at)), transfer.time, at + size);
+  }
+
+  Decoded decoded;
+
+ private:
+  void stream(const Transfer& transfer, bool text, size_t index) {
+    const size_t packet = text ? transfer.bytes.size() : wire_.framing.packet;
+    const std::span<const uint8_t> bytes(transfer.bytes);
+    for (size_t at = 0; at < bytes.size(); at += packet) {
+      const size_t end = std::min(at + packet, bytes.size());
+      decoded.lost += framer_.take(bytes.subspan(at, end - at), [&](std::span<const uint8_t> whole) {
+        report(whole, transfer.time, text ? index + 1 : end);
+      });
+    }
+  }
+
+  void report(std::span<const uint8_t> bytes, double time, size_t offset) {
+    DecodedReport one;
+    one.time = time, one.offset = offset;
+    const Field* wrong = nullptr;
+    one.verdict = codec::decode(wire_.input, bytes, one.state, &wrong);
+    if (one.verdict == Verdict::kWrongId) {
+      ++decoded.others;
+      return;
+    }
+    if (one.verdict == Verdict::kWrongSize)
+      one.wrong = std::to_string(bytes.size()) + " bytes, expected " + std::to_string(wire_.input.bytes());
+    if (wrong != nullptr) one.wrong = whyWrong(*wrong, bytes.subspan(wire_.input.id >= 0 ? 1 : 0));
+    if (one.verdict == Verdict::kGood && one.state.has_sequence) count(one.state.sequence);
+    decoded.reports.push_back(std::move(one));
+  }
+
+  void count(uint32_t sequence) {
+    if (known_ && sequence == last_) ++decoded.repeats;
+    if (known_ && sequence > last_ && sequence - last_ > 1) ++decoded.gaps;
+    known_ = true, last_ = sequence;
+  }
+
+  const codec::Wire& wire_;
+  codec::Framer framer_;
+  bool known_ = false;
+  uint32_t last_ = 0;
+};
+
+struct Column {
+  std::string name;
+  Role role;
+  size_t index = 0;
+};
+
+/// What a report has, in the order of the table.
+std::vector<Column> columnsOf(const codec::Report& report, size_t joints) {
+  std::vector<Column> columns;
+  const std::pair<Role, const char*> each[] = {{Role::kPosition, "position"},
+                                               {Role::kVelocity, "velocity"},
+                                               {Role::kTorque, "torque"},
+                                               {Role::kReference, "reference"}};
+  for (const auto& [role, name] : each)
+    for (size_t i = 0; has(report, role) && i < joints; ++i) columns.push_back({name + std::to_string(i + 1), role, i});
+  const std::pair<Role, const char*> once[] = {{Role::kButton, "buttons"},        {Role::kSequence, "sequence"},
+                                               {Role::kStarts, "starts"},         {Role::kFault, "fault"},
+                                               {Role::kCalibrated, "calibrated"}, {Role::kEnable, "enable"},
+                                               {Role::kCalibrate, "calibrate"},   {Role::kFollow, "follow"}};
+  for (const auto& [role, name] : once)
+    if (has(report, role)) columns.push_back({name, role, 0});
+  return columns;
+}
+
+double valueOf(const codec::State& state, const Column& column) {
+  switch (column.role) {
+    case Role::kPosition:
+      return state.position[column.index];
+    case Role::kVelocity:
+      return state.velocity[column.index];
+    case Role::kTorque:
+      return state.torque[column.index];
+    case Role::kButton:
+      return state.buttons;
+    case Role::kSequence:
+      return state.sequence;
+    case Role::kStarts:
+      return state.starts;
+    case Role::kFault:
+      return state.fault ? 1 : 0;
+    default:
+      return state.calibrated ? 1 : 0;
+  }
+}
+
+void put(codec::State& state, const Column& column, double value) {
+  switch (column.role) {
+    case Role::kPosition:
+      state.position[column.index] = value;
+      break;
+    case Role::kVelocity:
+      state.velocity[column.index] = value;
+      break;
+    case Role::kTorque:
+      state.torque[column.index] = value;
+      break;
+    case Role::kButton:
+      state.buttons = static_cast<uint32_t>(std::clamp(value, 0.0, 4294967295.0));
+      break;
+    case Role::kSequence:
+      state.sequence = static_cast<uint32_t>(std::clamp(value, 0.0, 4294967295.0));
+      break;
+    case Role::kStarts:
+      state.starts = static_cast<uint32_t>(std::clamp(value, 0.0, 4294967295.0));
+      break;
+    case Role::kFault:
+      state.fault = value != 0;
+      break;
+    default:
+      state.calibrated = value != 0;
+      break;
+  }
+}
+
+void put(codec::Order& order, const Column& column, double value) {
+  switch (column.role) {
+    case Role::kTorque:
+      order.torque[column.index] = value;
+      break;
+    case Role::kReference:
+      order.position[column.index] = value;
+      break;
+    case Role::kSequence:
+      order.sequence = static_cast<uint32_t>(std::clamp(value, 0.0, 4294967295.0));
+      break;
+    case Role::kEnable:
+      order.enable = value != 0;
+      break;
+    case Role::kCalibrate:
+      order.calibrate = value != 0;
+      break;
+    default:
+      order.follow = value != 0;
+      break;
+  }
+}
+
+}  // namespace
+
+size_t Decoded::good() const {
+  return static_cast<size_t>(std::count_if(reports.begin(), reports.end(),
+                                           [](const DecodedReport& r) { return r.verdict == Verdict::kGood; }));
+}
+
+Decoded decodeCapture(const codec::Wire& wire, const Capture& capture) {
+  Reader reader(wire);
+  for (size_t i = 0; i < capture.transfers.size(); ++i) reader.take(capture.transfers[i], capture.text, i);
+  return std::move(reader.decoded);
+}
+
+std::string csvOf(const codec::Wire& wire, size_t joints, const Decoded& decoded) {
+  const std::vector<Column> columns = columnsOf(wire.input, joints);
+  std::string text = "report,time,verdict";
+  for (const Column& column : columns) text += "," + column.name;
+  text += ",why\n";
+  for (size_t i = 0; i < decoded.reports.size(); ++i) {
+    const DecodedReport& one = decoded.reports[i];
+    char number[40];
+    text += std::to_string(i + 1) + ",";
+    if (one.time >= 0) std::snprintf(number, sizeof number, "%.6f", one.time), text += number;
+    text += std::string(",") + wordOf(one.verdict);
+    for (const Column& column : columns) {
+      std::snprintf(number, sizeof number, ",%.9g", valueOf(one.state, column));
+      text += one.verdict == Verdict::kGood ? number : ",";
+    }
+    text += one.wrong.empty() ? ",\n" : ",\"" + one.wrong + "\"\n";
+  }
+  return text;
+}
+
+std::string summaryOf(const Decoded& decoded) {
+  std::map<std::string, size_t> verdicts;
+  for (const DecodedReport& one : decoded.reports)
+    if (one.verdict != Verdict::kGood) ++verdicts[wordOf(one.verdict)];
+  std::string text = std::to_string(decoded.reports.size()) + " reports, " + std::to_string(decoded.good()) + " good";
+  for (const auto& [word, count] : verdicts) text += ", " + std::to_string(count) + " " + word;
+  if (decoded.others > 0) text += "; " + std::to_string(decoded.others) + " with another id";
+  if (decoded.lost > 0) text += "; " + std::to_string(decoded.lost) + " bytes belong to none";
+  if (decoded.repeats > 0) text += "; " + std::to_string(decoded.repeats) + " with the counter of the one before";
+  if (decoded.gaps > 0) text += "; the counter skips " + std::to_string(decoded.gaps) + " times";
+  for (const DecodedReport& one : decoded.reports)
+    if (!one.wrong.empty()) return text + "\nfirst bad one: " + one.wrong;
+  return text;
+}
+
+std::vector<std::string> columnsOf(const codec::Wire& wire, size_t joints, bool to_arm) {
+  std::vector<std::string> names;
+  for (const Column& column : columnsOf(to_arm ? wire.output : wire.input, joints)) names.push_back(column.name);
+  return names;
+}
+
+Result<std::vector<uint8_t>> encodeRow(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns,
+                                       const double* values, uint32_t sequence) {
+  const codec::Report& report = to_arm ? wire.output : wire.input;
+  const std::vector<Column> known = columnsOf(report, codec::kMaxJoints);
+  codec::Order order;
+  codec::State state;
+  order.sequence = state.sequence = sequence;
+  order.enable = true;
+  for (size_t i = 0; i < columns.size(); ++i) {
+    const auto column = std::find_if(known.begin(), known.end(), [&](const Column& c) { return c.name == columns[i]; });
+    if (column == known.end()) return Error{"column " + columns[i] + ": the report has no such field"};
+    if (to_arm)
+      put(order, *column, values[i]);
+    else
+      put(state, *column, values[i]);
+  }
+  std::vector<uint8_t> bytes(2 * report.bytes());
+  const size_t size = to_arm ? codec::encode(report, order, bytes) : codec::encode(report, state, bytes);
+  bytes.resize(codec::addEscapes(wire.framing, bytes, size));
+  return bytes;
+}
+
+}  // namespace hapticd::capture

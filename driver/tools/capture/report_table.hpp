@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+/// A capture as numbers: what a wire format makes of it, report by report, and why some of it is no report.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/result.hpp"
+#include "capture/capture.hpp"
+#include "codec/wire.hpp"
+
+namespace hapticd::capture {
+
+struct DecodedReport {
+  double time = -1;   ///< [s] of the capture, -1: not known
+  size_t offset = 0;  ///< byte of the capture at which it was whole, or the transfer, from 1, of text
+  codec::Verdict verdict = codec::Verdict::kGood;
+  codec::State state;
+  std::string wrong;  ///< "" or what made the verdict: "checksum at byte 12 is 0x12, of the bytes 0 to 11 it is 0x34"
+};
+
+struct Decoded {
+  std::vector<DecodedReport> reports;
+  size_t lost = 0;     ///< bytes that belong to no report
+  size_t others = 0;   ///< reports with another id: of another kind
+  size_t repeats = 0;  ///< reports with the sequence number of the one before
+  size_t gaps = 0;     ///< places where sequence numbers are missing
+  size_t good() const;
+};
+
+/// [main] Reads every report of a capture.
+Decoded decodeCapture(const codec::Wire& wire, const Capture& capture);
+
+/// [main] The reports as CSV with a header: report, time, verdict, then what the format has, in SI units.
+std::string csvOf(const codec::Wire& wire, size_t joints, const Decoded& decoded);
+
+/// [main] A line for people: how many reports, how many of them good, what was wrong.
+std::string summaryOf(const Decoded& decoded);
+
+/// [main] One line of numbers as the bytes of a report: `columns` names them, "torque1,torque2" or
+/// "position1,buttons,calibrated". @param to_arm an order; otherwise as the arm would send it
+/// @param sequence of this report
+Result<std::vector<uint8_t>> encodeRow(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns,
+                                       const double* values, uint32_t sequence);
+
+/// [main] The columns that encodeRow() understands for an arm of so many joints, in this order.
+std::vector<std::string> columnsOf(const codec::Wire& wire, size_t joints, bool to_arm);
+
+}  // namespace hapticd::capture

@@ -1,0 +1,178 @@
+#!/usr/bin/env python3
+"""An engineer with an arm of her own invention: its reports, written here by other code than ours, are decoded by a device file.
+
+Usage: decode_a_capture.py HAPTICD SOURCE_DIR VME_BOARD MODULE_DIR       exit 1 when one is off
+"""
+import binascii
+import csv
+import io
+import os
+import struct
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish
+
+HAPTICD, SOURCE, BOARD, MODULES = sys.argv[1:5]
+
+ARM = """hapticd-device: 1
+module: usb_hid
+name: invented
+limits: {force: 2}
+parameters:
+  usb: {id: "16c0:0486"}
+  arm: {kind: phantom, lengths: [0.2, 0.2, 0, 0, 0], max_torque: [0.5]}
+  wire:
+    rate: 1000
+    input:
+      size: 18
+      fields:
+        - {is: constant, at: 0, type: u12, value: 0xabc}
+        - {is: counter, at: 1, bit_offset: 4, type: u4}
+        - {is: position, joint: 1, at: 2, type: i24, scale: 1.0e-6}
+        - {is: position, joint: 2, at: 5, type: i24, endian: big, scale: 1.0e-6}
+        - {is: position, joint: 3, at: 8, type: f32, scale: 1}
+        - {is: button, button: 1, at: 12, type: u1}
+        - {is: button, button: 2, at: 12, bit_offset: 1, type: u1}
+        - {is: fault, at: 12, bit_offset: 7, type: u1}
+        - {is: constant, at: 13, type: u8, value: 0}
+        - {is: checksum, at: 14, type: u32, method: crc32, from: 0, to: 14}
+    output:
+      size: 8
+      fields:
+        - {is: torque, joint: 1, at: 0, type: i12, scale: 0.001, limit: 500}
+        - {is: torque, joint: 2, at: 1, bit_offset: 4, type: i12, scale: 0.001, limit: 500}
+        - {is: torque, joint: 3, at: 3, type: i12, scale: 0.001, limit: 500}
+        - {is: enable, at: 4, bit_offset: 4, type: u1}
+        - {is: checksum, at: 6, type: u16, method: crc16-modbus, from: 0, to: 6}
+"""
+
+
+def i24(value, order):
+    return (value & 0xFFFFFF).to_bytes(3, order)
+
+
+def report(counter, q1, q2, q3, buttons=0):
+    """As the firmware would write it; zlib's CRC, not ours."""
+    head = (0xABC | counter % 16 << 12).to_bytes(2, "little")
+    body = head + i24(q1, "little") + i24(q2, "big") + struct.pack("<f", q3) + bytes([buttons, 0])
+    return body + struct.pack("<I", binascii.crc32(body))
+
+
+def modbus(data):
+    crc = 0xFFFF
+    for byte in data:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0xA001 if crc & 1 else 0)
+    return crc
+
+
+def run(*arguments, given=b""):
+    done = subprocess.run([HAPTICD, "device", *arguments], input=given, capture_output=True, timeout=120)
+    return done.returncode, done.stdout, done.stderr.decode()
+
+
+def rows(out):
+    return list(csv.DictReader(io.StringIO(out.decode())))
+
+
+with tempfile.TemporaryDirectory() as folder:
+    arm = os.path.join(folder, "invented.yaml")
+    open(arm, "w").write(ARM)
+    done = subprocess.run([HAPTICD, "check", arm], capture_output=True, text=True, timeout=120)
+    check("the device file is good", done.returncode == 0, done.stdout + done.stderr)
+
+    truth = [(i, 1000 * i, -2000 * i, 0.125 * i, i % 4) for i in range(40)]
+    capture = b"".join(report(*one) for one in truth)
+    code, out, err = run("decode", arm, given=capture)
+    check("a raw capture is decoded", code == 0 and "40 reports, 40 good" in err, err)
+    told = rows(out)
+    exact = all(abs(float(r["position1"]) - q1 * 1e-6) < 1e-12 and abs(float(r["position2"]) - q2 * 1e-6) < 1e-12 and float(r["position3"]) == q3 and
+                int(r["buttons"]) == b and int(r["sequence"]) == i % 16 for r, (i, q1, q2, q3, b) in zip(told, truth))
+    check("to the numbers that were written", len(told) == 40 and exact, told[:3])
+
+    text = "\n".join("E: %012.6f 18 %s" % (i * 1e-3, report(*truth[i]).hex(" ")) for i in range(5))
+    code, out, err = run("decode", arm, given=("D: 0\nN: an arm\n" + text + "\n").encode())
+    check("hid-recorder's text is decoded", code == 0 and len(rows(out)) == 5 and rows(out)[3]["time"] == "0.003000", (err, out[:300]))
+
+    broken = bytearray(capture)
+    broken[18 * 7 + 3] ^= 0x10
+    code, out, err = run("decode", arm, given=bytes(broken))
+    check("a flipped bit is one bad report, and the reason is told", code == 1 and "39 good, 1 corrupt" in err and "checksum at byte 14" in err, err)
+    code, out, err = run("decode", arm, given=capture[:50])
+    check("a cut report is told", code == 1 and "expected 18" in err, err)
+    code, out, err = run("decode", arm, "--hex", given=b"01 02 zz\n")
+    check("text that is not hexadecimal is bad input with its line", code == 2 and "line 1" in err, err)
+    code, out, err = run("decode", os.path.join(SOURCE, "config/devices/simulated-premium15.yaml"), given=b"00")
+    check("an arm without a wire is bad input", code == 2 and "no parameter wire" in err, err)
+
+    code, out, err = run("encode", arm, "--raw", given=b"torque1,torque2,torque3\n0.1,-0.2,9\n")
+    raw = [0.1, -0.2, 0.5]
+    value = sum((round(t * 1000) & 0xFFF) << 12 * i for i, t in enumerate(raw)) | 1 << 36
+    body = value.to_bytes(6, "little")
+    check("torques are encoded, limited and summed", code == 0 and out == body + struct.pack("<H", modbus(body)), (out.hex(" "), body.hex(" "), err))
+    code, out, err = run("encode", arm, given=b"torque1,speed\n0.1,3\n")
+    check("a column that is not in the report is named", code == 2 and "speed" in err and "torque2" in err, err)
+
+    code, out, err = run("encode", arm, "--from-arm", given=b"position1,position2,position3,buttons\n0.5,-0.25,1.5,3\n0.1,0.2,0.3,0\n")
+    code2, out2, err2 = run("decode", arm, given=out)
+    told = rows(out2)
+    check("what is encoded is decoded", code == 0 and code2 == 0 and [float(told[0][f"position{i}"]) for i in (1, 2, 3)] == [0.5, -0.25, 1.5] and
+          told[0]["buttons"] == "3", (err, err2, out2))
+
+    wrong = ARM.replace("type: i24, scale", "type: i99, scale").replace("method: crc32", "method: crc33").replace("rate: 1000", "rate: fast").replace(
+        "{is: enable, at: 4,", "{is: enabel, at: 4,").replace("to: 6}", "to: 60}")
+    open(arm, "w").write(wrong)
+    done = subprocess.run([HAPTICD, "check", arm], capture_output=True, text=True, timeout=120)
+    lines = done.stdout.splitlines()
+    def place(words, count=0):
+        """Line of the n-th place where the words stand."""
+        return [i + 1 for i, line in enumerate(wrong.splitlines()) if words in line][count]
+    for words in ("rate: fast", "type: i99", "crc33", "enabel", "to: 60"):
+        check(f"'{words}' is told at its place", any(line.startswith(f"{arm}:{place(words)}:") for line in lines), done.stdout)
+    check("all of them at once, and nothing else", done.returncode == 2 and len(lines) == 5, done.stdout)
+
+# A file to start from, and an arm on a (played) bus whose bytes are recorded and read back.
+with tempfile.TemporaryDirectory() as folder:
+    for kind, more in (("phantom", ["--lengths", "0.21,0.17", "--bits", "24"]), ("delta", []), ("chain", ["--joints", "6", "--bits", "19", "--bus", "bulk"])):
+        arm = os.path.join(folder, kind + ".yaml")
+        code, out, err = run("new", kind, "-o", arm, "--kind", kind, "--no-questions", *more)
+        done = subprocess.run([HAPTICD, "check", arm], capture_output=True, text=True, timeout=120)
+        check(f"device new writes a {kind} that check accepts", code == 0 and done.returncode == 0, (out, err, done.stdout))
+        joints = 6 if kind == "chain" else 3
+        code, out, err = run("encode", arm, "--from-arm", given=(",".join(["0.1"] * joints) + "\n").encode())
+        code, out, err = run("decode", arm, given=out)
+        check(f"and whose reports of a {kind} can be tried", code == 0 and abs(float(rows(out)[0]["position1"]) - 0.1) < 1e-3, (out, err))
+    code, out, err = run("new", "phantom", "-o", arm)
+    check("no file is overwritten", code == 2 and "exists already" in err, err)
+    for bad in (["--kind", "scara"], ["--lengths", "1,2,3"], ["--bits", "65"], ["--bus", "can"]):
+        code, out, err = run("new", "bad", "-o", os.path.join(folder, "bad.yaml"), "--no-questions", *bad)
+        check(f"{' '.join(bad)} is refused", code == 2 and not os.path.exists(os.path.join(folder, "bad.yaml")), err)
+
+    window = os.path.join(folder, "window")
+    board = subprocess.Popen([BOARD, window, "--arm", os.path.join(SOURCE, "config/devices/simulated-sarcos.yaml"), "--plugin-path", MODULES,
+                              "--for", "60"], stdout=subprocess.PIPE, text=True)
+    try:
+        check("the board is up", board.stdout.readline() == "ready\n")
+        arm = os.path.join(folder, "sarcos.yaml")
+        open(arm, "w").write(open(os.path.join(SOURCE, "config/devices/sarcos.yaml")).read().replace("/dev/bus/vme/m0", window))
+        capture = os.path.join(folder, "capture.txt")
+        code, out, err = run("record", arm, "--for", "1", "-o", capture)
+        text = open(capture).read()
+        check("record writes both directions", code == 0 and "\n@" in text and "\n> @" in text, (err, text[:300]))
+        code, out, err = run("decode", arm, capture)
+        told = [r for r in rows(out) if r["verdict"] == "good"]
+        check("which decode reads, with times", len(told) > 20 and float(told[-1]["time"]) > 0.3, (err, len(told)))
+    finally:
+        board.terminate()
+        board.communicate()
+    code, out, err = run("record", os.path.join(SOURCE, "config/devices/simulated-premium15.yaml"))
+    check("an arm without bytes cannot be recorded", code == 2 and "no bytes to record" in err, err)
+
+schema = subprocess.run([HAPTICD, "check", "--schema", "device"], capture_output=True, text=True, timeout=120).stdout
+for key in ("bit_offset", "polynomial", "modulo", "escape", "final_xor"):
+    check(f"the schema knows {key}", f'"{key}"' in schema)
+finish()
