@@ -15,9 +15,11 @@
 #include <string>
 #include <vector>
 
+#include "base/clock.hpp"
 #include "cli/command.hpp"
 #include "host/class_table.hpp"
 #include "servo/safety/limiter.hpp"
+#include "session/silence_reason.hpp"
 #include "status/page_file.hpp"
 
 namespace hapticd::cli {
@@ -35,6 +37,7 @@ struct Options {
 struct ModelLine {
   std::string name, plugin;
   status::ModelNow now;
+  std::string silenced;              ///< why it is not felt any more; "": it is
   double p50 = 0, p99 = 0, max = 0;  ///< [us] of a step
   bool traced = false;
 };
@@ -82,6 +85,7 @@ View look(const status::Page& page) {
     ModelLine line{textOf(name.text, sizeof name.text),
                    textOf(name.kind, sizeof name.kind),
                    page.model[i].now.read().value_or(status::ModelNow{}),
+                   "",
                    0,
                    0,
                    0,
@@ -91,6 +95,8 @@ View look(const status::Page& page) {
     constexpr uint64_t kFresh = 50;  // ticks: what was not stepped since is far away
     line.traced = line.now.tick + kFresh >= view.now.tick && std::isfinite(line.now.depth);
     if (!line.traced) line.now.force = 0;
+    line.silenced =
+        servo::silenceReason(line.name, static_cast<servo::Trouble>(line.now.trouble), line.now.failed_status);
     view.models.push_back(line);
   }
   return view;
@@ -127,10 +133,12 @@ Json toJson(const View& view) {
                       {"depth_mm", m.traced ? Json(m.now.depth * 1e3) : Json()},
                       {"iterations", m.now.iterations},
                       {"gain", m.now.gain},
-                      {"status", m.now.status}});
+                      {"status", m.now.status},
+                      {"silenced", m.silenced.empty() ? Json() : Json(m.silenced)}});
   return {{"seconds", view.now.t},
           {"ticks", view.now.tick},
           {"rate_hz", view.rate},
+          {"held_hz", view.held},
           {"overruns", view.now.overruns},
           {"missed_ticks", view.now.missed},
           {"lateness_us", three(view.late)},
@@ -158,9 +166,12 @@ std::string table(const View& view, size_t rows) {
     const ModelLine& m = view.models[i];
     const std::string depth = m.traced ? fmt::format("{:.3f}", m.now.depth * 1e3) : "-";
     text += fmt::format("{:<28.28} {:<16.16} {:9.3f} {:>9} {:8.2f} {:8.2f} {:8.1f} {:5}  {}\n", m.name, m.plugin,
-                        m.now.force, depth, m.p50, m.p99, m.max, m.now.iterations, host::statusText(m.now.status));
+                        m.now.force, depth, m.p50, m.p99, m.max, m.now.iterations,
+                        m.silenced.empty() ? host::statusText(m.now.status) : "SILENCED");
   }
   if (view.models.size() > rows) text += fmt::format("... and {} more\n", view.models.size() - rows);
+  for (const ModelLine& m : view.models)
+    if (!m.silenced.empty()) text += m.silenced + "\n";
   return text;
 }
 
@@ -191,6 +202,10 @@ class RawKeys {
   bool raw_;
 };
 
+bool ended(const status::Page& page) {
+  return kill(static_cast<pid_t>(page.pid), 0) != 0 && errno == ESRCH;
+}
+
 int watch(const Options& options, const status::Page& page) {
   const RawKeys keys;
   std::string sort = options.sort;
@@ -209,10 +224,26 @@ int watch(const Options& options, const status::Page& page) {
     std::printf("\033[H\033[J%s\nsort: s step, f force, d depth, n name (now %s); q ends\n", table(view, kRows).c_str(),
                 sort.c_str());
     std::fflush(stdout);
-    if (kill(static_cast<pid_t>(page.pid), 0) != 0 && errno == ESRCH) {
+    if (ended(page)) {
       std::puts("the daemon has ended");
       return kWorked;
     }
+  }
+  return kWorked;
+}
+
+/// One line of JSON after the other, until nobody reads them or the daemon ends.
+int stream(const Options& options, const status::Page& page) {
+  RealClock clock(0);
+  status::Now before{};
+  while (!ended(page)) {
+    View view = look(page);
+    const double passed = view.now.t - before.t;
+    view.held = passed > 0 ? static_cast<double>(view.now.tick - before.tick) / passed : 0;
+    before = view.now;
+    sortModels(view.models, options.sort);
+    if (std::printf("%s\n", toJson(view).dump().c_str()) < 0 || std::fflush(stdout) != 0) break;
+    clock.waitUntil(clock.now() + static_cast<Nanoseconds>(options.every * 1e9));
   }
   return kWorked;
 }
@@ -224,7 +255,7 @@ int top(const Options& options) {
     return fail(kFailed,
                 opened.error() + "\n  fix: start a daemon with hapticd run, or name a running one with --name");
   const status::Page& page = std::as_const(**opened).page();
-  if (!options.once) return watch(options, page);
+  if (!options.once) return options.json ? stream(options, page) : watch(options, page);
   View view = look(page);
   view.held = view.now.t > 0 ? static_cast<double>(view.now.tick) / view.now.t : 0;
   sortModels(view.models, options.sort);
@@ -243,8 +274,10 @@ void addTop(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"step", "force", "depth", "name"}));
   command->add_option("--every", options->every, "refresh interval [s]")->check(within(0.05, 60.0));
   command->add_flag("--once", options->once, "print once and exit");
-  command->add_flag("--json", options->json, "with --once: print JSON");
-  command->footer("Keys: s, f, d and n sort by step time, force, depth and name; q quits.");
+  command->add_flag("--json", options->json, "print JSON: a line each interval, or once with --once");
+  command->footer(
+      "Keys: s, f, d and n sort by step time, force, depth and name; q quits.\n\n"
+      "Examples:\n  hapticd top --sort force\n  hapticd top --json --every 1 | jq .models[0].force_n");
   command->callback([options, &exit_code] { exit_code = top(*options); });
 }
 

@@ -76,30 +76,32 @@ Json poseJson(const Session& session, uint32_t place) {
   return {{"position", {p.x(), p.y(), p.z()}}, {"orientation", {q.w(), q.x(), q.y(), q.z()}}};
 }
 
-Json modelJson(const Session& session, uint32_t place) {
-  const ModelPlace& taken = session.places[place];
-  const auto leader = session.leads.leader(Order::Led::kModel, place);
-  const bool deforms = (session.runner.world().shapes()[place]->description().flags & HSP_C_DEFORMS) != 0;
-  return {{"name", taken.model.name},           {"number", place},
-          {"plugin", taken.model.plugin},       {"enabled", taken.enabled},
-          {"kinematic", taken.model.kinematic}, {"leader", leader ? Json(*leader) : Json()},
-          {"pose", poseJson(session, place)},   {"deforms", deforms}};
-}
-
 status::ModelNow nowOf(const Session& session, uint32_t place) {
   const status::Page& page = session.runner.telemetry().statusWriter()->page();
   return place < status::kMaxModels ? page.model[place].now.read().value_or(status::ModelNow{}) : status::ModelNow{};
 }
 
+Json modelJson(const Session& session, uint32_t place) {
+  const ModelPlace& taken = session.places[place];
+  const auto leader = session.leads.leader(Order::Led::kModel, place);
+  const std::string why = silencedWhy(session, place);
+  const bool deforms = (session.runner.world().shapes()[place]->description().flags & HSP_C_DEFORMS) != 0;
+  return {{"name", taken.model.name},
+          {"number", place},
+          {"plugin", taken.model.plugin},
+          {"enabled", taken.enabled},
+          {"kinematic", taken.model.kinematic},
+          {"leader", leader ? Json(*leader) : Json()},
+          {"pose", poseJson(session, place)},
+          {"silenced", why.empty() ? Json() : Json(why)},
+          {"deforms", deforms}};
+}
+
 Json silencedJson(const Session& session) {
   Json models = Json::array();
-  for (uint32_t i = 0; i < session.places.size(); ++i) {
-    if (!session.places[i].taken) continue;
-    const status::ModelNow now = nowOf(session, i);
-    const std::string why =
-        silenceReason(session.places[i].model.name, static_cast<Trouble>(now.trouble), now.failed_status);
-    if (!why.empty()) models.push_back({{"model", session.places[i].model.name}, {"why", why}});
-  }
+  for (uint32_t i = 0; i < session.places.size(); ++i)
+    if (const std::string why = session.places[i].taken ? silencedWhy(session, i) : ""; !why.empty())
+      models.push_back({{"model", session.places[i].model.name}, {"why", why}});
   return models;
 }
 
@@ -108,6 +110,11 @@ Json silencedJson(const Session& session) {
 double valueOf(const scene::Model& model, const hsp_param& param, uint32_t index) {
   const scene::Value* value = given(model, index);
   return value != nullptr ? value->number : param.def;
+}
+
+std::string silencedWhy(const Session& session, uint32_t place) {
+  const status::ModelNow now = nowOf(session, place);
+  return silenceReason(session.places[place].model.name, static_cast<Trouble>(now.trouble), now.failed_status);
 }
 
 std::string statusAnswer(const Session& session) {

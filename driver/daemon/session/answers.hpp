@@ -28,6 +28,9 @@ struct Session {
 /// [main] Times, devices, and models that are not felt.
 std::string statusAnswer(const Session& session);
 
+/// [main] Why a model is not felt for the rest of the run; "": it is.
+std::string silencedWhy(const Session& session, uint32_t place);
+
 /// [main] Models: names, numbers, poses, leaders, and live parameters with their values.
 std::string listAnswer(const Session& session);
 

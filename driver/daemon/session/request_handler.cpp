@@ -189,6 +189,8 @@ Result<void> RequestHandler::give(const Order& order) {
 Result<void> RequestHandler::able(const std::string& model, bool enabled) {
   const auto place = placeOf(model);
   if (!place) return Error{place.error()};
+  if (const std::string why = enabled ? silencedWhy(session(), *place) : ""; !why.empty())
+    return refuse("silenced", why + "; it stays so until it is loaded anew: hapticd ctl reload, or remove and add");
   Order order;
   order.kind = enabled ? Order::Kind::kEnable : Order::Kind::kDisable;
   order.target = *place;

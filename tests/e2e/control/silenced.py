@@ -1,0 +1,54 @@
+#!/usr/bin/env python3
+"""A model that the guard has silenced is seen at once: in top, ctl list and ctl status; ctl enable says what to do.
+
+Usage: silenced.py HAPTICD TEST_SHAPES.so       exit 1 when one is off
+"""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish
+
+HAPTICD, SHAPES = sys.argv[1:3]
+
+with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
+    environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder, HAPTICD_PLUGIN_PATH=os.path.dirname(SHAPES))
+    scene = os.path.join(folder, "scene.yaml")
+    open(scene, "w").write("hapticd: 1\nhand: {script: none}\nmodels:\n  - {name: good, plugin: wall, pose: {position: [0, -0.2, 0]}}\n"
+                           "  - {name: bad, plugin: misbehaving, parameters: {how: not_finite, after: 100, times: 10}}\n")
+
+    def ask(*arguments):
+        done = subprocess.run([HAPTICD, *arguments, "--name", "hush"] if arguments[0] == "top" else [HAPTICD, "ctl", "--name", "hush", *arguments],
+                              env=environment, capture_output=True, text=True, timeout=60)
+        return done.returncode, done.stdout, done.stderr
+
+    run = subprocess.Popen([HAPTICD, "run", scene, "--name", "hush", "--for", "60"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    try:
+        silenced, deadline = [], time.monotonic() + 40
+        while not silenced and time.monotonic() < deadline and run.poll() is None:
+            code, out, err = ask("status")
+            silenced = json.loads(out)["silenced"] if code == 0 else []
+        check("status names the model and the reason", [s["model"] for s in silenced] == ["bad"] and "not finite" in silenced[0]["why"], silenced)
+        code, out, err = ask("list")
+        by_name = {m["name"]: m["silenced"] for m in json.loads(out)["models"]} if code == 0 else {}
+        check("list does", by_name.get("good", 1) is None and "not finite" in (by_name.get("bad") or ""), (by_name, err))
+        code, out, err = ask("top", "--once")
+        check("top does, in its line and below", "SILENCED" in out and "not finite" in out, out)
+        code, out, err = ask("top", "--once", "--json")
+        check("and as JSON", code == 0 and any(m["silenced"] and m["name"] == "bad" for m in json.loads(out)["models"]), out)
+        code, out, err = ask("enable", "bad")
+        check("enable refuses, and says what to do", code == 1 and "reload" in err, (code, err))
+        check("a good one is enabled", ask("enable", "good")[0] == 0)
+        lines = subprocess.Popen([HAPTICD, "top", "--json", "--every", "0.1", "--name", "hush"], env=environment, stdout=subprocess.PIPE, text=True)
+        told = [json.loads(lines.stdout.readline()) for _ in range(3)]
+        lines.terminate()
+        lines.wait()
+        check("top --json is a stream of lines", told[0]["ticks"] <= told[1]["ticks"] <= told[2]["ticks"] and "held_hz" in told[2], told)
+    finally:
+        run.terminate()
+        run.communicate()
+finish()
