@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd completion`: completion scripts for bash, zsh and fish, made of the option table itself.
+#include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "cli/command.hpp"
+#include "control/client.hpp"
+#include "status/page_file.hpp"
 
 namespace hapticd::cli {
 namespace {
@@ -19,7 +24,13 @@ struct Word {
 struct Node {
   std::string path;
   std::vector<Word> words;
+  bool files = false;  ///< whether an argument is a file
 };
+
+bool isFile(const CLI::Option& argument) {
+  static const std::vector<std::string> kFiles = {"file", "files", "scene", "recording", "part", "capture", "numbers"};
+  return std::find(kFiles.begin(), kFiles.end(), argument.get_single_name()) != kFiles.end();
+}
 
 /// The words of a validator such as "TEXT:{scene,device}"; none for others.
 std::vector<std::string> choicesOf(const CLI::Option& option) {
@@ -33,12 +44,14 @@ std::vector<std::string> choicesOf(const CLI::Option& option) {
 }
 
 void collect(const CLI::App& app, const std::string& path, std::vector<Node>& nodes) {
-  Node node{path, {}};
+  Node node{path, {}, false};
   for (const CLI::App* command : app.get_subcommands(nullptr))
     node.words.push_back({command->get_name(), command->get_description(), {}});
   for (const CLI::Option* option : app.get_options(nullptr)) {
-    if (option->get_positional())
+    if (option->get_positional()) {
+      node.files = node.files || isFile(*option);
       for (const std::string& choice : choicesOf(*option)) node.words.push_back({choice, "", {}});
+    }
     for (const std::string& name : option->get_lnames())
       node.words.push_back({"--" + name, option->get_description(), choicesOf(*option)});
   }
@@ -76,10 +89,34 @@ std::string findPath(const std::vector<Node>& nodes, const std::string& words) {
   return text + ") path_=\"${path_:+$path_ }$word_\" ;;\n    esac\n  done\n";
 }
 
+/// Commands whose argument is the name of something, and what `--names` is to list for them.
+struct Named {
+  const char* kind;
+  std::vector<const char*> paths;
+};
+const std::vector<Named>& namedArguments() {
+  static const std::vector<Named> kNamed = {
+      {"plugins", {"plugin info", "plugin clear"}},
+      {"models",
+       {"ctl enable", "ctl disable", "ctl remove", "ctl set", "ctl get", "ctl move", "ctl geometry", "ctl lead"}},
+      {"devices", {"ctl hold", "ctl clear"}},
+      {"scenes", {"run", "trace", "explain", "tune", "check", "ctl reload", "ctl add"}},
+      {"device-files",
+       {"device info", "device calibrate", "device kinematics", "device decode", "device encode", "device record"}},
+  };
+  return kNamed;
+}
+
+std::string pattern(const Named& named) {
+  std::string text;
+  for (const char* path : named.paths) text += std::string(text.empty() ? "'" : " | '") + path + "'";
+  return text;
+}
+
 std::string bash(const std::vector<Node>& nodes) {
   std::string text = "# bash completion of hapticd; made with `hapticd completion bash`\n_hapticd() {\n";
   text += findPath(nodes, "\"${COMP_WORDS[@]:1:COMP_CWORD-1}\"");
-  text += "  local known_=''\n  case \"$path_ ${COMP_WORDS[COMP_CWORD-1]}\" in\n";
+  text += "  local known_='' files_=''\n  case \"$path_ ${COMP_WORDS[COMP_CWORD-1]}\" in\n";
   for (const Node& node : nodes)
     for (const Word& word : node.words)
       if (!word.choices.empty())
@@ -88,10 +125,17 @@ std::string bash(const std::vector<Node>& nodes) {
   for (const Node& node : nodes) {
     std::vector<std::string> words;
     for (const Word& word : node.words) words.push_back(word.text);
-    text += "        '" + node.path + "') known_='" + joined(words) + "' ;;\n";
+    text += "        '" + node.path + "') known_='" + joined(words) + "'" + (node.files ? " files_=-f" : "") + " ;;\n";
   }
+  text += "      esac\n      case \"$path_\" in\n";
+  for (const Named& named : namedArguments())
+    text += "        " + pattern(named) + ") known_+=\" $(hapticd completion --names " + named.kind +
+            " 2>/dev/null)\" ;;\n";
   text += "      esac ;;\n  esac\n";
-  text += "  mapfile -t COMPREPLY < <(compgen -W \"$known_\" -- \"${COMP_WORDS[COMP_CWORD]}\")\n}\n";
+  text +=
+      "  mapfile -t COMPREPLY < <(compgen -W \"$known_\" -- \"${COMP_WORDS[COMP_CWORD]}\")\n"
+      "  [[ -z $files_ || ${COMP_WORDS[COMP_CWORD]} == -* ]] || mapfile -t -O ${#COMPREPLY[@]} COMPREPLY < "
+      "<(compgen -f -- \"${COMP_WORDS[COMP_CWORD]}\")\n}\n";
   return text + "complete -o default -F _hapticd hapticd\n";
 }
 
@@ -99,7 +143,7 @@ std::string zsh(const std::vector<Node>& nodes) {
   std::string text =
       "#compdef hapticd\n# zsh completion of hapticd; made with `hapticd completion zsh`\n_hapticd() {\n";
   text += findPath(nodes, "${words[2,CURRENT-1]}");
-  text += "  local -a known_\n  case \"$path_ ${words[CURRENT-1]}\" in\n";
+  text += "  local -a known_\n  local files_=''\n  case \"$path_ ${words[CURRENT-1]}\" in\n";
   for (const Node& node : nodes)
     for (const Word& word : node.words)
       if (!word.choices.empty())
@@ -108,21 +152,33 @@ std::string zsh(const std::vector<Node>& nodes) {
   for (const Node& node : nodes) {
     text += "    '" + node.path + "') known_=(\n";
     for (const Word& word : node.words) text += "      '" + word.text + ":" + quoted(word.doc, true) + "'\n";
-    text += "    ) ;;\n";
+    text += node.files ? "    ); files_=1 ;;\n" : "    ) ;;\n";
   }
-  return text + "  esac\n  _describe -o hapticd known_\n  _files\n}\n_hapticd \"$@\"\n";
+  text += "  esac\n  case \"$path_\" in\n";
+  for (const Named& named : namedArguments())
+    text += "    " + pattern(named) + ") compadd -- ${(f)\"$(hapticd completion --names " + named.kind +
+            " 2>/dev/null)\"} ;;\n";
+  return text + "  esac\n  _describe -o hapticd known_\n  [[ -z $files_ ]] || _files\n}\n_hapticd \"$@\"\n";
+}
+
+std::string fishCondition(const std::string& path) {
+  if (path.empty()) return "__fish_use_subcommand";
+  std::string condition;
+  std::stringstream parts(path);
+  for (std::string part; parts >> part;)
+    condition += (condition.empty() ? "" : "; and ") + ("__fish_seen_subcommand_from " + part);
+  return condition;
 }
 
 std::string fish(const std::vector<Node>& nodes) {
   std::string text = "# fish completion of hapticd; made with `hapticd completion fish`\n";
+  for (const Named& named : namedArguments())
+    for (const char* path : named.paths)
+      text += "complete -c hapticd -n '" + fishCondition(path) + "' -a '(hapticd completion --names " + named.kind +
+              " 2>/dev/null)'\n";
   for (const Node& node : nodes) {
-    std::string condition = "__fish_use_subcommand";
-    if (!node.path.empty()) {
-      condition.clear();
-      std::stringstream parts(node.path);
-      for (std::string part; parts >> part;)
-        condition += (condition.empty() ? "" : "; and ") + ("__fish_seen_subcommand_from " + part);
-    }
+    const std::string condition = fishCondition(node.path);
+    if (!node.files) text += "complete -c hapticd -n '" + condition + "' -f\n";
     for (const Word& word : node.words) {
       const bool option = word.text.rfind("--", 0) == 0;
       text +=
@@ -134,14 +190,53 @@ std::string fish(const std::vector<Node>& nodes) {
   return text;
 }
 
+/// The names that a running daemon knows: "models" or "devices".
+std::vector<std::string> namesOfDaemon(const std::string& kind) {
+  std::vector<std::string> names;
+  const auto answer = control::ask(status::runtimeFolder(false) + "/hapticd.sock", R"({"do":"snapshot"})");
+  const auto json = answer ? nlohmann::json::parse(*answer, nullptr, false) : nlohmann::json();
+  if (!json.is_object() || !json.contains(kind)) return names;
+  for (const auto& one : json[kind]) names.push_back(one.value("name", ""));
+  return names;
+}
+
+/// The files of a shipped folder.
+std::vector<std::string> filesIn(const char* one_of_them) {
+  std::vector<std::string> names;
+  const auto file = host::shippedFile(one_of_them);
+  if (!file) return names;
+  for (const auto& entry : std::filesystem::directory_iterator(file->parent_path()))
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+int printNames(const std::string& kind) {
+  std::vector<std::string> names;
+  if (kind == "models" || kind == "devices") names = namesOfDaemon(kind);
+  if (kind == "scenes") names = filesIn("scenes/teapot.yaml");
+  if (kind == "device-files") names = filesIn(scene::kDefaultDevice);
+  if (kind == "plugins")
+    for (const host::CatalogFile* file : catalog().files(host::Kind::kShape))
+      for (const host::ClassInfo& info : file->classes) names.push_back(info.name);
+  for (const std::string& name : names) std::printf("%s\n", name.c_str());
+  return kWorked;
+}
+
 }  // namespace
 
 void addCompletion(CLI::App& app, int& exit_code) {
   auto shell = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("completion", "Print the completion script of a shell.");
-  command->add_option("shell", *shell, "bash, zsh or fish")->required()->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  command->add_option("shell", *shell, "bash, zsh or fish")->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  auto kind = std::make_shared<std::string>();
+  command->add_option("--names", *kind, "print the names that the script offers instead")
+      ->check(CLI::IsMember({"plugins", "models", "devices", "scenes", "device-files"}))
+      ->excludes("shell");
   command->footer("Example:\n  source <(hapticd completion bash)");
-  command->callback([shell, &app, &exit_code] {
+  command->callback([shell, kind, &app, &exit_code] {
+    if (!kind->empty()) return (void)(exit_code = printNames(*kind));
+    if (shell->empty()) return (void)(exit_code = fail(kBadInput, "no shell given, expected bash, zsh or fish"));
     std::vector<Node> nodes;
     collect(app, "", nodes);
     std::fputs((*shell == "bash" ? bash(nodes) : *shell == "zsh" ? zsh(nodes) : fish(nodes)).c_str(), stdout);

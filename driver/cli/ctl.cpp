@@ -90,11 +90,37 @@ int follow(const Options& options) {
   return kWorked;
 }
 
+/// The example of a request's own --help.
+std::string exampleOf(const std::string& word) {
+  static const std::pair<const char*, const char*> kExamples[] = {
+      {"status", "status"},
+      {"list", "list"},
+      {"enable", "enable teapot"},
+      {"disable", "disable teapot"},
+      {"remove", "remove teapot"},
+      {"set", "set teapot stiffness 600 --consent"},
+      {"get", "get teapot stiffness"},
+      {"move", "move door --position 0.1 0 0 --seconds 2"},
+      {"add", "add config/scenes/sphere.yaml"},
+      {"reload", "reload config/scenes/teapot.yaml"},
+      {"hold", "hold"},
+      {"clear", "clear"},
+      {"geometry", "geometry teapot --obj teapot.obj"},
+      {"events", "events --follow"},
+      {"dump", "dump"},
+      {"stop", "--name left stop    # of a daemon started with: hapticd run --name left"},
+  };
+  for (const auto& [name, example] : kExamples)
+    if (word == name) return std::string("Example:\n  hapticd ctl ") + example;
+  return "";
+}
+
 /// A subcommand that sends what `build` makes of the options.
 template <class Build>
 CLI::App* addRequest(CLI::App& parent, const char* word, const char* doc, const std::shared_ptr<Options>& options,
                      int& exit_code, Build build) {
   CLI::App* command = parent.add_subcommand(word, doc);
+  command->footer(exampleOf(word));
   command->callback([options, &exit_code, build, word] {
     Json json = {{"do", word}};
     build(json);
@@ -153,6 +179,7 @@ void addEvents(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit
   CLI::App* events = ctl.add_subcommand(
       "events", "Show what happened: clicks, touches, faults, models and programs that came and left.");
   events->add_flag("--follow", options->follow, "go on with what happens, a line of JSON each");
+  events->footer(exampleOf("events"));
   events->callback([options, &exit_code] { exit_code = showEvents(*options); });
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/colour.hpp"
 #include "cli/command.hpp"
 #include "diagnostics/doctor_checks.hpp"
 
@@ -19,7 +20,12 @@ const char* word(Verdict verdict) {
 }
 
 void print(const Finding& finding) {
-  std::printf("%-5s %-16s %s\n", word(finding.verdict), finding.name.c_str(), finding.state.c_str());
+  const Colour colour = finding.verdict == Verdict::kOk     ? Colour::kGood
+                        : finding.verdict == Verdict::kWarn ? Colour::kWarning
+                                                            : Colour::kBad;
+  const std::string verdict = word(finding.verdict);
+  std::printf("%s%-*s %-16s %s\n", coloured(verdict, colour).c_str(), static_cast<int>(5 - verdict.size()), "",
+              finding.name.c_str(), finding.state.c_str());
   if (finding.verdict == Verdict::kOk) return;
   std::printf("      %-16s %s\n", "", finding.consequence.c_str());
   std::printf("      %-16s fix: %s\n", "", finding.fix.c_str());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ constexpr int kPartly = 3;  ///< exit code: what was replayed is the same, and n
 struct Options {
   std::string file;
   std::vector<std::string> changes;
+  bool json = false;
 };
 
 /// Plugins and modules as they are found here: the recording may come from another machine.
@@ -76,6 +78,45 @@ void warnOfChanges(const servo::RecordedRun& run) {
       std::fprintf(stderr, "warning: %s has changed since the recording\n", file.path.c_str());
 }
 
+int verdictOf(const servo::ReplayOutcome& outcome) {
+  if (outcome.first) return kFailed;
+  if (outcome.ticks == outcome.recorded_ticks) return kWorked;
+  return outcome.note.empty() ? kFailed : kPartly;
+}
+
+int print(const servo::ReplayOutcome& outcome) {
+  if (!outcome.note.empty()) std::fprintf(stderr, "note: %s\n", outcome.note.c_str());
+  if (!outcome.first) {
+    std::printf("%llu ticks of %llu: every bit is the same\n", static_cast<unsigned long long>(outcome.ticks),
+                static_cast<unsigned long long>(outcome.recorded_ticks));
+    return verdictOf(outcome);
+  }
+  const servo::Difference& first = *outcome.first;
+  std::printf("the first difference is in tick %llu (t = %.6f s): %s was %.17g, is now %.17g\n",
+              static_cast<unsigned long long>(first.tick), first.t, first.what.c_str(), first.recorded, first.replayed);
+  std::printf("largest difference of the sent force: %.3g N in %llu ticks\n", outcome.largest_force_error,
+              static_cast<unsigned long long>(outcome.ticks));
+  return verdictOf(outcome);
+}
+
+int printJson(const servo::ReplayOutcome& outcome) {
+  using Json = nlohmann::ordered_json;
+  Json json{{"same", !outcome.first.has_value()},
+            {"ticks", outcome.ticks},
+            {"recorded_ticks", outcome.recorded_ticks},
+            {"note", outcome.note.empty() ? Json() : Json(outcome.note)},
+            {"first_difference", nullptr},
+            {"largest_force_error_n", outcome.largest_force_error}};
+  if (const auto& first = outcome.first)
+    json["first_difference"] = {{"tick", first->tick},
+                                {"t", first->t},
+                                {"what", first->what},
+                                {"recorded", first->recorded},
+                                {"replayed", first->replayed}};
+  std::printf("%s\n", json.dump(2).c_str());
+  return verdictOf(outcome);
+}
+
 int replay(const Options& options) {
   auto recording = record::Recording::open(options.file);
   if (!recording) return fail(kBadInput, recording.error());
@@ -91,19 +132,7 @@ int replay(const Options& options) {
   auto again = servo::Replay::prepare(**recording, *run, logToTerminal);
   if (!again) return fail(kBadInput, options.file + ": " + again.error());
   const servo::ReplayOutcome outcome = (*again)->run();
-  if (!outcome.note.empty()) std::fprintf(stderr, "note: %s\n", outcome.note.c_str());
-  if (!outcome.first) {
-    std::printf("%llu ticks of %llu: every bit is the same\n", static_cast<unsigned long long>(outcome.ticks),
-                static_cast<unsigned long long>(outcome.recorded_ticks));
-    if (outcome.ticks == outcome.recorded_ticks) return kWorked;
-    return outcome.note.empty() ? kFailed : kPartly;
-  }
-  const servo::Difference& first = *outcome.first;
-  std::printf("the first difference is in tick %llu (t = %.6f s): %s was %.17g, is now %.17g\n",
-              static_cast<unsigned long long>(first.tick), first.t, first.what.c_str(), first.recorded, first.replayed);
-  std::printf("largest difference of the sent force: %.3g N in %llu ticks\n", outcome.largest_force_error,
-              static_cast<unsigned long long>(outcome.ticks));
-  return kFailed;
+  return options.json ? printJson(outcome) : print(outcome);
 }
 
 }  // namespace
@@ -113,6 +142,7 @@ void addReplay(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("replay", "Run a recording again and compare every force to the last bit.");
   command->add_option("file", options->file, "recording made by `hapticd run --record`")->required();
   command->add_option("--set", options->changes, "change a parameter: MODEL.PARAMETER=NUMBER; may be repeated");
+  command->add_flag("--json", options->json, "print the outcome as JSON");
   command->footer(
       "Exit codes: 0 every bit is the same, 1 something differs, 2 the recording cannot be replayed, 3 every bit is "
       "the same\nup to a tick in which models were added or removed; the rest cannot be replayed.\n\nExample:\n  "

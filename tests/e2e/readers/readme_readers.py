@@ -33,7 +33,7 @@ def own_shape(folder):
     check("the README's floor compiles with the README's line", done.returncode == 0, done.stderr[-800:])
     environment = dict(os.environ, HAPTICD_PLUGIN_PATH=os.path.join(folder, "my-plugins"))
     check("plugin list finds it", "floor" in run(HAPTICD, "plugin", "list", environment=environment)[1])
-    code, said = run(HAPTICD, "plugin", "check", os.path.join(folder, "my-plugins/floor.so"))
+    code, said = run(HAPTICD, "plugin", "check", os.path.join(folder, "my-plugins/floor.so"), "--timeout", "60")
     check("plugin check passes it", code == 0, said)
     scene = re.search(r"^    hapticd: 1\n    models:\n      - \{name: ground.*?\n", README, re.M)[0]
     file = os.path.join(folder, "floor.yaml")
@@ -45,7 +45,7 @@ def own_shape(folder):
     wrong = open(os.path.join(folder, "floor.cpp")).read().replace("stiffness * out.depth_m", "-stiffness * out.depth_m")
     open(os.path.join(folder, "floor.cpp"), "w").write(wrong)
     subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
-    code, said = run(HAPTICD, "plugin", "check", os.path.join(folder, "my-plugins/floor.so"))
+    code, said = run(HAPTICD, "plugin", "check", os.path.join(folder, "my-plugins/floor.so"), "--timeout", "60")
     check("with the wrong sign the check says so", code == 1 and "pull the hand in" in said, said)
 
 
@@ -87,6 +87,9 @@ def own_client(folder):
     except subprocess.TimeoutExpired:
         daemon.kill()
     check("and the run ends well", daemon.returncode == 0, daemon.stderr.read()[-500:])
+    for word in ("status", "list", "get", "set", "enable", "move", "add", "events", "stop", "hold", "geometry", "reload"):
+        code, said = run(HAPTICD, "ctl", word, "--help")
+        check(f"ctl {word} --help has an example of its own", code == 0 and re.search(r"Example:\n  hapticd ctl (--name left )?" + word, said), said[-300:])
 
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
