@@ -18,13 +18,15 @@ export class Browser {
       executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', headless: true, viewport: {width, height},
       colorScheme: dark ? 'dark' : 'light', args: kFlags,
     });
+    browser.context.setDefaultTimeout(120e3); // a machine that is busy is slow, not wrong
     mkdirSync(pictures, {recursive: true});
     return browser;
   }
 
-  /** A page with what went wrong in it. */
-  async page(url) {
+  /** A page with what went wrong in it. `before` may prepare it before it opens. */
+  async page(url, before = async () => {}) {
     const page = await this.context.newPage();
+    await before(page);
     page.wrong = [];
     page.on('pageerror', (error) => page.wrong.push(error.stack));
     page.on('console', (message) => { if (message.type() === 'error') page.wrong.push(message.text()); });
@@ -43,7 +45,7 @@ export async function shown(page, models = 1) {
   await page.waitForFunction((count) => {
     const v = window.hapticdView;
     return v?.view?.frames > 3 && v.view.models.byIndex.size >= count && v.now?.tick.tick > 0;
-  }, models, {timeout: 60000});
+  }, models);
 }
 
 /** What the page shows, in one look right after it drew: nothing moves between its parts. */

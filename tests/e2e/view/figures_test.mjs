@@ -89,6 +89,34 @@ test('the servo runs the same instructions with no view and with eight', async (
   assert.ok(Math.abs(watched / alone - 1) <= 0.01);
 });
 
+/** System calls of the servo's thread between its first tick and its last, {name: count}, with so many views that read along. */
+async function callsOfServo(views, seconds) {
+  const sandbox = new Sandbox(), out = join(sandbox.folder, 'strace');
+  try {
+    const watching = Array.from({length: views}, () => sandbox.start(['view', '--name', 'test']));
+    const sockets = (await Promise.all(watching.map(async (view) => readers((await view.says(/http:\S+/))[0], 1)))).flat();
+    const run = sandbox.start(['-f', '-o', out, hapticd, 'run', scenes('teapot'), '--for', String(seconds), '--name', 'test'], 'strace');
+    assert.equal(await run.ended, 0, run.output);
+    assert.ok(sockets.every((s) => s.bytes > 1e4), 'every view read along');
+    const calls = readFileSync(out, 'utf8').split('\n').map((line) => line.match(/^(\d+) +(\w+)\(/)).filter(Boolean);
+    const servo = calls.find((call) => /^\d+ +sched_setscheduler\(\d+, SCHED_FIFO, \[80\]/.test(call.input))?.[1];
+    const own = calls.filter((call) => call[1] === servo).map((call) => call[2]), counts = {};
+    for (const name of own.slice(own.indexOf('clock_nanosleep'), own.lastIndexOf('clock_nanosleep') + 1)) counts[name] = (counts[name] ?? 0) + 1;
+    return counts;
+  } finally {
+    await sandbox.close();
+  }
+}
+
+test('the servo makes the same system calls with no view and with eight: it sleeps', async () => {
+  const alone = await callsOfServo(0, 3), watched = await callsOfServo(kPages, 3);
+  console.log(`system calls of the servo's thread in 3 s: ${JSON.stringify(alone)} without a view, ${JSON.stringify(watched)} with ${kPages}`);
+  const {clock_nanosleep: sleeps, ...others} = alone, {clock_nanosleep: watchedSleeps, ...watchedOthers} = watched;
+  assert.ok(sleeps > 100 && watchedSleeps > 100, 'it sleeps from tick to tick');
+  assert.deepEqual(watchedOthers, others, 'and does the same besides');
+  assert.ok(Object.values(others).every((count) => count <= 1), 'once at most: when it has warmed up'); // getrusage
+});
+
 test('hapticd links no network library', () => {
   const libraries = spawnSync('ldd', [hapticd], {encoding: 'utf8'}).stdout;
   assert.doesNotMatch(libraries, /boost|ssl|curl|websocket/i);

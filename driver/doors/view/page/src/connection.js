@@ -3,12 +3,13 @@
 
 const kHeadWords = 4; // of a binary message
 const kMeshMessage = 0x80000000, kVerticesMessage = 0x100;
-const kAgainMs = 1000;
+const kAgainMs = 1000, kAskWhyAfter = 3;
 
 export class Connection extends EventTarget {
   #socket = null;
   #next = 1;
   #pending = new Map();
+  #failed = 0; // attempts to connect
   #mesh = null; // comes right before the answer that names it
 
   constructor(url) {
@@ -35,15 +36,24 @@ export class Connection extends EventTarget {
   #open() {
     const socket = new WebSocket(this.url, ['hapticd.1']);
     socket.binaryType = 'arraybuffer';
-    socket.onopen = () => this.#tell('open');
+    socket.onopen = () => { this.#failed = 0; };
     socket.onmessage = ({data}) => (typeof data === 'string' ? this.#text(JSON.parse(data)) : this.#bytes(data));
     socket.onclose = () => {
       for (const resolve of this.#pending.values()) resolve({ok: false, error: 'the connection was lost'});
       this.#pending.clear();
       this.#tell('lost');
+      if (++this.#failed === kAskWhyAfter) this.#askWhy();
       setTimeout(() => this.#open(), kAgainMs);
     };
     this.#socket = socket;
+  }
+
+  /** A WebSocket that is refused does not say why; a request does. */
+  async #askWhy() {
+    const answer = await fetch('./', {method: 'HEAD', cache: 'no-store'}).catch(() => null);
+    if (answer?.status === 401) this.#tell('refused', 'hapticd-view was started anew: open the address that it prints');
+    else if (answer?.ok) this.#tell('refused', 'hapticd-view takes no more pages, 8 at a time: close one of them');
+    else this.#tell('refused', 'hapticd-view has ended. To look again: hapticd view');
   }
 
   #text(message) {

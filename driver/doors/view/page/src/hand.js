@@ -7,6 +7,7 @@ const kGrabPixels = 34; // about the tip; a finger is not finer
 const kStep = 0.001, kFineStep = 0.0001; // m a key
 const kWheelStep = 0.0015; // m a notch
 const kTurn = 0.06; // rad a key
+const kLost = 'The connection is lost: no hand can be led until it is back';
 const kAgainMs = 50; // a wish is told again so often while it is led
 
 /** A target as the daemon takes it: f64 position[3], orientation[4], linear[3], angular[3], time; 0: when it is read. */
@@ -24,6 +25,7 @@ export class Hand {
   #drag = null; // what the pointer does: {kind, x, y, ...}
   #pointers = new Map();
   #sent = 0;
+  #turn = 0; // grows when a lead is given up: what was asked before counts no more
 
   /** @param connection to the server @param view the scene */
   constructor(connection, view) {
@@ -32,7 +34,8 @@ export class Hand {
     this.arm = 0;
     this.devices = [];
     this.reaches = [];
-    this.possible = false;
+    this.obstacle = kLost; // why nothing can be led, '' where it can
+    this.used = false; // the view or the hand was moved by the user: the camera is theirs
     this.onRefused = () => {};
     const {canvas} = view;
     canvas.addEventListener('pointerdown', (e) => this.#down(e));
@@ -43,21 +46,38 @@ export class Hand {
     canvas.addEventListener('contextmenu', (e) => e.preventDefault());
   }
 
-  /** A new run: nothing is led. @param devices names @param reaches [m] how far from the tip each hand pulls at most
-   * @param possible whether the daemon may be asked */
-  begin(devices, reaches, possible) {
+  /** A run: nothing is led. @param devices names @param reaches [m] how far from the tip each hand pulls at most
+   * @param obstacle why none may be led, or '' @param again the run is that of before: who still holds the tip goes on */
+  begin(devices, reaches, obstacle, again = false) {
+    const held = again && obstacle === '' && this.#drag?.kind === 'hand' ? this.#wish : null;
+    this.lose();
     this.devices = devices;
     this.reaches = reaches;
-    this.possible = possible;
+    this.obstacle = obstacle;
+    if (held) {
+      this.#want(held);
+      return;
+    }
+    this.#wish = null;
+    if (this.#drag?.kind === 'hand') this.#drag = null;
+    if (!again) this.arm = 0;
+  }
+
+  /** The connection is gone, and every lead with it. Returns whether a hand was led. */
+  lose() {
+    const led = this.#lead !== null;
+    ++this.#turn;
     this.#lead = null;
     this.#asking = false;
-    this.#wish = null;
-    this.arm = 0;
+    this.obstacle = kLost;
+    if (this.#drag?.kind !== 'hand') this.#wish = null;
+    return led;
   }
 
   /** Where the led hand of an arm wants to be, or null. */
   wish(arm) { return arm === this.arm ? this.#wish : null; }
 
+  get possible() { return this.obstacle === ''; }
   get leads() { return this.#lead !== null; }
 
   #tipNear(x, y) {
@@ -84,6 +104,7 @@ export class Hand {
 
   #down(e) {
     const {canvas} = this.view;
+    this.used = true;
     canvas.focus({preventScroll: true});
     canvas.setPointerCapture(e.pointerId);
     this.#pointers.set(e.pointerId, {x: e.offsetX, y: e.offsetY});
@@ -95,7 +116,7 @@ export class Hand {
       this.#want(start);
       return;
     }
-    if (near && !this.possible) this.onRefused('This view only looks. To press with the mouse: hapticd run SCENE --view');
+    if (near) this.onRefused(this.obstacle);
     const kind = this.#pointers.size > 1 ? 'pinch' : e.button === 2 || e.shiftKey ? 'pan' : 'turn';
     this.#drag = {kind, spread: this.#spread()};
   }
@@ -110,6 +131,7 @@ export class Hand {
     last.x = e.offsetX, last.y = e.offsetY;
     const {orbit, canvas} = this.view, drag = this.#drag;
     if (!drag) return;
+    if (drag.kind === 'hand' && !this.possible) return; // until the connection is back
     if (drag.kind === 'hand') this.#want(this.#placeAt(e.offsetX, e.offsetY, this.#wish).add(drag.offset));
     else if (drag.kind === 'turn') orbit.turn(-dx * 0.008, -dy * 0.008);
     else if (drag.kind === 'pan') orbit.pan(dx, dy, canvas.clientHeight);
@@ -134,8 +156,9 @@ export class Hand {
 
   #wheel(e) {
     e.preventDefault();
+    this.used = true;
     const notches = Math.max(-3, Math.min(3, e.deltaY / 100));
-    if (this.#drag?.kind === 'hand' || (this.#wish && e.altKey)) {
+    if (this.possible && this.#wish && (this.#drag?.kind === 'hand' || e.altKey)) {
       this.#want(this.#wish.clone().addScaledVector(this.view.orbit.forward(), -notches * kWheelStep));
     } else this.view.orbit.zoom(Math.exp(notches * 0.14));
     this.view.dirty = true;
@@ -144,10 +167,13 @@ export class Hand {
   #key(e) {
     const directions = {ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowUp: [0, 1, 0], ArrowDown: [0, -1, 0], PageUp: [0, 0, 1], PageDown: [0, 0, -1]};
     const {orbit} = this.view, d = directions[e.key];
-    if (e.key === '+' || e.key === '-' || e.key === '=') orbit.zoom(e.key === '-' ? 1.12 : 1 / 1.12);
-    else if (!d) return;
+    const distance = e.key === '+' || e.key === '-' || e.key === '=';
+    if (!d && !distance) return;
+    this.used = true;
+    if (distance) orbit.zoom(e.key === '-' ? 1.12 : 1 / 1.12);
     else if (e.shiftKey) orbit.turn(-d[0] * kTurn, -d[1] * kTurn);
-    else if (this.possible) {
+    else if (!this.possible) this.onRefused(this.obstacle);
+    else {
       const step = e.ctrlKey ? kFineStep : kStep, from = this.#wish ?? this.view.probes[this.arm]?.tipPlace;
       if (!from) return;
       this.#want(from.clone().addScaledVector(orbit.right(), d[0] * step).addScaledVector(orbit.up(), d[1] * step).addScaledVector(orbit.forward(), d[2] * step));
@@ -164,7 +190,9 @@ export class Hand {
 
   #release(arm) {
     if (this.#lead !== null) this.connection.ask({do: 'unlead', lead: this.#lead});
+    ++this.#turn;
     this.#lead = this.#wish = null;
+    this.#asking = false;
     this.arm = arm;
   }
 
@@ -174,7 +202,11 @@ export class Hand {
     this.#send();
     if (this.#lead !== null || this.#asking) return;
     this.#asking = true;
-    const answer = await this.connection.ask({do: 'lead', hand: this.devices[this.arm]});
+    const turn = this.#turn, answer = await this.connection.ask({do: 'lead', hand: this.devices[this.arm]});
+    if (turn !== this.#turn) { // meant for a hand that is not wanted any more
+      if (answer.ok) this.connection.ask({do: 'unlead', lead: answer.lead});
+      return;
+    }
     this.#asking = false;
     if (answer.ok) {
       this.#lead = answer.lead;

@@ -90,13 +90,32 @@ class Page {
     on('reset', () => { this.now?.clear(); this.plots?.clear(); this.events?.clear(); });
     on('playback', (state) => this.timeline.show(state));
     on('waiting', ({name}) => this.#lamp('wait', `Waiting for a daemon named ${name}`));
-    on('end', () => { this.#lamp('wait', 'The run has ended'); this.hand?.begin([], [], false); });
-    on('lost', () => { this.#lamp('bad', 'hapticd-view does not answer'); this.hand?.begin([], [], false); });
+    on('end', () => { this.#lamp('wait', 'The run has ended'); this.hand?.begin([], [], 'The run has ended'); });
+    on('lost', () => this.#lost());
+    on('refused', (why) => { this.whyLost = why; this.notice(why); });
   }
 
-  /** A run was found. */
+  /** The daemon brakes a hand whose leader is gone. The picture stays, and what is held is led on when the connection is back. */
+  #lost() {
+    this.#lamp('bad', this.whyLost ?? 'The connection is lost: trying again');
+    if (this.hand?.lose()) this.ledWhenLost = true;
+  }
+
+  /** @param again the run is that of before the connection was lost */
+  #invite(again) {
+    const {about, control} = this.hello, script = about.scene?.devices?.[0]?.parameters?.find((p) => p.id === 'hand.script');
+    const resting = again && this.ledWhenLost;
+    this.ledWhenLost = false;
+    $('hint').hidden = !resting && (!control || script?.number !== kGuided);
+    $('hint').textContent = resting ? 'The connection was lost, and the hand rests: drag the tip again' : 'Drag the tip to press with the mouse';
+    if (again) this.notice('The connection is back', true);
+  }
+
+  /** A run was found, or found again. */
   #begin(hello) {
-    const {about, streams, control, recorded} = hello;
+    const {about, streams, control, recorded} = hello, identity = JSON.stringify(about), again = identity === this.identity;
+    this.identity = identity;
+    this.whyLost = null;
     this.now = new Now(about, streams);
     const ticks = this.now.table('ticks'), arms = this.now.arms.map(({name}, i) => ({name, limit: greatestForce(about, i)}));
     this.plots = ticks ? new Plots($('plots'), ticks, {arms, period: 1 / (about.rate_hz || 1000)}) : null;
@@ -112,17 +131,17 @@ class Page {
     this.drawn.clear();
     this.view.arms(this.now.arms.length);
     this.armModels = this.now.arms.map((_, i) => new ArmModel(about.scene?.devices?.[i], about.devices?.[i]?.info));
-    this.fitted = false;
+    this.fitted = again; // nobody wants another camera because of a connection
     this.fitWhenTip = false;
+    if (!again) this.hand.used = false;
     this.panel.folder = (about.scene?.file ?? '').replace(/\/[^/]*$/, '');
     $('scene-name').textContent = fileName(about.scene?.file) || hello.name;
     $('scene-mode').textContent = recorded ? `recording ${fileName(hello.name)}` : control ? 'live' : 'live, looking only';
     document.title = `${$('scene-name').textContent} · hapticd`;
     $('run-tools').hidden = !control;
-    this.hand.begin(arms.map((a) => a.name), arms.map((a, i) => handReach(about.scene?.devices?.[i], a.limit)), control);
-    const script = about.scene?.devices?.[0]?.parameters?.find((p) => p.id === 'hand.script');
-    $('hint').hidden = !control || script?.number !== kGuided;
-    $('hint').textContent = 'Drag the tip to press with the mouse';
+    this.hand.begin(arms.map((a) => a.name), arms.map((a, i) => handReach(about.scene?.devices?.[i], a.limit)),
+      recorded ? 'A recording can only be looked at' : control ? '' : 'This view only looks. To press with the mouse: hapticd run SCENE --view', again);
+    this.#invite(again);
     if (!recorded) this.timeline.show(null);
     this.view.setWorkspaces((about.scene?.devices ?? []).map((device, i) => ({
       box: this.armModels[i]?.workspace(), center: device.mount?.position ?? [0, 0, 0], radius: Number(device.limits?.workspace) || 0,
@@ -147,7 +166,8 @@ class Page {
     }));
     if (begun !== this.now) return;
     this.view.measure();
-    if (!this.fitted) this.view.fit();
+    if (this.fitted) return;
+    if (!this.hand.used) this.view.fit();
     this.fitted = this.fitWhenTip = true;
   }
 
@@ -211,7 +231,10 @@ class Page {
       view.probes[i].update(arm.now, contacts.filter((c) => c.probe === i), this.hand.wish(i));
       if (view.shown.arm && arm.now.valid) view.probes[i].setLinks(this.armModels[i].links(arm.now.joints, arm.now.position));
     });
-    if (this.fitWhenTip && now.arms[0]?.now?.valid) this.fitWhenTip = false, view.fit();
+    if (this.fitWhenTip && now.arms[0]?.now?.valid) {
+      this.fitWhenTip = false;
+      if (!this.hand.used) view.fit();
+    }
     this.events.look(now);
     this.#showHold(now.arms.some((arm) => arm.now?.fault === kHeldFault));
     const first = now.arms[0]?.now;
