@@ -78,6 +78,15 @@ class GridBody final : public SoftBody {
   std::unique_ptr<medial::MovingMesh> hull() const override { return contour(kHullError * greatestRadius()); }
   std::size_t bytes() const noexcept override { return sizeof *this - sizeof body_ + body_.bytes(); }
 
+  std::vector<FeltMaterial> feltMaterial() const override {
+    std::vector<FeltMaterial> all;
+    const auto& [us, vs] = body_.skeleton().parameters();
+    const std::size_t rows = body_.skeleton().curve() ? 1 : us.size();
+    for (std::size_t i = 0; i < rows; ++i)
+      for (const double v : vs) all.push_back(materialAt(us[i], v));
+    return all;
+  }
+
   Description describe(const std::string& file) const override {
     const medial::MonotonicityReport check = body_.checkMonotonicity();
     char text[512];
@@ -89,7 +98,7 @@ class GridBody final : public SoftBody {
     } else {
       std::snprintf(text, sizeof text,
                     "%s: near u = %.3g, v = %.3g the shear springs may pull inward: rest length over least length is "
-                    "%.3g, expected below %.3g; use a smaller shear_offset, or 0",
+                    "%.3g, expected below %.3g; use shear_distance, or a smaller shear_offset",
                     file.c_str(), check.u, check.v, check.ratio, check.limit);
     }
     Description description{text, !check.holds()};
@@ -105,6 +114,29 @@ class GridBody final : public SoftBody {
   }
 
  private:
+  /// Presses the contour above a point of the skeleton, on the side that (u, v) turns to.
+  FeltMaterial materialAt(double u, double v) const {
+    const medial::Skeleton& skeleton = body_.skeleton();
+    spline::SurfacePoint s;
+    skeleton.surface().evaluate1(u, v, s);
+    const Vector3d cross = s.Su.cross(s.Sv);
+    SkeletonFoot foot;
+    foot.u = u, foot.v = v, foot.center = s.S, foot.radius = skeleton.radius().evaluate(u, v).f;
+    if (!skeleton.curve() && cross.norm() > 0) foot.across = cross.normalized();
+    const Vector3d normal = !foot.across.isZero(0) ? foot.across
+                            : s.Sv.norm() > 0      ? s.Sv.unitOrthogonal()
+                                                   : Vector3d(Vector3d::UnitZ());
+    FeltMaterial material{s.S + foot.radius * normal, body_.stiffness().evaluate(u, v).f, 0, 0};
+    const auto press = [&](double deepest) {
+      const double depth = std::min(deepest, 0.5 * foot.radius);
+      if (!(depth > 0)) return material.told;
+      return body_.press(material.place - depth * normal, foot, normal, depth, 0).normal / depth;
+    };
+    material.felt = press(kShallowPress);
+    material.deep = press(kDeepPress);
+    return material;
+  }
+
   medial::Body body_;
 };
 

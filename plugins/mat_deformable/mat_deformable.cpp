@@ -17,7 +17,6 @@ using medial::SkeletonFoot;
 
 constexpr double kShowPeriod = 1.0 / 60;  ///< [s] between two sets of displacements for drawing
 constexpr double kFinestMesh = 1e-6;      ///< [m] finer meshes are for files, not for drawing
-constexpr double kLarge = 1.5;            ///< [m] no arm reaches round a longer body
 constexpr double kGapFactor = 1.5;        ///< so many ticks without a step: the body was left alone meanwhile
 
 }  // namespace
@@ -34,7 +33,8 @@ medial::BodyOptions MatDeformable::bodyOptions(const MedialFile& file, double ra
   medial::BodyOptions options;
   options.degree = degree_;
   options.form = evaluation_ == 0 ? spline::Form::kTable : spline::Form::kNet;
-  options.shear_offset = shear_offset_;
+  options.shear_distance = shear_distance_;
+  options.shear_offset = shear_distance_ > 0 || file.revision >= 2 ? 0 : shear_offset_;
   options.damping_scale = damping_scale_;
   options.deformation.split = split_;
   options.deformation.influence = {static_cast<int>(influence_[0]), static_cast<int>(influence_[1])};
@@ -91,7 +91,7 @@ uint32_t MatDeformable::openDisplay() {
 }
 
 void MatDeformable::activate(const hsp_activation& activation, hsp_report& report) {
-  const MedialFile file = readMedialFile(geometry_, {stiffness_, damping_, mass_});
+  const MedialFile file = readMedialFile(geometry_, {stiffness_, damping_, mass_, probe_radius_});
   const uint32_t probes = std::max(activation.max_probes, 1u);
   openBody(file, activation.rate_hz);
   openContacts(probes);
@@ -106,21 +106,7 @@ void MatDeformable::activate(const hsp_activation& activation, hsp_report& repor
   report.size_m = body_->bounds().diagonal().norm();
   report.locked_bytes = body_->bytes() + displaced_->bytes() + volume_bytes + probes * sizeof(Track) + sizeof *this +
                         (frames_ ? frames_->bytes() : 0);
-  describe();
-}
-
-/// What a person should know of a body before they touch it.
-void MatDeformable::describe() const {
-  if (host() == nullptr || host()->log == nullptr) return;
-  const Description description = body_->describe(geometry_);
-  host()->log(host(), description.warning ? HSP_LOG_WARNING : HSP_LOG_INFO, description.text.c_str());
-  if (!(body_->greatestRadius() > 0))
-    host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": all radii are 0: nothing will be felt").c_str());
-  const double size = body_->bounds().sizes().maxCoeff();
-  if (!(size > kLarge)) return;
-  char text[128];
-  std::snprintf(text, sizeof text, ": the body is %.3g m long, expected metres: was the file in millimetres?", size);
-  host()->log(host(), HSP_LOG_WARNING, (geometry_ + text).c_str());
+  describe(file);
 }
 
 void MatDeformable::deactivate() {

@@ -55,8 +55,10 @@ class MatDeformable final : public Shape {
         F::real("relaxation.share", &T::relaxation_share_, "", 0, 10, 0,
                 "felt: a fast press is stiffer by this share of the stiffness, and relaxes to it"),
         F::real("relaxation.time", &T::relaxation_time_, "s", 1e-4, 100, 0.5, "felt: time in which it relaxes"),
-        F::real("shear_offset", &T::shear_offset_, "", 0, 0.5, 0.05,
-                "distance of the four springs along the surface, as a share of the parameters; 0: none"),
+        F::real(
+            "shear_offset", &T::shear_offset_, "", 0, 0.5, kUsualShearOffset,
+            "distance of the four springs along the surface, as a share of the parameters; 0: none. They make a body "
+            "stiffer than its file says: shear_distance does not"),
         F::real("damping_scale", &T::damping_scale_, "m", 1e-6, 1, 5e-3,
                 "depth at which the damping of the contact is whole"),
         F::real("friction_static", &T::friction_static_, "", 0, 10, 0,
@@ -77,7 +79,13 @@ class MatDeformable final : public Shape {
             "0: at once",
             HSP_P_LIVE),
         F::real("display_tolerance", &T::display_tolerance_, "m", 0, 1e-2, 0,
-                "chord error of the vertices that steps write 60 times a second for whoever draws; 0: none")};
+                "chord error of the vertices that steps write 60 times a second for whoever draws; 0: none"),
+        F::real(
+            "shear_distance", &T::shear_distance_, "m", 0, 1, 0,
+            "distance of the four springs along the surface, which then turn the force and leave its part along the "
+            "normal as the file says; 0: shear_offset counts in files of format hapticd-model/1, none in others"),
+        F::real("probe_radius", &T::probe_radius_, "m", 1e-4, 0.1, 5e-3,
+                "of the flat tip with which a file's young, poisson and thickness are felt")};
   }
 
   void activate(const hsp_activation& activation, hsp_report& report);
@@ -87,6 +95,7 @@ class MatDeformable final : public Shape {
   const void* extension(const char* name);
 
  private:
+  static constexpr double kUsualShearOffset = 0.05;
   static constexpr const char* kSearchNames[] = {"newton", "binary"};
   static constexpr const char* kEnvelopeNames[] = {"exact", "foot"};
   static constexpr const char* kEvaluationNames[] = {"fast", "small"};
@@ -113,7 +122,9 @@ class MatDeformable final : public Shape {
   static const void* geometryExtension();
   static const void* energyExtension();
   static const void* stateExtension();
-  void describe() const;
+  void describe(const MedialFile& file) const;
+  void describeMaterial(const MedialFile& file) const;
+  void say(int level, const std::string& text) const;  ///< [main] to the log of the host, where it has one
   double elapsed(const hsp_step& step) noexcept HSP_RT;
   FindOptions findOptions(const hsp_step& step) const noexcept HSP_RT;
   FindOptions searchOptions() const noexcept;
@@ -148,6 +159,7 @@ class MatDeformable final : public Shape {
   double friction_static_ = 0, friction_dynamic_ = 0, viscosity_ = 0, display_tolerance_ = 0;
   double contact_ratio_ = 3, relaxation_share_ = 0, relaxation_time_ = 0.5;
   double stiffness_ = 300, damping_ = 0.5, mass_ = 0.01, crease_ = 1e-3;
+  double shear_distance_ = 0, probe_radius_ = 5e-3;
   int volume_ = 0, rings_ = 2;
   std::vector<double> influence_{4, 4};
 

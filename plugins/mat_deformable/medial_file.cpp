@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <string_view>
 
+#include "kernels/medial/layer.hpp"
 #include "ma_file.hpp"
 #include "traced_shape/document.hpp"
 #include "traced_shape/model_file.hpp"
@@ -18,6 +20,8 @@ using Json = nlohmann::json;
 constexpr std::size_t kMostPoints = 1'000'000;
 constexpr double kMost = 1e6;        ///< N/m and kg, like the parameters
 constexpr double kLeastMass = 1e-9;  ///< [kg] lighter points are a slip of the hand; 0 is a body that creeps
+constexpr double kHardest = 1e9;     ///< [Pa] what is harder is no soft body
+constexpr double kThinnest = 10;     ///< tip over thickness up to which the stiffness of a layer is right
 constexpr double kClaimMargin = 10;  ///< a host lets a shape damp so many times what its parameters say
 constexpr double kLeastDamping = 5;  ///< [N s/m] so little passes as stiffness
 
@@ -34,7 +38,9 @@ Path below(Path path, std::size_t index) {
 class Reader {
  public:
   Reader(Problems& problems, const Material& material)
-      : problems_(problems), most_damping_(std::max(kLeastDamping, kClaimMargin * material.damping)) {}
+      : problems_(problems),
+        tip_(material.tip),
+        most_damping_(std::max(kLeastDamping, kClaimMargin * material.damping)) {}
 
   void read(const Json& root, MedialFile& file) {
     if (!root.is_object()) return problems_.add({}, "expected a mapping with format and medial");
@@ -56,16 +62,18 @@ class Reader {
 
  private:
   void readGrid(const Json& medial, const Path& at, medial::BodyData& data) {
-    checkKeys(medial, at, {"points", "radius", "stiffness", "damping", "mass"});
+    checkKeys(medial, at, {"points", "radius", "stiffness", "damping", "mass", "young", "poisson", "thickness"});
     if (!readPoints(medial, below(at, "points"), data.grid)) return;
     data.grid.radius = grid(medial, at, "radius", data.grid, true);
-    data.stiffness = grid(medial, at, "stiffness", data.grid, true);
+    const auto read = [&](const char* key, bool required) { return grid(medial, at, key, data.grid, required); };
+    data.stiffness = stiffnessOf(medial, at, read);
     data.damping = grid(medial, at, "damping", data.grid, false);
     data.mass = grid(medial, at, "mass", data.grid, false);
   }
 
   void readMesh(const Json& medial, const Path& at, medial::MeshBodyData& data) {
-    checkKeys(medial, at, {"vertices", "edges", "triangles", "stiffness", "damping", "mass"});
+    checkKeys(medial, at,
+              {"vertices", "edges", "triangles", "stiffness", "damping", "mass", "young", "poisson", "thickness"});
     const Json& vertices = medial["vertices"];
     const Path place = below(at, "vertices");
     if (!vertices.is_array() || vertices.empty() || vertices.size() > kMostPoints)
@@ -83,9 +91,39 @@ class Reader {
     }
     readCorners(medial, below(at, "edges"), "edges", vertices.size(), data.mesh.edges);
     readCorners(medial, below(at, "triangles"), "triangles", vertices.size(), data.mesh.triangles);
-    data.stiffness = list(medial, at, "stiffness", vertices.size(), true);
+    const auto read = [&](const char* key, bool required) { return list(medial, at, key, vertices.size(), required); };
+    data.stiffness = stiffnessOf(medial, at, read);
     data.damping = list(medial, at, "damping", vertices.size(), false);
     data.mass = list(medial, at, "mass", vertices.size(), false);
+  }
+
+  /// As the file says it, or from the elastic constants of a layer: `read` gives the values of a key.
+  template <class Read>
+  std::vector<double> stiffnessOf(const Json& medial, const Path& at, Read read) {
+    if (!medial.contains("young")) {
+      for (const char* key : {"poisson", "thickness"})
+        if (medial.contains(key)) problems_.add(below(at, key), "expected only beside young");
+      return read("stiffness", true);
+    }
+    if (medial.contains("stiffness"))
+      problems_.add(below(at, "stiffness"), "expected either stiffness, or young, poisson and thickness");
+    const std::vector<double> young = read("young", true), poisson = read("poisson", true);
+    const std::vector<double> thickness = read("thickness", true);
+    if (problems_.any()) return {};
+    const auto pick = [](const std::vector<double>& values, std::size_t i) {
+      return values[values.size() > 1 ? i : 0];
+    };
+    std::map<std::array<double, 2>, double> known;  // of a modulus of 1 Pa
+    std::vector<double> all;
+    for (std::size_t i = 0; i < std::max({young.size(), poisson.size(), thickness.size()}); ++i) {
+      const std::array<double, 2> layer{pick(poisson, i), pick(thickness, i)};
+      const auto [found, fresh] = known.try_emplace(layer, 0);
+      if (fresh) found->second = medial::layerStiffness({1, layer[0], layer[1]}, tip_);
+      all.push_back(found->second * pick(young, i));
+    }
+    if (const double most = *std::max_element(all.begin(), all.end()); most > kMost)
+      problems_.add(below(at, "young"), "is felt as " + std::to_string(most) + " N/m, expected at most 1e6");
+    return all;
   }
 
   template <std::size_t kCount>
@@ -198,6 +236,14 @@ class Reader {
       problems_.add(at, "expected a finite number of at least 0");
     } else if (key == "radius" && number > kFarthestPoint) {
       problems_.add(at, "expected at most 1e6 m");
+    } else if (key == "young" && number > kHardest) {
+      problems_.add(at, "expected at most 1e9 Pa");
+    } else if (key == "poisson" && number > 0.5) {
+      problems_.add(at, "expected 0 to 0.5");
+    } else if (key == "thickness" && !(number >= tip_ / kThinnest && number <= kFarthestPoint)) {
+      char text[128];
+      std::snprintf(text, sizeof text, "expected at least %g m, a tenth of probe_radius", tip_ / kThinnest);
+      problems_.add(at, text);
     } else if (key == "stiffness" && number > kMost) {
       problems_.add(at, "expected at most 1e6 N/m");
     } else if (key == "mass" && (number > kMost || (number > 0 && number < kLeastMass))) {
@@ -224,6 +270,7 @@ class Reader {
   }
 
   Problems& problems_;
+  double tip_;           ///< [m]
   double most_damping_;  ///< [N s/m]
 };
 

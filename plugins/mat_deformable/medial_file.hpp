@@ -22,12 +22,13 @@ struct MedialFile {
 /// takes the parameter for what a body claims.
 struct Material {
   double stiffness = 0, damping = 0, mass = 0;  ///< [N/m], [N s/m], [kg]
+  double tip = 5e-3;                            ///< [m] radius of the flat tip that Young's modulus is felt with
 };
 
 /// [main] Reads the body of a file: a medial mesh in the field's own format if its name ends in .ma (ma_file.hpp), else
 /// `medial` of a model file (format hapticd-model/1), YAML or JSON. That has either points, radius and stiffness as
 /// grids of equal rows, or vertices, edges and triangles; damping and mass too where they are given. One number serves
-/// all points.
+/// all points. In place of stiffness a file may have young [Pa], poisson and thickness [m]: layerStiffness() of them.
 /// @throws ModelFileError with every problem found, a line each; whatever the bytes of the file.
 MedialFile readMedialFile(const std::string& path, const Material& material);
 

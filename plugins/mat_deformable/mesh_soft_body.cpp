@@ -56,6 +56,16 @@ class MeshSoftBody final : public SoftBody {
   std::unique_ptr<medial::MovingMesh> hull() const override { return contour(kHullError * greatest_radius_); }
   std::size_t bytes() const noexcept override { return sizeof *this - sizeof body_ + body_.bytes(); }
 
+  std::vector<FeltMaterial> feltMaterial() const override {
+    std::vector<FeltMaterial> all;
+    for (std::size_t i = 0; i < body_.mesh().vertices().size(); ++i) {
+      const medial::Sphere& sphere = body_.mesh().vertices()[i];
+      const double stiffness = body_.stiffness(i);  // the spring is linear
+      all.push_back({sphere.center + sphere.radius * Vector3d::UnitZ(), stiffness, stiffness, stiffness});
+    }
+    return all;
+  }
+
   Description describe(const std::string&) const override {
     std::size_t cones = 0;
     for (const MedialMesh::Element& element : body_.mesh().elements()) cones += element.count < 3 ? 1 : 0;

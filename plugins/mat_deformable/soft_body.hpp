@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "hapticd/shape.h"
 #include "kernels/contact/friction.hpp"
@@ -51,6 +52,14 @@ struct Description {
   bool warning = false;
 };
 
+/// What a file says of one place of the body, and what a hand feels there.
+struct FeltMaterial {
+  Eigen::Vector3d place{0, 0, 0};  ///< [m] on the contour
+  double told = 0;                 ///< [N/m] in the file
+  double felt = 0, deep = 0;       ///< [N/m] force along the normal over depth, kShallowPress and kDeepPress deep
+};
+inline constexpr double kShallowPress = 1e-3, kDeepPress = 5e-3;  ///< [m] at most half the radius
+
 class SoftBody {
  public:
   SoftBody() = default;
@@ -83,6 +92,7 @@ class SoftBody {
   /// [main] Fine enough for the volume under it to be right to a thousandth.
   virtual std::unique_ptr<medial::MovingMesh> hull() const = 0;
   virtual Description describe(const std::string& file) const = 0;  ///< [main]
+  virtual std::vector<FeltMaterial> feltMaterial() const = 0;       ///< [main] one a point of the file
   virtual std::size_t bytes() const noexcept = 0;
 };
 

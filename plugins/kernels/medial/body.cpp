@@ -81,17 +81,34 @@ std::vector<Oscillator> Body::materialOf(const BodyData& data) const {
   return material;
 }
 
+std::array<double, 2> Body::offsetsAt(const SkeletonFoot& foot) const noexcept {
+  std::array<double, 2> offsets{0, 0};
+  spline::SurfacePoint s;
+  if (turns()) skeleton_.surface().evaluate1(foot.u, foot.v, s);
+  for (std::size_t axis = skeleton_.curve() ? 1 : 0; axis < 2; ++axis) {
+    const auto& range = skeleton_.parameters()[axis];
+    const double whole = range.back() - range.front();
+    offsets[axis] = options_.shear_offset * whole;
+    if (!turns()) continue;
+    const double metres = (axis == 0 ? s.Su : s.Sv).norm();  // a parameter; none at a pole
+    offsets[axis] = metres * whole > options_.shear_distance ? options_.shear_distance / metres : whole;
+  }
+  return offsets;
+}
+
 /// Four points of the contour at rest, beside the contact. Their normal turns from the contact's as the skeleton's
 /// does. Toward the rim the springs fade out, so that the force does not jump there.
 Body::Neighbours Body::neighboursOf(const SkeletonFoot& foot, const Vector3d& normal) const noexcept {
   Neighbours neighbours;
-  if (!(options_.shear_offset > 0)) return neighbours;
+  const std::array<double, 2> offsets = offsetsAt(foot);
+  const double part = !turns() ? 1 : skeleton_.curve() ? 0.5 : 0.25;
   const double here = stiffness_.evaluate(foot.u, foot.v).f;
   const double side = std::clamp(kSideways * normal.dot(foot.across), -1.0, 1.0);  // no jump round the rim
   spline::SurfacePoint s;
   for (std::size_t axis = skeleton_.curve() ? 1 : 0; axis < 2; ++axis) {
     const auto& range = skeleton_.parameters()[axis];
-    const double offset = options_.shear_offset * (range.back() - range.front());
+    const double offset = offsets[axis];
+    if (!(offset > 0)) continue;
     for (const double sign : {-1.0, 1.0}) {
       std::array<double, 2> at{foot.u, foot.v};
       const double start = at[axis];
@@ -107,7 +124,7 @@ Body::Neighbours Body::neighboursOf(const SkeletonFoot& foot, const Vector3d& no
       if (!(length > 0)) continue;
       ShearSpring& spring = neighbours.springs[neighbours.count++];
       spring.anchor = s.S + skeleton_.radius().evaluate(at[0], at[1]).f / length * turned;
-      spring.stiffness = share * 0.5 * (here + stiffness_.evaluate(at[0], at[1]).f);
+      spring.stiffness = part * share * 0.5 * (here + stiffness_.evaluate(at[0], at[1]).f);
     }
   }
   return neighbours;
@@ -123,7 +140,9 @@ BodyForce Body::press(const Vector3d& p, const SkeletonFoot& foot, const Vector3
   result.stiffness = stiffness_.evaluate(foot.u, foot.v).f;
   result.force = pressForce(p, surface, normal, result.stiffness, depth, springs);
   result.energy = 0.5 * result.stiffness * depth * depth;
+  if (turns()) result.force += (result.stiffness * depth - result.force.dot(normal)) * normal;
   for (const ShearSpring& spring : springs) {
+    if (turns()) break;  // they do no work along the normal
     const double stretch = (spring.anchor - p).norm() - (spring.anchor - surface).norm();
     result.energy += 0.5 * spring.stiffness * stretch * stretch;
   }
@@ -158,6 +177,7 @@ void Body::judgeMonotonicity(const SkeletonFoot& at, const Vector3d& normal, Mon
 
 MonotonicityReport Body::checkMonotonicity() const {
   MonotonicityReport report;
+  if (turns()) return report;
   const auto visit = [&](double u, double v) {
     SkeletonFoot at;
     spline::SurfacePoint s;

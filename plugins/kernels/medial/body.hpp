@@ -33,6 +33,7 @@ struct BodyOptions {
   int degree = 3;
   spline::Form form = spline::Form::kTable;
   double shear_offset = 0.05;   ///< distance of the four neighbours, as a share of the parameter range; 0: no shear
+  double shear_distance = 0;    ///< [m] their distance along the skeleton, in place of shear_offset; see press()
   double damping_scale = 5e-3;  ///< [m] depth at which damping of the contact is whole; it grows from 0 at the surface
   DeformationOptions deformation;
   FeltOptions felt;
@@ -68,7 +69,8 @@ class Body {
 
   /// [rt] The force on a probe at `p` whose foot is `foot`, with outward unit direction `normal` and depth `depth`
   /// along it: normal spring, four springs along the surface, damping against `closing_speed`. It never pulls inward
-  /// along the normal.
+  /// along the normal. With `shear_distance` the four springs together are as stiff as the normal spring and only turn
+  /// the force: its part along the normal is stiffness * depth, as the file says.
   BodyForce press(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
                   double closing_speed) const noexcept;
   /// [rt] The place of the contour that a probe at `p` is at, with its foot, as a felt surface needs it.
@@ -79,7 +81,9 @@ class Body {
   /// [main] Looks at the force law all over the skeleton, on both sides.
   MonotonicityReport checkMonotonicity() const;
   /// [any] No force rises faster with depth [N/m]: the normal spring and four others in line with it.
-  double greatestStiffness() const noexcept { return (options_.shear_offset > 0 ? 5 : 1) * stiffness_.greatest(); }
+  double greatestStiffness() const noexcept {
+    return (options_.shear_offset > 0 && !turns() ? 5 : 1) * stiffness_.greatest();
+  }
   std::size_t bytes() const noexcept;
 
  private:
@@ -87,6 +91,10 @@ class Body {
     std::array<ShearSpring, 4> springs;
     std::size_t count = 0;
   };
+  /// [any] The springs along the surface only turn the force; else they add to the normal spring, as in the paper.
+  bool turns() const noexcept { return options_.shear_distance > 0; }
+  /// Parameters to a neighbour along u (0) and v (1); 0: none.
+  std::array<double, 2> offsetsAt(const SkeletonFoot& foot) const noexcept;
   Neighbours neighboursOf(const SkeletonFoot& foot, const Eigen::Vector3d& normal) const noexcept;
   /// Lowers `report` where the springs along `normal` lose more slope than any before.
   void judgeMonotonicity(const SkeletonFoot& at, const Eigen::Vector3d& normal, MonotonicityReport& report) const;

@@ -75,6 +75,7 @@ class MeshBody {
   BodyForce press(const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
                   double closing_speed) const noexcept;
   double greatestStiffness() const noexcept;  ///< [any] [N/m]
+  double stiffness(std::size_t vertex) const noexcept { return stiffness_[stiffness_.size() == 1 ? 0 : vertex]; }
   std::size_t bytes() const noexcept;
 
  private:

@@ -41,5 +41,7 @@ with tempfile.TemporaryDirectory() as work:
     check("elsewhere it is the same everywhere", max(away) < 1.1 * min(away), away)
     grid = [(x, y) for x in (-0.03, -0.01, 0.01, 0.02, 0.03) for y in (-0.02, -0.01, 0, 0.01, 0.02)]
     found = max(grid, key=lambda place: pressed(work, *place))
+    told = subprocess.run([HAPTICD, "check", SCENE], capture_output=True, text=True, timeout=60)
+    check("the scene passes its own stability check", told.returncode == 0 and "warning" not in told.stdout, told.stdout)
     check("pressing every 10 mm finds it", math.dist(found, LUMP) < 0.005, found)
 finish()

@@ -17,6 +17,67 @@ TEST(MatDeformable, PushesOutAsDeepAsItIsPressed) {
   EXPECT_TRUE((contact.flags & HSP_OUT_CONTACT) != 0);
 }
 
+TEST(MatDeformable, ClaimsAndFeelsWhatTheFileSaysWithShearDistance) {
+  Plugin body("palpation.yaml"), paper("palpation.yaml");
+  body.set("shear_distance", .006);
+  ASSERT_EQ(body.activate(), HSP_OK);
+  ASSERT_EQ(paper.activate(), HSP_OK);
+  EXPECT_NEAR(body.report.max_stiffness, 960.97, .1);  // the stiffest point of the file
+  EXPECT_NEAR(paper.report.max_stiffness, 5 * 960.97, .5);
+  for (Plugin* one : {&body, &paper}) one->search({.015, -.01125, .03});
+  const Vector3d place(.015, -.01125, .015 + .0035156 - .004);
+  const hsp_contact said = body.touch(place), stiffer = paper.touch(place);
+  EXPECT_NEAR(Vector3d(said.normal).dot(forceOf(said)), said.depth_m * 961, .02 * said.depth_m * 961);
+  EXPECT_GT(forceOf(stiffer).norm(), 1.2 * forceOf(said).norm());
+}
+
+/// Messages of a body when it is activated.
+std::string told(const std::string& file, double distance) {
+  static std::string all;
+  all.clear();
+  hsp_host host{};
+  host.struct_size = sizeof host;
+  host.log = [](const hsp_host*, int32_t level, const char* text) { all += std::to_string(level) + " " + text + "\n"; };
+  const hsp_class& kind = *hsp_plugin_entry.classes[0];
+  hsp_shape* shape = kind.create(&kind, &host);
+  const auto set = [&](const char* id, hsp_value value) {
+    for (uint32_t i = 0; i < kind.param_count; ++i)
+      if (std::strcmp(kind.params[i].id, id) == 0) value.kind = kind.params[i].kind, kind.set(shape, i, &value);
+  };
+  set("geometry", {0, 0, 0, file.c_str(), nullptr});
+  set("shear_distance", {0, 0, distance, nullptr, nullptr});
+  hsp_activation activation{};
+  activation.struct_size = sizeof activation;
+  hsp_report report{};
+  report.struct_size = sizeof report;
+  EXPECT_EQ(kind.activate(shape, &activation, &report), HSP_OK);
+  kind.deactivate(shape);
+  kind.destroy(shape);
+  return all;
+}
+
+TEST(MatDeformable, SaysWhatIsFeltAndHintsWhereTheFileSaysOtherwise) {
+  const std::string palpation = HAPTICD_SOURCE_DIR "/config/models/palpation.yaml";
+  const std::string old = told(palpation, 0), now = told(palpation, .006);
+  EXPECT_NE(old.find("shear_distance in its place"), std::string::npos) << old;
+  EXPECT_EQ(now.find("shear_distance in its place"), std::string::npos) << now;
+  EXPECT_NE(now.find("0 felt 961 N/m 1 mm deep, 961 N/m 5 mm deep; the file says 961 N/m: (15.47, -11.87"),
+            std::string::npos)
+      << now;
+}
+
+/// The numbers of a hapticd-model/2 file are those that are felt.
+TEST(MatDeformable, NewFilesHaveNoSpringsThatStiffenThem) {
+  const TemporaryFile file("new.yaml",
+                           "format: hapticd-model/2\nmedial:\n  points: [[[0, 0, 0], [0.1, 0, 0]], [[0, 0.1, 0], "
+                           "[0.1, 0.1, 0]]]\n  radius: 0.01\n  stiffness: 200\n");
+  Plugin body(file.path());
+  ASSERT_EQ(body.activate(), HSP_OK);
+  EXPECT_EQ(body.report.max_stiffness, 200);
+  body.search({.05, .05, .03});
+  EXPECT_NEAR(body.touch({.05, .05, .004}).force[2], 1.2, 1e-9);
+}
+
 TEST(MatDeformable, AStaticHoldIsConstant) {
   for (const char* model : {"soft-plate.yaml", "palpation.yaml", "leaf.yaml", "rope.yaml"}) {
     Plugin body(model);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "kernels/medial/layer.hpp"
 #include "traced_shape/model_file.hpp"
 
 namespace hapticd {
@@ -94,6 +95,29 @@ TEST(MedialFile, DampsNoMoreThanTheHostIsTold) {
     EXPECT_NE(std::string(e.what()).find("to 1000 in the scene"), std::string::npos) << e.what();
   }
   EXPECT_TRUE(readMedialFile(file.path(), {300, 100, .01}).damps);
+}
+
+TEST(MedialFile, ElasticConstantsStandForTheStiffnessOfALayer) {
+  Material tip;
+  tip.tip = 4e-3;
+  const std::string good = std::string(kHead) + kPoints + "  radius: 0.01\n";
+  const File file(good + "  young: [[1e4, 2e4], [1e4, 1e4]]\n  poisson: 0.45\n  thickness: 0.02\n");
+  const medial::BodyData data = *readMedialFile(file.path(), tip).grid;
+  const double one = medial::layerStiffness({1e4, .45, .02}, 4e-3);
+  ASSERT_EQ(data.stiffness.size(), 4u);
+  EXPECT_NEAR(data.stiffness[0], one, 1e-9 * one);
+  EXPECT_NEAR(data.stiffness[1], 2 * one, 1e-9 * one);
+  EXPECT_NE(complaintOf(good + "  young: 1e4\n").find("medial.poisson: missing"), std::string::npos);
+  EXPECT_NE(complaintOf(good + "  young: 1e4\n  poisson: 0.6\n  thickness: 0.02\n")
+                .find(":6:12: medial.poisson: expected 0 to 0.5"),
+            std::string::npos);
+  EXPECT_NE(complaintOf(good + "  young: 1e4\n  poisson: 0.4\n  thickness: 1e-5\n").find("a tenth of probe_radius"),
+            std::string::npos);
+  EXPECT_NE(complaintOf(good + "  young: 1e4\n  poisson: 0.4\n  thickness: 0.02\n  stiffness: 3\n").find("either"),
+            std::string::npos);
+  EXPECT_NE(complaintOf(good + "  stiffness: 3\n  poisson: 0.4\n").find("only beside young"), std::string::npos);
+  EXPECT_NE(complaintOf(good + "  young: 1e9\n  poisson: 0.5\n  thickness: 0.001\n").find("at most 1e6"),
+            std::string::npos);
 }
 
 TEST(MedialFile, APipeIsRefusedAtOnce) {

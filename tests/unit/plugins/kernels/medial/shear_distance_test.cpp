@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+/// Springs along the surface at a distance in metres: they turn the force, and what the file says is what is felt.
+#include <gtest/gtest.h>
+
+#include "bodies.hpp"
+#include "kernels/medial/body.hpp"
+
+namespace hapticd::medial {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A sheet whose stiffness rises from one corner to the other.
+BodyData graded(const test::Sheet& sheet) {
+  BodyData data;
+  data.grid.count = {sheet.curve ? 1 : 7, 7};
+  for (int i = 0; i < data.grid.count[0]; ++i) {
+    for (int j = 0; j < 7; ++j) {
+      data.grid.points.push_back(sheet.at(i / 6.0, j / 6.0));
+      data.grid.radius.push_back(.01);
+      data.stiffness.push_back(100 + 40 * i + 90 * j);
+    }
+  }
+  return data;
+}
+
+BodyOptions at(double distance) {
+  BodyOptions options;
+  options.shear_distance = distance;
+  return options;
+}
+
+TEST(ShearDistance, WhatTheFileSaysIsWhatAHandFeels) {
+  for (const test::Sheet& sheet : test::sheets()) {
+    const Body body(graded(sheet), at(.006));
+    for (const double u : {0.0, .02, .35, .6, 1.0}) {
+      spline::SurfacePoint s;
+      body.skeleton().surface().evaluate1(u, .45, s);
+      const Vector3d normal = sheet.curve ? s.Sv.unitOrthogonal() : s.Su.cross(s.Sv).normalized();
+      SkeletonFoot foot = body.skeleton().nearest(s.S + .005 * normal, u, .45, {});
+      const double stiffness = body.stiffness().evaluate(foot.u, foot.v).f;
+      for (const double depth : {1e-6, 1e-3, 5e-3, 9e-3}) {
+        const Vector3d p = foot.center + (.01 - depth) * foot.normal;
+        const BodyForce answer = body.press(p, foot, foot.normal, depth, 0);
+        EXPECT_NEAR(answer.normal, stiffness * depth, 1e-12) << sheet.name << " " << u << " " << depth;
+        EXPECT_LT((answer.force - answer.normal * foot.normal).norm(), .5 * answer.normal) << sheet.name << " " << u;
+        EXPECT_NEAR(answer.energy, .5 * stiffness * depth * depth, 1e-12);
+      }
+    }
+    EXPECT_NEAR(body.greatestStiffness(), body.stiffness().greatest(), 0);
+    EXPECT_TRUE(body.checkMonotonicity().holds());
+  }
+}
+
+/// Force in the middle of a flat plate of this size [m] whose stiffness grows along x by 20 N/m a millimetre.
+Vector3d onPlate(double size, const BodyOptions& options) {
+  BodyData data;
+  data.grid.count = {7, 7};
+  for (int i = 0; i < 7; ++i) {
+    for (int j = 0; j < 7; ++j) {
+      data.grid.points.emplace_back(size * (i / 6.0 - .5), size * (j / 6.0 - .5), 0);
+      data.grid.radius.push_back(.01);
+      data.stiffness.push_back(3000 + 20e3 * data.grid.points.back().x());
+    }
+  }
+  const Body body(data, options);
+  const Vector3d p(.001, .002, .006);
+  const SkeletonFoot foot = body.skeleton().search(p, {});
+  return body.press(p, foot, foot.normal, foot.depth, 0).force;
+}
+
+TEST(ShearDistance, IsTheSameOnABodyOfAnySize) {
+  const Vector3d small = onPlate(.06, at(.006)), large = onPlate(.18, at(.006));
+  EXPECT_LT((small - large).norm(), 1e-9 * small.norm());
+  BodyOptions share;
+  share.shear_offset = .1;
+  EXPECT_GT((onPlate(.06, share) - onPlate(.18, share)).norm(), .1 * small.norm());  // why it is in metres
+}
+
+TEST(ShearDistance, PullsTowardTheStifferNeighbour) {
+  const Vector3d force = onPlate(.12, at(.006));
+  EXPECT_GT(force.x(), 5e-4 * force.z());
+  EXPECT_NEAR(force.y(), 0, 1e-9);
+}
+
+}  // namespace
+}  // namespace hapticd::medial
