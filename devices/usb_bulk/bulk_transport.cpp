@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "usb_bulk/bulk_transport.hpp"
 
+#include <fcntl.h>
 #include <libusb.h>
 #include <sys/time.h>
 
@@ -130,6 +131,18 @@ class BulkTransport final : public Transport {
   Status control(const codec::StartStep& step) noexcept override {
     return statusOf(libusb_control_transfer(handle_, step.request_type, step.request, step.value, step.index, nullptr,
                                             0, kControlTimeout));
+  }
+
+  /// The same node of usbfs: the interface is claimed once this process has gone.
+  Descriptor wayIn(hdv_silence& how) noexcept override {
+    libusb_device* device = libusb_get_device(handle_);
+    char node[40];
+    std::snprintf(node, sizeof node, "/dev/bus/usb/%03d/%03d", libusb_get_bus_number(device),
+                  libusb_get_device_address(device));
+    how.kind = HDV_BY_USB;
+    how.interface = static_cast<uint32_t>(interface_);
+    how.endpoint = endpoint_out_;
+    return Descriptor(::open(node, O_RDWR | O_CLOEXEC));
   }
 
  private:

@@ -62,6 +62,7 @@ class HidTransport final : public Transport {
       if (!address.serial.empty() && address.serial != serial) continue;
       if (address.interface >= 0 && at->interface_number >= 0 && at->interface_number != address.interface) continue;
       if (!takeAlone(at->path, refused)) continue;
+      node_ = at->path;
       handle_ = hid_open_path(at->path);
       if (handle_ == nullptr) {
         refused = std::string(at->path) + ": " + std::strerror(errno);
@@ -104,6 +105,13 @@ class HidTransport final : public Transport {
 
   Status control(const codec::StartStep&) noexcept override { return Status::kFailed; }
 
+  /// Opened anew, without the lock: who holds that keeps this program from opening the device again.
+  Descriptor wayIn(hdv_silence& how) noexcept override {
+    how.kind = HDV_BY_WRITE;
+    how.size = numbered_ ? 0 : 1;  // hidraw wants a report id in any case
+    return Descriptor(::open(node_.c_str(), O_RDWR | O_CLOEXEC | O_NOCTTY));
+  }
+
  private:
   /// Two programs that write torques to one arm would fight: an advisory lock keeps a second hapticd away.
   bool takeAlone(const char* node, std::string& refused) {
@@ -136,6 +144,7 @@ class HidTransport final : public Transport {
   }
 
   hid_device* handle_ = nullptr;
+  std::string node_;
   int lock_ = -1;
   bool numbered_ = false;
   std::array<uint8_t, codec::kMaxReportBytes + 2> out_{};

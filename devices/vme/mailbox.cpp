@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "vme/mailbox.hpp"
 
+#include <fcntl.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -120,6 +122,13 @@ Status Mailbox::look(std::span<uint8_t> block) noexcept {
 Status Mailbox::take(std::span<uint8_t> block) noexcept {
   if (window_.read(place_.state, block) != static_cast<long>(block.size())) return Status::kFailed;
   return nobody(block) ? Status::kAbsent : Status::kOk;
+}
+
+/// No bytes of a board that was never heard: a wrong address may be memory of somebody else.
+Descriptor Mailbox::wayIn(hdv_silence& how) noexcept {
+  how.kind = HDV_BY_PWRITE;
+  how.offset = place_.command;
+  return Descriptor(::open(place_.window.node.c_str(), O_RDWR | O_CLOEXEC));
 }
 
 Status Mailbox::send(std::span<const uint8_t> bytes) noexcept {

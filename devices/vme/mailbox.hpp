@@ -26,6 +26,8 @@ class Mailbox final : public wire_arm::Transport {
   /// Waits for the next look at most, so that a command never waits for a state.
   wire_arm::Status receive(std::span<uint8_t> to, size_t& size, Nanoseconds wait) noexcept override;
   wire_arm::Status send(std::span<const uint8_t> bytes) noexcept override;
+  /// The command block, through another descriptor of the same window.
+  Descriptor wayIn(hdv_silence& how) noexcept override;
   wire_arm::Status control(const codec::StartStep&) noexcept override { return wire_arm::Status::kFailed; }
 
  private:

@@ -17,6 +17,7 @@
 #include <fstream>
 #include <memory>
 #include <sstream>
+#include <vector>
 
 namespace hapticd::os {
 
@@ -184,11 +185,37 @@ bool wasPreempted() noexcept {
   return preempted;
 }
 
-void onCrashSignals(void (*handler)(int)) {
+void onFatalSignals(void (*handler)(int, siginfo_t*, void*)) {
+  static std::vector<int> handled;
   struct sigaction action{};
-  action.sa_handler = handler != nullptr ? handler : SIG_DFL;
-  action.sa_flags = SA_ONSTACK | SA_NODEFER;
-  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU}) sigaction(signal, &action, nullptr);
+  action.sa_handler = SIG_DFL;
+  if (handler == nullptr) {
+    for (const int signal : handled) sigaction(signal, &action, nullptr);
+    return handled.clear();
+  }
+  action.sa_sigaction = handler;
+  action.sa_flags = SA_ONSTACK | SA_NODEFER | SA_SIGINFO;
+  handled = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTRAP, SIGSYS};
+  std::vector<int> others = {SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF, SIGIO, SIGPWR, SIGSTKFLT};
+  for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) others.push_back(signal);
+  for (const int signal : others) {
+    struct sigaction before{};
+    if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_DFL) handled.push_back(signal);
+  }
+  for (const int signal : handled) sigaction(signal, &action, nullptr);
+}
+
+void onSuspendSignal(void (*handler)(int)) {
+  struct sigaction action{};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGTSTP, &action, nullptr);
+  action.sa_handler = SIG_IGN;
+  for (const int signal : {SIGTTIN, SIGTTOU}) sigaction(signal, &action, nullptr);
+}
+
+void suspendProcess() {
+  kill(getpid(), SIGSTOP);
 }
 
 void prepareSignalStack() {

@@ -3,6 +3,7 @@
 /// mlockall, getrusage and their kind; pthread calls return their error and never set errno.
 #pragma once
 #include <pthread.h>
+#include <signal.h>
 #include <time.h>
 
 #include <cstddef>
@@ -91,8 +92,17 @@ int threadId() noexcept;
 /// [any] The thread lost its processor since it last asked: what it did took time of others. A system call.
 bool wasPreempted() noexcept;
 
-/// Installs a handler for SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT and SIGXCPU; nullptr: the system's own again.
-void onCrashSignals(void (*handler)(int));
+/// Installs a handler for SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTRAP and SIGSYS, and for every other
+/// signal that ends a process and that nobody handles or ignores: SIGUSR1 and 2, timers, SIGIO, real-time signals and
+/// their kind. nullptr: the system's own again.
+void onFatalSignals(void (*handler)(int, siginfo_t*, void*));
+
+/// Installs a handler for SIGTSTP (Ctrl-Z), and ignores SIGTTIN and SIGTTOU: a process in the background must not be
+/// stopped because it prints.
+void onSuspendSignal(void (*handler)(int));
+
+/// [any] Stops the whole process until it is continued.
+void suspendProcess();
 
 /// Gives the calling thread a stack of its own for such handlers, so that they run even when its own is full.
 void prepareSignalStack();

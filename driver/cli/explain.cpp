@@ -50,7 +50,7 @@ std::vector<uint64_t> measureSteps(servo::World& world, const scene::Scene& scen
     servo::Probe probe;
     probe.valid = true;
     Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = low;
-    if (shape.geometry() != nullptr) shape.geometry()->bounds(shape.handle(), low.data(), high.data());
+    if (!shape.bounds(low.data(), high.data())) low.setZero(), high.setZero();
     // Just outside the face of the box that a hand meets first.
     const Eigen::Vector3d front(0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), high.z() + 1e-3);
     probe.position = scene.models[index].pose.orientation * front + scene.models[index].pose.position;

@@ -8,6 +8,7 @@
 #include "cli/commands.hpp"
 #include "document/suggestion.hpp"
 #include "host/describe.hpp"
+#include "watch/guard_process.hpp"
 
 namespace {
 
@@ -32,6 +33,7 @@ int main(int argc, char** argv) {
   using namespace hapticd::cli;
   if (argc == 3 && argv[1] == std::string_view(hapticd::host::kDescribeForParent))
     hapticd::host::describeForParent(argv[2]);
+  if (argc == 4 && argv[1] == std::string_view(hapticd::watch::kGuardArgument)) hapticd::watch::guardMain(argc, argv);
   CLI::App app{"hapticd: a real-time haptic servo daemon. It traces NURBS and medial-axis shapes and pushes back."};
   int exit_code = kWorked;
   app.require_subcommand(1);

@@ -47,6 +47,10 @@ void onStop(int) {
   if (servo::Runner* runner = running.load()) runner->stop();
 }
 
+void onSuspend(int) {
+  if (servo::Runner* runner = running.load()) runner->suspend();
+}
+
 /// Ctrl-C and SIGTERM end this run as long as one lives; a second one, while the first ends it, finds no run any more.
 /// One that came while the run was set up ends it now.
 class StopBySignal {
@@ -235,12 +239,16 @@ servo::RunOptions runOptions(const Options& options, const scene::Scene& scene) 
 Result<void> tickToTheEnd(servo::Runner& runner, servo::RunFiles* files) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   size_t told = 0;
-  auto done = runner.run([&](const servo::Runner& r) {
+  const auto every = [&](const servo::Runner& r) {
     for (; told < r.warnings().size(); ++told) log::write(HSP_LOG_WARNING, "", r.warnings()[told]);
     if (terminal) showStatus(r);
     if (files != nullptr) files->look();
-  });
-  if (files != nullptr) files->end();
+  };
+  const auto end = [files] {
+    if (files != nullptr) files->end();
+  };
+  auto done = runner.run(every, end);
+  end();  // a run that never began
   if (terminal) std::fputs("\r\033[K", stderr);
   return done;
 }
@@ -266,6 +274,7 @@ int runScene(const Options& options, scene::Scene& scene) {
   once.tell();
   warnOfSettings(**runner, how.rate);
   const StopBySignal stop(**runner);
+  if (!options.virtual_time) os::onSuspendSignal(onSuspend);
   if (files) files->serve(**runner, options.device, catalog(), logOfRun);
   if (auto done = tickToTheEnd(**runner, files.get()); !done) return fail(kFailed, done.error());
   return conclude(options, **runner, left_out);

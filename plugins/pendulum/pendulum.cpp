@@ -3,12 +3,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 #include <string_view>
 
 #include "kernels/contact/wall.hpp"
 
 namespace hapticd {
+
+namespace {
+
+/// A swing has no bound of its own, but a contact has: it is felt once a tick, and what turns by more than a radian
+/// between two ticks passes through the probe and hits it from anywhere.
+void checkFelt(double swing_rate, double rate_hz) {
+  if (!(rate_hz > 0) || swing_rate <= rate_hz) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "pendulum: it swings at %.4g rad/s, more than 1 rad in a tick at %.4g Hz: no contact with it can be "
+                "felt; expected a greater length or inertia",
+                swing_rate, rate_hz);
+  throw std::invalid_argument(text);
+}
+
+}  // namespace
 
 void Pendulum::activate(const hsp_activation& activation, hsp_report& report) {
   load(activation, report);
@@ -25,6 +42,7 @@ void Pendulum::activate(const hsp_activation& activation, hsp_report& report) {
         "pendulum: inertia: a point mass of length 0 has none; expected inertia or length above 0");
   dynamics::validate(law_);
   dynamics::validateSwing(std::sqrt(law_.frequencySquared()), activation.rate_hz);
+  checkFelt(std::sqrt(law_.frequencySquared()), activation.rate_hz);
   state_ = {angle_, rate_};
   stored_ = 0;
   probes_.emplace(std::max(activation.max_probes, 1u));

@@ -16,6 +16,7 @@
 #include "hapticd/device.hpp"
 #include "hapticd/device_capture.h"
 #include "hapticd/device_pace.h"
+#include "hapticd/device_silence.h"
 #include "hapticd/device_trouble.h"
 #include "kinematics/extension.hpp"
 #include "wire_arm/calibration.hpp"
@@ -220,6 +221,10 @@ class Arm : public Device, public Parameters {
       static constexpr hdv_ext_cut kCut{sizeof(hdv_ext_cut), 0, &cut};
       return &kCut;
     }
+    if (std::string_view(name) == HDV_EXT_SILENCE) {
+      static constexpr hdv_ext_silence kSilence{sizeof(hdv_ext_silence), 0, &cutLeft, &silence};
+      return &kSilence;
+    }
     if (std::string_view(name) == HDV_EXT_PACE) {
       static constexpr hdv_ext_pace kPace{sizeof(hdv_ext_pace), 0, &waitForSample};
       return &kPace;
@@ -343,6 +348,16 @@ class Arm : public Device, public Parameters {
     const auto done = self.link_ ? self.link_->capture(take, who) : Result<void>(Error{"is not open"});
     if (!done) detail::logError(self.host(), done.error());
     return done ? HSP_OK : HSP_E_IO;
+  }
+
+  static int32_t cutLeft(const hdv_device* device) noexcept HSP_RT {
+    const Link* link = reinterpret_cast<const T*>(device)->link_.get();
+    return link == nullptr || link->cutLeft() ? 1 : 0;
+  }
+
+  static int32_t silence(hdv_device* device, hdv_silence* how) {
+    const Link* link = reinterpret_cast<T*>(device)->link_.get();
+    return link != nullptr && link->silence(*how) ? 1 : 0;
   }
 
   static uint64_t waitForSample(hdv_device* device, uint64_t until_ns) noexcept {

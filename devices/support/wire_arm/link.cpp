@@ -60,9 +60,38 @@ Result<Identity> Link::bringUp() {
   }
   const Zero zero = settings_.zero ? settings_.zero(*opened) : Zero{};
   session_.attach(monotonicNow(), zero.offset, zero.known);
+  prepareSilence();
   const std::lock_guard lock(mutex_);
   identity_ = *opened;
   return opened;
+}
+
+/// The report that switches the motors off, as it would be if the host wished for nothing. Its number is far from those
+/// that commands have: a device that takes no number twice takes it.
+void Link::prepareSilence() {
+  constexpr uint32_t kFar = 0x5a5a5a5a;
+  std::array<uint8_t, codec::kMaxReportBytes> report{};
+  codec::Order off;
+  off.sequence = kFar;
+  const size_t size = codec::encode(wire_.output, off, report);
+  reported_.store(false, std::memory_order_relaxed);
+  const std::lock_guard lock(mutex_);
+  const uint64_t epoch = silence_.epoch + 1;
+  silence_ = {};
+  silence_.struct_size = sizeof silence_;
+  silence_.epoch = epoch;
+  way_in_ = transport_->wayIn(silence_);
+  if (silence_.size + size > sizeof silence_.bytes) way_in_ = Descriptor();
+  if (!way_in_) return;
+  std::copy_n(report.begin(), size, silence_.bytes + silence_.size);
+  silence_.size += static_cast<uint32_t>(size);
+  silence_.fd = way_in_.get();
+}
+
+bool Link::silence(hdv_silence& how) const {
+  const std::lock_guard lock(mutex_);
+  how = silence_;
+  return way_in_ && reported_.load(std::memory_order_relaxed);
 }
 
 Result<void> Link::startUp() {
@@ -161,6 +190,7 @@ void Link::waitForNews(Nanoseconds until) noexcept {
 }
 
 void Link::cut() noexcept {
+  cut_left_.store(false);
   cut_.store(true);
   wished_.strike();
 }
@@ -227,6 +257,7 @@ void Link::receive(Nanoseconds wait) noexcept {
     if (session_.trouble() != Trouble::kNone) publish();
   }
   answered_ = answered_ || fresh;
+  if (fresh) reported_.store(true, std::memory_order_relaxed);
   if (fresh) tellServo();
 }
 
@@ -261,13 +292,15 @@ void Link::send(Nanoseconds now) noexcept {
   due_ = midway(due_);
   answered_ = false;
   const Status status = transport_->send({out_.data(), size});
-  if (status != Status::kOk && status != Status::kNothing) lose(troubleOf(status));
+  if (status != Status::kOk && status != Status::kNothing) return lose(troubleOf(status));
+  if (cut_sent_) cut_left_.store(true);
 }
 
 void Link::lose(Trouble trouble) noexcept {
   session_.lose(monotonicNow(), trouble);
   transport_->close();
   open_ = false;
+  cut_left_.store(true);  // nobody is there to be told
   publish();
 }
 

@@ -60,6 +60,11 @@ class Link {
 
   /// [any] Motors off, whatever the wishes say, until endCut(); async-signal-safe, and at most a report away.
   void cut() noexcept;
+  /// [any] A cut has left for the arm, or there is none to send it to; async-signal-safe.
+  bool cutLeft() const noexcept { return !cut_.load() || cut_left_.load(); }
+  /// [any] How another process switches the motors off (hdv_ext_silence). False: no report has come yet, so that it may
+  /// be another device; or there is no other way in.
+  bool silence(hdv_silence& how) const;
   /// [rt] Ends a cut: the next wish counts again.
   void endCut() noexcept HSP_RT { cut_.store(false, std::memory_order_relaxed); }
 
@@ -83,6 +88,7 @@ class Link {
   void publish() noexcept;
   void tellServo() noexcept;
   Result<Identity> bringUp();
+  void prepareSilence();
   Result<void> startUp();
   Result<void> perform(const codec::StartStep& step);
 
@@ -95,9 +101,12 @@ class Link {
   Bell news_, wished_;  ///< for the servo: a sample or a trouble; for this thread: a wish
   uint32_t heard_ = 0;  ///< the servo's: of news_, as of its last read()
   os::Thread thread_;
-  std::atomic<bool> cut_{false};  ///< by the watchdog or in a crash
+  std::atomic<bool> cut_{false}, cut_left_{false};  ///< by the watchdog or in a crash; and sent since then
   bool cut_sent_ = false;
-  std::atomic<bool> paced_{false};  ///< the servo waits for samples
+  hdv_silence silence_{};  ///< of the device that was opened last
+  Descriptor way_in_;
+  std::atomic<bool> reported_{false};  ///< since it was opened
+  std::atomic<bool> paced_{false};     ///< the servo waits for samples
   std::atomic<bool> stop_{false}, calibrate_{false}, zero_wanted_{false}, zero_done_{false};
   mutable std::mutex mutex_;  ///< identity_ and pose_; the servo thread takes it never
   Identity identity_;

@@ -6,8 +6,10 @@
 #include <string>
 
 #include "base/clock.hpp"
+#include "base/descriptors.hpp"
 #include "base/result.hpp"
 #include "codec/wire.hpp"
+#include "hapticd/device_silence.h"
 
 namespace hapticd::wire_arm {
 
@@ -46,6 +48,10 @@ class Transport {
   virtual Status send(std::span<const uint8_t> bytes) noexcept = 0;
   /// A control request without data (USB set-up packets of a start-up sequence).
   virtual Status control(const codec::StartStep& step) noexcept = 0;
+  /// While it is open: another way to the same device, for a process that outlives this one. Fills in all but the
+  /// bytes, and as their size how many zeros come before a report.
+  /// @return a descriptor of its own; nothing: there is none
+  virtual Descriptor wayIn(hdv_silence&) noexcept { return {}; }
 };
 
 }  // namespace hapticd::wire_arm

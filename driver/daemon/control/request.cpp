@@ -2,9 +2,11 @@
 #include "control/request.hpp"
 
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
+#include <vector>
 
 namespace hapticd::control {
 
@@ -157,18 +159,36 @@ void readOrientation(Taker& take, Request& request) {
   for (double& part : request.orientation) part /= length;
 }
 
+/// Watches a request while it is parsed: too deep, or with a key twice, of which one reader takes the first and another
+/// the last.
+class Watch {
+ public:
+  bool operator()(int depth, Json::parse_event_t event, const Json& parsed) {
+    deep = deep || depth > kMaxDepth;
+    if (event == Json::parse_event_t::object_start) keys_.emplace_back();
+    if (event == Json::parse_event_t::object_end && !keys_.empty()) keys_.pop_back();
+    if (event == Json::parse_event_t::key && !keys_.empty() && !keys_.back().insert(parsed.get<std::string>()).second)
+      twice = parsed.get<std::string>();
+    return !deep;
+  }
+  bool deep = false;
+  std::string twice;  ///< a key; "": none
+
+ private:
+  std::vector<std::set<std::string>> keys_;  ///< of the objects that are open
+};
+
 }  // namespace
 
 Result<Request> parseRequest(std::string_view line, std::string* id) {
   if (line.size() > kMaxRequestBytes)
     return Error{"the request is longer than " + std::to_string(kMaxRequestBytes) + " bytes"};
-  bool deep = false;
-  const auto shallow = [&](int depth, Json::parse_event_t, Json&) {
-    deep = deep || depth > kMaxDepth;
-    return !deep;
-  };
-  const Json json = Json::parse(line.begin(), line.end(), shallow, false);
-  if (deep || !json.is_object()) return Error{"expected a JSON object in one line, as {\"do\": \"status\"}"};
+  Watch watch;
+  const Json json = Json::parse(line.begin(), line.end(), std::ref(watch), false);
+  if (watch.deep || !json.is_object()) return Error{"expected a JSON object in one line, as {\"do\": \"status\"}"};
+  if (!watch.twice.empty())
+    return Error{Json(watch.twice.substr(0, 64)).dump(-1, ' ', true, Json::error_handler_t::replace) +
+                 " stands there twice, expected it once"};
   if (const std::string wrong = readId(json, id); !wrong.empty()) return Error{wrong};
   const auto word = json.find("do");
   const Form* form = word != json.end() && word->is_string() ? formOf(word->get_ref<const std::string&>()) : nullptr;

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <tuple>
 #include <utility>
 
 #include "control/client.hpp"
@@ -65,31 +66,45 @@ Server::~Server() {
 
 std::error_code Server::start(Service service) {
   service_ = std::move(service);
+  if (const auto code = desk_.start([this](const Job& job, Done& done) { return work(job, done); }, [this] { wake(); }))
+    return code;
   return thread_.start("hapticd-control", [this] { serve(); });
 }
 
 void Server::stop() {
   stop_.store(true, std::memory_order_relaxed);
-  const char byte = 0;
-  [[maybe_unused]] const ssize_t woken = write(wake_[1], &byte, 1);
+  wake();
   thread_.join();
+  desk_.stop();
+}
+
+void Server::wake() {
+  const char byte = 0;
+  [[maybe_unused]] const ssize_t woken = write(wake_[1], &byte, 1);  // full: it wakes up anyway
 }
 
 void Server::serve() {
   std::vector<pollfd> polled;
   while (!stop_.load(std::memory_order_relaxed)) {
-    polled.assign({{fd_, static_cast<short>(maySeat(monotonicNow()) ? POLLIN : 0), 0}, {wake_[0], POLLIN, 0}});
+    const bool accepts = monotonicNow() >= accept_after_;
+    polled.assign({{fd_, static_cast<short>(accepts ? POLLIN : 0), 0}, {wake_[0], POLLIN, 0}});
     for (const Client& client : clients_) {
       // one that does not read its answers is not asked for more
-      const bool reads = client.out.empty() && !client.closing;
-      polled.push_back({client.fd, static_cast<short>(reads ? POLLIN : POLLOUT), 0});
+      const bool reads = client.out.empty() && !client.closing && client.in.size() <= kMaxRequestBytes;
+      const short events = client.out.empty() ? (reads ? POLLIN : 0) : POLLOUT;
+      polled.push_back({client.hung ? -1 : client.fd, events, 0});
     }
     poll(polled.data(), polled.size(), listened() ? static_cast<int>(kNewsPeriod / 1'000'000) : kPollMs);
     const Nanoseconds now = monotonicNow();
-    const size_t known = clients_.size();
-    for (size_t i = 0; i < known; ++i) watch(clients_[i], polled[i + 2].revents, now);
+    char bytes[64];
+    while (read(wake_[0], bytes, sizeof bytes) > 0) {
+    }
+    size_t i = 2;
+    takeDone();
+    for (Client& client : clients_) watch(client, polled[i++].revents, now);
     if (now >= news_due_) news_due_ = now + kNewsPeriod;
-    std::erase_if(clients_, [](const Client& client) { return client.fd < 0; });
+    clients_.remove_if([](const Client& client) { return client.fd < 0; });
+    seat(now);
     if ((polled[0].revents & POLLIN) != 0) accept(now);
   }
 }
@@ -98,32 +113,66 @@ bool Server::listened() const {
   return std::any_of(clients_.begin(), clients_.end(), [](const Client& c) { return c.standing.listens; });
 }
 
+/// It is still owed an answer.
+bool Server::owes(const Client& client) const {
+  return client.asked || !client.out.empty() || client.in.find('\n') != std::string::npos;
+}
+
 /// One turn of one client.
 void Server::watch(Client& client, short events, Nanoseconds now) {
   bool good = (events & (POLLERR | POLLNVAL)) == 0;
   if (events != 0) client.heard = now;
   if (good && (events & (POLLIN | POLLHUP)) != 0 && client.out.empty()) good = receive(client);
-  if (good && client.standing.listens && client.out.empty() && now >= news_due_) tellNews(client);
+  client.hung |= (events & POLLHUP) != 0;
+  if (good && client.hung) answerLines(client);
+  if (good && client.standing.listens && !client.listening && client.out.empty() && now >= news_due_) {
+    client.listening = true;
+    desk_.give({Job::Kind::kNews, client.peer, ""});
+  }
   if (good && !client.out.empty()) good = send(client);
-  if (!good || !patient(client, now) || (client.closing && client.out.empty())) end(client);
+  if (!good || !patient(client, now) || (client.closing && !owes(client))) end(client);
 }
 
 void Server::end(Client& client) {
   close(client.fd);
   client.fd = -1;
-  if (service_.left) service_.left(client.peer);
+  if (client.known) desk_.give({Job::Kind::kLeft, client.peer, ""});
 }
 
 /// It has been idle for long enough to make room for another.
 bool Server::mayYield(const Client& client, Nanoseconds now) const {
-  return !client.standing.stays && now - client.heard >= kIdle;
+  return client.seated && !client.standing.stays && !client.asked && now - client.heard >= kIdle;
 }
 
-/// There is room for one more, or a client that makes room.
-bool Server::maySeat(Nanoseconds now) const {
-  if (now < accept_after_) return false;
-  return clients_.size() < kMaxClients ||
-         std::any_of(clients_.begin(), clients_.end(), [&](const Client& c) { return mayYield(c, now); });
+size_t Server::count(bool seated) const {
+  return static_cast<size_t>(
+      std::count_if(clients_.begin(), clients_.end(), [&](const Client& c) { return c.seated == seated; }));
+}
+
+/// Those who stand take the places of those who left, or who make room.
+void Server::seat(Nanoseconds now) {
+  for (Client& client : clients_) {
+    if (client.seated) continue;
+    if (count(true) >= kMaxClients) {
+      const bool yields =
+          std::any_of(clients_.begin(), clients_.end(), [&](const Client& c) { return mayYield(c, now); });
+      if (!yields) return;
+      makeRoom(true);
+    }
+    client.seated = true;
+    answerLines(client);
+  }
+}
+
+/// Ends the one that has been silent for longest.
+void Server::makeRoom(bool seated) {
+  const auto rank = [&](const Client& c) {
+    return std::tuple(c.seated != seated || c.fd < 0, c.standing.stays, c.asked, c.heard);
+  };
+  const auto idle = std::min_element(clients_.begin(), clients_.end(),
+                                     [&](const Client& a, const Client& b) { return rank(a) < rank(b); });
+  end(*idle);
+  clients_.erase(idle);
 }
 
 void Server::accept(Nanoseconds now) {
@@ -132,20 +181,16 @@ void Server::accept(Nanoseconds now) {
     if (errno != EAGAIN && errno != ECONNABORTED && errno != EINTR) accept_after_ = now + kAcceptPause;
     return;
   }
-  if (clients_.size() >= kMaxClients) {
-    const auto idle = std::min_element(clients_.begin(), clients_.end(), [](const Client& a, const Client& b) {
-      return std::pair(a.standing.stays, a.heard) < std::pair(b.standing.stays, b.heard);
-    });
-    end(*idle);
-    clients_.erase(idle);
-  }
+  if (count(false) >= kMaxStanding) makeRoom(false);
   Client& client = clients_.emplace_back();
   client.fd = fd;
   client.heard = now;
+  client.seated = false;
   ucred who{};
   socklen_t bytes = sizeof who;
   if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &who, &bytes) != 0) who = {};
-  client.peer = {++last_id_, who.pid, who.uid};
+  client.peer = {++last_id_, who.pid, who.uid, 0};
+  seat(now);
 }
 
 void Server::queue(Client& client, Reply reply) {
@@ -156,11 +201,6 @@ void Server::queue(Client& client, Reply reply) {
   } else {
     client.out.push_back(std::move(reply));
   }
-}
-
-void Server::tellNews(Client& client) {
-  if (!service_.news) return;
-  if (std::string lines = service_.news(client.peer); !lines.empty()) queue(client, std::move(lines));
 }
 
 bool Server::receive(Client& client) {
@@ -177,23 +217,70 @@ bool Server::receive(Client& client) {
     client.in.append(buffer, static_cast<size_t>(got));
   }
   answerLines(client);
+  actAtOnce(client);
   return true;
 }
 
+std::optional<Reply> Server::urgent(const Client& client, const std::string& line) {
+  return service_.urgent ? service_.urgent(client.peer, line) : std::nullopt;
+}
+
+/// In the order of the lines: one at a time is worked on.
 void Server::answerLines(Client& client) {
-  size_t begin = 0;
-  for (size_t end; (end = client.in.find('\n', begin)) != std::string::npos && client.waiting < kMaxWaiting;
-       begin = end + 1) {
-    Reply reply = service_.answer(client.peer, client.in.substr(begin, end - begin));
-    reply.line += '\n';
-    queue(client, std::move(reply));
-    if (service_.standing) client.standing = service_.standing(client.peer);
+  size_t end = 0;
+  while (!client.asked && client.waiting < kMaxWaiting && (end = client.in.find('\n')) != std::string::npos) {
+    std::string line = client.in.substr(0, end);
+    std::optional<Reply> reply = urgent(client, line);
+    if (!reply && !client.seated) break;
+    client.in.erase(0, end + 1);
+    client.scanned -= std::min(client.scanned, end + 1);
+    if (!reply) return ask(client, std::move(line));
+    reply->line += '\n';
+    queue(client, std::move(*reply));
   }
-  client.in.erase(0, begin);
-  if (client.in.size() > kMaxRequestBytes) {
+  if (client.in.size() > kMaxRequestBytes && client.in.find('\n') == std::string::npos) {
     queue(client, refusal("the request is longer than " + std::to_string(kMaxRequestBytes) + " bytes") + "\n");
     client.in.clear();
     client.closing = true;
+  }
+}
+
+/// What is urgent behind a request that is still worked on is done now; it is answered in its turn.
+void Server::actAtOnce(Client& client) {
+  if (!client.asked && client.seated) return;
+  for (size_t end; (end = client.in.find('\n', client.scanned)) != std::string::npos; client.scanned = end + 1)
+    (void)urgent(client, client.in.substr(client.scanned, end - client.scanned));
+}
+
+void Server::ask(Client& client, std::string line) {
+  client.asked = client.known = true;
+  client.peer.asked = monotonicNow();
+  desk_.give({Job::Kind::kAnswer, client.peer, std::move(line)});
+}
+
+/// The desk's thread.
+bool Server::work(const Job& job, Done& done) {
+  done.peer = job.peer.id;
+  done.answers = job.kind == Job::Kind::kAnswer;
+  if (job.kind == Job::Kind::kLeft && service_.left) service_.left(job.peer);
+  if (job.kind == Job::Kind::kLeft) return false;
+  if (job.kind == Job::Kind::kNews && service_.news) done.reply.line = service_.news(job.peer);
+  if (done.answers) {
+    done.reply = service_.answer(job.peer, job.line);
+    done.reply.line += '\n';
+  }
+  if (service_.standing) done.standing = service_.standing(job.peer);
+  return true;
+}
+
+void Server::takeDone() {
+  for (Done& done : desk_.take()) {
+    const auto client =
+        std::find_if(clients_.begin(), clients_.end(), [&](const Client& c) { return c.peer.id == done.peer; });
+    if (client == clients_.end()) continue;  // it did not wait
+    client->standing = done.standing;
+    (done.answers ? client->asked : client->listening) = false;
+    if (!done.reply.line.empty() && !client->hung) queue(*client, std::move(done.reply));
   }
 }
 
@@ -214,7 +301,8 @@ bool Server::send(Client& client) {
 }
 
 bool Server::patient(Client& client, Nanoseconds now) {
-  if (client.in.empty() && client.out.empty())
+  const bool our_turn = client.asked || !client.seated || (client.in.empty() && client.out.empty());
+  if (our_turn)
     client.since = 0;
   else if (client.since == 0)
     client.since = now;

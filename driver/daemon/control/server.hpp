@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-/// Serves the control socket from one ordinary thread: lines of JSON in, one line of JSON out for each. Everything is
-/// bounded: clients, the length of a request, what waits for a client that does not read, and how long half a line
-/// waits. An answer may carry a descriptor, and a client that subscribed gets lines that it did not ask for.
+/// Serves the control socket from two ordinary threads: lines of JSON in, one line of JSON out for each. One thread has
+/// the sockets, another (desk.hpp) works on the requests in turn. What must wait behind nothing, such as a hold, is
+/// answered by the first, and has seats of its own where all others are taken. Everything is bounded: clients, the
+/// length of a request, what waits for a client that does not read, and how long half a line waits. An answer may carry
+/// a descriptor, and a client that subscribed gets lines that it did not ask for.
 #pragma once
-#include <sys/types.h>
-
 #include <atomic>
 #include <functional>
 #include <list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,34 +17,14 @@
 #include "base/descriptors.hpp"
 #include "base/os.hpp"
 #include "base/result.hpp"
+#include "control/desk.hpp"
+#include "control/peer.hpp"
 
 namespace hapticd::control {
 
-/// Who asks. The number is never used again.
-struct Peer {
-  uint64_t id = 0;
-  pid_t pid = 0;  ///< of the process that connected
-  uid_t uid = 0;
-};
-
-/// One line, without its end, and perhaps a descriptor that the client gets along with it.
-struct Reply {
-  Reply() = default;
-  Reply(std::string text) : line(std::move(text)) {}  // NOLINT: implicit by intent
-  Reply(std::string text, Descriptor attached) : line(std::move(text)), descriptor(std::move(attached)) {}
-  std::string line;
-  Descriptor descriptor;
-};
-
-/// What a connection is for, beside its requests.
-struct Standing {
-  bool stays = false;    ///< something lives as long as it does: it is never dropped for being silent
-  bool listens = false;  ///< it gets news
-};
-
 class Server {
  public:
-  /// What the server's thread calls; all but `answer` may be left out.
+  /// What the server calls, all but `urgent` from the thread that works on requests; all but `answer` may be left out.
   struct Service {
     std::function<Reply(const Peer&, const std::string& line)> answer;  ///< one line without its end
     std::function<Standing(const Peer&)> standing;                      ///< after each answer
@@ -51,10 +32,14 @@ class Server {
     /// all that came before.
     std::function<std::string(const Peer&)> news;
     std::function<void(const Peer&)> left;  ///< the connection is gone
+    /// From the thread of the sockets: does at once what must wait behind no other request, and answers; nothing: the
+    /// line is no such request. Where lines before it are still worked on, it is called again when their turn is over.
+    std::function<std::optional<Reply>(const Peer&, const std::string& line)> urgent;
   };
 
   static constexpr size_t kMaxClients = 32;
-  static constexpr size_t kMaxStaying = 24;  ///< that whoever grants a standing shall let stay: others need places too
+  static constexpr size_t kMaxStanding = 16;  ///< beyond those: only their urgent requests are answered yet
+  static constexpr size_t kMaxStaying = 24;   ///< that whoever grants a standing shall let stay: others need places too
   static constexpr Nanoseconds kNewsPeriod = 20'000'000;
   static constexpr size_t kMaxWaiting = 1 << 20;            ///< [bytes] for a client that does not read
   static constexpr Nanoseconds kIdle = 2'000'000'000;       ///< then a client may be dropped where another waits
@@ -76,11 +61,17 @@ class Server {
     Peer peer;
     Standing standing;
     std::string in;
-    std::list<Reply> out;   ///< with their ends; a descriptor goes with the first byte of its line
-    size_t waiting = 0;     ///< [bytes] in `out`
-    Nanoseconds since = 0;  ///< half a line, or an answer not yet taken, waits since then; 0: nothing waits
-    Nanoseconds heard = 0;  ///< the last time that anything came or went
-    bool closing = false;   ///< once `out` is gone
+    std::list<Reply> out;    ///< with their ends; a descriptor goes with the first byte of its line
+    size_t waiting = 0;      ///< [bytes] in `out`
+    Nanoseconds since = 0;   ///< half a line, or an answer not yet taken, waits since then; 0: nothing waits
+    Nanoseconds heard = 0;   ///< the last time that anything came or went
+    bool closing = false;    ///< once `out` is gone
+    bool hung = false;       ///< it waits for no answer; what it asked is done all the same
+    bool seated = true;      ///< otherwise it waits for a place
+    bool asked = false;      ///< one of its requests is worked on
+    bool listening = false;  ///< its news are put together
+    bool known = false;      ///< to those who work on requests
+    size_t scanned = 0;      ///< [bytes] of `in`, already searched for urgent requests
   };
   Server(std::string file, int fd, int wake_read, int wake_write)
       : file_(std::move(file)), fd_(fd), wake_{wake_read, wake_write} {}
@@ -90,11 +81,19 @@ class Server {
   void end(Client& client);
   void queue(Client& client, Reply reply);
   bool mayYield(const Client& client, Nanoseconds now) const;
-  bool maySeat(Nanoseconds now) const;
+  size_t count(bool seated) const;
+  void seat(Nanoseconds now);
+  void makeRoom(bool seated);
   void accept(Nanoseconds now);
   bool receive(Client& client);
+  std::optional<Reply> urgent(const Client& client, const std::string& line);
   void answerLines(Client& client);
-  void tellNews(Client& client);
+  void actAtOnce(Client& client);
+  bool work(const Job& job, Done& done);
+  void ask(Client& client, std::string line);
+  void takeDone();
+  bool owes(const Client& client) const;
+  void wake();
   bool send(Client& client);
   bool patient(Client& client, Nanoseconds now);
 
@@ -102,11 +101,12 @@ class Server {
   int fd_;
   int wake_[2];
   Service service_;
-  std::vector<Client> clients_;
+  std::list<Client> clients_;  ///< as they came
   uint64_t last_id_ = 0;
   Nanoseconds news_due_ = 0;
   Nanoseconds accept_after_ = 0;  ///< a refusal of the system is not asked for again and again
   std::atomic<bool> stop_{false};
+  Desk desk_;
   os::Thread thread_;
 };
 

@@ -24,6 +24,11 @@ hsp_value toAbi(const scene::Value& value);
 bool complete(const hsp_class& shape);
 bool complete(const hdv_class& device);
 
+/// [any] A text of a plugin's table as it may be printed: "" where it has none.
+inline const char* textOf(const char* text) noexcept {
+  return text != nullptr ? text : "";
+}
+
 /// [any] True if the parameter is a damping: a number in N s/m.
 bool damps(const hsp_class& shape, uint32_t param) noexcept;
 /// [any] True if the parameter is a stiffness: a number in N/m.

@@ -17,10 +17,7 @@ namespace {
 
 constexpr int kLimitMs = 5000;         ///< constructors that take longer would hold up the daemon as well
 constexpr uint32_t kMaxParams = 4096;  ///< more is a table that was misread
-
-std::string textOf(const char* text) {
-  return text != nullptr ? text : "";
-}
+constexpr uint32_t kMaxChoices = 4096;
 
 /// A parameter of any minor version: members that the file does not have stay zero.
 ParamInfo copyParam(const hsp_param& given) {
@@ -29,7 +26,8 @@ ParamInfo copyParam(const hsp_param& given) {
   ParamInfo info{textOf(p.id), textOf(p.unit), textOf(p.doc), p.kind,      p.flags,     p.min, p.max, p.def,
                  {},           p.columns,      p.min_count,   p.max_count, std::nullopt};
   if (p.def_text != nullptr) info.def_text = p.def_text;
-  for (uint32_t i = 0; i < p.choice_count; ++i) info.choices.push_back(textOf(p.choices[i]));
+  if (p.choices == nullptr || p.choice_count > kMaxChoices) return info;
+  for (uint32_t i = 0; i < p.choice_count; ++i) info.choices.emplace_back(textOf(p.choices[i]));
   return info;
 }
 

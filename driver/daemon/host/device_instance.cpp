@@ -38,7 +38,10 @@ std::string wrongIn(const hdv_info& info, uint32_t kinematic_joints) {
 }  // namespace
 
 DeviceInstance::DeviceInstance(std::shared_ptr<Library> library, const scene::Device& device, Services::Log log)
-    : library_(std::move(library)), name_(device.name), services_(device.name, std::move(log)) {}
+    : library_(std::move(library)),
+      name_(device.name),
+      services_(device.name, std::move(log)),
+      owner_(ownerOf(device.module, device.name, true)) {}
 
 Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Device& device, Services::Log log) {
   const std::string who = "device '" + device.name + "': ";
@@ -53,6 +56,8 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
   if (!complete(*found))
     return Error{who + "module '" + device.module + "' of " + device.library.string() + " lacks a required function"};
 
+  ownCode(reinterpret_cast<const void*>(found->create), instance->owner_);
+  const Calling calling(instance->owner_);
   instance->class_ = found;
   instance->device_ = found->create(found, instance->services_.abi());
   if (instance->device_ == nullptr)
@@ -70,6 +75,7 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
   instance->hand_ = extensionOf<hdv_ext_hand>(*found, instance->device_, HDV_EXT_HAND);
   instance->pace_ = extensionOf<hdv_ext_pace>(*found, instance->device_, HDV_EXT_PACE);
   instance->trouble_ = extensionOf<hdv_ext_trouble>(*found, instance->device_, HDV_EXT_TROUBLE);
+  instance->silence_ = extensionOf<hdv_ext_silence>(*found, instance->device_, HDV_EXT_SILENCE);
   if (instance->kinematics_ == nullptr) {
     const std::string said = instance->services_.lastError();
     return Error{who +
@@ -80,12 +86,14 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
 
 DeviceInstance::~DeviceInstance() {
   stop();
+  const Calling calling(owner_);
   if (open_ && playback_ == nullptr) class_->close(device_);
   if (device_ != nullptr) class_->destroy(device_);
 }
 
 Result<void> DeviceInstance::open() {
   if (open_) return {};
+  const Calling calling(owner_);
   const std::string who = "device '" + name_ + "': ";
   info_ = {};
   info_.struct_size = sizeof info_;
@@ -106,6 +114,7 @@ Result<void> DeviceInstance::start(const hdv_start& how) {
   const std::string who = "device '" + name_ + "': ";
   if (!open_) return Error{who + "is not open"};
   if (playback_ != nullptr) return {};
+  const Calling calling(owner_);
   services_.forgetError();
   const hsp_status status = class_->start(device_, &how);
   if (status < 0) return Error{who + "cannot be started: " + reasonOf(status, services_)};
@@ -114,6 +123,7 @@ Result<void> DeviceInstance::start(const hdv_start& how) {
 }
 
 void DeviceInstance::stop() {
+  const Calling calling(owner_);
   if (started_) class_->stop(device_);
   started_ = false;
 }

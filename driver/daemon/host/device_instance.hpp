@@ -5,10 +5,12 @@
 #include <memory>
 #include <string>
 
+#include "base/blame.hpp"
 #include "base/result.hpp"
 #include "description/scene.hpp"
 #include "hapticd/device.h"
 #include "hapticd/device_pace.h"
+#include "hapticd/device_silence.h"
 #include "hapticd/device_trouble.h"
 #include "host/library.hpp"
 #include "host/services.hpp"
@@ -38,25 +40,50 @@ class DeviceInstance {
   void stop();                               ///< [main] motors off
 
   hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
-    if (playback_ == nullptr) return class_->read(device_, now_ns, &sample);
+    if (playback_ == nullptr) {
+      const Calling calling(owner_);
+      return class_->read(device_, now_ns, &sample);
+    }
     sample = playback_->sample;
     return playback_->read_status;
   }
   hsp_status write(uint64_t now_ns, const hdv_command& command) noexcept HSP_RT {
-    return playback_ == nullptr ? class_->write(device_, now_ns, &command) : playback_->write_status;
+    if (playback_ != nullptr) return playback_->write_status;
+    const Calling calling(owner_);
+    return class_->write(device_, now_ns, &command);
   }
 
   /// [any] Motors free at once, by the module's own means; async-signal-safe. False: the module has none.
   bool cut() noexcept {
     if (cut_ == nullptr || playback_ != nullptr) return playback_ != nullptr;
+    const Calling calling(owner_);
     cut_->cut(device_);
     return true;
+  }
+  /// [any] What cut() asked for has left for the hardware, as far as the module knows; async-signal-safe.
+  bool cutLeft() const noexcept {
+    if (silence_ == nullptr || silence_->left == nullptr || playback_ != nullptr) return true;
+    return silence_->left(device_) != 0;
+  }
+  /// [any] It may be switched off by another process.
+  bool silenceable() const noexcept { return silence_ != nullptr && silence_->how != nullptr && playback_ == nullptr; }
+  /// [any] How a process that outlives this one switches the motors off. False: it cannot, now or ever.
+  bool silence(hdv_silence& how) noexcept {
+    how = {};
+    how.struct_size = sizeof how;
+    if (!silenceable()) return false;
+    const Calling calling(owner_);
+    return silence_->how(device_, &how) != 0 && how.size <= sizeof how.bytes;
   }
 
   /// [any] Its samples can drive the loop: waitForSample() waits for them.
   bool canPace() const { return pace_ != nullptr && (info_.capabilities & HDV_C_PACING) != 0; }
   /// [rt] Between two ticks: sleeps until there is news of the arm, or until `until`. @return time of the next tick
-  uint64_t waitForSample(uint64_t until) noexcept { return playback_ == nullptr ? pace_->wait(device_, until) : until; }
+  uint64_t waitForSample(uint64_t until) noexcept {
+    if (playback_ != nullptr) return until;
+    const Calling calling(owner_);
+    return pace_->wait(device_, until);
+  }
 
   /// [any] Why the arm is not well as of the last read, in words of static storage: "cause; cure". nullptr: unknown.
   const char* trouble() const noexcept HSP_RT {
@@ -81,6 +108,7 @@ class DeviceInstance {
   std::shared_ptr<Library> library_;
   std::string name_;
   Services services_;
+  const Owner* owner_;
   const hdv_class* class_ = nullptr;
   hdv_device* device_ = nullptr;
   hdv_info info_{};
@@ -90,6 +118,7 @@ class DeviceInstance {
   const hdv_ext_hand* hand_ = nullptr;
   const hdv_ext_pace* pace_ = nullptr;
   const hdv_ext_trouble* trouble_ = nullptr;
+  const hdv_ext_silence* silence_ = nullptr;
   const Playback* playback_ = nullptr;
   bool open_ = false, started_ = false;
 };

@@ -2,10 +2,13 @@
 #include "host/library.hpp"
 
 #include <dlfcn.h>
+#include <link.h>
 
 #include <map>
 #include <mutex>
 #include <string>
+
+#include "base/blame.hpp"
 
 namespace hapticd::host {
 namespace {
@@ -26,6 +29,23 @@ Registry& registry() {
 std::string loaderReason() {
   const char* reason = dlerror();
   return reason != nullptr ? reason : "no reason given by the loader";
+}
+
+/// Keeps where the code of a library lies, so that a crash in a thread of its own finds its name.
+void keepCodeOf(void* handle) {
+  link_map* loaded = nullptr;
+  if (dlinfo(handle, RTLD_DI_LINKMAP, &loaded) != 0 || loaded == nullptr) return;
+  const auto keep = [](dl_phdr_info* info, size_t, void* wanted) {
+    if (info->dlpi_addr != static_cast<link_map*>(wanted)->l_addr) return 0;
+    for (int i = 0; i < info->dlpi_phnum; ++i) {
+      const ElfW(Phdr) & part = info->dlpi_phdr[i];
+      if (part.p_type != PT_LOAD || (part.p_flags & PF_X) == 0) continue;
+      const auto* begin = reinterpret_cast<const char*>(info->dlpi_addr + part.p_vaddr);
+      keepCode(begin, begin + part.p_memsz);
+    }
+    return 1;
+  };
+  dl_iterate_phdr(keep, loaded);
 }
 
 /// Magic and version of an entry; hsp_entry and hdv_entry have the same members.
@@ -64,6 +84,7 @@ Result<std::shared_ptr<Library>> Library::open(const std::filesystem::path& file
 
   void* handle = dlopen(real.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) return Error{"cannot load " + real.string() + "\n  the loader says: " + loaderReason()};
+  keepCodeOf(handle);
   std::shared_ptr<Library> loaded(new Library(real, handle));
   slot = loaded;
   return loaded;
@@ -76,10 +97,6 @@ std::shared_ptr<Library> Library::loaded(const std::filesystem::path& file) {
   const std::lock_guard lock(all.mutex);
   const auto found = error ? all.loaded.end() : all.loaded.find(real);
   return found != all.loaded.end() ? found->second.lock() : nullptr;
-}
-
-Library::~Library() {
-  dlclose(handle_);
 }
 
 Result<const hsp_entry*> Library::shapes() const {

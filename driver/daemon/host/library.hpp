@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A loaded shared object. The same file is loaded once a process and stays until its last user is gone.
+/// A loaded shared object. The same file is loaded once a process. Its code stays in memory to the end of the process:
+/// a plugin may have begun a thread, and one that returns into code that is gone ends the daemon.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -16,7 +17,6 @@ class Library {
   static Result<std::shared_ptr<Library>> open(const std::filesystem::path& file);
   /// [any] The library of `file` if it is loaded now; nullptr if it is not.
   static std::shared_ptr<Library> loaded(const std::filesystem::path& file);
-  ~Library();
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
 

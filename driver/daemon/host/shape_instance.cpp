@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "host/class_table.hpp"
 
@@ -17,6 +18,7 @@ const Extension* extensionOf(const hsp_class& shape_class, hsp_shape* shape, con
   return found != nullptr && found->struct_size >= needed ? found : nullptr;
 }
 
+constexpr uint32_t kMostSurfaces = 1'000'000;  ///< the search keeps tables of so many for each probe
 constexpr uint32_t kMostVertices = 1'000'000;  ///< of a drawing; three times 12 MB are kept for them
 
 /// Claims are bounds that the host works with: one that is no number would switch its checks off.
@@ -46,7 +48,10 @@ double dampingOf(const hsp_class& shape, const std::vector<scene::Value>& given)
 }  // namespace
 
 ShapeInstance::ShapeInstance(std::shared_ptr<Library> library, const scene::Model& model, Services::Log log)
-    : library_(std::move(library)), name_(model.name), services_(model.name, std::move(log)) {}
+    : library_(std::move(library)),
+      name_(model.name),
+      services_(model.name, std::move(log)),
+      owner_(ownerOf(model.plugin, model.name)) {}
 
 Result<std::unique_ptr<ShapeInstance>> ShapeInstance::create(const scene::Model& model, Services::Log log) {
   auto library = Library::open(model.library);
@@ -62,6 +67,8 @@ Result<std::unique_ptr<ShapeInstance>> ShapeInstance::create(const scene::Model&
   if (!complete(*instance->class_))
     return Error{who + "plugin '" + model.plugin + "' of " + model.library.string() + " lacks a required function"};
 
+  ownCode(reinterpret_cast<const void*>(instance->class_->create), instance->owner_);
+  const Calling calling(instance->owner_);
   instance->shape_ = instance->class_->create(instance->class_, instance->services_.abi());
   if (instance->shape_ == nullptr)
     return Error{who + "plugin '" + model.plugin +
@@ -75,6 +82,7 @@ Result<std::unique_ptr<ShapeInstance>> ShapeInstance::create(const scene::Model&
 }
 
 ShapeInstance::~ShapeInstance() {
+  const Calling calling(owner_);
   deactivate();
   if (shape_ != nullptr) class_->destroy(shape_);
 }
@@ -85,6 +93,7 @@ Result<void> ShapeInstance::activate(const hsp_activation& activation) {
   report_ = {};
   report_.struct_size = sizeof report_;
   services_.forgetError();
+  const Calling calling(owner_);
   const hsp_status status = class_->activate(shape_, &activation, &report_);
   if (status < 0) return Error{who + "cannot be set up: " + reasonOf(status, services_)};
   active_ = true;
@@ -93,6 +102,12 @@ Result<void> ShapeInstance::activate(const hsp_activation& activation) {
     return Error{who + wrong};
   }
   surfaces_ = extensionOf<hsp_ext_surfaces>(*class_, shape_, HSP_EXT_SURFACES, sizeof(hsp_ext_surfaces));
+  surface_count_ = surfaces_ != nullptr ? surfaces_->surface_count : 0;
+  if (surface_count_ > kMostSurfaces) {
+    deactivate();
+    return Error{who + "it has " + std::to_string(surface_count_) + " surfaces; expected at most " +
+                 std::to_string(kMostSurfaces) + "\n  fix: divide the model, or repair the plugin"};
+  }
   geometry_ = extensionOf<hsp_ext_geometry>(*class_, shape_, HSP_EXT_GEOMETRY, sizeof(hsp_ext_geometry));
   energy_ = extensionOf<hsp_ext_energy>(*class_, shape_, HSP_EXT_ENERGY, sizeof(hsp_ext_energy));
   if (report_.viz_vertices > 0) contour_ = std::make_unique<Contour>(report_.viz_vertices);
@@ -101,12 +116,51 @@ Result<void> ShapeInstance::activate(const hsp_activation& activation) {
 
 void ShapeInstance::deactivate() {
   if (!active_) return;
+  const Calling calling(owner_);
   class_->deactivate(shape_);
   surfaces_ = nullptr;
   geometry_ = nullptr;
   energy_ = nullptr;
   contour_.reset();
   active_ = false;
+}
+
+size_t ShapeInstance::nearby(const double p_model[3], double radius_m, std::span<hsp_near> near) const noexcept {
+  const Calling calling(owner_);
+  const int64_t found = surfaces_->nearby(shape_, p_model, radius_m, near.data(), near.size());
+  const size_t count = found > 0 ? std::min(static_cast<size_t>(found), near.size()) : 0;
+  const auto sound = [&](const hsp_near& foot) {
+    return foot.surface < surface_count_ && std::isfinite(foot.param[0]) && std::isfinite(foot.param[1]) &&
+           std::isfinite(foot.distance_m);
+  };
+  const auto end = near.begin() + static_cast<std::ptrdiff_t>(count);
+  return static_cast<size_t>(std::remove_if(near.begin(), end, std::not_fn(sound)) - near.begin());
+}
+
+hsp_status ShapeInstance::tessellate(double chord_error_m, hsp_mesh& mesh) const {
+  mesh = {};
+  mesh.struct_size = sizeof mesh;
+  if (geometry_ == nullptr) return HSP_E_UNSUPPORTED;
+  const Calling calling(owner_);
+  const hsp_status status = geometry_->tessellate(shape_, chord_error_m, &mesh);
+  if (status < 0) return status;
+  const bool lacks =
+      (mesh.vertex_count > 0 && mesh.xyz == nullptr) || (mesh.triangle_count > 0 && mesh.indices == nullptr);
+  if (lacks) return HSP_E_NUMERIC;
+  const std::span corners(mesh.indices, 3 * size_t{mesh.triangle_count});
+  const std::span places(mesh.xyz, 3 * size_t{mesh.vertex_count});
+  const bool sound = std::all_of(corners.begin(), corners.end(), [&](uint32_t i) { return i < mesh.vertex_count; }) &&
+                     std::all_of(places.begin(), places.end(), [](float x) { return std::isfinite(x); });
+  return sound ? status : HSP_E_NUMERIC;
+}
+
+bool ShapeInstance::bounds(double min[3], double max[3]) const {
+  if (geometry_ == nullptr) return false;
+  const Calling calling(owner_);
+  if (geometry_->bounds(shape_, min, max) != HSP_OK) return false;
+  for (int i = 0; i < 3; ++i)
+    if (!std::isfinite(min[i]) || !std::isfinite(max[i]) || min[i] > max[i]) return false;
+  return true;
 }
 
 }  // namespace hapticd::host

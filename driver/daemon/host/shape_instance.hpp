@@ -2,8 +2,10 @@
 /// One instance of a shape plugin, from create to destroy. Set-up calls may fail with a message; step() is real time.
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 
+#include "base/blame.hpp"
 #include "base/result.hpp"
 #include "description/scene.hpp"
 #include "hapticd/shape.h"
@@ -26,6 +28,7 @@ class ShapeInstance {
 
   /// [rt] Adds to `step` where vertices are to be written, if somebody looks.
   hsp_status step(hsp_step& step) noexcept HSP_RT {
+    const Calling calling(owner_);
     if (contour_ == nullptr) return class_->step(shape_, &step);
     step.viz_xyz = contour_->offer(step.dt_s);
     step.viz_capacity = contour_->vertices();
@@ -33,7 +36,32 @@ class ShapeInstance {
     contour_->close(status >= 0);
     return status;
   }
-  void reset() noexcept HSP_RT { class_->reset(shape_); }  ///< [rt]
+  void reset() noexcept HSP_RT {  ///< [rt]
+    const Calling calling(owner_);
+    class_->reset(shape_);
+  }
+  /// [rt] Starts tracing a surface, or offers a second foot on it. The shape has surfaces.
+  void activate(const hsp_near& near) noexcept HSP_RT {
+    const Calling calling(owner_);
+    surfaces_->activate(shape_, &near);
+  }
+  void deactivate(uint32_t probe, uint32_t surface) noexcept HSP_RT {  ///< [rt]
+    const Calling calling(owner_);
+    surfaces_->deactivate(shape_, probe, surface);
+  }
+  /// [sim] Surfaces near a point of the model frame; what is no sound answer is left out. @return how many of `near`
+  size_t nearby(const double p_model[3], double radius_m, std::span<hsp_near> near) const noexcept;
+  /// [rt] [J] that the shape says it stores; 0: it does not say, or answers what is no energy.
+  double storedEnergy() const noexcept HSP_RT {
+    if (energy_ == nullptr) return 0;
+    const Calling calling(owner_);
+    const double stored = energy_->stored(shape_);
+    return stored >= 0 ? stored : 0;
+  }
+  /// [main] Triangles in the current shape, checked: every number is finite and every corner a vertex.
+  hsp_status tessellate(double chord_error_m, hsp_mesh& mesh) const;
+  /// [main] A box around it in the model frame. False: it does not say, or answers what is no box.
+  bool bounds(double min[3], double max[3]) const;
 
   const std::string& name() const { return name_; }
   const hsp_class& description() const { return *class_; }
@@ -41,8 +69,10 @@ class ShapeInstance {
   /// [N s/m] The damping that the shape was asked for: the largest of its parameters in that unit.
   double claimedDamping() const { return damping_; }
   const hsp_ext_surfaces* surfaces() const { return surfaces_; }  ///< nullptr: the shape traces itself
+  uint32_t surfaceCount() const noexcept { return surface_count_; }
   const hsp_ext_geometry* geometry() const { return geometry_; }
   const hsp_ext_energy* energy() const { return energy_; }
+  const Owner* owner() const noexcept { return owner_; }
   Contour* contour() const { return contour_.get(); }  ///< nullptr: its steps write no vertices
   hsp_shape* handle() const { return shape_; }
   bool active() const { return active_; }
@@ -52,6 +82,7 @@ class ShapeInstance {
   std::shared_ptr<Library> library_;
   std::string name_;
   Services services_;
+  const Owner* owner_;
   const hsp_class* class_ = nullptr;
   hsp_shape* shape_ = nullptr;
   hsp_report report_{};
@@ -60,6 +91,7 @@ class ShapeInstance {
   const hsp_ext_energy* energy_ = nullptr;
   std::unique_ptr<Contour> contour_;
   double damping_ = 0;
+  uint32_t surface_count_ = 0;  ///< as it was at activation
   bool active_ = false;
 };
 

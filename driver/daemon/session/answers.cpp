@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "host/class_table.hpp"
 #include "session/event_finder.hpp"
 #include "session/silence_reason.hpp"
 
@@ -35,7 +36,7 @@ Json valueJson(const scene::Model& model, const hsp_param& param, uint32_t index
       return valueOf(model, param, index) != 0;
     case HSP_ENUM: {
       const auto choice = static_cast<uint32_t>(valueOf(model, param, index));
-      return choice < param.choice_count ? Json(param.choices[choice]) : Json(choice);
+      return choice < param.choice_count ? Json(host::textOf(param.choices[choice])) : Json(choice);
     }
     case HSP_REAL:
     case HSP_INT:
@@ -54,13 +55,13 @@ Json liveParameters(const Session& session, uint32_t place) {
     const hsp_param& param = paramAt(plugin, i);
     if ((param.flags & HSP_P_LIVE) == 0) continue;
     live.push_back({{"id", param.id},
-                    {"unit", param.unit},
+                    {"unit", host::textOf(param.unit)},
                     {"min", param.min},
                     {"max", param.max},
                     {"safety", (param.flags & HSP_P_SAFETY) != 0},
                     {"value", valueOf(session.places[place].model, param, i)},
                     {"whole", param.kind != HSP_REAL},
-                    {"doc", param.doc}});
+                    {"doc", host::textOf(param.doc)}});
   }
   return live;
 }
@@ -178,7 +179,8 @@ Result<std::string> valuesAnswer(const Session& session, uint32_t place, const s
   Json values = Json::object();
   for (uint32_t i = 0; i < plugin.param_count; ++i) {
     const hsp_param& param = paramAt(plugin, i);
-    if (parameter == param.id) return text({{"ok", true}, {"value", valueJson(model, param, i)}, {"unit", param.unit}});
+    if (parameter == param.id)
+      return text({{"ok", true}, {"value", valueJson(model, param, i)}, {"unit", host::textOf(param.unit)}});
     values[param.id] = valueJson(model, param, i);
   }
   if (parameter.empty()) return text({{"ok", true}, {"values", values}});

@@ -39,13 +39,11 @@ bool allFinite(const float* numbers, std::size_t count) {
 
 /// @param tolerance as asked for; afterwards as it was taken
 Result<hsp_mesh> cut(const host::ShapeInstance& shape, double& tolerance) {
-  const hsp_ext_geometry* geometry = shape.geometry();
-  if (geometry == nullptr) return Error{"the model has no triangles to draw"};
+  if (shape.geometry() == nullptr) return Error{"the model has no triangles to draw"};
   const double size = shape.report().size_m;
   if (!(tolerance > 0) && shape.contour() == nullptr) tolerance = size > 0 ? kChordShare * size : kDefaultChord;
   hsp_mesh mesh{};
-  mesh.struct_size = sizeof mesh;
-  if (geometry->tessellate(shape.handle(), tolerance, &mesh) < 0)
+  if (shape.tessellate(tolerance, mesh) < 0)
     return Error{fmt::format("the model cannot be cut into triangles within {:g} m", tolerance)};
   return mesh;
 }

@@ -11,8 +11,11 @@
 #include <nlohmann/json.hpp>
 
 #include "document/suggestion.hpp"
+#include "host/class_table.hpp"
 #include "record/dump_folder.hpp"
+#include "session/foreign_files.hpp"
 #include "session/geometry_answer.hpp"
+#include "watch/quarantine.hpp"
 
 namespace hapticd::servo {
 
@@ -141,17 +144,17 @@ Result<std::string> RequestHandler::obey(const control::Peer& peer, const Reques
     case Request::Kind::kSet:
       return plain(set(request));
     case Request::Kind::kAdd:
-      return add(request);
+      return add(peer, request);
     case Request::Kind::kRemove: {
       const auto place = placeOf(request.model);
       return plain(place ? release(*place) : Result<void>(Error{place.error()}));
     }
     case Request::Kind::kReload:
-      return reload(request.file.empty() ? scene_file_ : request.file);
+      return reload(peer, request.file.empty() ? scene_file_ : request.file);
     case Request::Kind::kHold:
-      return plain(arms(request.device, Order::Kind::kHold));
+      return hold(request.device, code_);
     case Request::Kind::kClear:
-      return plain(arms(request.device, Order::Kind::kClear));
+      return plain(clear(peer, request.device));
     case Request::Kind::kDump: {
       auto file = dump("asked for");
       if (!file) return Error{file.error()};
@@ -228,7 +231,7 @@ Result<void> RequestHandler::set(const Request& request) {
   const bool whole = param->kind == HSP_REAL || std::floor(request.value) == request.value;
   if (!(request.value >= param->min && request.value <= param->max) || !whole)
     return refuse("out_of_range", fmt::format("{}: {:g} is out of range, expected {:g} to {:g} {}", what, request.value,
-                                              param->min, param->max, param->unit));
+                                              param->min, param->max, host::textOf(param->unit)));
   if ((param->flags & HSP_P_SAFETY) != 0 && !request.consent)
     return refuse("consent", what +
                                  ": a hand may feel this change suddenly, so the person who holds the arm must agree\n "
@@ -260,22 +263,39 @@ Result<std::string> RequestHandler::move(const Request& request) {
   return text({{"ok", true}, {"seconds", runner_.world().core().models()[*place].glide.seconds()}});
 }
 
-Result<void> RequestHandler::arms(const std::string& device, Order::Kind kind) {
+/// A hold that came while this waited for its turn is the newer wish.
+Result<void> RequestHandler::clear(const control::Peer& peer, const std::string& device) {
+  if (peer.asked != 0 && peer.asked < held_at_.load())
+    return refuse("held", "a hold came after this request\n  fix: ask again if the force shall come back");
   const auto& devices = runner_.scene().devices;
   bool found = false;
   for (uint32_t i = 0; i < devices.size(); ++i) {
     if (!device.empty() && devices[i].name != device) continue;
     found = true;
     Order order;
-    order.kind = kind;
+    order.kind = Order::Kind::kClear;
     order.target = i;
     if (auto given = give(order); !given) return given;
   }
   return found ? Result<void>() : refuse("unknown", "there is no device \"" + device.substr(0, 100) + "\"");
 }
 
-Result<std::string> RequestHandler::add(const Request& request) {
-  auto scene = load_(request.file);
+/// What is wrong with a scene quotes it, so a program of another user hears of that only if it may read the files too.
+Result<scene::Scene> RequestHandler::loadFor(const control::Peer& peer, const std::string& file) {
+  const bool foreign = isForeign(peer) && file != scene_file_;
+  if (foreign)
+    if (auto open = readableByAll({file}); !open) return refuse("forbidden", open.error());
+  auto scene = load_(file);
+  if (!foreign) return scene;
+  if (!scene) return refuse("failed", file + ": cannot be used\n  fix: hapticd check tells why");
+  std::vector<std::string> files = filesOf(scene->models);
+  files.push_back(file);
+  if (auto open = readableByAll(files); !open) return refuse("forbidden", open.error());
+  return scene;
+}
+
+Result<std::string> RequestHandler::add(const control::Peer& peer, const Request& request) {
+  auto scene = loadFor(peer, request.file);
   if (!scene) return Error{scene.error()};
   std::vector<scene::Model> models;
   for (const scene::Model& model : scene->models)
@@ -287,6 +307,18 @@ Result<std::string> RequestHandler::add(const Request& request) {
   return text({{"ok", true}, {"models", models.size()}});
 }
 
+/// A plugin that ended a run is kept out of this one too.
+Result<void> RequestHandler::refuseQuarantined(const std::vector<scene::Model>& models) const {
+  if (runner_.stateDir().empty()) return {};
+  for (const watch::QuarantinedPlugin& entry : watch::quarantined(runner_.stateDir()))
+    for (const scene::Model& model : models)
+      if (model.plugin == entry.plugin)
+        return refuse("quarantined", "model \"" + model.name + "\": plugin '" + entry.plugin +
+                                         "' ended an earlier run by " + entry.reason +
+                                         "\n  fix: repair it, then: hapticd plugin clear " + entry.plugin);
+  return {};
+}
+
 /// All of them or none: everything that can fail is done before the first is given to the servo.
 Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
   code_ = "failed";  // that no model of these names was found is as it should be
@@ -295,6 +327,7 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
     if (!places_[i].taken && runner_.world().shapes()[i] == nullptr) empty.push_back(i);
   if (empty.size() < models.size())
     return refuse("too_many", fmt::format("{} more models can be added, not {}", empty.size(), models.size()));
+  if (auto trusted = refuseQuarantined(models); !trusted) return trusted;
   std::vector<std::unique_ptr<host::ShapeInstance>> shapes;
   for (const scene::Model& model : models) {
     auto shape = runner_.world().prepare(model, log_);
@@ -333,8 +366,8 @@ Result<void> RequestHandler::release(uint32_t place) {
   return {};
 }
 
-Result<std::string> RequestHandler::reload(const std::string& file) {
-  auto scene = load_(file);
+Result<std::string> RequestHandler::reload(const control::Peer& peer, const std::string& file) {
+  auto scene = loadFor(peer, file);
   if (!scene) return Error{scene.error()};
   if (!sameDevices(*scene, runner_.scene()))
     return Error{file +

@@ -2,8 +2,10 @@
 /// Carries out requests from the control socket: looks up, prepares on its own thread, gives orders to the servo, waits
 /// until they are obeyed. Nothing here runs in the servo thread.
 #pragma once
+#include <atomic>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,9 @@ class RequestHandler {
 
   /// [any] One thread at a time. A line of JSON for a line of JSON.
   control::Reply answer(const control::Peer& peer, const std::string& line);
+  /// [any] Any thread, at any time: holds arms or ends the run at once, behind no other request.
+  /// @return the answer; nothing: the line is no such request
+  std::optional<control::Reply> urgent(const control::Peer& peer, const std::string& line);
   /// [any] The same thread. What the peer's connection holds.
   control::Standing standing(const control::Peer& peer) const { return {stays(peer), listeners_.count(peer.id) > 0}; }
   /// [any] The same thread. Events for one that subscribed, a line each; "": none.
@@ -60,11 +65,14 @@ class RequestHandler {
   Result<void> able(const std::string& model, bool enabled);
   Result<void> set(const control::Request& request);
   Result<std::string> move(const control::Request& request);
-  Result<void> arms(const std::string& device, Order::Kind kind);
-  Result<std::string> add(const control::Request& request);
+  Result<void> clear(const control::Peer& peer, const std::string& device);
+  Result<std::string> hold(const std::string& device, const char*& code);
+  Result<scene::Scene> loadFor(const control::Peer& peer, const std::string& file);
+  Result<std::string> add(const control::Peer& peer, const control::Request& request);
+  Result<void> refuseQuarantined(const std::vector<scene::Model>& models) const;
   Result<void> adopt(const std::vector<scene::Model>& models);
   Result<void> release(uint32_t place);
-  Result<std::string> reload(const std::string& file);
+  Result<std::string> reload(const control::Peer& peer, const std::string& file);
   void sweep();
 
   Runner& runner_;
@@ -76,6 +84,7 @@ class RequestHandler {
   uint64_t given_ = 0;
   Leads leads_;
   std::map<uint64_t, uint64_t> listeners_;  ///< by peer: the next event
+  std::atomic<Nanoseconds> held_at_{0};     ///< CLOCK_MONOTONIC of the last hold
   Descriptor attached_;                     ///< to the answer that is being made
   mutable const char* code_ = "failed";     ///< of its error
 };

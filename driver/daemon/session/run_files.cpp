@@ -125,6 +125,7 @@ void RunFiles::serve(Runner& runner, const std::string& device_file, host::Catal
   service.answer = [this](const control::Peer& peer, const std::string& line) { return handler_->answer(peer, line); };
   service.standing = [this](const control::Peer& peer) { return handler_->standing(peer); };
   service.news = [this](const control::Peer& peer) { return handler_->news(peer); };
+  service.urgent = [this](const control::Peer& peer, const std::string& line) { return handler_->urgent(peer, line); };
   service.left = [this](const control::Peer& peer) { handler_->left(peer); };
   server_->start(std::move(service));
 }

@@ -83,6 +83,13 @@ std::string noFifo(int priority, const std::error_code& code, bool hardware) {
          "  fix: sudo usermod -aG haptic $USER, log in again (limits: rtprio 80, memlock 524288)";
 }
 
+/// Whose code a thread is in that the end of the run waits for.
+const Owner* keepsTheEnd() {
+  for (const Worker worker : {Worker::kServo, Worker::kMain, Worker::kSearch, Worker::kControl})
+    if (const Owner* owner = calledBy(worker)) return owner;
+  return nullptr;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<World>> Runner::buildWorld(const scene::Scene& scene, const RunOptions& options,
@@ -164,49 +171,67 @@ Result<void> Runner::openArms(const host::Services::Log& log) {
   return {};
 }
 
-Result<void> Runner::run(const std::function<void(const Runner&)>& every) {
+Result<void> Runner::run(const std::function<void(const Runner&)>& every, const std::function<void()>& ended) {
+  if (needsGuard()) startGuard();
   const Nanoseconds now = clock_->now();
   for (const auto& arm : arms_)
     if (auto started = arm->start(now, scene_.servo.gravity); !started) return started;
   Result<void> done;
   if (recorder_)
     if (const auto code = recorder_->start()) return Error{"cannot start the recording thread: " + code.message()};
-  const Nanoseconds begun = monotonicNow();
-  WatchedServo watched(*loop_, *world_, arms_, *telemetry_);
+  const Working working(Worker::kMain);
+  WatchedServo watched(*loop_, arms_, *telemetry_);
   const CrashGuard crash(watched, options_.state_dir);
   os::prepareSignalStack();  // this thread may search, which runs plugins
   if (options_.virtual_time) {
+    const Nanoseconds begun = monotonicNow();
     loop_->run();
+    wall_time_ = monotonicNow() - begun;
+    stopArms();
+    ended();
   } else {
-    done = runReal(watched, every);
+    done = runReal(watched, every, ended);
+    stopArms();  // again where it failed
   }
-  wall_time_ = monotonicNow() - begun;
+  guard_.reset();
   resident_bytes_ = os::residentBytes();
-  for (const auto& arm : arms_) arm->stop();
   if (recorder_)
     if (auto recorded = recorder_->finish(); !recorded && done) done = recorded;
   return done;
 }
 
-Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every) {
+void Runner::stopArms() {
+  for (const auto& arm : arms_) arm->stop();
+}
+
+Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every,
+                             const std::function<void()>& ended) {
+  const Nanoseconds begun = monotonicNow();
   sim::ProximityThread proximity(world_->proximity(), [this] { return loop_->wantsSearch(); });
   if (const auto code = proximity.start()) return Error{"cannot start the proximity thread: " + code.message()};
   lockMemory();
   const os::DmaLatencyHold awake;
   std::atomic<bool> ready{false};
-  watch::Watchdog watchdog(watched, [] { watch::dieOf("a step that did not come back"); });
+  const bool may_lag = mayLag();
+  const auto hung = [&watched] { watch::dieOf("a step that did not come back", watched.inServo()); };
+  watch::Watchdog watchdog(watched, hung,
+                           may_lag ? watch::Watchdog::kMissedInVirtualMachine : watch::Watchdog::kMissedAfter);
+  watchdog.onLateEnd([] { watch::endAnyway(keepsTheEnd()); });
   if (const auto code = watchdog.start(options_.priority + 1))
     return Error{"cannot start the watchdog thread: " + code.message()};
   std::vector<std::string> refused;  // the servo thread's until `ready`, then this thread's
   const bool anyhow = onlySimulated() || options_.allow_non_rt, locked = warnings_.empty();
+  if (guard_) tellGuard();
   os::Thread servo;
   const auto code = servo.start("hapticd-servo", [this, &ready, &refused, anyhow, locked] {
+    const Working servo_works(Worker::kServo);
     host::Services::markServoThread();
     refused = enterRealTime();
     os::prepareSignalStack();
     os::prefaultStack();
     const bool runs = anyhow || (locked && refused.empty());
     ready = true;
+    if (guard_ && runs) guard_->arm(true);
     if (runs) loop_->run();
   });
   if (code) return Error{"cannot start the servo thread: " + code.message() + "\n  " + os::realTimeRights()};
@@ -226,13 +251,19 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
       every(*this);
     }
     clock.waitUntil(clock.now() + proximity.turn(kStatusPeriod));
+    if (guard_) tellGuard();
+    if (suspend_) stopProcess();
   }
   watch::notify("STOPPING=1");
   servo.join();
-  watchdog.stop();
+  wall_time_ = monotonicNow() - begun;
+  stopArms();
+  if (guard_) guard_->arm(false);
   proximity.stop();
   host::Services::passOn(log::write);
   event_log_->tell(*telemetry_->flight());
+  ended();
+  watchdog.stop();
   if (!loop_->finished()) return Error{warnings_.back() + "\n  forces stay off (--allow-non-rt allows them)"};
   return {};
 }
@@ -242,6 +273,58 @@ void Runner::openEventLog() {
   for (const scene::Device& device : scene_.devices) devices.push_back(device.name);
   event_log_ = std::make_unique<EventLog>(world_->places(), std::move(devices), arms_);
   for (uint32_t place = 0; place < scene_.models.size(); ++place) event_log_->name(place, scene_.models[place].name);
+}
+
+/// Without real-time rights, and where processors are paused one by one, ticks are late for no fault.
+bool Runner::mayLag() const {
+  return options_.allow_non_rt || os::inVirtualMachine();
+}
+
+/// An arm whose hardware does not switch itself off, and which another process can switch off.
+bool Runner::needsGuard() const {
+  if (options_.virtual_time) return false;
+  return std::any_of(arms_.begin(), arms_.end(), [](const auto& arm) {
+    return !arm->simulated() && (arm->info().capabilities & HDV_C_WATCHDOG) == 0 && arm->device().silenceable();
+  });
+}
+
+void Runner::startGuard() {
+  constexpr Nanoseconds kAfterTheWatchdog = 2;  // whose cut comes first
+  const Nanoseconds patience =
+      kAfterTheWatchdog * (mayLag() ? watch::Watchdog::kMissedInVirtualMachine : watch::Watchdog::kMissedAfter);
+  auto guard = watch::GuardProcess::start(options_.priority + 2, patience);
+  if (!guard) return warnings_.push_back(guard.error());
+  guard_ = std::move(*guard);
+  loop_->beatOn(guard_->ticks());
+}
+
+/// Arms come and go: each has another way in when it was found anew.
+void Runner::tellGuard() {
+  for (uint32_t i = 0; i < arms_.size(); ++i) {
+    hdv_silence how{};
+    const bool there = !arms_[i]->simulated() && arms_[i]->device().silence(how);
+    guard_->tell(i, there ? &how : nullptr);
+  }
+  if (loop_->ticks() > 0 && !loop_->finished()) guard_->arm(true);
+}
+
+void Runner::suspend() noexcept {
+  loop_->hold(UINT64_MAX);
+  suspend_ = true;
+}
+
+/// Once nothing is felt any more, and the last command has left.
+void Runner::stopProcess() {
+  constexpr Nanoseconds kMostPatience = 1'000'000'000, kLastCommand = 20'000'000;
+  RealClock clock(0);
+  const Nanoseconds until = clock.now() + kMostPatience;
+  while (!loop_->finished() && !loop_->silent() && clock.now() < until) clock.waitUntil(clock.now() + kReadyPoll);
+  clock.waitUntil(clock.now() + kLastCommand);
+  suspend_ = false;
+  if (guard_) guard_->arm(false);
+  log::write(HSP_LOG_WARNING, "", "the process stops; forces are off");
+  os::suspendProcess();
+  log::write(HSP_LOG_WARNING, "", "the process goes on; forces stay off\n  fix: hapticd ctl clear");
 }
 
 void Runner::lockMemory() {

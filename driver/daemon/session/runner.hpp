@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// A whole run of the daemon: threads, real-time rights, the loop, and an orderly end. Called by `hapticd run`.
 #pragma once
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "session/event_log.hpp"
 #include "session/telemetry.hpp"
 #include "session/world.hpp"
+#include "watch/guard_process.hpp"
 #include "watch/watched.hpp"
 
 namespace hapticd::servo {
@@ -43,11 +45,19 @@ class Runner {
   static Result<std::unique_ptr<Runner>> prepare(const scene::Scene& scene, const RunOptions& options,
                                                  std::unique_ptr<World> world, const host::Services::Log& log);
 
-  /// [main] Runs to the end; `every` is called about five times a second from this thread.
-  Result<void> run(const std::function<void(const Runner&)>& every);
+  /// [main] Runs to the end; `every` is called about five times a second from this thread, and `ended` once the motors
+  /// are off. What keeps `ended` for longer than a second after a stop ends the process.
+  Result<void> run(const std::function<void(const Runner&)>& every, const std::function<void()>& ended = [] {});
 
   /// [any] Asks for an end: forces ramp to zero first. Async-signal-safe.
   void stop() noexcept { loop_->stop(); }
+
+  /// [any] Ramps the forces of these arms to zero now (see Loop::hold). Async-signal-safe.
+  void hold(uint64_t arms) noexcept { loop_->hold(arms); }
+
+  /// [any] Ramps forces to zero, then stops the process until it is continued (Ctrl-Z). Forces stay off after it until
+  /// they are cleared. Async-signal-safe.
+  void suspend() noexcept;
 
   World& world() { return *world_; }
   const World& world() const { return *world_; }
@@ -58,6 +68,8 @@ class Runner {
   /// [any] The same thread: a model takes a place; "": it has left.
   void nameModel(uint32_t place, const std::string& name, const std::string& plugin);
 
+  /// Folder of what a crash leaves behind, and of the quarantine; "": none.
+  const std::string& stateDir() const { return options_.state_dir; }
   bool virtualTime() const { return options_.virtual_time; }
   const Telemetry& telemetry() const { return *telemetry_; }
   const Loop& loop() const { return *loop_; }
@@ -83,7 +95,14 @@ class Runner {
   Runner(const scene::Scene& scene, const RunOptions& options) : scene_(scene), options_(options) {}
   Result<void> openBlackBox(const LoopSettings& settings);
   Result<void> openArms(const host::Services::Log& log);
-  Result<void> runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every);
+  Result<void> runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every,
+                       const std::function<void()>& ended);
+  void stopArms();
+  void stopProcess();
+  bool mayLag() const;
+  bool needsGuard() const;
+  void startGuard();
+  void tellGuard();
   void openEventLog();
   void lockMemory();
   std::vector<std::string> enterRealTime() const;  ///< servo thread. @return what was refused
@@ -98,6 +117,8 @@ class Runner {
   std::unique_ptr<Clock> clock_;
   std::unique_ptr<Loop> loop_;
   std::unique_ptr<record::Recorder> recorder_;
+  std::unique_ptr<watch::GuardProcess> guard_;  ///< nullptr: no arm needs one, or can be switched off from outside
+  std::atomic<bool> suspend_{false};
   std::vector<std::string> warnings_;
   Nanoseconds wall_time_ = 0;
   size_t resident_bytes_ = 0;

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "session/watched_servo.hpp"
 
-#include "base/os.hpp"
+#include <algorithm>
 
 namespace hapticd::servo {
 
-WatchedServo::WatchedServo(const Loop& loop, World& world, std::vector<std::unique_ptr<Arm>>& arms,
-                           const Telemetry& telemetry)
-    : loop_(loop), world_(world), arms_(arms), telemetry_(telemetry) {
+WatchedServo::WatchedServo(Loop& loop, std::vector<std::unique_ptr<Arm>>& arms, const Telemetry& telemetry)
+    : loop_(loop), arms_(arms), telemetry_(telemetry) {
   for (const auto& arm : arms_) simulated_ = simulated_ && arm->simulated();
 }
 
@@ -15,22 +14,8 @@ void WatchedServo::cut(double stuck_for) noexcept {
   for (const auto& arm : arms_) arm->cut(stuck_for);
 }
 
-const host::ShapeInstance* WatchedServo::culprit() const noexcept {
-  // A search that crashes does so in its own thread; whoever else asks means the servo's.
-  const bool search = os::threadId() == world_.proximity().thread() && world_.proximity().searching() >= 0;
-  const int index = search ? world_.proximity().searching() : world_.core().stepping();
-  const auto models = world_.core().models();
-  return index >= 0 && static_cast<size_t>(index) < models.size() ? models[static_cast<size_t>(index)].shape : nullptr;
-}
-
-const char* WatchedServo::plugin() const noexcept {
-  const host::ShapeInstance* shape = culprit();
-  return shape != nullptr ? shape->description().name : nullptr;
-}
-
-const char* WatchedServo::model() const noexcept {
-  const host::ShapeInstance* shape = culprit();
-  return shape != nullptr ? shape->name().c_str() : nullptr;
+bool WatchedServo::cutLeft() const noexcept {
+  return std::all_of(arms_.begin(), arms_.end(), [](const auto& arm) { return arm->cutLeft(); });
 }
 
 const void* WatchedServo::blackBox() const noexcept {

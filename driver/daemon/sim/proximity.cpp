@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "base/os.hpp"
-
 namespace hapticd::sim {
 
 using link::ActivationRecord;
@@ -16,18 +14,17 @@ Proximity::Proximity(const std::vector<host::ShapeInstance*>& models, const std:
 }
 
 void Proximity::addModel(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count) {
-  const hsp_ext_surfaces* surfaces = shape.surfaces();
-  if (surfaces == nullptr) return;
-  Model model{place, shape.handle(), surfaces, shape.report().locked_bytes, {}, {}, false, {}, {}, {}, 0};
-  if (const hsp_ext_geometry* geometry = shape.geometry())
-    model.has_box = geometry->bounds(shape.handle(), model.box_min.data(), model.box_max.data()) == HSP_OK;
+  if (shape.surfaces() == nullptr) return;
+  const uint32_t surfaces = shape.surfaceCount();
+  Model model{place, &shape, surfaces, shape.report().locked_bytes, {}, {}, false, {}, {}, {}, 0};
+  model.has_box = shape.bounds(model.box_min.data(), model.box_max.data());
   model.position = Eigen::Vector3d(pose.position);
   const double* q = pose.orientation;
   model.orientation = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
-  model.active.assign(size_t{probe_count} * surfaces->surface_count, 0);
+  model.active.assign(size_t{probe_count} * surfaces, 0);
   constexpr uint32_t kRivals = 32;  // a plugin may offer several feet on a surface, after one on each
-  found_.resize(std::max<size_t>(found_.size(), surfaces->surface_count + kRivals));
-  seen_.resize(std::max<size_t>(seen_.size(), surfaces->surface_count));
+  found_.resize(std::max<size_t>(found_.size(), size_t{surfaces} + kRivals));
+  seen_.resize(std::max<size_t>(seen_.size(), surfaces));
   if (of_scene_.size() <= place) of_scene_.resize(place + 1, UINT32_MAX);
   const auto gone = std::find_if(models_.begin(), models_.end(), [](const Model& m) { return m.index == UINT32_MAX; });
   of_scene_[place] = static_cast<uint32_t>(gone - models_.begin());
@@ -62,7 +59,7 @@ Searching Proximity::amount() const {
   uint64_t bytes = 0;
   for (const Model& model : models_) {
     if (model.index == UINT32_MAX) continue;
-    surfaces += model.surfaces->surface_count;
+    surfaces += model.surfaces;
     bytes += model.bytes;
   }
   if (surfaces == 0) return Searching::kNone;
@@ -70,7 +67,6 @@ Searching Proximity::amount() const {
 }
 
 void Proximity::search() {
-  thread_.store(os::threadId(), std::memory_order_relaxed);
   const std::lock_guard lock(mutex_);
   receiveTransforms();
   link_.arm.update();
@@ -101,15 +97,12 @@ void Proximity::searchModel(Model& model, uint32_t probe, const Eigen::Vector3d&
   const bool may_be_near = !model.has_box || to_box.norm() <= reach;
   if (!may_be_near && model.active_count == 0) return;
 
-  const uint32_t count = model.surfaces->surface_count;
+  const uint32_t count = model.surfaces;
   std::fill_n(seen_.begin(), count, uint8_t{0});
-  searching_.store(static_cast<int>(model.index), std::memory_order_relaxed);
-  const int64_t found =
-      may_be_near ? model.surfaces->nearby(model.shape, p_model.data(), reach, found_.data(), found_.size()) : 0;
-  searching_.store(-1, std::memory_order_relaxed);
+  const size_t found = may_be_near ? model.shape->nearby(p_model.data(), reach, found_) : 0;
   uint8_t* active = &model.active[size_t{probe} * count];
-  for (int64_t i = 0; i < std::min(found, static_cast<int64_t>(found_.size())); ++i) {
-    hsp_near near = found_[static_cast<size_t>(i)];
+  for (size_t i = 0; i < found; ++i) {
+    hsp_near near = found_[i];
     near.probe = probe;
     seen_[near.surface] = 1;
     if (active[near.surface] != 0) {
@@ -123,7 +116,7 @@ void Proximity::searchModel(Model& model, uint32_t probe, const Eigen::Vector3d&
 }
 
 void Proximity::stopLeft(Model& model, uint32_t probe) {
-  const uint32_t count = model.surfaces->surface_count;
+  const uint32_t count = model.surfaces;
   uint8_t* active = &model.active[size_t{probe} * count];
   for (uint32_t surface = 0; surface < count && model.active_count > 0; ++surface) {
     if (active[surface] == 0 || seen_[surface] != 0) continue;

@@ -3,7 +3,6 @@
 /// the models' transforms. (Thompson et al. 1999, section 4.2: 10 cm on, 5 cm of hysteresis, bounding boxes first.)
 #pragma once
 #include <Eigen/Geometry>
-#include <atomic>
 #include <cstdint>
 #include <mutex>
 #include <vector>
@@ -47,17 +46,12 @@ class Proximity {
   /// [any] What they amount to; changes as models come and leave.
   Searching amount() const;
 
-  /// [any] The model of the scene that is being searched; -1: none. For naming a plugin that crashes.
-  int searching() const noexcept { return searching_.load(std::memory_order_relaxed); }
-  /// [any] The thread of the last search.
-  int thread() const noexcept { return thread_.load(std::memory_order_relaxed); }
-
  private:
   mutable std::mutex mutex_;  ///< models come and leave between two searches
   struct Model {
     uint32_t index;  ///< in the scene; UINT32_MAX: it has left
-    const hsp_shape* shape;
-    const hsp_ext_surfaces* surfaces;
+    const host::ShapeInstance* shape;
+    uint32_t surfaces;                 ///< how many it has
     uint64_t bytes;                    ///< of the shape
     Eigen::Vector3d box_min, box_max;  ///< model frame; empty when unknown: always searched
     bool has_box;
@@ -77,7 +71,6 @@ class Proximity {
   link::Link& link_;
   std::vector<Model> models_;
   std::vector<uint32_t> of_scene_;  ///< scene index to index in models_
-  std::atomic<int> searching_{-1}, thread_{-1};
   std::vector<hsp_near> found_;
   std::vector<uint8_t> seen_;
 };

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <functional>
 
+#include "base/blame.hpp"
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "sim/proximity.hpp"
@@ -50,6 +51,7 @@ class ProximityThread {
 
   void loop() {
     constexpr Nanoseconds kPoll = 1'000'000;  // an urgent search waits no longer than this
+    const Working working(Worker::kSearch);
     RealClock clock(0);
     for (Nanoseconds next = clock.now(); !stop_;) {
       const Nanoseconds now = clock.waitUntil(clock.now() + kPoll);

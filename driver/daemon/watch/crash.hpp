@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// The end of a daemon whose plugin crashed or never came back: motors off first, then the black box with the plugin's
-/// name, then a note that keeps the plugin out of the next start, then the exit.
+/// The end of a daemon whose plugin crashed, called exit(), or never came back: motors off first, then the black box
+/// with the plugin's name, then a note that keeps the plugin out of the next start, then the exit.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace hapticd::watch {
 
-/// [main] Handles SIGSEGV, SIGBUS, SIGFPE, SIGILL and SIGXCPU (a servo thread that never sleeps) until `forget`.
+/// [main] Handles every signal that ends a process, exit() and quick_exit(), until `forget`. A signal of no fault that
+/// another process sends ends the run in order.
 /// @param dir for the black box and the quarantine file; empty: neither is written
 void guardAgainstCrash(Watched& servo, const std::filesystem::path& dir);
 
@@ -17,6 +18,11 @@ void guardAgainstCrash(Watched& servo, const std::filesystem::path& dir);
 void forgetCrash();
 
 /// [any] What the handler does, async-signal-safe, ended by _exit(1). @param reason such as "Segmentation fault"
-[[noreturn]] void dieOf(const char* reason) noexcept;
+/// @param culprit whose code did it; nullptr: nobody is blamed
+[[noreturn]] void dieOf(const char* reason, const Owner* culprit) noexcept;
+
+/// [any] Ends the process at once, motors off first, where it was told to end and could not: nobody is put in
+/// quarantine. @param keeps whose code keeps it; nullptr: unknown
+[[noreturn]] void endAnyway(const Owner* keeps) noexcept;
 
 }  // namespace hapticd::watch

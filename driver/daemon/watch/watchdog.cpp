@@ -26,35 +26,47 @@ void Watchdog::stop() {
 bool Watchdog::check(Nanoseconds now) noexcept {
   const Nanoseconds way = now - std::exchange(looked_at_, now);
   const Nanoseconds seen = way <= kOnTime ? way : kCheckEvery;
+  watchEnd();
   const uint64_t tick = servo_.ticks();
-  const Nanoseconds begun = servo_.tickBegun();
-  if (begun == 0 || now <= begun) {
-    tick_ = UINT64_MAX;
-    return false;
-  }
-  const Nanoseconds stuck = now - begun;
-  if (tick != tick_) {  // the first look at this tick
-    tick_ = tick;
-    cpu_at_tick_ = servo_.cpuTime();
+  const Nanoseconds begun = servo_.tickBegun(), next = servo_.nextTick();
+  if (begun != 0 && now > begun) return judge({tick, false}, now - begun, seen);
+  // A simulation whose ticks come late hurts nobody.
+  if (begun == 0 && next != 0 && now > next && !servo_.simulated()) return judge({tick, true}, now - next, seen);
+  phase_ = {};
+  return false;
+}
+
+/// A person who asks for the end waits for no plugin that builds a model, or searches on and on.
+void Watchdog::watchEnd() noexcept {
+  if (servo_.stopAsked() != 0 && ++checks_since_stop_ == kEndWithin / kCheckEvery && late_) late_();
+}
+
+/// @param overdue since the tick began, or should have  @param seen of that time since the last look
+bool Watchdog::judge(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcept {
+  if (!(phase == phase_)) {  // the first look at it
+    phase_ = phase;
+    cpu_at_phase_ = servo_.cpuTime();
     counted_ = 0;
   }
-  counted_ = std::min(stuck, counted_ + seen);
-  if (cut_tick_ == tick) {
-    // Counted in looks, not in time: a machine that was asleep comes back to a tick that is still good.
-    if (++checks_since_cut_ == kHungAfter / kCheckEvery) hung_();
+  counted_ = std::min(overdue, counted_ + seen);
+  if (cut_in_ == phase) {
+    // Counted in looks, not in time: a machine that was asleep comes back to a tick that is still good. A servo that
+    // merely gets no processor is no thread that hangs.
+    const bool hangs = !phase.waits || servo_.inServo() != nullptr;
+    if (hangs && ++checks_since_cut_ == kHungAfter / kCheckEvery) hung_();
     return false;
   }
-  if (counted_ <= kStuckAfter || mayBePaused(stuck)) return false;
-  servo_.cut(static_cast<double>(stuck) * kSecondsPerNanosecond);
-  cut_tick_ = tick;
+  if (counted_ <= (phase.waits ? missed_after_ : kStuckAfter) || mayBePaused(phase, overdue)) return false;
+  servo_.cut(static_cast<double>(overdue) * kSecondsPerNanosecond);
+  cut_in_ = phase;
   checks_since_cut_ = 0;
   ++cuts_;
   return true;
 }
 
 /// Where no hand can be hurt, a thread that was merely not scheduled is no fault.
-bool Watchdog::mayBePaused(Nanoseconds stuck) const noexcept {
-  const bool works = servo_.cpuTime() - cpu_at_tick_ + kCheckEvery > kStuckAfter;
+bool Watchdog::mayBePaused(Phase phase, Nanoseconds stuck) const noexcept {
+  const bool works = !phase.waits && servo_.cpuTime() - cpu_at_phase_ + kCheckEvery > kStuckAfter;
   return servo_.simulated() && !works && stuck <= kSimulatedPause;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Watches the servo from a thread above it: a tick that does not end has its motors cut within 5 ms, and a servo that
-/// never comes back ends the process, so that the service manager starts it anew without the plugin.
+/// Watches the servo from a thread above it: a tick that does not end, or does not begin, has its motors cut within
+/// 5 ms, and a servo that never comes back ends the process, so that the service manager starts it anew without the
+/// plugin.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -16,12 +17,19 @@ class Watchdog {
   static constexpr Nanoseconds kCheckEvery = 1'000'000;
   static constexpr Nanoseconds kOnTime = 2 * kCheckEvery;  ///< a longer way between two looks: it was held up itself
   static constexpr Nanoseconds kStuckAfter = 3'000'000;    ///< with the look and the cut itself below 5 ms
-  static constexpr Nanoseconds kHungAfter = 500'000'000;   ///< nothing comes back after that
+  /// The tick to come is so late. A virtual machine has its processors paused one by one.
+  static constexpr Nanoseconds kMissedAfter = 3'000'000, kMissedInVirtualMachine = 50'000'000;
+  static constexpr Nanoseconds kHungAfter = 500'000'000;       ///< nothing comes back after that
+  static constexpr Nanoseconds kEndWithin = 900'000'000;       ///< from the moment that the end was asked for
   static constexpr Nanoseconds kSimulatedPause = 200'000'000;  ///< a busy machine may pause a simulation so long
 
-  /// [main] @param hung what ends the process
-  Watchdog(Watched& servo, std::function<void()> hung) : servo_(servo), hung_(std::move(hung)) {}
+  /// [main] @param hung what ends the process  @param missed_after [ns] that a tick may begin late
+  Watchdog(Watched& servo, std::function<void()> hung, Nanoseconds missed_after = kMissedAfter)
+      : servo_(servo), hung_(std::move(hung)), missed_after_(missed_after) {}
   ~Watchdog() { stop(); }
+
+  /// [main] Before start(): what ends the process where its end was asked for and does not come.
+  void onLateEnd(std::function<void()> late) { late_ = std::move(late); }
 
   /// [main] @param priority SCHED_FIFO, above the servo's; without the right it runs as an ordinary thread
   std::error_code start(int priority);
@@ -36,16 +44,26 @@ class Watchdog {
   uint64_t cuts() const noexcept { return cuts_.load(); }
 
  private:
-  Watched& servo_;
-  std::function<void()> hung_;
-  bool mayBePaused(Nanoseconds stuck) const noexcept;
+  /// What the servo is at: a tick, or the wait for one.
+  struct Phase {
+    uint64_t tick = UINT64_MAX;
+    bool waits = false;
+    bool operator==(const Phase&) const = default;
+  };
+  bool judge(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcept;
+  void watchEnd() noexcept;
+  bool mayBePaused(Phase phase, Nanoseconds stuck) const noexcept;
 
-  uint64_t cut_tick_ = UINT64_MAX;  ///< the tick that was cut, once
-  uint64_t tick_ = UINT64_MAX;
-  Nanoseconds checks_since_cut_ = 0;
-  Nanoseconds cpu_at_tick_ = 0;
+  Watched& servo_;
+  std::function<void()> hung_, late_;
+  Nanoseconds missed_after_;
+
+  Phase cut_in_;  ///< that phase was cut, once
+  Phase phase_;
+  Nanoseconds checks_since_cut_ = 0, checks_since_stop_ = 0;
+  Nanoseconds cpu_at_phase_ = 0;
   Nanoseconds looked_at_ = 0;  ///< the last time
-  Nanoseconds counted_ = 0;    ///< of the tick going on, as far as it was watched
+  Nanoseconds counted_ = 0;    ///< of the phase, as far as it was watched
   std::atomic<uint64_t> cuts_{0};
   std::atomic<bool> stop_{false};
   os::Thread thread_;

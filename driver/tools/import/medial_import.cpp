@@ -61,12 +61,9 @@ Result<std::unique_ptr<host::ShapeInstance>> activated(const char* plugin, const
 }
 
 Result<Triangles> tessellated(host::ShapeInstance& shape, double share) {
-  const hsp_ext_geometry* geometry = shape.geometry();
-  if (geometry == nullptr) return Error{"the model has no triangles"};
+  if (shape.geometry() == nullptr) return Error{"the model has no triangles"};
   hsp_mesh mesh{};
-  mesh.struct_size = sizeof mesh;
-  if (geometry->tessellate(shape.handle(), share * shape.report().size_m, &mesh) < 0)
-    return Error{"the model cannot be cut into triangles"};
+  if (shape.tessellate(share * shape.report().size_m, mesh) < 0) return Error{"the model cannot be cut into triangles"};
   Triangles result;
   for (uint32_t i = 0; i < mesh.vertex_count; ++i)
     result.points.emplace_back(Eigen::Map<const Eigen::Vector3f>(mesh.xyz + 3 * std::size_t{i}).cast<double>());

@@ -11,9 +11,11 @@
 #include <cstring>
 #include <new>
 #include <stdexcept>
+#include <thread>
 
 #include "hapticd/device.hpp"
 #include "hapticd/device_pace.h"
+#include "hapticd/device_silence.h"
 #include "rig_page.hpp"
 
 namespace hapticd::rig {
@@ -29,7 +31,7 @@ struct Rig : Device {
   std::string file;
   std::array<double, 3> at{}, weight{};
   double max_force, rate;
-  bool simulated, cuts, paces;
+  bool simulated, cuts, paces, lazy, guarded;
 
   static constexpr DeviceInfo kInfo{"org.hapticd.test.rig", "rig", "1.0.0", "MIT", "A test arm that logs."};
   static constexpr auto fields() {
@@ -42,6 +44,8 @@ struct Rig : Device {
         F::real("rate", &Rig::rate, "Hz", 1, 1e5, 1000, "Of the samples, where they pace the loop."),
         F::boolean("simulated", &Rig::simulated, false, "It says that no hand can be hurt."),
         F::boolean("cuts", &Rig::cuts, true, "It has the extension hdv.cut."),
+        F::boolean("guarded", &Rig::guarded, true, "Another process can switch it off, where it has a page file."),
+        F::boolean("lazy", &Rig::lazy, false, "A thread of its own carries a cut to the motors, 5 ms later."),
         F::boolean("paces", &Rig::paces, false, "It has the extension hdv.pace.")};
   }
 
@@ -58,7 +62,11 @@ struct Rig : Device {
     if (paces) info.capabilities |= HDV_C_PACING;
     note(kOpened, 0, nullptr);
   }
-  void start(const hdv_start&) { note(kStarted, 0, nullptr); }
+  void start(const hdv_start&) {
+    note(kStarted, 0, nullptr);
+    running_.store(true);
+    if (lazy) carrier_ = std::thread([this] { carryCuts(); });
+  }
 
   hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
     hang(kHangInRead);
@@ -80,19 +88,24 @@ struct Rig : Device {
   hsp_status write(uint64_t now_ns, const hdv_command& command) noexcept HSP_RT {
     if ((page_->wishes.faults.load() & kWriteFails) != 0) return HSP_E_IO;
     if (command.mode == HDV_OFF) cut_.store(false);
-    const bool on = command.mode == HDV_TORQUE && !cut_.load();
+    const bool on = command.mode == HDV_TORQUE && (!cut_.load() || lazy);
     note(kCommand, now_ns, on ? command.torque : nullptr);
     hang(kHangInWrite);
     return HSP_OK;
   }
 
-  void stop() { note(kStopped, 0, nullptr); }
+  void stop() {
+    running_.store(false);
+    if (carrier_.joinable()) carrier_.join();
+    note(kStopped, 0, nullptr);
+  }
   void close() { note(kClosed, 0, nullptr); }
 
   const void* extension(const char* name) {
     if (std::strcmp(name, HDV_EXT_KINEMATICS) == 0) return &kKinematics;
     if (std::strcmp(name, HDV_EXT_CUT) == 0) return cuts ? &kCutting : nullptr;
     if (std::strcmp(name, HDV_EXT_PACE) == 0) return paces ? &kPacing : nullptr;
+    if (std::strcmp(name, HDV_EXT_SILENCE) == 0) return &kSilence;
     return std::strcmp(name, kPageExtension) == 0 ? page_ : nullptr;
   }
 
@@ -109,7 +122,7 @@ struct Rig : Device {
       const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
       if (descriptor >= 0 && ftruncate(descriptor, sizeof(Page)) == 0)
         memory = mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
-      if (descriptor >= 0) ::close(descriptor);
+      descriptor_ = descriptor;
     }
     if (memory == MAP_FAILED) throw std::runtime_error("the page of the rig cannot be mapped");
     page_ = static_cast<Page*>(memory);
@@ -120,7 +133,9 @@ struct Rig : Device {
   }
   void release() {
     if (page_ != nullptr) munmap(page_, sizeof(Page));
+    if (descriptor_ >= 0) ::close(descriptor_);
     page_ = nullptr;
+    descriptor_ = -1;
   }
 
   /// @param torque of the motors from now on; nullptr: none, the motors are free
@@ -140,7 +155,27 @@ struct Rig : Device {
 
   static void cut(hdv_device* device) noexcept HSP_RT {
     of(device).cut_.store(true);
-    of(device).note(kCut, 0, nullptr);
+    if (!of(device).lazy) of(device).note(kCut, 0, nullptr);
+  }
+  static int32_t cutLeft(const hdv_device* device) noexcept HSP_RT {
+    return !of(device).lazy || of(device).carried_.load() ? 1 : 0;
+  }
+  /// Another process writes zeros over what the motors do.
+  static int32_t how(hdv_device* device, hdv_silence* to) {
+    Rig& rig = of(device);
+    if (rig.descriptor_ < 0 || !rig.guarded) return 0;
+    to->kind = HDV_BY_PWRITE;
+    to->fd = rig.descriptor_;
+    to->offset = offsetof(Page, motors);
+    to->size = sizeof(Motors);
+    to->epoch = 1;
+    return 1;
+  }
+  void carryCuts() noexcept {
+    while (running_.load() && !cut_.load()) usleep(200);
+    usleep(5000);
+    if (cut_.load()) note(kCut, 0, nullptr);
+    carried_.store(true);
   }
   static uint64_t wait(hdv_device* device, uint64_t until_ns) noexcept {
     Rig& rig = of(device);
@@ -176,10 +211,14 @@ struct Rig : Device {
   static constexpr hdv_ext_kinematics kKinematics{
       sizeof(hdv_ext_kinematics), 3, &forward, &jacobian, &gravity, &inverse};
   static constexpr hdv_ext_cut kCutting{sizeof(hdv_ext_cut), 0, &cut};
+  static constexpr hdv_ext_silence kSilence{sizeof(hdv_ext_silence), 0, &cutLeft, &how};
   static constexpr hdv_ext_pace kPacing{sizeof(hdv_ext_pace), 0, &wait};
 
   Page* page_ = nullptr;
+  int descriptor_ = -1;           ///< of its file
   std::atomic<bool> cut_{false};  ///< until a write of HDV_OFF
+  std::atomic<bool> running_{false}, carried_{false};
+  std::thread carrier_;
   uint64_t next_ns_ = 0;
 };
 

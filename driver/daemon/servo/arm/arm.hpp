@@ -54,6 +54,8 @@ class Arm {
   /// [any] Motors free at once, while the servo is stuck or dying; async-signal-safe. They stay so until clear().
   /// @param after [s] that the servo was stuck
   void cut(double after) noexcept;
+  /// [any] The last cut has left for the hardware, as far as the module knows; async-signal-safe.
+  bool cutLeft() const noexcept { return device_->cutLeft(); }
   /// [rt] Whether something in the scene can be felt: without it not even the arm's weight is carried.
   void carryWeight(bool wanted) noexcept HSP_RT { weight_.carry(wanted); }
   /// [rt] Clears the latched fault, and a cut, by the user's order.

@@ -83,6 +83,8 @@ void Core::tick(double t, double dt, std::span<const Probe> probes) noexcept HSP
   receiveRecords();
   wants_search_ = false;
   preempted_ = false;
+  cpu_timed_ = suspicious_ > 0;
+  if (suspicious_ > 0) --suspicious_;
   transforms_ = 0;
   budget_left_ns_ = settings_.budget_ns;
   findJumps(dt, probes);
@@ -137,12 +139,11 @@ void Core::receiveRecords() noexcept HSP_RT {
     const link::ActivationRecord& record = received_[received_count_];
     ModelState& model = models_[record.model];
     if (model.shape == nullptr) continue;  // it has left
-    const hsp_ext_surfaces& surfaces = *model.shape->surfaces();
     if (record.order == link::ActivationRecord::Order::kStop) {
-      surfaces.deactivate(model.shape->handle(), record.near.probe, record.near.surface);
+      model.shape->deactivate(record.near.probe, record.near.surface);
       changed |= --model.active_surfaces == 0;
     } else {
-      surfaces.activate(model.shape->handle(), &record.near);
+      model.shape->activate(record.near);
       if (record.order == link::ActivationRecord::Order::kStart) changed |= model.active_surfaces++ == 0;
     }
   }
@@ -198,7 +199,7 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
     outputs_[i] = hsp_contact{};
   }
   hsp_pose pose = model.pose;
-  callShape(model, index, dt, pose);
+  callShape(model, dt, pose);
   const Trouble trouble = judge(model, index, dt, pose);
   const double gain_before = model.guard.gain();
   const double gain = model.guard.gain(trouble == Trouble::kNone && model.enabled, dt);
@@ -221,7 +222,7 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
 }
 
 /// Runs the plugin over inputs_ and outputs_, with the time it takes where that is measured.
-void Core::callShape(ModelState& model, uint32_t index, double dt, hsp_pose& pose) noexcept HSP_RT {
+void Core::callShape(ModelState& model, double dt, hsp_pose& pose) noexcept HSP_RT {
   hsp_step step{};
   step.struct_size = sizeof step;
   step.count = probe_count_;
@@ -240,15 +241,13 @@ void Core::callShape(ModelState& model, uint32_t index, double dt, hsp_pose& pos
   step.change_count = model.change_count;
   model.change_count = 0;
 
-  const Nanoseconds before = settings_.measure ? monotonicNow() : 0;
-  stepping_.store(static_cast<int32_t>(index), std::memory_order_relaxed);
+  const Begun begun = beginCost();
   model.status = model.guard.quarantined() ? HSP_E_STATE : model.shape->step(step);
-  stepping_.store(-1, std::memory_order_relaxed);
   if (model.level > 0) {
     ++model.degraded_ticks;
     if (model.status == HSP_OK) model.status = HSP_DEGRADED;
   }
-  if (settings_.measure) takeCost(model, before);
+  if (settings_.measure) takeCost(model, begun);
 }
 
 /// Whether the answers may be felt; a model that moves itself goes to its new pose.
@@ -313,7 +312,7 @@ void Core::bookContact(const ModelState& model, const Contact& contact, uint32_t
   if (force.isZero(0)) return;
   double recoverable = HUGE_VAL;
   const bool deforms = (model.shape->description().flags & HSP_C_DEFORMS) != 0;
-  const double stored = model.shape->energy() != nullptr ? model.shape->energy()->stored(model.shape->handle()) : 0;
+  const double stored = model.shape->storedEnergy();
   if (contact.traced && (!deforms || model.shape->energy() != nullptr))
     recoverable = std::max(force.norm() * std::max(contact.world.depth_m, 0.0), stored);
   exchanges_[probe].recoverable += std::isfinite(recoverable) ? recoverable : HUGE_VAL;

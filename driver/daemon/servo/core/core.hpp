@@ -61,7 +61,8 @@ struct ModelState {
   double damping = 0;         ///< [N s/m] that it claims
   bool overran = false;       ///< its last step was held against it for the time it took
   bool overran_then = false;  ///< it was in the run of which this is a replay
-  uint64_t step_ns = 0;       ///< CPU time of the last step; 0 when not measured
+  uint64_t step_ns = 0;       ///< time of the last step; 0 when not measured
+  bool cpu_timed = false;     ///< that is the thread's own time: what interrupted it does not count
   // How exactly it answers: lowered while a tick takes too long, see load_shedding.hpp.
   uint32_t level = 0, coarsest = 0;  ///< now, and at most so far
   uint64_t finer_ns = 0;             ///< what a step took before the level was lowered
@@ -133,8 +134,6 @@ class Core {
   std::span<const uint32_t> live() const noexcept { return live_; }
   /// Activation records that the last tick took, for the recording.
   std::span<const link::ActivationRecord> received() const noexcept { return {received_.data(), received_count_}; }
-  /// [any] The model whose plugin runs now; -1: none.
-  int32_t stepping() const noexcept { return stepping_.load(std::memory_order_relaxed); }
   uint32_t probeCount() const noexcept { return probe_count_; }
   /// [rt] Models that are there, felt or not.
   uint32_t present() const noexcept { return present_; }
@@ -148,10 +147,15 @@ class Core {
   void findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT;
   void stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT;
   bool mayRest(const ModelState& model, uint32_t index, double dt) const noexcept HSP_RT;
-  void takeCost(ModelState& model, Nanoseconds begun) noexcept HSP_RT;
+  struct Begun {
+    Nanoseconds wall = 0, cpu = 0;  ///< 0: not taken
+  };
+  Begun beginCost() const noexcept HSP_RT;
+  void takeCost(ModelState& model, const Begun& begun) noexcept HSP_RT;
+  bool excused() noexcept HSP_RT;
   bool setLevel(ModelState& model, uint32_t level) noexcept HSP_RT;
   void fillProbe(const ModelState& model, const Probe& probe, uint32_t index, double t) noexcept HSP_RT;
-  void callShape(ModelState& model, uint32_t index, double dt, hsp_pose& pose) noexcept HSP_RT;
+  void callShape(ModelState& model, double dt, hsp_pose& pose) noexcept HSP_RT;
   Trouble judge(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT;
   void fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP_RT;
   Trouble holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT;
@@ -172,8 +176,7 @@ class Core {
   std::vector<uint32_t> live_;  // models with something to do, in scene order: the sum is always the same
   std::vector<Load> loads_;     // of the models that were stepped
   LoadShedding shedding_;
-  std::vector<Claim> claims_;  // [model * probe_count + probe]
-  std::atomic<int32_t> stepping_{-1};
+  std::vector<Claim> claims_;      // [model * probe_count + probe]
   std::vector<Contact> contacts_;  // [model * probe_count + probe]
   std::vector<hsp_probe> inputs_;  // of the model being stepped
   std::vector<hsp_contact> outputs_;
@@ -192,6 +195,9 @@ class Core {
   uint64_t tick_ = 0;
   uint64_t budget_left_ns_ = 0;
   bool preempted_ = false;  // in this tick, as far as anybody asked
+  // After a tick that was too long the thread's own time is taken, which costs a system call a step.
+  uint32_t suspicious_ = 0;  // ticks for which it still is
+  bool cpu_timed_ = false;   // it was in the last tick
 };
 
 }  // namespace hapticd::servo

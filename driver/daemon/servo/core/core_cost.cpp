@@ -23,15 +23,34 @@ bool Core::mayRest(const ModelState& model, uint32_t index, double dt) const noe
   return true;
 }
 
-void Core::takeCost(ModelState& model, Nanoseconds begun) noexcept HSP_RT {
-  model.step_ns = monotonicNow() - begun;
+Core::Begun Core::beginCost() const noexcept HSP_RT {
+  if (!settings_.measure) return {};
+  return {monotonicNow(), cpu_timed_ ? os::cpuTime(CLOCK_THREAD_CPUTIME_ID) : 0};
+}
+
+void Core::takeCost(ModelState& model, const Begun& begun) noexcept HSP_RT {
+  constexpr uint32_t kSuspicion = 100;  // ticks, as many as a strike counts for
+  model.step_ns = monotonicNow() - begun.wall;
+  model.cpu_timed = begun.cpu != 0;
   if (settings_.evaluation_ns > 0) {
     uint64_t evaluations = 0;
     for (const hsp_contact& out : outputs_) evaluations += out.iterations;
     model.step_ns = static_cast<uint64_t>(settings_.evaluation_ns * static_cast<double>(evaluations));
+  } else if (model.cpu_timed) {
+    model.step_ns = std::min(model.step_ns, os::cpuTime(CLOCK_THREAD_CPUTIME_ID) - begun.cpu);
   }
   // a spent budget stays at 1: the next shape may still answer, but must be quick
   if (budget_left_ns_ > 0) budget_left_ns_ = budget_left_ns_ > model.step_ns ? budget_left_ns_ - model.step_ns : 1;
+  if (budget_left_ns_ == 1 && settings_.evaluation_ns == 0) suspicious_ = kSuspicion;
+}
+
+/// A tick that took long because the kernel interrupted it is no fault of a shape. Where the thread's own time was
+/// taken, an interruption is not in it: it excuses nothing, or a watchdog on the same processor would excuse every
+/// step.
+bool Core::excused() noexcept HSP_RT {
+  if (settings_.evaluation_ns > 0 || cpu_timed_) return false;
+  preempted_ |= os::wasPreempted();
+  return preempted_;
 }
 
 std::span<const LoadShedding::Change> Core::shedLoad() noexcept HSP_RT {
@@ -43,11 +62,11 @@ std::span<const LoadShedding::Change> Core::shedLoad() noexcept HSP_RT {
     double importance = -HUGE_VAL;
     for (uint32_t i = 0; i < probe_count_; ++i)
       if (contact(index, i).traced) importance = std::max(importance, contact(index, i).world.depth_m);
-    loads_.push_back({index, model.level, model.step_ns, model.finer_ns, importance});  // reserved: never allocates
+    loads_.push_back(
+        {index, model.level, model.step_ns, model.finer_ns, importance, model.cpu_timed});  // reserved: never allocates
     spent += model.step_ns;
   }
-  // A tick that the kernel interrupted took long for no fault of a shape.
-  if (spent > settings_.budget_ns && settings_.evaluation_ns == 0 && (os::wasPreempted() || preempted_)) return {};
+  if (spent > settings_.budget_ns && excused()) return {};
   const auto changes = shedding_.judge(loads_, settings_.budget_ns);
   for (const LoadShedding::Change& change : changes) setLevel(models_[change.model], change.level);
   return changes;
@@ -67,8 +86,7 @@ Trouble Core::holdToTime(ModelState& model) noexcept HSP_RT {
   const bool overran = settings_.budget_ns > 0 && settings_.measure && model.step_ns > settings_.budget_ns;
   const bool may_hasten = settings_.evaluation_ns > 0 || model.level < Accuracy::kCoarsest;
   if (!overran || may_hasten) return Trouble::kNone;
-  preempted_ |= os::wasPreempted();
-  if (preempted_) return Trouble::kNone;
+  if (excused()) return Trouble::kNone;
   model.overran = true;
   return model.guard.strike(Trouble::kOverrun, kOverruns);
 }

@@ -9,6 +9,10 @@ namespace {
 
 constexpr uint32_t kWeight = 4;  ///< of a tick that was too long against one that was not: every fifth is forgiven
 
+bool lowers(const Load& load) noexcept HSP_RT {
+  return load.step_ns > 0 && load.level < Accuracy::kCoarsest;
+}
+
 }  // namespace
 
 std::span<const LoadShedding::Change> LoadShedding::judge(std::span<const Load> loads,
@@ -36,7 +40,13 @@ std::span<const LoadShedding::Change> LoadShedding::judge(std::span<const Load> 
 
 /// What is touched stays as it is through a tick that was merely interrupted.
 bool LoadShedding::mayLower(const Load& load) const noexcept HSP_RT {
-  return load.step_ns > 0 && load.level < Accuracy::kCoarsest && (load.importance <= 0 || over_ >= kWeight * kLasting);
+  return lowers(load) && (load.importance <= 0 || over_ >= kWeight * kLasting);
+}
+
+/// A shape in contact that takes too long by itself, and did so before: nothing interrupted it, so nothing is waited
+/// for.
+bool LoadShedding::isProven(const Load& load) const noexcept HSP_RT {
+  return load.proven && lowers(load) && over_ >= 2 * kWeight;
 }
 
 bool LoadShedding::changed(uint32_t model) const noexcept HSP_RT {
@@ -47,7 +57,7 @@ bool LoadShedding::changed(uint32_t model) const noexcept HSP_RT {
 /// The least important first; a shape that takes more than all may together goes down at once.
 void LoadShedding::lower(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT {
   for (const Load& load : loads)
-    if (load.step_ns > budget_ns && mayLower(load) && count_ < kMostChanges)
+    if (load.step_ns > budget_ns && (mayLower(load) || isProven(load)) && count_ < kMostChanges)
       changes_[count_++] = {load.model, Accuracy::kCoarsest};
   while (count_ < kMostChanges && spent > budget_ns) {
     const Load* least = nullptr;

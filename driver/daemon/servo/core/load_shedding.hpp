@@ -29,6 +29,7 @@ struct Load {
   uint64_t step_ns = 0;   ///< of the last tick
   uint64_t finer_ns = 0;  ///< what it took one level finer, when it was last there
   double importance = 0;  ///< [m] depth in contact, minus the distance otherwise; -infinity: not traced
+  bool proven = false;    ///< it took that time itself: no interruption is in it
 };
 
 /// Decides for the next tick from what the last one took. Costs are an argument: measured ones in a run, counted ones
@@ -52,6 +53,7 @@ class LoadShedding {
   void lower(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT;
   void raise(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT;
   bool mayLower(const Load& load) const noexcept HSP_RT;
+  bool isProven(const Load& load) const noexcept HSP_RT;
   bool changed(uint32_t model) const noexcept HSP_RT;
 
   std::array<Change, kMostChanges> changes_{};

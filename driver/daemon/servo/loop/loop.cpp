@@ -60,12 +60,17 @@ Loop::Loop(Core& core, Lockstep lockstep, Arms& arms, Clock& clock, const LoopSe
   ramp_ticks_ = static_cast<uint64_t>(std::ceil(ramp * 1e9 / static_cast<double>(settings_.period_ns))) + 1;
 }
 
+void Loop::beat() noexcept HSP_RT {
+  if (beat_ != nullptr) beat_->store(beat_->load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+}
+
 /// Nothing of these cycles is kept: what follows is the same with and without them.
 void Loop::runDry() noexcept HSP_RT {
   Nanoseconds deadline = clock_.now();
   for (uint64_t n = 0; n < settings_.dry_cycles && !stop_; ++n) {
     const Nanoseconds woke = clock_.waitUntil(deadline);
     for (const auto& arm : arms_) arm->exchangeDry(woke);
+    beat();
     if (woke >= deadline + settings_.period_ns) {
       late_dry_cycles_.store(late_dry_cycles_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
       deadline = woke;
@@ -100,10 +105,14 @@ void Loop::run() noexcept {
     const double t = static_cast<double>(deadline - start) * kSecondsPerNanosecond;
     log_.begin(deadline, arms_);
     tick(deadline, t, dt);
-    log_.tick(t, dt, woke - due, monotonicNow() - begun - search_time_, core_, arms_);
+    const Nanoseconds ended = monotonicNow();
+    log_.tick(t, dt, woke - due, ended - begun - search_time_, core_, arms_);
     last = deadline;
     deadline += settings_.period_ns;
     tick_count_.store(n + 1, std::memory_order_relaxed);
+    beat();
+    silent_.store(allSilent(), std::memory_order_release);
+    next_tick_.store(ended + longestRest(), std::memory_order_relaxed);
     tick_begun_.store(0, std::memory_order_relaxed);
     if (n == kWarmUpTicks) {
       search_allocations_ = 0;
@@ -113,9 +122,15 @@ void Loop::run() noexcept {
     done = (last - start) / settings_.period_ns + 1;
     if ((settings_.ticks != 0 && done >= settings_.ticks) || (stop_ && allSilent())) break;
   }
+  next_tick_.store(0, std::memory_order_relaxed);
   log_.finish(tick_count_, clock_.now() - start, os::pageFaultsOfThread() - faults_warm,
               allocationsOfThread() - allocations_warm - search_allocations_);
   finished_.store(true, std::memory_order_release);
+}
+
+/// Between two ticks: samples that drive the loop are waited for for a while, see PacedClock.
+Nanoseconds Loop::longestRest() const noexcept HSP_RT {
+  return settings_.paced ? 5 * settings_.period_ns / 2 : settings_.period_ns;
 }
 
 void Loop::trip(Fault fault, double measured) noexcept HSP_RT {
@@ -138,6 +153,7 @@ bool Loop::simulated() const noexcept HSP_RT {
 
 void Loop::obey(double t) noexcept HSP_RT {
   constexpr int kOrdersPerTick = 16;
+  obeyHolds();
   Order order;
   for (int i = 0; i < kOrdersPerTick && orders_.pop(order); ++i) {
     if (!isToArm(order)) {
@@ -148,6 +164,21 @@ void Loop::obey(double t) noexcept HSP_RT {
     log_.order(order);
     orders_done_.store(orders_done_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
   }
+}
+
+/// A hold is an order like the others, for the recording; it only waits behind none of them.
+void Loop::obeyHolds() noexcept HSP_RT {
+  const uint64_t held = hold_.load(std::memory_order_relaxed);
+  if (held == 0) return;
+  Order order;
+  order.kind = Order::Kind::kHold;
+  for (uint32_t i = 0; i < arms_.size() && i < 64; ++i) {
+    if (((held >> i) & 1u) == 0) continue;
+    order.target = i;
+    obey(order, *arms_[i]);
+    log_.order(order);
+  }
+  hold_.fetch_and(~held, std::memory_order_release);
 }
 
 void Loop::obey(const Order& order, Arm& arm) noexcept HSP_RT {

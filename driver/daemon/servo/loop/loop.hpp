@@ -34,6 +34,9 @@ class Loop {
   /// @param lockstep runs the simulation side where the settings ask for it
   Loop(Core& core, Lockstep lockstep, Arms& arms, Clock& clock, const LoopSettings& settings, TickLog& log);
 
+  /// [main] Before run(): counts dry cycles and ticks for whoever watches from outside. It outlives the run.
+  void beatOn(std::atomic<uint64_t>& count) { beat_ = &count; }
+
   /// [rt] Runs until the ticks are done or a stop has ramped the forces down. Call once.
   void run() noexcept;
 
@@ -42,8 +45,22 @@ class Loop {
   /// [any] Orders obeyed or refused so far.
   uint64_t ordersDone() const noexcept { return orders_done_.load(std::memory_order_acquire); }
 
+  /// [any] Ramps the forces of these arms to zero in the next tick, and keeps them off until they are cleared. It waits
+  /// for no turn behind other orders, and any number of threads may ask. Async-signal-safe. @param arms bit i: arm i
+  void hold(uint64_t arms) noexcept { hold_.fetch_or(arms, std::memory_order_relaxed); }
+  /// [any] No hold of these arms is still to be obeyed.
+  bool holdsObeyed(uint64_t arms) const noexcept { return (hold_.load(std::memory_order_acquire) & arms) == 0; }
+  /// [any] Every arm had ramped down, by a fault or a hold, when the last tick ended.
+  bool silent() const noexcept { return silent_.load(std::memory_order_acquire); }
+
   /// [any] Asks for an end: forces ramp to zero first. Async-signal-safe.
-  void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+  void stop() noexcept {
+    Nanoseconds never = 0;
+    stop_asked_.compare_exchange_strong(never, monotonicNow(), std::memory_order_relaxed);
+    stop_.store(true, std::memory_order_relaxed);
+  }
+  /// [any] CLOCK_MONOTONIC of the first time that an end was asked for; 0: never.
+  Nanoseconds stopAsked() const noexcept { return stop_asked_.load(std::memory_order_relaxed); }
 
   /// [any] Dry cycles that woke a period late or more; final once there were ticks.
   uint64_t lateDryCycles() const noexcept { return late_dry_cycles_.load(std::memory_order_relaxed); }
@@ -54,6 +71,8 @@ class Loop {
   bool wantsSearch() const noexcept { return wants_search_.load(std::memory_order_relaxed); }
   /// [any] CLOCK_MONOTONIC of the tick going on; 0: it waits for one.
   Nanoseconds tickBegun() const noexcept { return tick_begun_.load(std::memory_order_relaxed); }
+  /// [any] CLOCK_MONOTONIC by which the next tick shall have begun; 0: none is to come.
+  Nanoseconds nextTick() const noexcept { return next_tick_.load(std::memory_order_relaxed); }
   /// [any] CPU time that the thread of run() has used; async-signal-safe.
   Nanoseconds cpuTime() const noexcept { return os::cpuTime(cpu_clock_.load(std::memory_order_relaxed)); }
   /// [any] CLOCK_MONOTONIC of the first tick, once there was one.
@@ -63,8 +82,10 @@ class Loop {
  private:
   void tick(Nanoseconds now, double t, double dt) noexcept HSP_RT;
   void runDry() noexcept HSP_RT;
+  void beat() noexcept HSP_RT;
   void obey(double t) noexcept HSP_RT;
   void obey(const Order& order, Arm& arm) noexcept HSP_RT;
+  void obeyHolds() noexcept HSP_RT;
   void noteDeeds() noexcept HSP_RT;
   void shedLoad() noexcept HSP_RT;
   void search(double t) noexcept;
@@ -72,6 +93,7 @@ class Loop {
   void rampOut() noexcept HSP_RT;
   bool allSilent() const noexcept HSP_RT;
   bool simulated() const noexcept HSP_RT;
+  Nanoseconds longestRest() const noexcept HSP_RT;
   Nanoseconds timeOfTick(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT;
   Nanoseconds skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT;
 
@@ -83,15 +105,17 @@ class Loop {
   Lockstep lockstep_;
   std::vector<Probe> probes_;
   uint64_t ramp_ticks_ = 0;
+  std::atomic<uint64_t>* beat_ = nullptr;
   double epoch_ = 0;  ///< [s] CLOCK_MONOTONIC of the first tick, in a run on the real clock
   // In virtual time the simulation side works in this thread too; what it takes is not the servo's.
   Nanoseconds search_time_ = 0;
   uint64_t search_allocations_ = 0;
   SpscRing<Order> orders_{256};
   std::atomic<uint64_t> orders_done_{0};
-  std::atomic<bool> stop_{false}, wants_search_{true}, finished_{false};
+  std::atomic<uint64_t> hold_{0};
+  std::atomic<bool> stop_{false}, wants_search_{true}, finished_{false}, silent_{false};
   std::atomic<uint64_t> tick_count_{0}, late_dry_cycles_{0};
-  std::atomic<Nanoseconds> first_tick_{0}, tick_begun_{0};
+  std::atomic<Nanoseconds> first_tick_{0}, tick_begun_{0}, next_tick_{0}, stop_asked_{0};
   std::atomic<clockid_t> cpu_clock_{CLOCK_MONOTONIC};
 };
 

@@ -26,9 +26,10 @@ void runWatched(int how, const fs::path& dir) {
   const auto streams = flightStreams(rig.scene, rig.arms, 1000, 1, 0);
   rig.telemetry->attach(
       std::make_unique<Flight>(std::move(*record::FlightRing::create(streams, record::About{})), rig.arms, 8));
-  WatchedServo watched(*rig.loop, *rig.world, rig.arms, *rig.telemetry);
+  WatchedServo watched(*rig.loop, rig.arms, *rig.telemetry);
   watch::guardAgainstCrash(watched, dir);
-  watch::Watchdog watchdog(watched, [] { watch::dieOf("a step that did not come back"); });
+  const Working working(Worker::kServo);
+  watch::Watchdog watchdog(watched, [&watched] { watch::dieOf("a step that did not come back", watched.inServo()); });
   if (watchdog.start(81)) _exit(3);
   os::prepareSignalStack();
   rig.loop->run();
@@ -70,7 +71,7 @@ class LateStep : public testing::TestWithParam<int> {};
 TEST_P(LateStep, LeavesTheMotorsOffAndAFault) {
   Rig rig(0, [](Nanoseconds) { return Nanoseconds{0}; }, 100, "deadly", {number(0, HSP_ENUM, GetParam())}, {},
           {number(4, HSP_BOOL, 1)});
-  WatchedServo watched(*rig.loop, *rig.world, rig.arms, *rig.telemetry);
+  WatchedServo watched(*rig.loop, rig.arms, *rig.telemetry);
   watch::Watchdog watchdog(watched, [] {});
   ASSERT_FALSE(watchdog.start(81));
   rig.loop->run();

@@ -22,16 +22,20 @@ namespace {
 
 struct Fake : Watched {
   uint64_t tick = 0;
-  Nanoseconds begun = 0, cpu = 0;
+  Nanoseconds begun = 0, next = 0, cpu = 0, asked = 0;
   bool harmless = false;
   int cuts = 0;
+  const Owner* runs = nullptr;  ///< whose code the servo is in
   uint64_t ticks() const noexcept override { return tick; }
   Nanoseconds tickBegun() const noexcept override { return begun; }
+  Nanoseconds nextTick() const noexcept override { return next; }
   Nanoseconds cpuTime() const noexcept override { return cpu; }
   bool simulated() const noexcept override { return harmless; }
   void cut(double) noexcept override { ++cuts; }
-  const char* plugin() const noexcept override { return nullptr; }
-  const char* model() const noexcept override { return nullptr; }
+  void stop() noexcept override {}
+  Nanoseconds stopAsked() const noexcept override { return asked; }
+  bool cutLeft() const noexcept override { return true; }
+  const Owner* inServo() const noexcept override { return runs; }
   const void* blackBox() const noexcept override { return nullptr; }
   size_t blackBoxBytes() const noexcept override { return 0; }
 };
@@ -148,6 +152,78 @@ TEST(Watchdog, ThatIsAlwaysLateStillCutsAtItsFourthLook) {
   EXPECT_EQ(looks, 4);
 }
 
+/// The servo waits for its next tick, which should have begun at `next`.
+Nanoseconds cutOfAWait(Fake& servo, Nanoseconds next, Nanoseconds missed_after, int& hung) {
+  Watchdog watchdog(servo, [&hung] { ++hung; }, missed_after);
+  Nanoseconds cut_at = 0;
+  servo.next = next;
+  for (Nanoseconds now = 100 * kMs; now < 1200 * kMs; now += kMs)
+    if (watchdog.check(now)) cut_at = now;
+  return cut_at;
+}
+
+TEST(Watchdog, CutsWhenTheNextTickDoesNotComeInTime) {
+  for (Nanoseconds phase = 0; phase < kMs; phase += kMs / 10) {
+    Fake servo;
+    int hung = 0;
+    const Nanoseconds next = 110 * kMs + phase, cut_at = cutOfAWait(servo, next, Watchdog::kMissedAfter, hung);
+    EXPECT_EQ(servo.cuts, 1);
+    EXPECT_GT(cut_at, next + Watchdog::kMissedAfter - kMs);
+    EXPECT_LE(cut_at, next + 5 * kMs);
+    EXPECT_EQ(hung, 0) << "a servo that gets no processor is no thread that hangs";
+  }
+}
+
+TEST(Watchdog, EndsAProcessWhoseDeviceNeverComesBackFromItsWait) {
+  Fake servo;
+  servo.runs = ownerOf("arm", "arm", true);
+  int hung = 0;
+  EXPECT_LE(cutOfAWait(servo, 110 * kMs, Watchdog::kMissedAfter, hung), 115 * kMs);
+  EXPECT_EQ(hung, 1);
+}
+
+TEST(Watchdog, ALateTickIsNoFaultOfASimulationOrOfAMachineThatStoodStill) {
+  Fake simulation;
+  simulation.harmless = true;
+  int hung = 0;
+  EXPECT_EQ(cutOfAWait(simulation, 110 * kMs, Watchdog::kMissedAfter, hung), 0u);
+  for (const Nanoseconds stall : {4 * kMs, 10 * kMs, 150 * kMs, 5000 * kMs}) {
+    Fake servo;
+    Watchdog watchdog(servo, [] {});
+    watchdog.check(100 * kMs);
+    servo.next = 101 * kMs;
+    EXPECT_FALSE(watchdog.check(101 * kMs + stall)) << stall;
+    servo.next += stall + kMs;  // it ticks again
+    ++servo.tick;
+    for (Nanoseconds now = 102 * kMs; now < 120 * kMs; now += kMs) {
+      servo.next = 102 * kMs + stall + now;
+      EXPECT_FALSE(watchdog.check(now + stall)) << stall;
+    }
+  }
+}
+
+TEST(Watchdog, EndsARunThatWasToldToEndAndDoesNot) {
+  Fake servo;
+  Watchdog watchdog(servo, [] {});
+  int late = 0;
+  watchdog.onLateEnd([&late] { ++late; });
+  for (Nanoseconds now = kMs; now < 2000 * kMs; now += kMs) watchdog.check(now);
+  EXPECT_EQ(late, 0);
+  servo.asked = 2000 * kMs;
+  for (Nanoseconds now = 2000 * kMs; now < 2800 * kMs; now += kMs) watchdog.check(now);
+  EXPECT_EQ(late, 0);
+  for (Nanoseconds now = 2800 * kMs; now < 3000 * kMs; now += kMs) watchdog.check(now);
+  EXPECT_EQ(late, 1);
+}
+
+TEST(Watchdog, AVirtualMachineMayBeLateForLonger) {
+  Fake servo;
+  int hung = 0;
+  const Nanoseconds cut_at = cutOfAWait(servo, 110 * kMs, Watchdog::kMissedInVirtualMachine, hung);
+  EXPECT_GT(cut_at, 155 * kMs);
+  EXPECT_LE(cut_at, 165 * kMs);
+}
+
 TEST(Watchdog, EndsAServoThatNeverComesBack) {
   Fake servo;
   int hung = 0;
@@ -166,7 +242,6 @@ struct BadCut : Fake {
     while (hangs) pause();
     std::raise(SIGSEGV);
   }
-  const char* plugin() const noexcept override { return "bad"; }
 };
 
 TEST(CrashDeathTest, OneInsideTheCutOfTheMotorsStillEndsInQuarantine) {
@@ -177,7 +252,7 @@ TEST(CrashDeathTest, OneInsideTheCutOfTheMotorsStillEndsInQuarantine) {
   const auto crash = [&] {
     BadCut servo;
     guardAgainstCrash(servo, dir);
-    alarm(20);  // s: ends one that hangs by a signal
+    const Calling calling(ownerOf("bad", "model"));
     std::raise(SIGFPE);
   };
   EXPECT_EXIT(crash(), testing::ExitedWithCode(1), "SIGFPE.*\n.*to switch the motors off crashed as well");
@@ -192,10 +267,9 @@ TEST(CrashDeathTest, ACutThatNeverComesBackIsEndedByTheNextThreadThatMissesTheSe
     BadCut servo;
     servo.hangs = true;
     guardAgainstCrash(servo, "");
-    alarm(20);
     std::thread servo_thread([] { std::raise(SIGFPE); });
     usleep(100'000);
-    dieOf("a step that did not come back");
+    dieOf("a step that did not come back", nullptr);
   };
   EXPECT_EXIT(crash(), testing::ExitedWithCode(1), "");
 }

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+/// Requests that wait behind nothing: a person who wants the force to end shall not wait for a model to be built.
+#include <nlohmann/json.hpp>
+
+#include "base/clock.hpp"
+#include "session/request_handler.hpp"
+
+namespace hapticd::servo {
+
+using control::Request;
+
+namespace {
+
+constexpr Nanoseconds kPause = 500'000, kPatience = 100'000'000;  ///< for the servo to obey; a tick is enough
+
+std::string good() {
+  return R"({"ok":true})";
+}
+
+}  // namespace
+
+std::optional<control::Reply> RequestHandler::urgent(const control::Peer&, const std::string& line) {
+  std::string id;
+  auto request = control::parseRequest(line, &id);
+  if (!request || (request->kind != Request::Kind::kHold && request->kind != Request::Kind::kStop)) return std::nullopt;
+  if (request->kind == Request::Kind::kStop) {
+    runner_.stop();
+    return control::Reply(control::withId(good(), id));
+  }
+  const char* code = "failed";
+  const auto held = hold(request->device, code);
+  return control::Reply(control::withId(held ? *held : control::refusal(held.error(), code), id));
+}
+
+/// Any thread. The ring of orders has one writer and may be full: a hold has a way of its own.
+Result<std::string> RequestHandler::hold(const std::string& device, const char*& code) {
+  const auto& devices = runner_.scene().devices;
+  uint64_t arms = 0;
+  for (size_t i = 0; i < devices.size() && i < 64; ++i)
+    if (device.empty() || devices[i].name == device) arms |= uint64_t{1} << i;
+  code = arms == 0 ? "unknown" : "timeout";
+  if (arms == 0) return Error{"there is no device \"" + device.substr(0, 100) + "\""};
+  held_at_.store(monotonicNow());
+  runner_.hold(arms);
+  if (runner_.loop().ticks() == 0) return good();  // no force has come yet, and none will
+  RealClock clock(0);
+  for (const Nanoseconds until = clock.now() + kPatience; !runner_.loop().holdsObeyed(arms) && clock.now() < until;)
+    clock.waitUntil(clock.now() + kPause);
+  if (runner_.loop().holdsObeyed(arms) || runner_.loop().finished()) return good();
+  return Error{"the servo did not obey within 0.1 s: it may have stopped, and then its motors were cut; see status"};
+}
+
+}  // namespace hapticd::servo

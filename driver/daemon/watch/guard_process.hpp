@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+/// The guard: a process of its own that switches the arms off once the daemon is gone (`_exit`, SIGKILL, a crash that
+/// no handler sees) or its ticks stand still. For arms whose hardware does not do so itself.
+#pragma once
+#include <atomic>
+#include <map>
+#include <memory>
+
+#include "base/clock.hpp"
+#include "base/descriptors.hpp"
+#include "base/result.hpp"
+#include "watch/guard_link.hpp"
+
+namespace hapticd::watch {
+
+class GuardProcess {
+ public:
+  /// [main] @param priority SCHED_FIFO of the guard, as far as it is allowed
+  /// @param patience [ns] without a tick, seen by looks on time, before it silences the arms
+  static Result<std::unique_ptr<GuardProcess>> start(int priority, Nanoseconds patience);
+  ~GuardProcess();  ///< [main] it ends without silencing anything
+  GuardProcess(const GuardProcess&) = delete;
+  GuardProcess& operator=(const GuardProcess&) = delete;
+
+  /// [main] How an arm is silenced from now on; nullptr: it cannot be now. Says nothing twice.
+  void tell(uint32_t arm, const hdv_silence* how);
+  /// [main] Whether it watches: from the first tick on, and not while the process is stopped on purpose.
+  void arm(bool watches) noexcept { beat_->armed.store(watches ? 1 : 0); }
+  /// [any] Counts ticks.
+  std::atomic<uint64_t>& ticks() noexcept { return beat_->ticks; }
+  /// [main] It lives.
+  bool alive() noexcept;
+
+ private:
+  GuardProcess() = default;
+  Result<void> spawn(int priority, Nanoseconds patience, int socket, int memory);
+
+  Heartbeat* beat_ = nullptr;
+  Descriptor socket_;
+  int process_ = -1;
+  std::map<uint32_t, uint64_t> told_;  ///< epoch by arm
+};
+
+/// [main] What the guard process does: never returns. @param arguments as kGuardArgument says
+[[noreturn]] void guardMain(int count, char** arguments);
+
+}  // namespace hapticd::watch

@@ -1,0 +1,128 @@
+#!/usr/bin/env python3
+"""However the process ends, the arm `rig` is left without a force, and who ended it is named.
+
+Usage: ends_test.py HAPTICD RIG.so ENDING_SHAPES.so     prints a line a check; exit 1 when one fails.
+"""
+import os
+import signal
+import sys
+import time
+from multiprocessing.pool import ThreadPool
+
+here = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [here, os.path.join(here, "..", "..", "support"), os.path.join(here, "..", "..", "support", "rig")]
+from daemon import Daemon
+from e2e import check, finish
+from rig import COMMAND, CUT
+
+HAPTICD, MODULE, SHAPES = (os.path.abspath(argument) for argument in sys.argv[1:4])
+
+
+def run_of(how, rig=None, **parameters):
+    """One shape that pushes, and ends the process."""
+    values = ", ".join(f"{key}: {value}" for key, value in dict(parameters, how=how).items())
+    return Daemon(HAPTICD, [MODULE, SHAPES], [f"{{name: bad, plugin: ending, parameters: {{{values}}}}}"], rig=rig)
+
+
+def last_word(arm):
+    """The motors are free, and no torque came after the cut."""
+    entries = arm.entries()
+    cuts = [i for i, entry in enumerate(entries) if entry.kind == CUT]
+    return not arm.motors_on() and cuts and not any(entry.on for entry in entries[cuts[0]:])
+
+
+def by_plugin(case):
+    """The process ends itself: the motors are cut, and the plugin is named and left out of the next start."""
+    name, how, blamed, word, more = case
+    run = run_of(how, **more)
+    code, said = run.end()
+    pushed = any(entry.on for entry in run.arm.entries())
+    blame = ("'ending' of model 'bad'" in said and "ending" in run.quarantined()) if blamed else \
+        ("the daemon itself" in said and run.quarantined() == "")
+    return [(f"{name}: it pushed before", pushed, said), (f"{name}: the motors are cut", last_word(run.arm), said),
+            (f"{name}: exit code 1", code == 1, (code, said)),
+            (f"{name}: the message says why", word in said and "motors were switched off first" in said, said),
+            (f"{name}: {'its plugin is' if blamed else 'nobody is'} blamed", blame, (said, run.quarantined()))]
+
+
+def number(signal_number):
+    return dict(signal=int(signal_number))
+
+
+RAISED = {name: getattr(signal, name) for name in
+          ("SIGUSR1", "SIGUSR2", "SIGALRM", "SIGVTALRM", "SIGPROF", "SIGTRAP", "SIGSYS", "SIGPOLL")}
+CASES = [("exit", "exit", True, "a call of exit()", {}),
+         ("quick_exit", "quick_exit", True, "a call of exit()", {}),
+         ("exit in a thread of its own", "exit_in_thread", True, "a call of exit()", {}),
+         ("a crash in a thread of its own", "segv_in_thread", True, "SIGSEGV", {}),
+         ("an abort in a thread of its own", "abort_in_thread", True, "SIGABRT", {}),
+         ("a cut that an I/O thread sends", "exit", True, "a call of exit()", {"rig": {"lazy": "true"}}),
+         ("SIGUSR2 to the process", "kill_itself", False, "SIGUSR2", number(signal.SIGUSR2)),
+         ("a timer", "timer", False, "SIGALRM", {}),
+         ("the first real-time signal", "raise", True, "SIGRTMIN+00", number(signal.SIGRTMIN)),
+         ("the last real-time signal", "raise", True, "SIGRTMIN+30", number(signal.SIGRTMAX))]
+CASES += [(name, "raise", True, name, number(value)) for name, value in RAISED.items()]
+
+for checks in ThreadPool(3).imap(by_plugin, CASES):
+    for told in checks:
+        check(*told)
+
+
+
+def by_guard(case):
+    """Nothing of the process is left that could switch the motors off."""
+    name, how, more = case
+    run = run_of(how, **more)
+    if how == "never":
+        run.arm.wait_for_force()
+        run.process.kill()
+    code, said = run.end()
+    pushed = any(entry.on for entry in run.arm.entries())
+    return [(f"{name}: it pushed before", pushed, said),
+            (f"{name}: the guard switches the motors off", run.arm.silent_after(10) is not None and "the arms were switched off" in said,
+             (code, said))]
+
+
+for checks in ThreadPool(2).imap(by_guard, [("_exit", "plain_exit", {}), ("a masked SIGSEGV", "masked_segv", {}),
+                                            ("a reset SIGSEGV", "reset_segv", {}), ("SIGKILL", "never", {})]):
+    for told in checks:
+        check(*told)
+
+run = run_of("never")
+check("SIGSTOP: a force comes", run.arm.wait_for_force())
+run.process.send_signal(signal.SIGSTOP)
+check("a daemon that stands still: the guard switches the motors off", run.arm.silent_after(20) is not None)
+code, said = run.end()
+check("and ends it after a while", code == -signal.SIGKILL and "the servo stands still" in said, (code, said))
+
+run = run_of("never", rig={"guarded": "false"})
+check("without a guard: a force comes", run.arm.wait_for_force())
+run.process.kill()
+run.end()
+check("without a guard the force stays: nothing else took it in the tests above", run.arm.silent_after(0.5) is None)
+
+run = run_of("never")
+check("outside: a force comes", run.arm.wait_for_force())
+run.process.send_signal(signal.SIGUSR1)
+code, said = run.end()
+check("SIGUSR1 of another process ends the run in order, is named, and the guard rests", "guard:" not in said and code == 0 and "SIGUSR1" in said and not run.arm.motors_on(),
+      (code, said))
+forces = [abs(entry.force[1]) for entry in run.arm.entries() if entry.kind == COMMAND and entry.on]
+check("the force ramps out", 0 < min(forces) < 0.1, min(forces))
+
+run = run_of("never")
+check("Ctrl-Z: a force comes", run.arm.wait_for_force())
+run.process.send_signal(signal.SIGTSTP)
+end = time.monotonic() + 20
+while run.state() != "T" and time.monotonic() < end:
+    time.sleep(0.01)
+check("Ctrl-Z stops the process, and no force is left on", run.state() == "T" and not run.arm.motors_on(), run.state())
+begun = time.monotonic_ns()
+run.process.send_signal(signal.SIGCONT)
+time.sleep(0.3)
+check("continued it ticks, without a force", run.arm.entries()[-1].time_ns > begun and not run.arm.commands_after(begun),
+      len(run.arm.commands_after(begun)))
+run.process.terminate()
+code, said = run.end()
+check("and ends when it is told to", code == 0 and "ctl clear" in said, (code, said))
+finish()
