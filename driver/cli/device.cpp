@@ -96,7 +96,8 @@ void printLimits(const scene::Limits& limits) {
   };
   std::printf("limits\n  force      %s\n  torque     %s\n  slew       %s\n  velocity   %s\n  workspace  %s\n",
               text(limits.force, "N", "the device's own").c_str(), text(limits.torque, "N m", "the motors'").c_str(),
-              text(limits.slew, "N/s", "none").c_str(), text(limits.velocity, "m/s", "none").c_str(),
+              text(limits.slew, "N/s", "none").c_str(),
+              (limits.velocity ? text(*limits.velocity, "m/s", "none") : std::string("5 m/s on real hardware")).c_str(),
               text(limits.workspace, "m", "none").c_str());
   std::printf("  ramps      %g s in, %g s out\n  passivity  %s\n", limits.ramp_in, limits.ramp_out,
               !limits.passivity   ? "guarded unless tried on hardware"

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <limits>
 
-#include "hapticd/held.h"
 
 namespace hapticd::cli {
 

@@ -36,9 +36,13 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
     throw std::invalid_argument("texture.amplitude: bumps of " + number(texture_amplitude_) + " m rise " +
                                 number(slope) + " m a metre at this texture.wavelength; expected " + number(kSteepest) +
                                 " or less, so at most " + number(texture_amplitude_ * kSteepest / slope) + " m");
-  report.max_stiffness = stiffness_ * (1 + slope);
+  const contact::WallLaw law{stiffness_, damping_, exponent_, depth_scale_};
+  const double steepest = stiffness_ > 0 ? contact::wallSlopeAt(law, forceToClaimFor(activation, kUnknownForce)) : 0;
+  report.max_stiffness = steepest * (1 + slope);
+  if (pop_through_ > 0 && sides_ == kBoth) reportJumps(report, pop_through_);
   if (damping_ > 0 || viscosity_ > 0) report.flags |= HSP_R_VELOCITY;
   const bool rubs = friction_static_ > 0 || viscosity_ > 0;
+  if (!rubs) report.flags |= HSP_R_PUSHES;
   friction_.assign(rubs ? std::max(activation.max_probes, 1u) : 0, contact::Friction{});
   body_.reset();
   if (motion_ == kDynamic) setInMotion(activation, report);

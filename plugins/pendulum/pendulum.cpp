@@ -47,8 +47,9 @@ void Pendulum::activate(const hsp_activation& activation, hsp_report& report) {
   stored_ = 0;
   probes_.emplace(std::max(activation.max_probes, 1u));
   presses_.emplace(std::max(activation.max_probes, 1u));
-  report.max_stiffness = stiffness_;
-  report.flags |= HSP_R_MOVES;
+  const contact::WallLaw wall{stiffness_, contact_damping_, exponent_, depth_scale_};
+  report.max_stiffness = stiffness_ > 0 ? contact::wallSlopeAt(wall, forceToClaimFor(activation, kUnknownForce)) : 0;
+  report.flags |= HSP_R_MOVES | HSP_R_PUSHES;
   if (contact_damping_ > 0) report.flags |= HSP_R_VELOCITY;
 }
 

@@ -28,7 +28,10 @@ void PushButton::activate(const hsp_activation& activation, hsp_report& report) 
   last_x2_ = stored_ = 0;
   probes_.emplace(std::max(activation.max_probes, 1u));
   report.max_stiffness = stiffness_;
-  report.flags |= HSP_R_MOVES;
+  report.flags |= HSP_R_MOVES | HSP_R_PUSHES;
+  double highest = 0;  // where the detent falls steeper than the surface's spring, the button snaps by less than that
+  for (const dynamics::DetentCurve::Knot& knot : knots) highest = std::max(highest, knot.force);
+  reportJumps(report, highest);
 }
 
 void PushButton::reset() noexcept HSP_RT {

@@ -46,6 +46,7 @@ struct TemplateBall : hapticd::Shape {
     if (!profile_file.empty()) profile = readTable(profile_file);
     grips_.assign(activation.max_probes, Grip{});
     report.max_stiffness = law == 0 ? stiffness : steepest();
+    if (friction == 0) report.flags = HSP_R_PUSHES;  // a force that pulls inward is then found to be a mistake
     report.size_m = 2 * radius;
     report.typical_ns = 50;
     report.worst_ns = 2000;

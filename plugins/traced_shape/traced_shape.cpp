@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "document.hpp"
-#include "hapticd/held.h"
 #include "kernels/brep/part_file.hpp"
 #include "model_file.hpp"
 #include "part_mesh.hpp"

@@ -67,6 +67,8 @@ class TracedShape : public Shape {
   void reset() noexcept HSP_RT;
 
  protected:
+  /// [N] What a claim of stiffness holds up to where no arm is known: more than any arm of a hand gives.
+  static constexpr double kUnknownForce = 100;
   enum Sides { kFront = 0, kBack = 1, kBoth = 2, kAuto = 3 };
 
   /// [main] Reads and prepares the model, one tracer a probe. Logs the model's warnings; fills size and memory of the

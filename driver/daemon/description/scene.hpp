@@ -67,18 +67,18 @@ struct Motor {
 
 /// Limits of one device, applied between contact and motors whatever the plugins say.
 struct Limits {
-  double force = 0;               ///< [N] 0: the device's own maximum
-  double torque = 0;              ///< [N m] on the hand; 0: no limit but the motors'
-  double slew = 2000;             ///< [N/s] fastest growth of force; 0: none
-  double torque_slew = 0;         ///< [N m/s] fastest growth of torque; 0: none
-  double power = 0;               ///< [W] most that the arm gives to the hand; 0: none
-  double impulse = 0;             ///< [N s] most within a tenth of a second; 0: none
-  double velocity = 0;            ///< [m/s] faster than this latches a fault; 0: none
-  double workspace = 0;           ///< [m] radius about the world's origin of the device; outside forces fade; 0: none
-  std::optional<double> weight;   ///< [N] at the tip, most that carries the arm's own weight; none: as much as `force`
-  double ramp_in = 0.25;          ///< [s] from zero to full force at the start and after a fault
-  double ramp_out = 0.02;         ///< [s] from full force to zero at a fault
-  std::optional<bool> passivity;  ///< observer and controller; none: for arms never tried on hardware
+  double force = 0;                ///< [N] 0: the device's own maximum
+  double torque = 0;               ///< [N m] on the hand; 0: no limit but the motors'
+  double slew = 2000;              ///< [N/s] fastest growth of force; 0: none
+  double torque_slew = 0;          ///< [N m/s] fastest growth of torque; 0: none
+  double power = 0;                ///< [W] most that the arm gives to the hand; 0: none
+  double impulse = 0;              ///< [N s] most within any tenth of a second; 0: none
+  std::optional<double> velocity;  ///< [m/s] faster than this latches a fault; 0: none; none: 5, of real hardware
+  double workspace = 0;            ///< [m] radius about the world's origin of the device; outside forces fade; 0: none
+  std::optional<double> weight;    ///< [N] at the tip, most that carries the arm's own weight; none: as much as `force`
+  double ramp_in = 0.25;           ///< [s] from zero to full force at the start and after a fault
+  double ramp_out = 0.02;          ///< [s] from full force to zero at a planned end; after a fault 2 ms at most
+  std::optional<bool> passivity;   ///< observer and controller; none: for arms never tried on hardware
   Enable enable;
   std::vector<Motor> motors;  ///< in the order of the joints; none: no model of their heat
 };

@@ -23,9 +23,9 @@ constexpr uint32_t kMostVertices = 1'000'000;  ///< of a drawing; three times 12
 
 /// Claims are bounds that the host works with: one that is no number would switch its checks off.
 std::string wrongIn(const hsp_report& report) {
-  for (const double claim : {report.max_stiffness, report.max_force, report.size_m})
+  for (const double claim : {report.max_stiffness, report.max_force, report.size_m, report.max_jump})
     if (!std::isfinite(claim) || claim < 0)
-      return "its report claims " + std::to_string(claim) + " as a stiffness, force or size; expected 0 or more";
+      return "its report claims " + std::to_string(claim) + " as a stiffness, force, size or jump; expected 0 or more";
   if (report.viz_vertices > kMostVertices)
     return "its report claims " + std::to_string(report.viz_vertices) + " vertices to draw; expected at most " +
            std::to_string(kMostVertices);

@@ -109,7 +109,7 @@ Json limitsJson(const scene::Limits& limits) {
       {"force", real(limits.force)},
       {"torque", real(limits.torque)},
       {"slew", real(limits.slew)},
-      {"velocity", real(limits.velocity)},
+      {"velocity", limits.velocity ? real(*limits.velocity) : Json()},
       {"workspace", real(limits.workspace)},
       {"ramp_in", real(limits.ramp_in)},
       {"ramp_out", real(limits.ramp_out)},
@@ -128,7 +128,7 @@ scene::Limits toLimits(const Json& json) {
   limits.force = toReal(json.at("force"));
   limits.torque = toReal(json.at("torque"));
   limits.slew = toReal(json.at("slew"));
-  limits.velocity = toReal(json.at("velocity"));
+  if (const Json& velocity = json.at("velocity"); !velocity.is_null()) limits.velocity = toReal(velocity);
   limits.workspace = toReal(json.at("workspace"));
   limits.ramp_in = toReal(json.at("ramp_in"));
   limits.ramp_out = toReal(json.at("ramp_out"));

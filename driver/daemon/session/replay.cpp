@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/not_real_time.hpp"
+#include "session/arm_force.hpp"
 
 namespace hapticd::servo {
 
@@ -290,6 +291,7 @@ Result<std::unique_ptr<Replay>> Replay::prepare(const record::Recording& recordi
   WorldOptions options;
   options.rate = replay->run_.facts.rate;
   options.probe_count = static_cast<uint32_t>(scene.devices.size());
+  options.max_force = maxForceOf(scene, replay->run_.devices);
   auto world = World::build(scene, options, log);
   if (!world) return Error{world.error()};
   replay->world_ = std::move(*world);

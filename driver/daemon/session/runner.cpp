@@ -10,6 +10,7 @@
 #include "log/log.hpp"
 #include "servo/loop/paced_clock.hpp"
 #include "session/about.hpp"
+#include "session/arm_force.hpp"
 #include "session/silence_reason.hpp"
 #include "session/watched_servo.hpp"
 #include "sim/proximity_thread.hpp"
@@ -99,6 +100,7 @@ Result<std::unique_ptr<World>> Runner::buildWorld(const scene::Scene& scene, con
   world_options.probe_count = static_cast<uint32_t>(scene.devices.size());
   world_options.measure = true;
   world_options.spare_models = options.spare_models;
+  world_options.max_force = maxForceOf(scene);
   world_options.budgets = !options.virtual_time;  // a budget of real time would make virtual runs differ
   return World::build(scene, world_options, log);
 }

@@ -29,6 +29,7 @@ hsp_activation activationFor(const scene::Scene& scene, const WorldOptions& opti
   activation.rate_hz = options.rate;
   activation.max_probe_speed = kMaxProbeSpeed;
   activation.budget_ns = budget_ns;
+  activation.max_arm_force = options.max_force;
   Eigen::Map<Eigen::Vector3d>(activation.gravity) = scene.servo.gravity;
   return activation;
 }

@@ -22,6 +22,7 @@ struct WorldOptions {
   bool measure = false;       ///< take the CPU time of every step
   bool budgets = false;       ///< tell every step how much CPU time is left of the tick
   double evaluation_ns = 0;   ///< > 0: costs are counted, so much an evaluation, instead of measured
+  double max_force = 0;       ///< [N] that any arm lets through to the hand; 0: unknown
 };
 
 class World {

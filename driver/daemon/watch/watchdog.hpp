@@ -14,11 +14,13 @@ namespace hapticd::watch {
 
 class Watchdog {
  public:
-  static constexpr Nanoseconds kCheckEvery = 1'000'000;
-  static constexpr Nanoseconds kOnTime = 2 * kCheckEvery;  ///< a longer way between two looks: it was held up itself
-  static constexpr Nanoseconds kStuckAfter = 3'000'000;    ///< with the look and the cut itself below 5 ms
+  static constexpr Nanoseconds kCheckEvery = 500'000;
+  static constexpr Nanoseconds kOnTime = 2'000'000;      ///< a longer way between two looks: it was held up itself
+  static constexpr Nanoseconds kLateCounts = 1'000'000;  ///< of such a way
+  /// With the way to the next look 3 ms, in which 8.5 N give a free tip of 75 g 4.3 mJ.
+  static constexpr Nanoseconds kStuckAfter = 2'500'000;
   /// The tick to come is so late. A virtual machine has its processors paused one by one.
-  static constexpr Nanoseconds kMissedAfter = 3'000'000, kMissedInVirtualMachine = 50'000'000;
+  static constexpr Nanoseconds kMissedAfter = 2'500'000, kMissedInVirtualMachine = 50'000'000;
   static constexpr Nanoseconds kHungAfter = 500'000'000;       ///< nothing comes back after that
   static constexpr Nanoseconds kEndWithin = 900'000'000;       ///< from the moment that the end was asked for
   static constexpr Nanoseconds kSimulatedPause = 200'000'000;  ///< a busy machine may pause a simulation so long
@@ -36,9 +38,9 @@ class Watchdog {
   void stop();
 
   /// [any] One look; the thread does nothing else. True: it cut. A look that comes late saw nothing of the time before
-  /// it: the whole machine may have stood still, this thread and the servo alike. Such a time counts as one way between
-  /// two looks, so that the servo gets a moment to end its tick; a servo that is stuck is then cut by the fourth look
-  /// at the latest, which is within 4 ms once the looks are on time.
+  /// it: the whole machine may have stood still, this thread and the servo alike. Such a time counts as one millisecond,
+  /// so that the servo gets a moment to end its tick; a servo that is stuck is then cut by the third look at the latest
+  /// if all come late, and within 3 ms once the looks are on time.
   bool check(Nanoseconds now) noexcept;
 
   uint64_t cuts() const noexcept { return cuts_.load(); }

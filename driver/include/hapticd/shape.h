@@ -23,7 +23,8 @@ enum {
   HSP_OUT_CONTACT = 1u << 0, /* the probe is on the solid side: depth_m > 0 */
   HSP_OUT_EDGE = 1u << 1,    /* the foot point lies on an edge or a corner */
   HSP_OUT_EVENT = 1u << 2,   /* something happened that a user feels, such as the click of a detent */
-  HSP_OUT_TRACED = 1u << 3   /* point, normal, depth_m, param and feature are valid (also when free) */
+  HSP_OUT_TRACED = 1u << 3,  /* point, normal, depth_m, param and feature are valid (also when free) */
+  HSP_OUT_HELD = 1u << 4     /* the foot of a held contact: another point of the model is nearer, or may be */
 };
 typedef struct hsp_probe {         /* host -> plugin */
   double position[3], velocity[3]; /* m; m/s relative to the model, zero unless the report asked for velocity */
@@ -67,11 +68,16 @@ typedef struct hsp_activation { /* host -> plugin */
   uint64_t budget_ns;
   double gravity[3]; /* m/s^2, WORLD frame */
   hsp_pose pose;     /* where the model starts, in the world */
+  /* N: no arm lets more reach the hand; 0: unknown. A law of contact that grows steeper with depth claims as
+   * max_stiffness the slope that it has at this force: the host compares forces no further. */
+  double max_arm_force;
 } hsp_activation;
-enum {                             /* what this activation needs: nothing else is set up */
-       HSP_R_VELOCITY = 1u << 0,   /* hsp_probe.velocity is read: the host runs an estimator */
-       HSP_R_MOVES = 1u << 1,      /* step writes the pose */
-       HSP_R_ORIENTATION = 1u << 2 /* hsp_probe.orientation is read */
+enum {                              /* what this activation needs: nothing else is set up */
+       HSP_R_VELOCITY = 1u << 0,    /* hsp_probe.velocity is read: the host runs an estimator */
+       HSP_R_MOVES = 1u << 1,       /* step writes the pose */
+       HSP_R_ORIENTATION = 1u << 2, /* hsp_probe.orientation is read */
+       HSP_R_JUMPS = 1u << 3,       /* the force jumps on purpose, by max_jump at most: snaps, pop-through, vibration */
+       HSP_R_PUSHES = 1u << 4 /* a surface without friction that only pushes: a pull into it is a fault of the shape */
 };
 typedef struct hsp_report {                /* plugin -> host, fixed until deactivate() */
   uint32_t struct_size, viz_vertices;      /* vertices a deforming shape writes to viz_xyz, 0 if rigid */
@@ -79,6 +85,7 @@ typedef struct hsp_report {                /* plugin -> host, fixed until deacti
   uint64_t typical_ns, worst_ns;           /* the author's claim of cost, verified by `plugin check` */
   uint64_t locked_bytes;
   uint32_t flags, reserved; /* HSP_R_* */
+  double max_jump;          /* N, with HSP_R_JUMPS: how far the force may leave what the probe's motion explains */
 } hsp_report;
 
 /* ---- plugin side */
@@ -157,7 +164,7 @@ HSP_LAYOUT(hsp_probe, 96);
 HSP_LAYOUT(hsp_contact, 152);
 HSP_LAYOUT(hsp_pose, 104);
 HSP_LAYOUT(hsp_step, 96);
-HSP_LAYOUT(hsp_activation, 160);
-HSP_LAYOUT(hsp_report, 64);
+HSP_LAYOUT(hsp_activation, 168);
+HSP_LAYOUT(hsp_report, 72);
 HSP_LAYOUT(hsp_near, 32);
 #endif

@@ -81,17 +81,26 @@ std::string forceContinuous(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   if (!(made.subject->report().max_stiffness > 0)) return "skip: no stiffness is claimed";
+  const hsp_report& report = made.subject->report();
+  servo::ClaimBounds bounds;
+  bounds.stiffness = report.max_stiffness;
+  bounds.damping = made.subject->damping();
+  bounds.jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
   servo::Claim claim;
   int jumps = 0;
   Vector3d last = Vector3d::Zero();
   return along(*made.subject, [&](const Answer& answer, const Vector3d& p) {
-    hsp_probe in{};
-    Eigen::Map<Vector3d>(in.velocity) = (p - last) / kConformanceDt;
+    const hsp_contact& contact = answer.contacts[0];
+    servo::ClaimStep step;
+    step.force = Vector3d(contact.force);
+    step.normal = Vector3d(contact.normal);
+    step.p_world = step.p_model = p;
+    step.velocity = (p - last) / kConformanceDt;
+    step.out = contact.flags;
     last = p;
-    jumps += claim.judge(in, answer.contacts[0], p, made.subject->report().max_stiffness, made.subject->damping(),
-                         kConformanceDt) < 1
-                 ? 1
-                 : 0;
+    bool held = false;
+    claim.judge(step, bounds, kConformanceDt, held);
+    jumps += held ? 1 : 0;
     return std::string(jumps >= 3 ? "the force jumped beyond the claimed stiffness three times" : "");
   });
 }

@@ -27,6 +27,12 @@ WallForce wallForce(const WallLaw& law, double depth, double closing_speed) noex
   return {std::max(0.0, force), law.exponent * force / depth, law.damping * share};
 }
 
+double wallSlopeAt(const WallLaw& law, double force) noexcept {
+  if (law.exponent <= 1) return law.stiffness;
+  const double share = force / (law.stiffness * law.depth_scale);  // (x/x0)^n there
+  return law.exponent * law.stiffness * std::pow(share, 1 - 1 / law.exponent);
+}
+
 double wallEnergy(const WallLaw& law, double depth) noexcept {
   if (!(depth > 0)) return 0;
   const double elastic = law.stiffness * law.depth_scale * shape(law, depth);

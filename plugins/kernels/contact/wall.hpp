@@ -25,6 +25,10 @@ struct WallForce {
 /// so the force is the same in every inertial frame. Zero for x <= 0; starts from zero whatever the speed.
 WallForce wallForce(const WallLaw& law, double depth, double closing_speed) noexcept;
 
+/// [any] Slope dF/dx [N/m] of the elastic part where its force is `force` [N], and so the steepest that is met up to
+/// there for n >= 1. For n < 1 the law is steepest at depth 0, beyond bounds: the slope at depth x0 is the answer.
+double wallSlopeAt(const WallLaw& law, double force) noexcept;
+
 /// [any] Energy [J] stored at `depth`: the integral of the elastic part.
 double wallEnergy(const WallLaw& law, double depth) noexcept;
 

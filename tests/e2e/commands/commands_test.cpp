@@ -250,6 +250,19 @@ TEST_F(Commands, CheckPlacesWhatADeviceModuleRefusesInTheFile) {
   EXPECT_TRUE(has(problem("address: 0x100000", "address: 0x100001"), "expected a multiple of 64 KiB"));
 }
 
+TEST_F(Commands, DeviceControlsSaysWhichControlsOneArmHas) {
+  const Outcome simulated =
+      run("device controls " HAPTICD_SOURCE_DIR "/config/devices/simulated-premium15.yaml", kShipped);
+  EXPECT_EQ(simulated.exit_code, 0) << simulated.text;
+  EXPECT_TRUE(has(simulated.text, "simulated Premium 1.5: plugged in")) << simulated.text;
+  EXPECT_TRUE(has(simulated.text, "8.5 N")) << simulated.text;
+  const Outcome real = run("device controls " HAPTICD_SOURCE_DIR "/config/devices/woodenhaptics.yaml", kShipped);
+  EXPECT_EQ(real.exit_code, 0) << real.text;
+  for (const char* line : {"not plugged in", "speed between samples          H1 H2                     5 m/s",
+                           "unknown  the hardware's own watchdog"})
+    EXPECT_TRUE(has(real.text, line)) << line << "\n" << real.text;
+}
+
 TEST_F(Commands, DeviceInfoPrintsTheParametersWhenAsked) {
   const std::string arm = put("arm.yaml", kArm);
   const Outcome plain = run("device info " + arm), full = run("device info --parameters " + arm);

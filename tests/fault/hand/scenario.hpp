@@ -12,6 +12,7 @@
 
 #include "rig_page.hpp"
 #include "servo/loop/loop.hpp"
+#include "session/arm_force.hpp"
 #include "session/telemetry.hpp"
 #include "session/world.hpp"
 
@@ -57,7 +58,7 @@ struct Settings {
   Eigen::Quaterniond mount = Eigen::Quaterniond::Identity();
 };
 
-/// One command that left for the motors.
+/// One command that left for the motors, or a cut.
 struct Sent {
   double t = 0;  ///< [s] since the first tick
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
@@ -78,7 +79,7 @@ class Scenario {
     device.limits.ramp_in = 0.01;
     settings.limit(device.limits);
     const auto silent = [](int, const std::string&, const std::string&) {};
-    auto world = World::build(scene_, {settings.rate, 1, 0, false, false, 0}, silent);
+    auto world = World::build(scene_, {settings.rate, 1, 0, false, false, 0, maxForceOf(scene_)}, silent);
     if (!world) throw std::runtime_error(world.error());
     world_ = std::move(*world);
     auto arm = Arm::open(device, scene_.servo, {settings.rate, world_->needsVelocity()}, silent);
@@ -95,6 +96,8 @@ class Scenario {
   Arm& arm() { return *arms_[0]; }
   Core& core() { return world_->core(); }
   Loop& loop() { return *loop_; }
+  bool motorsOn() const { return page_->motors.on.load() != 0; }                      ///< as of now
+  double motorForce() const { return Eigen::Vector3d(page_->motors.torque).norm(); }  ///< [N] the same
   Fault fault() { return arm().limiter().fault(); }
   Trouble trouble(uint32_t model = 0) { return core().models()[model].guard.trouble(); }
 
@@ -111,8 +114,11 @@ class Scenario {
     std::vector<Sent> sent;
     for (uint64_t i = 0; i < page_->count.load(); ++i) {
       const rig::Entry& entry = page_->entry(i);
-      const double t = static_cast<double>(entry.given_ns) * 1e-9;
-      if (entry.kind == rig::kCommand && t < seconds) sent.push_back({t, Eigen::Vector3d(entry.torque)});
+      // A cut is told no time: it came in the tick after the last command.
+      const double t = entry.kind == rig::kCut && !sent.empty() ? sent.back().t + 1 / scene_.servo.rate
+                                                                : static_cast<double>(entry.given_ns) * 1e-9;
+      if ((entry.kind == rig::kCommand || entry.kind == rig::kCut) && t < seconds)
+        sent.push_back({t, Eigen::Vector3d(entry.torque)});
     }
     return sent;
   }

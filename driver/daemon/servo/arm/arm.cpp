@@ -11,9 +11,12 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr double kCalmFor = 0.5;      ///< [s] that a device must be well before its force comes back by itself
-constexpr double kCalmTravel = 0.02;  ///< [m] and its tip may move meanwhile, while something pushes on it
-constexpr double kStaleAfter = 0.05;  ///< [s] without a new sample: no force on yesterday's position
+constexpr double kCalmFor = 0.5;           ///< [s] that a device must be well before its force comes back by itself
+constexpr double kCalmTravel = 0.02;       ///< [m] and its tip may move meanwhile, while something pushes on it
+constexpr double kStaleAfter = 0.05;       ///< [s] without a new sample: no force on yesterday's position
+constexpr double kFastestTip = 5;          ///< [m/s] of real hardware, unless limits.velocity says otherwise
+constexpr double kPeriodsTrusted = 2.001;  ///< without a new sample before the force fades: one may be late
+constexpr double kTrustFades = 2e-3;       ///< [s] in which it does
 constexpr double kPairWithin = 2e-3;  ///< [s] two samples may come so close together that were measured farther apart
 
 /// As the kinematics extension writes it.
@@ -40,8 +43,7 @@ Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& desc
       hand_(device_->hand(), device_->handle(), R_world_device_, origin_world_),
       limiter_(std::move(limiter)),
       heat_(described.limits.motors),
-      weight_(described.limits, limiter_.maxForce()),
-      watches_jumps_(described.limits.velocity > 0) {}
+      weight_(described.limits, limiter_.maxForce()) {}
 
 Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const scene::Servo& servo,
                                        const ArmOptions& options, const host::Services::Log& log) {
@@ -51,7 +53,7 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   if (auto opened = (*device)->open(); !opened) return Error{opened.error()};
   const Limiter limiter(described.limits, (*device)->info().max_force);
   std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter));
-  arm->watches_jumps_ |= !arm->simulated();
+  arm->watchSamples(described.limits);
   const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
   arm->limiter_.expectMotion(delayOf(servo.velocity, options.rate), mass);
   if (described.admittance) {
@@ -68,7 +70,7 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
     return Error{"device '" + described.name + "': limits.enable.button is " + std::to_string(*button) +
                  ", but the device has " + std::to_string(arm->info().buttons) +
                  " buttons; forces could never be enabled; expected a button of the device, counted from 0"};
-  if (options.needs_velocity || described.limits.velocity > 0 || described.limits.power > 0) {
+  if (options.needs_velocity || described.limits.velocity.value_or(0) > 0 || described.limits.power > 0) {
     auto estimator = makeEstimator(servo.velocity, options.rate, arm->info().resolution_m);
     if (!estimator) return Error{estimator.error()};
     arm->velocity_.emplace(*estimator);
@@ -85,6 +87,21 @@ Result<void> Arm::start(Nanoseconds now, const Eigen::Vector3d& gravity_world) {
   Eigen::Map<Eigen::Vector3d>(how.gravity) = gravity_device_;
   fresh_at_ = now;
   return device_->start(how);
+}
+
+void Arm::watchSamples(const scene::Limits& limits) {
+  watches_jumps_ = !simulated() || limits.velocity.value_or(0) > 0;
+  fastest_ = limits.velocity.value_or(simulated() ? 0 : kFastestTip);
+  sample_period_ = info().rate_hz > 0 ? 1 / info().rate_hz : 0;
+  sample_speed_ = SampleSpeed(info().rate_hz, info().resolution_m);
+}
+
+/// What a sample of this age is good for: an arm that falls silent keeps the last force no longer than two of its
+/// periods and 2 ms more. Where its period is unknown, silence of 50 ms is all that is noticed.
+double Arm::trustIn(Nanoseconds age) const noexcept HSP_RT {
+  if (sample_period_ <= 0) return 1;
+  const double over = static_cast<double>(age) * kSecondsPerNanosecond - kPeriodsTrusted * sample_period_;
+  return std::clamp(1 - over / kTrustFades, 0.0, 1.0);
 }
 
 void Arm::exchangeDry(Nanoseconds now) noexcept HSP_RT {
@@ -184,6 +201,12 @@ bool Arm::locate() noexcept HSP_RT {
     limiter_.trip(Fault::kNotFinite);
     return false;
   }
+  constexpr double kUnit = 1e-3;
+  const double length = Eigen::Map<const Eigen::Vector4d>(q.data()).norm();
+  if (!(std::abs(length - 1) <= kUnit)) {
+    limiter_.trip(Fault::kNotUnit, length);
+    return false;
+  }
   probe_.position = R_world_device_ * p_device + origin_world_;
   probe_.orientation = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
   return true;
@@ -193,9 +216,12 @@ bool Arm::locate() noexcept HSP_RT {
 /// Where there is no force anyway, a device may find its zero or itself anew.
 void Arm::watchJump() noexcept HSP_RT {
   if (!watches_jumps_ || !fresh_) return;
-  const double speed = (probe_.position - tip_).norm() / std::max(fresh_after_, kPairWithin);
+  const double jumped = (probe_.position - tip_).norm() / std::max(fresh_after_, kPairWithin);
+  if (!tip_known_) sample_speed_.reset();
+  const double speed = sample_speed_.update(probe_.position, sample_.time_ns, fresh_after_);
   const bool felt = limiter_.fault() == Fault::kNone;
-  if (felt && tip_known_ && !(speed <= kMaxProbeSpeed)) limiter_.trip(Fault::kJumped, speed);
+  if (felt && tip_known_ && !(jumped <= kMaxProbeSpeed)) limiter_.trip(Fault::kJumped, jumped);
+  if (felt && tip_known_ && fastest_ > 0 && !(speed <= fastest_)) limiter_.trip(Fault::kTooFast, speed);
   tip_known_ = felt;
   tip_ = probe_.position;
 }
@@ -246,6 +272,7 @@ bool Arm::comply(double dt, const Eigen::Vector3d& force, const Weight::Torques&
 void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque,
                 const passivity::Exchange& exchange) noexcept HSP_RT {
   if (endsByItself(limiter_.fault())) recover(dt, !force.isZero(0) || !torque.isZero(0));
+  limiter_.trustSample(trustIn(now - fresh_at_));
   if (passivity_ && probe_.valid) force = passivity_->update(probe_.position, force, dt, exchange);
   limiter_.apply(force, torque, probe_.position - origin_world_, dt);
   if (passivity_) passivity_->applied(force);
@@ -269,8 +296,13 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
     scaleToMotors(weight, command);
   }
   if (!heat_.empty()) heatMotors(dt);
+  const bool wrote = write_status_ >= 0;
   send(now);
-  if (write_status_ < 0) trip(Fault::kDeviceLost);
+  if (write_status_ >= 0) return;
+  // A command that could not be written leaves the last one on: there is nothing to ramp by.
+  if (wrote) device_->cut();
+  trip(Fault::kDeviceLost);
+  limiter_.cut(Fault::kDeviceLost, 0);
 }
 
 void Arm::send(Nanoseconds now) noexcept HSP_RT {

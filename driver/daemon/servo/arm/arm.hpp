@@ -20,6 +20,7 @@
 #include "servo/safety/limiter.hpp"
 #include "servo/safety/motor_heat.hpp"
 #include "servo/safety/passivity/controller.hpp"
+#include "servo/safety/sample_speed.hpp"
 #include "servo/velocity/probe_velocity.hpp"
 
 namespace hapticd::servo {
@@ -109,7 +110,9 @@ class Arm {
   void findCut(CutFound when) noexcept HSP_RT;
   void recover(double dt, bool pushes) noexcept HSP_RT;
   bool locate() noexcept HSP_RT;
+  void watchSamples(const scene::Limits& limits);
   void watchJump() noexcept HSP_RT;
+  double trustIn(Nanoseconds age) const noexcept HSP_RT;
   bool comply(double dt, const Eigen::Vector3d& force, const Weight::Torques& weight) noexcept HSP_RT;
   void takeVirtualProbe() noexcept HSP_RT;
   /// What carries the arm's own weight in this tick; zeros where the module does not know, or answers what is no
@@ -146,7 +149,10 @@ class Arm {
   Nanoseconds fresh_at_ = 0;
   double fresh_after_ = 0;  // [s] between the last two new samples
   bool fresh_ = false;      // the sample of this tick is new
-  bool watches_jumps_, tip_known_ = false;
+  bool watches_jumps_ = false, tip_known_ = false;
+  double fastest_ = 0;        // [m/s] that a tip may be between two samples; 0: as fast as it likes
+  double sample_period_ = 0;  // [s] of the arm; 0: unknown
+  SampleSpeed sample_speed_{0, 0};
   Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();  // of the last good sample, world
   Probe probe_;
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();

@@ -44,6 +44,7 @@ Core::Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& 
       torques_(probe_count, Vector3d::Zero()),
       exchanges_(probe_count),
       present_(static_cast<uint32_t>(models.size())) {
+  serve(Uses{});
   for (size_t i = 0; i < models.size(); ++i) models_[i] = stateOf(*models[i], scene.models[i]);
   live_.reserve(models_.size());
   loads_.reserve(models_.size());
@@ -63,9 +64,17 @@ ModelState Core::stateOf(host::ShapeInstance& shape, const scene::Model& describ
   if (described.kinematic) model.path = Path(described.path);
   model.moves = moves_itself || described.kinematic;
   model.always = moves_itself || shape.surfaces() == nullptr;
-  model.stiffness = shape.report().max_stiffness;
-  model.damping = shape.claimedDamping();
+  const hsp_report& report = shape.report();
+  model.claims.stiffness = report.max_stiffness;
+  model.claims.damping = shape.claimedDamping();
+  model.claims.jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
+  model.claims.moves_itself = moves_itself;
   return model;
+}
+
+void Core::serve(const Uses& uses) {
+  uses_ = uses;
+  uses_.max_force.resize(probe_count_, 0);
 }
 
 void Core::publish(double t, std::span<const Probe> probes) noexcept HSP_RT {
@@ -193,7 +202,7 @@ void Core::fillProbe(const ModelState& model, const Probe& probe, uint32_t index
 
 void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe> probes) noexcept HSP_RT {
   ModelState& model = models_[index];
-  if (model.guard.quarantined() && model.guard.gain(false, dt) == 0) return clearContacts(index);
+  if (model.guard.quarantined() && model.guard.gain(false, false, dt) == 0) return clearContacts(index);
   for (uint32_t i = 0; i < probe_count_; ++i) {
     fillProbe(model, probes[i], i, t);
     outputs_[i] = hsp_contact{};
@@ -202,7 +211,7 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   callShape(model, dt, pose);
   const Trouble trouble = judge(model, index, dt, pose);
   const double gain_before = model.guard.gain();
-  const double gain = model.guard.gain(trouble == Trouble::kNone && model.enabled, dt);
+  const double gain = model.guard.gain(trouble == Trouble::kNone, model.enabled, dt);
   const double fade = gain_before > 0 ? gain / gain_before : 0;
   for (uint32_t i = 0; i < probe_count_; ++i) {
     if (trouble == Trouble::kNone) {
@@ -255,13 +264,18 @@ Trouble Core::judge(ModelState& model, uint32_t index, double dt, const hsp_pose
   bool answers_finite = true;
   for (const hsp_contact& out : outputs_) answers_finite &= finite(out);
   const bool moves_itself = (model.shape->report().flags & HSP_R_MOVES) != 0;
-  if (moves_itself && answers_finite) answers_finite = takePose(model, pose);
+  Trouble trouble = Trouble::kNone;
+  if (moves_itself && answers_finite) trouble = takePose(model, pose);
   if (uses_.exchange && model.moves && dt > 0) bookMotion(model, index);
-  Trouble trouble = model.guard.judge(model.status, answers_finite);
+  if (trouble != Trouble::kNotUnit)
+    trouble = model.guard.judge(model.status, answers_finite && trouble == Trouble::kNone);
+  else
+    model.guard.enter(trouble);
   if (trouble == Trouble::kNone) trouble = holdToClaims(model, index, dt);
   if (trouble == Trouble::kBadStatus && model.failed_status == HSP_OK) model.failed_status = model.status;
   if (trouble == Trouble::kLost) {
     model.shape->reset();
+    for (uint32_t i = 0; i < probe_count_; ++i) claims_[size_t{index} * probe_count_ + i].forget();
     wants_search_ = true;
   }
   return trouble;
@@ -275,22 +289,45 @@ void Core::fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP
   Map(last.world.torque) *= part;
 }
 
-/// What a healthy answer may still break: the time it was given, and the stiffness that was claimed for it.
+/// What a healthy answer may still break: the time it was given, and what was claimed for it.
 Trouble Core::holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
   constexpr int kJumps = 3;
   Trouble trouble = Trouble::kNone;
-  const bool moves_itself = (model.shape->report().flags & HSP_R_MOVES) != 0;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  if (model.moves) turn.noalias() = model.frame.R_world_model * model.before.R_world_model.transpose();
   for (uint32_t i = 0; i < probe_count_; ++i) {
-    const Vector3d p_model =
-        moves_itself ? model.frame.pointToModel(last_position_[i]) : Vector3d(ConstMap(inputs_[i].position));
-    const double part = claims_[size_t{index} * probe_count_ + i].judge(inputs_[i], outputs_[i], p_model,
-                                                                        model.stiffness, model.damping, dt);
-    if (part >= 1) continue;
-    Map(outputs_[i].force) *= part;
-    Map(outputs_[i].torque) *= part;
+    if (!holdToClaim(model, index, i, model.moves ? &turn : nullptr, dt)) continue;
     trouble = model.guard.strike(Trouble::kJump, kJumps);
   }
+  if ((model.shape->report().flags & HSP_R_PUSHES) != 0)
+    for (uint32_t i = 0; i < probe_count_; ++i)
+      if (pullsIn(outputs_[i], model.frame.pointToModel(last_position_[i]))) return model.guard.enter(Trouble::kPulls);
   return trouble == Trouble::kNone ? holdToTime(model) : trouble;
+}
+
+/// True if the force of the answer to this probe was beyond the claim: it is then what the claim explains.
+bool Core::holdToClaim(ModelState& model, uint32_t index, uint32_t probe, const Eigen::Matrix3d* turn,
+                       double dt) noexcept HSP_RT {
+  hsp_contact& out = outputs_[probe];
+  const hsp_probe& in = inputs_[probe];
+  const Vector3d& p_world = last_position_[probe];
+  ClaimStep step;
+  step.force = model.frame.vectorToWorld(ConstMap(out.force));
+  step.normal = model.frame.vectorToWorld(ConstMap(out.normal));
+  step.p_world = p_world;
+  step.p_model = model.claims.moves_itself ? model.frame.pointToModel(p_world) : Vector3d(ConstMap(in.position));
+  step.velocity = ConstMap(in.velocity);
+  step.turn = turn;
+  step.in = in.flags, step.out = out.flags;
+  ClaimBounds bounds = model.claims;
+  bounds.force = uses_.max_force[probe];
+  bool held = false;
+  const double asked = step.force.norm();
+  const Vector3d let = claims_[size_t{index} * probe_count_ + probe].judge(step, bounds, dt, held);
+  if (!held) return false;
+  Map(out.force) = model.frame.vectorToModel(let);
+  Map(out.torque) *= std::min(1.0, let.norm() / asked);
+  return true;
 }
 
 /// The force of the last tick was held while the model's surface moved on: that work is the model's.
@@ -318,11 +355,17 @@ void Core::bookContact(const ModelState& model, const Contact& contact, uint32_t
   exchanges_[probe].recoverable += std::isfinite(recoverable) ? recoverable : HUGE_VAL;
 }
 
-bool Core::takePose(ModelState& model, const hsp_pose& pose) noexcept HSP_RT {
-  if (!finite(pose.position, 13)) return false;
+Trouble Core::takePose(ModelState& model, hsp_pose pose) noexcept HSP_RT {
+  constexpr double kUnit = 1e-3;  // as scenes may give them
+  constexpr double kExact = 1e-12;
+  if (!finite(pose.position, 13)) return Trouble::kNotFinite;
+  Eigen::Map<Eigen::Vector4d> q(pose.orientation);
+  const double length = q.norm();
+  if (!(std::abs(length - 1) <= kUnit)) return Trouble::kNotUnit;
+  if (std::abs(length - 1) > kExact) q /= length;
   model.pose = pose;
   model.frame = Frame::of(pose);
-  return true;
+  return Trouble::kNone;
 }
 
 void Core::takeContact(ModelState& model, uint32_t index, uint32_t probe, double gain) noexcept HSP_RT {

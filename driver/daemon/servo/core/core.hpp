@@ -57,8 +57,7 @@ struct ModelState {
   hsp_status status = HSP_OK;
   hsp_status failed_status = HSP_OK;  ///< the first that was no status of a step
   Guard guard;
-  double stiffness = 0;       ///< [N/m] that it claims; 0: nothing
-  double damping = 0;         ///< [N s/m] that it claims
+  ClaimBounds claims;         ///< what it may do; the force is that of each arm
   bool overran = false;       ///< its last step was held against it for the time it took
   bool overran_then = false;  ///< it was in the run of which this is a replay
   uint64_t step_ns = 0;       ///< time of the last step; 0 when not measured
@@ -84,6 +83,8 @@ struct CoreSettings {
 struct Uses {
   bool torque = true;    ///< an arm can turn the hand, or somebody writes torques down
   bool exchange = true;  ///< an arm has a passivity controller
+  /// [N] What each arm lets through at most, by probe; 0 or missing: unknown.
+  std::vector<double> max_force = {};
 };
 
 class Core {
@@ -93,7 +94,7 @@ class Core {
        const CoreSettings& settings, link::Link& link);
 
   /// [main] Before the first tick; without it everything is computed.
-  void serve(const Uses& uses) { uses_ = uses; }
+  void serve(const Uses& uses);
 
   /// [rt] Before the first tick: CLOCK_MONOTONIC [s] at t = 0, the clock of those who lead models.
   void startAt(double epoch) noexcept HSP_RT { epoch_ = epoch; }
@@ -159,8 +160,10 @@ class Core {
   Trouble judge(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT;
   void fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP_RT;
   Trouble holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT;
+  bool holdToClaim(ModelState& model, uint32_t index, uint32_t probe, const Eigen::Matrix3d* turn,
+                   double dt) noexcept HSP_RT;
   Trouble holdToTime(ModelState& model) noexcept HSP_RT;
-  bool takePose(ModelState& model, const hsp_pose& pose) noexcept HSP_RT;
+  Trouble takePose(ModelState& model, hsp_pose pose) noexcept HSP_RT;
   void bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT;
   void bookContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT;
   void takeContact(ModelState& model, uint32_t index, uint32_t probe, double gain) noexcept HSP_RT;

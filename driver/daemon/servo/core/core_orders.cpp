@@ -63,9 +63,10 @@ bool Core::change(ModelState& model, const Order& order) noexcept HSP_RT {
   if (found == end) ++model.change_count;
   *found = {order.param, 0, order.value};
   const hsp_class& plugin = model.shape->description();
-  if (host::damps(plugin, order.param)) model.damping = std::max(model.damping, order.value);
-  if (host::stiffens(plugin, order.param) && model.stiffness > 0)
-    model.stiffness = std::max(model.stiffness, order.value);
+  ClaimBounds& claims = model.claims;
+  if (host::damps(plugin, order.param)) claims.damping = std::max(claims.damping, order.value);
+  if (host::stiffens(plugin, order.param) && claims.stiffness > 0)
+    claims.stiffness = std::max(claims.stiffness, order.value);
   // What was asked for may change the force under a probe that rests: no jump of the plugin's own making.
   for (uint32_t i = 0; i < probe_count_; ++i) claims_[size_t{order.target} * probe_count_ + i].forget();
   return true;

@@ -1,54 +1,72 @@
 // SPDX-License-Identifier: MIT
-/// A plugin claims how stiff its shape is at most, and by its parameters in N s/m how much it damps. A force that grows
-/// faster than that, times what the probe moved and how fast, is no answer of that shape: it is let through only as far
-/// as the claim goes.
+/// A plugin claims how stiff its shape is at most, how much it damps, and how far its force may jump on purpose. A
+/// force that changes by more than that, over what the probe moved and how fast, is no answer of that shape: it is let
+/// through only as far as the claim goes. Forces are compared as vectors in the world, after every rotation, traced or
+/// not.
 #pragma once
 #include <Eigen/Core>
-#include <algorithm>
 
 #include "hapticd/shape.h"
 
 namespace hapticd::servo {
 
-/// What is remembered of one model and one probe; everything in the model's frame.
+/// What a shape may do to one probe; from its report and its parameters, and from the arm.
+struct ClaimBounds {
+  double stiffness = 0;       ///< [N/m] 0: nothing was claimed, kUnclaimed holds
+  double damping = 0;         ///< [N s/m]
+  double jump = 0;            ///< [N] on purpose; at least kStep
+  double force = 0;           ///< [N] that the arm lets through; 0: unknown. Forces are compared no further.
+  bool moves_itself = false;  ///< its pose is its own word: what that explains is bounded
+};
+
+/// One answer of a shape to one probe. World frame where nothing else is said.
+struct ClaimStep {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< [N]
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< outward, where it is traced
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();   ///< [m] the probe
+  Eigen::Vector3d p_model = Eigen::Vector3d::Zero();   ///< [m] the same in the frame of the model, after the step
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s] relative to the model; zero where it asks for none
+  const Eigen::Matrix3d* turn = nullptr;               ///< of the model since its last step; nullptr: it does not turn
+  uint32_t in = 0, out = 0;                            ///< HSP_IN_*, HSP_OUT_*
+};
+
+/// What is remembered of one model and one probe.
 class Claim {
  public:
-  static constexpr double kMargin = 10;    ///< laws of contact are steeper in places than their authors think
-  static constexpr double kStep = 2;       ///< [N] a click may be as sudden as this
-  static constexpr double kDamping = 100;  ///< [N s/m] allowed to every shape: friction and inertia work like it
+  static constexpr double kMargin = 10;       ///< laws of contact are steeper in places than their authors think
+  static constexpr double kStep = 2;          ///< [N] a click may be as sudden as this
+  static constexpr double kUnclaimed = 2000;  ///< [N/m] where nothing is claimed
+  static constexpr double kDamping = 100;     ///< [N s/m] allowed to every shape: friction and inertia work like it
+  static constexpr double kDrift = 100;       ///< [N/s] that a force may change with nothing to explain it
+  static constexpr double kOwnSpeed = 5;      ///< [m/s] of a surface that moves itself
+  static constexpr double kOwnTurn = 50;      ///< [rad/s] the same
+  /// A surface that is found anew under the probe, or a foot that goes over an edge, changes the force at once. So many
+  /// such changes may come together, and so many a second.
+  static constexpr double kPasses = 3, kPassesPerSecond = 20;
+  static constexpr double kEdge = 0.1;  ///< [rad] a normal that turns farther in one step has gone over an edge
 
-  /// [rt] How much of the force of `out` may be let through: 1 all of it. @param p_model where the probe is after the
-  /// step @param in the probe as the step got it @param stiffness [N/m] and @param damping [N s/m] that the shape
-  /// claims; no stiffness: no bound @param dt [s]
-  double judge(const hsp_probe& in, const hsp_contact& out, const Eigen::Vector3d& p_model, double stiffness,
-               double damping, double dt) noexcept HSP_RT {
-    const Eigen::Vector3d velocity(in.velocity);
-    const double asked = Eigen::Map<const Eigen::Vector3d>(out.force).norm();
-    const bool traced = (out.flags & HSP_OUT_TRACED) != 0;
-    double let = asked;
-    // A surface found anew under the probe pushes at once; so does what lies where the probe jumped to.
-    const bool comparable = known_ && stiffness > 0 && (in.flags & (HSP_IN_JUMP | HSP_IN_INVALID)) == 0;
-    if (comparable) {
-      const double way = (p_model - position_).norm();
-      // A damper pushes with all of its force once its surface is met, and a body that damps itself sees the way alone.
-      const double speed = std::max({velocity.norm(), velocity_.norm(), dt > 0 ? way / dt : 0.0});
-      const double most = force_ + kStep + kMargin * stiffness * way +
-                          std::max(kDamping * (velocity - velocity_).norm(), kMargin * damping * speed);
-      let = std::min(asked, most);
-    }
-    known_ = traced && (in.flags & HSP_IN_INVALID) == 0;
-    position_ = p_model;
-    velocity_ = velocity;
-    force_ = let;
-    return asked > 0 ? let / asked : 1;
-  }
+  /// [rt] How much of the force of `step` may be let through, world frame: all of it, or what the claim explains.
+  /// @param dt [s] since the last step  @param held true if the force was held back
+  Eigen::Vector3d judge(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
 
+  /// [any] The next step is compared with nothing.
   void forget() noexcept { known_ = false; }
 
  private:
-  bool known_ = false;
-  double force_ = 0;  // [N] let through
-  Eigen::Vector3d position_ = Eigen::Vector3d::Zero(), velocity_ = Eigen::Vector3d::Zero();
+  double explained(const ClaimStep& step, const ClaimBounds& bounds, double dt) noexcept HSP_RT;
+  bool takePass(const ClaimStep& step) noexcept HSP_RT;
+  void remember(const ClaimStep& step) noexcept HSP_RT;
+
+  bool known_ = false, traced_ = false;
+  double passes_ = kPasses;
+  /// [N] The force that motion explains, world: what was let through is never farther from it than a jump.
+  Eigen::Vector3d explained_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d p_world_ = Eigen::Vector3d::Zero(), p_model_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero(), normal_ = Eigen::Vector3d::Zero();
 };
+
+/// [rt] True if the force of a contact pulls the probe deeper in, or toward the surface from outside, by more than
+/// rounding. Model frame. @param p where the probe is. The foot tells the way out, not the normal that the shape names.
+bool pullsIn(const hsp_contact& contact, const Eigen::Vector3d& p) noexcept HSP_RT;
 
 }  // namespace hapticd::servo

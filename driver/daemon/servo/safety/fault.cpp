@@ -37,6 +37,9 @@ const char* describe(Fault fault) {
     case Fault::kJumped:
       return "the position jumped farther than a hand can move; check the encoders and their cables, then: hapticd "
              "device info FILE";
+    case Fault::kNotUnit:
+      return "the device gave an orientation that is not a unit quaternion; check its module, then: hapticd device "
+             "kinematics FILE";
   }
   return "unknown fault";
 }

@@ -20,9 +20,10 @@ enum class Fault : uint8_t {
   kStopped,        ///< the daemon is stopping
   kStuck,          ///< a tick did not end and the watchdog cut the motors [s]
   kOverheated,     ///< a motor is hotter than it may be, by its model [degC]
-  kJumped          ///< two positions are farther apart than a hand can move [m/s]
+  kJumped,         ///< two positions are farther apart than a hand can move [m/s]
+  kNotUnit         ///< the device's orientation is not a unit quaternion [its length]
 };
-constexpr int kFaultCount = 12;
+constexpr int kFaultCount = 13;
 
 /// True if the fault ends by itself once the device is well: unplugged, silent, at fault, not calibrated. What the
 /// daemon or the user did wrong stays until the user clears it.

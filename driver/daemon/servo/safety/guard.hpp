@@ -2,8 +2,6 @@
 /// Stands between one shape and the hand: a shape that loses its surface, answers nonsense or says so itself is faded
 /// out over a bounded time, and only what it may be trusted with again is faded in.
 #pragma once
-#include <Eigen/Core>
-#include <algorithm>
 #include <cstdint>
 
 #include "hapticd/shape.h"
@@ -17,37 +15,32 @@ enum class Trouble : uint8_t {
   kNotFinite,  ///< a force or a pose that is not a number: never trusted again
   kBadStatus,  ///< a status that the ABI does not know for step: never trusted again
   kOverrun,    ///< its steps took longer than all shapes may in a tick, again and again: never trusted again
-  kJump        ///< its force jumped beyond the stiffness it claims, again and again: never trusted again
+  kJump,       ///< its force jumped beyond the stiffness it claims, again and again: never trusted again
+  kNotUnit,    ///< a pose whose quaternion turns and stretches: never trusted again
+  kPulls       ///< a surface that only pushes pulled the probe in: never trusted again
 };
 
 /// Fades the force of one shape. All times in seconds of the tick.
 class Guard {
  public:
-  static constexpr double kFadeOut = 0.02;  ///< [s] within this time a failed shape is silent
-  static constexpr double kFadeIn = 0.05;   ///< [s] a surface found again must not kick
+  /// [s] Within this time a failed shape is silent. A tip that nobody holds takes up energy for as long, see
+  /// Limiter::kFaultRamp.
+  static constexpr double kFadeOut = 0.002;
+  static constexpr double kLeave = 0.02;   ///< [s] the same where somebody wished it: a model that is disabled
+  static constexpr double kFadeIn = 0.05;  ///< [s] a surface found again must not kick
 
   /// [rt] Judges the answer of one step.
-  Trouble judge(hsp_status status, bool finite) noexcept HSP_RT {
-    if (!finite) return enter(Trouble::kNotFinite);
-    if (status == HSP_E_NUMERIC) return enter(Trouble::kLost);
-    if (status < 0 || status > HSP_DEGRADED) return enter(Trouble::kBadStatus);
-    return Trouble::kNone;
-  }
+  Trouble judge(hsp_status status, bool finite) noexcept HSP_RT;
+
+  /// [rt] What was found in an answer whose numbers are sound. The gravest is kept.
+  Trouble enter(Trouble trouble) noexcept HSP_RT;
 
   /// [rt] One step took longer than all shapes may, or one force was beyond the claim. Now and then that is forgiven,
   /// `strikes` within a hundred ticks are not.
-  Trouble strike(Trouble trouble, int strikes) noexcept HSP_RT {
-    strikes_ += kForgivenAfter;
-    return strikes_ > (strikes - 1) * kForgivenAfter ? enter(trouble) : Trouble::kNone;
-  }
+  Trouble strike(Trouble trouble, int strikes) noexcept HSP_RT;
 
-  /// [rt] The factor for the force of this tick; `good` tells whether its step was.
-  double gain(bool good, double dt) noexcept HSP_RT {
-    if (strikes_ > 0) --strikes_;
-    const double step = good ? dt / kFadeIn : -dt / kFadeOut;
-    gain_ = std::clamp(gain_ + step, 0.0, 1.0);
-    return gain_;
-  }
+  /// [rt] The factor for the force of this tick. @param good its step was  @param wanted it is enabled
+  double gain(bool good, bool wanted, double dt) noexcept HSP_RT;
 
   /// [rt] Silent from now on, until gain() lets it in.
   void silence() noexcept HSP_RT { gain_ = 0; }
@@ -58,10 +51,6 @@ class Guard {
   Trouble trouble() const noexcept { return trouble_; }  ///< the gravest so far
 
  private:
-  Trouble enter(Trouble trouble) noexcept HSP_RT {
-    if (!quarantined()) trouble_ = trouble;
-    return trouble;
-  }
   static constexpr int kForgivenAfter = 100;  ///< [ticks]
   int strikes_ = 0;
   double gain_ = 1;  // the first contact of a healthy shape needs no fade: Eq. 4 starts at zero force

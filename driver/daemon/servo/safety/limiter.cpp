@@ -52,8 +52,9 @@ void follow(Vector3d& slow, const Vector3d& last, double slew, double dt) noexce
 }  // namespace
 
 const char* nameOf(Limit limit) {
-  static constexpr const char* kNames[kLimitCount] = {
-      "workspace", "motors (heat)", "force", "torque", "power", "impulse", "slew", "motors (torque)", "weight"};
+  static constexpr const char* kNames[kLimitCount] = {"workspace", "motors (heat)",    "force", "torque",
+                                                      "power",     "impulse",          "slew",  "motors (torque)",
+                                                      "weight",    "age of the sample"};
   return kNames[static_cast<size_t>(limit)];
 }
 
@@ -77,7 +78,7 @@ void Limiter::apply(Vector3d& force, Vector3d& torque, const Vector3d& position,
   follow(slow_torque_, last_torque_, limits_.torque_slew, dt);
   if (fault() != Fault::kNone) {
     // Fade along the last force: the new one may be the fault itself.
-    fade_ = rampedDown(fade_, dt, limits_.ramp_out);
+    fade_ = rampedDown(fade_, dt, faultRamp());
     force = fade_ * fault_force_;
     torque = fade_ * fault_torque_;
     if (fade_ == 0 && cleared_) clear();
@@ -89,10 +90,18 @@ void Limiter::apply(Vector3d& force, Vector3d& torque, const Vector3d& position,
   last_torque_ = torque;
 }
 
+/// [s] What was planned may take its time.
+double Limiter::faultRamp() const noexcept HSP_RT {
+  return fault() == Fault::kStopped ? limits_.ramp_out : std::min(limits_.ramp_out, kFaultRamp);
+}
+
 void Limiter::ramp(Vector3d& force, Vector3d& torque, double dt) noexcept HSP_RT {
-  ramp_ = enabled_ ? rampedUp(ramp_, dt, limits_.ramp_in) : rampedDown(ramp_, dt, limits_.ramp_out);
-  force *= ramp_;
-  torque *= ramp_;
+  ramp_ =
+      enabled_ ? rampedUp(ramp_, dt, limits_.ramp_in) : rampedDown(ramp_, dt, std::min(limits_.ramp_out, kFaultRamp));
+  fresh_ = std::min(trusted_, rampedUp(fresh_, dt, kFreshRamp));
+  if (fresh_ < 1 && !(force.isZero(0) && torque.isZero(0))) count(Limit::kSample);
+  force *= ramp_ * fresh_;
+  torque *= ramp_ * fresh_;
   if (enabled_) return;
   cap(force, last_force_.norm());  // a switch let go lets nothing grow
   cap(torque, last_torque_.norm());
@@ -142,7 +151,8 @@ void Limiter::count(Limit limit) noexcept HSP_RT {
 }
 
 void Limiter::watchSpeed(double speed) noexcept HSP_RT {
-  if (limits_.velocity > 0 && !(speed <= limits_.velocity)) trip(Fault::kTooFast, speed);
+  const double most = limits_.velocity.value_or(0);
+  if (most > 0 && !(speed <= most)) trip(Fault::kTooFast, speed);
 }
 
 void Limiter::watchVelocity(const Vector3d& velocity) noexcept HSP_RT {

@@ -92,7 +92,6 @@ TEST(Tables, DefaultsAreThoseOfTheStructs) {
                                                              {"torque_slew", limits.torque_slew},
                                                              {"power", limits.power},
                                                              {"impulse", limits.impulse},
-                                                             {"velocity", limits.velocity},
                                                              {"workspace", limits.workspace},
                                                              {"ramp_in", limits.ramp_in},
                                                              {"ramp_out", limits.ramp_out}})

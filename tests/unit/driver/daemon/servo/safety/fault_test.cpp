@@ -55,7 +55,7 @@ const Injected kFaults[] = {
     {"hold", kNone, Fault::kStopped, "stopped by the user", 2 * kTick, 0, 0, Order::Kind::kHold},
     {"dead-man switch released", kReleased, Fault::kNone, "", kTick, 0, 0, Order::Kind::kClear,
      [](scene::Limits& limits) { limits.enable = {0, scene::EnableMode::kHold}; }},
-    {"workspace left", kMoves, Fault::kNone, "", 0.02, 5, 0, Order::Kind::kClear,
+    {"workspace left", kMoves, Fault::kNone, "", 0.02, 4.5, 0, Order::Kind::kClear,
      [](scene::Limits& limits) { limits.workspace = 0.05; }},
     {"not a number for the weight", kGravity, Fault::kNotFinite, "was not a number", 2 * kTick},
     {"not a number in the orientation", kOrientation, Fault::kNotFinite, "was not a number"},

@@ -282,6 +282,37 @@ TEST(Limiter, PowerStaysBelowItsLimitOnATipThatNobodyHolds) {
     }
 }
 
+/// A sample that grows old is worth less and less; a new one brings the force back without a kick.
+TEST(Limiter, AnOldSampleLetsTheForceFadeAndANewOneRampsIt) {
+  Limiter limiter(generous(), 8.5);
+  double last = limited(limiter, {4, 0, 0}).x();
+  EXPECT_EQ(last, 4);
+  for (const double trust : {1.0, 0.5, 0.0, 0.0}) {
+    limiter.trustSample(trust);
+    EXPECT_EQ(limited(limiter, {4, 0, 0}).x(), 4 * trust);
+  }
+  EXPECT_EQ(limiter.clips().ticks[static_cast<size_t>(Limit::kSample)], 3u);
+  limiter.trustSample(1);
+  last = 0;
+  for (int i = 0; i < 20; ++i) {
+    const double force = limited(limiter, {4, 0, 0}).x();
+    EXPECT_LE(force - last, 4 * 0.001 / Limiter::kFreshRamp + 1e-12);
+    last = force;
+  }
+  EXPECT_NEAR(last, 4, 1e-9);
+}
+
+TEST(Limiter, AFaultTakesTheForceAwayTenTimesAsFastAsAPlannedEnd) {
+  for (const Fault fault : {Fault::kStopped, Fault::kTooFast}) {
+    Limiter limiter(generous(), 8.5);
+    limited(limiter, {8, 0, 0}, 1e-4);
+    limiter.trip(fault);
+    double ticks = 0;
+    while (limited(limiter, {8, 0, 0}, 1e-4).norm() > 0) ++ticks;
+    EXPECT_NEAR(ticks * 1e-4, fault == Fault::kStopped ? 0.02 : Limiter::kFaultRamp, 1.1e-4);
+  }
+}
+
 TEST(Limiter, CountsTheTicksInWhichALimitBound) {
   Limiter limiter(generous(), 8.5);
   limited(limiter, {8, 0, 0});

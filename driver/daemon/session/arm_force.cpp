@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#include "session/arm_force.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include "host/device_instance.hpp"
+
+namespace hapticd::servo {
+
+namespace {
+
+constexpr std::string_view kNames[] = {"device.max_force", "max_force"};  ///< of the parameter
+
+/// As the limiter has it: the smaller of the two that are known.
+double letThrough(double asked, double device) {
+  return asked > 0 && device > 0 ? std::min(asked, device) : std::max(asked, device);
+}
+
+/// The parameter of the module that names its maximum, given or left at its default; 0: it has none.
+double describedForce(const scene::Device& device) {
+  const auto instance =
+      host::DeviceInstance::create(device, [](int, const std::string&, const std::string&) {});  // told when it opens
+  if (!instance) return 0;
+  const hdv_class& module = (*instance)->description();
+  for (uint32_t i = 0; i < module.param_count; ++i) {
+    const hsp_param& param = *HSP_AT(const hsp_param, module.params, module.params[0].struct_size, i);
+    if (std::find(std::begin(kNames), std::end(kNames), param.id) == std::end(kNames)) continue;
+    for (const scene::Value& value : device.parameters)
+      if (value.index == i) return value.number;
+    return param.def;
+  }
+  return 0;
+}
+
+/// 0 is no limit: one arm of it is enough.
+double largest(const std::vector<double>& forces) {
+  if (forces.empty() || *std::min_element(forces.begin(), forces.end()) <= 0) return 0;
+  return *std::max_element(forces.begin(), forces.end());
+}
+
+}  // namespace
+
+double maxForceOf(const scene::Scene& scene) {
+  std::vector<double> forces;
+  for (const scene::Device& device : scene.devices)
+    forces.push_back(letThrough(device.limits.force, describedForce(device)));
+  return largest(forces);
+}
+
+double maxForceOf(const scene::Scene& scene, const std::vector<hdv_info>& devices) {
+  std::vector<double> forces;
+  for (size_t i = 0; i < std::min(scene.devices.size(), devices.size()); ++i)
+    forces.push_back(letThrough(scene.devices[i].limits.force, devices[i].max_force));
+  return largest(forces);
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/arm_controls.hpp"
+
+#include <algorithm>
+
+#include "document/reader.hpp"
+#include "session/arm_force.hpp"
+
+namespace hapticd::diagnostics {
+
+namespace {
+
+using document::numberText;
+
+Verdict onIf(bool has) {
+  return has ? Verdict::kOn : Verdict::kOff;
+}
+
+/// A bound of the device file. @param without what it takes
+Control bound(const char* hazards, const char* name, double value, const char* unit, const std::string& without) {
+  return {hazards, name, onIf(value > 0), value > 0 ? numberText(value) + " " + unit : without};
+}
+
+/// What the arm says of itself, once it is open.
+Control capability(const char* hazards, const char* name, bool opened, uint32_t capabilities, uint32_t flag,
+                   const std::string& with, const std::string& without) {
+  if (!opened) return {hazards, name, Verdict::kUnknown, "the arm itself says it; it is not plugged in"};
+  const bool has = (capabilities & flag) != 0;
+  return {hazards, name, onIf(has), has ? with : without};
+}
+
+void addLimits(const scene::Limits& limits, double force, bool simulated, std::vector<Control>& to) {
+  to.push_back(bound("H16", "largest force", force, "N", "give limits.force"));
+  to.push_back(bound("H18", "growth of the force", limits.slew, "N/s", "give limits.slew"));
+  const double velocity = limits.velocity.value_or(simulated ? 0 : 5);
+  to.push_back(bound("H1 H2", "speed between samples", velocity, "m/s",
+                     simulated ? "a simulated arm has no encoders; give limits.velocity" : "limits.velocity is 0"));
+  to.push_back(bound("H19", "impulse", limits.impulse, "N s within any 0.1 s", "give limits.impulse"));
+  to.push_back(bound("H19", "power to the hand", limits.power, "W", "give limits.power"));
+  to.push_back(bound("A3", "workspace", limits.workspace, "m", "give limits.workspace"));
+  to.push_back({"A1", "heat of the motors", onIf(!limits.motors.empty()),
+                limits.motors.empty() ? "give limits.motors, from their data sheet"
+                                      : std::to_string(limits.motors.size()) + " motors"});
+  const bool button = limits.enable.button.has_value();
+  to.push_back({"H20", "enable switch", onIf(button),
+                button ? "button " + std::to_string(*limits.enable.button) + ", " +
+                             (limits.enable.mode == scene::EnableMode::kHold ? "held" : "pressed")
+                       : "give limits.enable"});
+  const double weight = limits.weight.value_or(force);
+  to.push_back({"H23", "bound of the arm's own weight", onIf(limits.weight || force > 0),
+                weight > 0 ? numberText(weight) + " N at the tip" : "it is not carried at all"});
+}
+
+}  // namespace
+
+const char* nameOf(Verdict verdict) {
+  return verdict == Verdict::kOn ? "on" : verdict == Verdict::kOff ? "off" : "unknown";
+}
+
+std::vector<Control> controlsOf(const scene::Device& description, const host::DeviceInstance& device, bool opened) {
+  const hdv_info& info = device.info();
+  const bool simulated = opened && (info.capabilities & HDV_C_SIMULATED) != 0;
+  scene::Scene alone;
+  alone.devices.push_back(description);
+  const double force = opened ? servo::maxForceOf(alone, {info}) : servo::maxForceOf(alone);
+  std::vector<Control> controls{
+      {"H4 H6 H8 H9 H13 H17 H21", "always", Verdict::kOn,
+       "numbers are finite, orientations of unit length, forces explained by motion; a fault takes the force away "
+       "within 2 ms"}};
+  addLimits(description.limits, force, simulated, controls);
+  const auto has = [&](const char* name) { return device.description().extension(device.handle(), name) != nullptr; };
+  controls.push_back({"H25 H26", "cut by a watchdog thread", onIf(has(HDV_EXT_CUT)),
+                      has(HDV_EXT_CUT) ? "the module cuts its motors from any thread" : "the module has no hdv.cut"});
+  controls.push_back({"H25 H26", "silenced by another process", onIf(has("hdv.silence/1")),
+                      has("hdv.silence/1") ? "a guard switches the motors off once the daemon is gone"
+                                           : "the module does not say how: nothing but the arm itself is left"});
+  controls.push_back(capability("H25 H26", "the hardware's own watchdog", opened, info.capabilities, HDV_C_WATCHDOG,
+                                "the arm cuts its motors when commands stop",
+                                "the arm holds the last force when the machine dies: keep a switch within reach"));
+  if (!opened) {
+    controls.push_back({"H3", "force of an old sample", Verdict::kUnknown, "the arm itself says its rate"});
+  } else {
+    controls.push_back({"H3", "force of an old sample", onIf(info.rate_hz > 0),
+                        info.rate_hz > 0 ? "fades after " + numberText(2000 / info.rate_hz) + " ms"
+                                         : "held for up to 50 ms: give the rate of the arm"});
+  }
+  const bool guarded = description.limits.passivity.value_or(opened && (info.capabilities & HDV_C_UNVERIFIED) != 0);
+  controls.push_back({"H22", "passivity controller",
+                      opened || description.limits.passivity ? onIf(guarded) : Verdict::kUnknown,
+                      guarded ? "takes away energy that the loop creates" : "give limits.passivity: true"});
+  controls.push_back({"H5", "calibration", onIf(device.calibration() != nullptr),
+                      device.calibration() != nullptr ? "no force before the arm has its zero"
+                                                      : "none needed: its positions are absolute"});
+  return controls;
+}
+
+}  // namespace hapticd::diagnostics

@@ -1,0 +1,240 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Changes the servo's safety code one operator, constant or condition at a time, and counts what its tests notice.
+
+usage: mutate.py BUILD_DIR [--count 300] [--seed 1] [--report FILE.md] [--list]
+
+Each mutant compiles one file (without optimisation, with a precompiled header) and links the program safety_test anew,
+which must have been built before:  ninja -C BUILD_DIR safety_test
+A mutant is killed when a test fails, crashes or does not end. What does not compile is not counted. Survivors that are
+explained stand in explained.txt beside this file; they are counted as survivors all the same.
+Exit 1: fewer than 95 % were killed.
+"""
+import argparse
+import collections
+import json
+import pathlib
+import random
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+SAFETY = "driver/daemon/servo/safety"
+# The tests that look at a unit; others cannot notice it.
+TESTS = {
+    "claim": "Claim.*:PullsIn.*",
+    "fault": "FaultWords.*",
+    "guard": "Guard.*",
+    "limiter": "Limiter.*",
+    "motor_heat": "MotorHeat.*",
+    "power_bound": "PowerBound.*:Limiter.Power*",
+    "sample_speed": "SampleSpeed.*",
+}
+SWAPS = [
+    (r" <= ", " < "), (r" < ", " <= "), (r" >= ", " > "), (r" > ", " >= "), (r" == ", " != "), (r" != ", " == "),
+    (r" && ", " || "), (r" \|\| ", " && "), (r" \+ ", " - "), (r" - ", " + "), (r" \* ", " / "), (r" / ", " * "),
+    (r" \+= ", " -= "), (r" -= ", " += "), (r" \*= ", " /= "), (r"\+\+(?=\w)", "--"), (r"--(?=\w)", "++"),
+    (r"std::min\b", "std::max"), (r"std::max\b", "std::min"), (r"(?<![\w!])!(?=[\w(])", ""),
+    (r"(?<=[(,] )-(?=\w)", ""), (r"\btrue\b", "false"), (r"\bfalse\b", "true"), (r"\|= ", "&= "),
+]
+NUMBER = re.compile(r"(?<![\w.'\"])(\d+(?:\.\d+)?(?:e-?\d+)?)(?![\w.'\"])")
+CONDITION = re.compile(r"\bif (?:constexpr )?\(")
+Mutant = collections.namedtuple("Mutant", "file line column old new")
+
+
+def code_of(text):
+    """The text with comments, strings and directives blanked, so that columns stay."""
+    def blank(found):
+        return re.sub(r"[^\n]", "~", found.group(0))
+    pattern = r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\])*"|^\s*#[^\n]*|\bHSP_RT\b|static_assert[^;]*;|operator=|case [\w:]+:'
+    return re.sub(pattern, blank, text, flags=re.S | re.M)
+
+
+def closing(code, at):
+    """Where the bracket that opens at `at` closes."""
+    depth = 0
+    for i in range(at, len(code)):
+        depth += {"(": 1, ")": -1}.get(code[i], 0)
+        if depth == 0:
+            return i
+    return None
+
+
+def mutants_of(file):
+    text = (ROOT / file).read_text()
+    code = code_of(text)
+    found = []
+
+    def add(begin, end, new):
+        line = text.count("\n", 0, begin) + 1
+        found.append(Mutant(file, line, begin, text[begin:end], new))
+
+    for pattern, new in SWAPS:
+        for at in re.finditer(pattern, code):
+            add(at.start(), at.end(), new)
+    for at in NUMBER.finditer(code):
+        value = at.group(1)
+        add(at.start(), at.end(), "1" if float(value) == 0 else f"(2 * {value})")
+    for at in CONDITION.finditer(code):
+        opens = at.end() - 1
+        if (closes := closing(code, opens)) and ";" not in code[opens:closes]:
+            inside = text[opens + 1:closes]
+            add(opens, closes + 1, f"(!({inside}))")
+    return found
+
+
+class Bench:
+    """What is needed to make and to run a mutant."""
+
+    def __init__(self, build):
+        self.build = build
+        self.work = pathlib.Path(tempfile.mkdtemp(prefix="mutants-"))
+        compdb = subprocess.run(["ninja", "-C", build, "-t", "compdb"], capture_output=True, text=True, check=True)
+        self.compiles = {}
+        for entry in json.loads(compdb.stdout):
+            file = pathlib.Path(entry["directory"], entry["file"]).resolve()
+            if SAFETY in str(file) and str(file).startswith(str(ROOT)) and "-c" in entry["command"]:
+                self.compiles[str(file.relative_to(ROOT))] = shlex.split(entry["command"])
+        commands = subprocess.run(["ninja", "-C", build, "-t", "commands", "tests/safety_test"], capture_output=True,
+                                  text=True, check=True).stdout.splitlines()
+        link = next(line for line in reversed(commands) if "-o tests/safety_test" in line)
+        self.link = shlex.split(re.sub(r"^: && | && :$", "", link))
+        self.header()
+
+    def compile_command(self, source, out, shadow):
+        command = self.compiles[source][:]
+        command = command[next(i for i, word in enumerate(command) if re.search(r"(g\+\+|c\+\+|clang\+\+)[-\d]*$", word)):]
+        kept, skip = [], False
+        for word in command:
+            if skip or word.startswith("-O") or word in ("-Werror", "-c", "-MD"):
+                skip = False
+                continue
+            if word in ("-o", "-MT", "-MF"):
+                skip = True
+                continue
+            if word.endswith(".cpp"):
+                continue
+            kept.append(word)
+        return kept[:1] + [f"-I{shadow}"] + kept[1:] + ["-O0", "-w", "-o", str(out), "-c"]
+
+    def header(self):
+        """Eigen and the library, read once."""
+        some = f"{SAFETY}/limiter.cpp"
+        text = "#include <Eigen/Core>\n#include <algorithm>\n#include <array>\n#include <cmath>\n#include <vector>\n"
+        header = self.work / "once.hpp"
+        header.write_text(text)
+        command = self.compile_command(some, self.work / "once.hpp.gch", self.work)
+        subprocess.run(command + ["-x", "c++-header", str(header)], cwd=self.build, check=True)
+
+    def run(self, mutant, seconds):
+        """killed, survived or broken (does not compile)."""
+        text = (ROOT / mutant.file).read_text()
+        end = mutant.column + len(mutant.old)
+        text = text[:mutant.column] + mutant.new + text[end:]
+        shadow = self.work / "shadow"
+        shutil.rmtree(shadow, ignore_errors=True)
+        name = pathlib.Path(mutant.file)
+        source = shadow / name.with_suffix(".cpp").name
+        (shadow / "servo/safety").mkdir(parents=True)
+        if name.suffix == ".hpp":
+            (shadow / "servo/safety" / name.name).write_text(text)
+            shutil.copy(ROOT / name.with_suffix(".cpp"), source)
+        else:
+            source.write_text(text)
+        made = self.work / "mutant.o"
+        command = self.compile_command(str(name.with_suffix(".cpp")), made, shadow)
+        command += ["-include", str(self.work / "once.hpp"), str(source)]
+        if subprocess.run(command, cwd=self.build, capture_output=True).returncode != 0:
+            return "broken"
+        program = self.work / "safety_test"
+        at = self.link.index("-o")
+        link = self.link[:at] + [str(made)] + self.link[at:]
+        link[link.index("-o") + 1] = str(program)
+        if subprocess.run(link, cwd=self.build, capture_output=True).returncode != 0:
+            return "broken"
+        return self.test(program, name.stem, seconds)
+
+    def test(self, program, unit, seconds):
+        command = [str(program), "--gtest_fail_fast", "--gtest_brief=1", f"--gtest_filter={TESTS[unit]}"]
+        try:
+            done = subprocess.run(command, capture_output=True, timeout=seconds)
+        except subprocess.TimeoutExpired:
+            return "killed"
+        return "survived" if done.returncode == 0 else "killed"
+
+
+def explanations():
+    """Of survivors: `FILE: line of code: old -> new` and why no test can notice it."""
+    explained = {}
+    file = HERE / "explained.txt"
+    for line in file.read_text().splitlines() if file.exists() else []:
+        if line and not line.startswith("#"):
+            key, _, why = line.partition(" :: ")
+            explained[key.strip()] = why.strip()
+    return explained
+
+
+def key_of(mutant):
+    line = (ROOT / mutant.file).read_text().splitlines()[mutant.line - 1].strip()
+    return f"{pathlib.Path(mutant.file).name}: {line}: {mutant.old.strip()} -> {mutant.new.strip()}".replace("\n", " ")
+
+
+def report(results, seconds):
+    kinds = collections.Counter(kind for _, kind in results)
+    counted = kinds["killed"] + kinds["survived"]
+    lines = ["# Mutants of the servo's safety code", "",
+             f"`tests/mutation/mutate.py` changed one operator, constant or condition at a time in `{SAFETY}`, and ran the "
+             "tests of that file in `safety_test`. Other tests (hand_test, servo_test, soak) were not asked.", "",
+             f"**{kinds['killed']} of {counted} mutants were killed: {100 * kinds['killed'] / max(1, counted):.1f} %.** "
+             f"{kinds['broken']} more did not compile and are not counted. {seconds:.0f} s.", "",
+             "| file | killed | survived |", "|---|---|---|"]
+    for file in sorted({mutant.file for mutant, _ in results}):
+        per = collections.Counter(kind for mutant, kind in results if mutant.file == file)
+        lines.append(f"| {pathlib.Path(file).name} | {per['killed']} | {per['survived']} |")
+    lines += ["", "## Survivors", ""]
+    explained = explanations()
+    for mutant, kind in results:
+        if kind == "survived":
+            key = key_of(mutant)
+            lines.append(f"- `{key}` (line {mutant.line}): {explained.get(key, 'not explained')}")
+    return "\n".join(lines) + "\n", kinds["killed"] / max(1, counted)
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--count", type=int, default=300)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--report", type=pathlib.Path)
+    parser.add_argument("--list", action="store_true")
+    options = parser.parse_args()
+    files = [f"{SAFETY}/{unit}{suffix}" for unit in TESTS for suffix in (".cpp", ".hpp")]
+    every = [mutant for file in files for mutant in mutants_of(file)]
+    chosen = random.Random(options.seed).sample(every, min(options.count, len(every)))
+    if options.list:
+        print("\n".join(key_of(mutant) for mutant in chosen))
+        return 0
+    bench, results, begun = Bench(options.build.resolve()), [], time.monotonic()
+    plain = bench.run(Mutant(files[0], 1, 0, "", ""), 600)
+    if plain != "survived":
+        sys.exit(f"the tests of the code as it is: {plain}; expected them to pass")
+    for index, mutant in enumerate(chosen):
+        kind = bench.run(mutant, 60)
+        results.append((mutant, kind))
+        print(f"{index + 1}/{len(chosen)} {kind}: {key_of(mutant)}", flush=True)
+    text, part = report(results, time.monotonic() - begun)
+    shutil.rmtree(bench.work)
+    print(text)
+    if options.report:
+        options.report.write_text(text)
+    return 0 if part >= 0.95 else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
