@@ -88,8 +88,14 @@ class SimulatedArm : public Device, public Parameters {
     if (std::strcmp(name, HDV_EXT_HAND) == 0) return &kHand;
     if (std::strcmp(name, HDV_EXT_CUT) == 0) return &kCut;
     if (std::strcmp(name, HDV_EXT_PACE) == 0) return &kPace;
-    if (std::strcmp(name, HDV_EXT_KINEMATICS) != 0) return nullptr;
+    const bool links = std::strcmp(name, HDV_EXT_LINKS) == 0;
+    if (!links && std::strcmp(name, HDV_EXT_KINEMATICS) != 0) return nullptr;
+    if (links && arm_ == nullptr) return nullptr;  // the host asks for the kinematics first
     try {
+      if (links) {
+        links_ = kinematics::Extension<SimulatedArm>::linksOf(*arm_);
+        return &links_;
+      }
       arm_ = makeArm(*this);
       extension_ = kinematics::Extension<SimulatedArm>::of(*arm_);
       return &extension_;
@@ -218,6 +224,7 @@ class SimulatedArm : public Device, public Parameters {
   std::unique_ptr<Plant> plant_;
   std::unique_ptr<Hand> hand_;
   hdv_ext_kinematics extension_{};
+  hdv_ext_links links_{};
   JointSettings joints_;
   HandTarget target_;
   std::array<Drive, kMaxDelay + 1> drives_;  ///< the newest is at written_

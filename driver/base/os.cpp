@@ -2,6 +2,7 @@
 #include "base/os.hpp"
 
 #include <fcntl.h>
+#include <linux/futex.h>
 #include <malloc.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -183,6 +184,10 @@ bool wasPreempted() noexcept {
   const bool preempted = usage.ru_nivcsw != known;
   known = usage.ru_nivcsw;
   return preempted;
+}
+
+int wakeWaiting(uint32_t* word, int most) noexcept {
+  return static_cast<int>(syscall(SYS_futex, word, FUTEX_WAKE, most, nullptr, nullptr, 0));
 }
 
 void onFatalSignals(void (*handler)(int, siginfo_t*, void*)) {

@@ -92,6 +92,10 @@ int threadId() noexcept;
 /// [any] The thread lost its processor since it last asked: what it did took time of others. A system call.
 bool wasPreempted() noexcept;
 
+/// [rt] Wakes at most `most` threads, of any process, that wait for a word of shared memory to change; never waits.
+/// @return how many were woken
+int wakeWaiting(uint32_t* word, int most) noexcept;
+
 /// Installs a handler for SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTRAP and SIGSYS, and for every other
 /// signal that ends a process and that nobody handles or ignores: SIGUSR1 and 2, timers, SIGIO, real-time signals and
 /// their kind. nullptr: the system's own again.

@@ -13,6 +13,7 @@
 #include "document/node.hpp"
 #include "document/suggestion.hpp"
 #include "record/recording.hpp"
+#include "session/instructions.hpp"
 
 namespace hapticd::cli {
 
@@ -78,6 +79,18 @@ void warnOfChanges(const servo::RecordedRun& run) {
       std::fprintf(stderr, "warning: %s has changed since the recording\n", file.path.c_str());
 }
 
+/// The same instructions as then, where this machine has them.
+void takeInstructions(servo::RecordedRun& run) {
+  if (run.instructions.empty()) return;
+  if (run.instructions == "portable") run.scene.servo.instructions = scene::Instructions::kPortable;
+  if (const std::string now = servo::takenInstructions(run.scene.servo); now != run.instructions)
+    std::fprintf(
+        stderr,
+        "note: recorded with the processor instructions %s, which cannot be had here: the last bits will differ\n"
+        "  fix: record with servo: {instructions: portable}, which replays on every machine\n",
+        run.instructions.c_str());
+}
+
 int verdictOf(const servo::ReplayOutcome& outcome) {
   if (outcome.first) return kFailed;
   if (outcome.ticks == outcome.recorded_ticks) return kWorked;
@@ -125,6 +138,7 @@ int replay(const Options& options) {
   if (auto found = findLibraries(run->scene); !found) return fail(kBadInput, options.file + ": " + found.error());
   for (const std::string& text : options.changes)
     if (auto done = change(run->scene, text); !done) return fail(kBadInput, done.error());
+  takeInstructions(*run);
   warnOfChanges(*run);
   if (!(*recording)->closed())
     std::fprintf(stderr, "note: the recording ends early because its writer was killed; replaying what was written\n");

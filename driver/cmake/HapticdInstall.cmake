@@ -20,17 +20,17 @@ configure_file(${PROJECT_SOURCE_DIR}/driver/doors/client/c/hapticd-client.pc.in 
 install(FILES ${PROJECT_BINARY_DIR}/hapticd.pc ${PROJECT_BINARY_DIR}/hapticd-client.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 
-# libhapticd with the daemon; what building against it needs with the headers.
+# Programs beside a daemon: the library with the daemon, what building against it needs with the headers; Python needs no
+# more than its files.
 install(TARGETS hapticd_client EXPORT hapticdClientTargets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_COMPONENT dev)
 install(EXPORT hapticdClientTargets NAMESPACE hapticd:: DESTINATION ${package_dir} COMPONENT dev)
-install(FILES ${PROJECT_SOURCE_DIR}/driver/doors/client/c/examples/lead_model.c DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
-
-# Programs beside a daemon, in Python: its files are all that is needed.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/driver/doors/client/python/hapticd DESTINATION lib/python3/dist-packages
         PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/driver/doors/client/python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
         USE_SOURCE_PERMISSIONS)
+install(FILES ${PROJECT_SOURCE_DIR}/driver/doors/client/c/examples/spring.c
+              ${PROJECT_SOURCE_DIR}/driver/doors/client/c/examples/lead_model.c DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 
 # The unit names the program, wherever it is installed.
 configure_file(${PROJECT_SOURCE_DIR}/config/systemd/hapticd.service.in ${PROJECT_BINARY_DIR}/hapticd.service @ONLY)

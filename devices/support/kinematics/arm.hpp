@@ -4,6 +4,8 @@
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstdint>
+#include <span>
 
 namespace hapticd::kinematics {
 
@@ -49,6 +51,13 @@ class Arm {
 
   /// [any] The pose in the middle of the workspace.
   virtual JointVector neutral() const noexcept = 0;
+
+  /// How the links hang together: of each the number of the one that it begins at, -1: the base. The last ends at the
+  /// tip. None: the arm cannot be drawn.
+  virtual std::span<const int32_t> parents() const noexcept { return {}; }
+  virtual Eigen::Vector3d base() const noexcept { return Eigen::Vector3d::Zero(); }  ///< [m] where the first begins
+  /// [any] The far end of each link and the orientation of its body. False as forward().
+  virtual bool links(const JointVector& /*q*/, std::span<Pose> /*ends*/) const noexcept { return false; }
 
   /// [main] Stops of one arm inside those of its mechanism. Throws std::invalid_argument with a message for the user.
   void narrow(const JointLimits& limits);

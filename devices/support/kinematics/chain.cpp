@@ -78,6 +78,22 @@ void Chain::frames(const JointVector& q, ChainFrames& at) const noexcept {
   }
 }
 
+std::span<const int32_t> Chain::parents() const noexcept {
+  static constexpr auto kParents = [] {
+    std::array<int32_t, kMaxJoints + 1> before{};
+    for (int32_t i = 0; i <= kMaxJoints; ++i) before[static_cast<size_t>(i)] = i - 1;
+    return before;
+  }();
+  return {kParents.data(), static_cast<size_t>(count_) + 1};
+}
+
+bool Chain::links(const JointVector& q, std::span<Pose> ends) const noexcept {
+  ChainFrames at;
+  frames(q, at);
+  for (size_t i = 0; i < static_cast<size_t>(count_); ++i) ends[i] = {at.o[i + 1], Eigen::Quaterniond(at.R[i + 1])};
+  return forward(q, ends[static_cast<size_t>(count_)]);
+}
+
 Eigen::Vector3d Chain::tipOf(const ChainFrames& at) const noexcept {
   const auto last = static_cast<size_t>(count_);
   return at.o[last] + at.R[last] * tool_;

@@ -77,6 +77,28 @@ bool Delta::forward(const JointVector& q, Pose& tip) const noexcept {
   return true;
 }
 
+std::span<const int32_t> Delta::parents() const noexcept {
+  static constexpr int32_t kParents[] = {-1, -1, -1, 0, 1, 2, 5};
+  return kParents;
+}
+
+bool Delta::links(const JointVector& q, std::span<Pose> ends) const noexcept {
+  const DeltaGeometry& g = geometry_;
+  Eigen::Vector3d p = middle_;
+  if (!solve(q, p)) return false;
+  const auto inDevice = [&](size_t arm, double out, double aside, double up) {
+    const Eigen::Vector3d at(out * cos_[arm] - aside * sin_[arm], out * sin_[arm] + aside * cos_[arm], up);
+    return Pose{g.base.position + R_device_arm_ * at, Eigen::Quaterniond(R_device_arm_)};
+  };
+  for (size_t i = 0; i < 3; ++i) {
+    const double theta = q[static_cast<int>(i)];
+    ends[i] = inDevice(i, g.r + g.a * std::cos(theta), g.s, g.a * std::sin(theta));
+    const double u = p.x() * cos_[i] + p.y() * sin_[i] + g.c, v = -p.x() * sin_[i] + p.y() * cos_[i] - g.f;
+    ends[3 + i] = inDevice(i, u, v, p.z());
+  }
+  return forward(q, ends[6]);
+}
+
 bool Delta::localJacobian(const JointVector& q, Eigen::Vector3d& p, Eigen::Matrix3d& J) const noexcept {
   p = middle_;
   if (!solve(q, p)) return false;

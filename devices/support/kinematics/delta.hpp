@@ -36,6 +36,9 @@ class Delta : public Arm {
   bool gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept override;
   bool inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept override;
   JointVector neutral() const noexcept override { return neutral_; }
+  std::span<const int32_t> parents() const noexcept override;  ///< to the elbows, from there to the platform; the tip
+  Eigen::Vector3d base() const noexcept override { return geometry_.base.position; }
+  bool links(const JointVector& q, std::span<Pose> ends) const noexcept override;
 
  private:
   /// Closure of one arm, g(p, theta) = 0, with its derivatives; p in the arm-axis frame.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-/// The extension hdv.kinematics/1 of a device module whose arm is a kinematics::Arm. For modules only: the kinematics
-/// library itself does not know the ABI.
+/// The extensions hdv.kinematics/1 and hdv.links/1 of a device module whose arm is a kinematics::Arm. For modules only:
+/// the kinematics library itself does not know the ABI.
 #pragma once
+#include <array>
 #include <cmath>
 
 #include "hapticd/device.h"
+#include "hapticd/device_links.h"
 #include "kinematics/arm.hpp"
 
 namespace hapticd::kinematics {
@@ -19,7 +21,32 @@ struct Extension {
         sizeof(hdv_ext_kinematics), static_cast<uint32_t>(arm.jointCount()), &forward, &jacobian, &gravity, &inverse};
   }
 
+  /// Zero links: the arm cannot be drawn.
+  static hdv_ext_links linksOf(const Arm& arm) {
+    const auto parents = arm.parents();
+    const Eigen::Vector3d base = arm.base();
+    return {sizeof(hdv_ext_links),
+            static_cast<uint32_t>(parents.size()),
+            parents.data(),
+            {base.x(), base.y(), base.z()},
+            &links};
+  }
+
  private:
+  static hsp_status links(const hdv_device* device, const double* from, double* position,
+                          double* orientation) noexcept HSP_RT {
+    JointVector q;
+    std::array<Pose, HDV_MAX_LINKS> ends;
+    const size_t count = arm(device).parents().size();
+    if (!take(arm(device), from, q) || !arm(device).links(q, {ends.data(), count})) return HSP_E_NUMERIC;
+    for (size_t i = 0; i < count; ++i) {
+      Eigen::Map<Eigen::Vector3d>(position + 3 * i) = ends[i].position;
+      const Eigen::Quaterniond& turn = ends[i].orientation;
+      double* to = orientation + 4 * i;
+      to[0] = turn.w(), to[1] = turn.x(), to[2] = turn.y(), to[3] = turn.z();
+    }
+    return HSP_OK;
+  }
   static bool take(const Arm& arm, const double* from, JointVector& q) noexcept {
     q = Eigen::Map<const JointVector>(from, arm.jointCount());
     return q.allFinite();

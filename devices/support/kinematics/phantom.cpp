@@ -78,6 +78,28 @@ bool Phantom::gravity(const JointVector& q, const Eigen::Vector3d& gravity, Join
   return true;
 }
 
+std::span<const int32_t> Phantom::parents() const noexcept {
+  static constexpr int32_t kParents[] = {-1, 0};
+  return kParents;
+}
+
+Eigen::Vector3d Phantom::base() const noexcept {
+  return geometry_.origin + Eigen::Vector3d(0, geometry_.l2, -geometry_.l1);
+}
+
+/// Both angles of the links are absolute. The upper arm points along z of its frame, the forearm along -y of its own.
+bool Phantom::links(const JointVector& q, std::span<Pose> ends) const noexcept {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(q[0], Eigen::Vector3d::UnitY()));
+  const auto raised = [&](double angle) {
+    return turn * Eigen::Quaterniond(Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitX()));
+  };
+  ends[0].orientation = raised(q[1]);
+  ends[0].position = base() + ends[0].orientation * Eigen::Vector3d(0, 0, geometry_.l1);
+  ends[1].orientation = raised(q[2]);
+  ends[1].position = ends[0].position + ends[1].orientation * Eigen::Vector3d(0, -geometry_.l2, 0);
+  return true;
+}
+
 bool Phantom::allowed(const JointVector& q) const noexcept {
   return Arm::allowed(q) && q[2] - q[1] <= kOpening && q[1] - q[2] <= kClosing;
 }

@@ -36,6 +36,9 @@ class Phantom : public Arm {
   bool inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept override;
   JointVector neutral() const noexcept override { return JointVector::Zero(3); }
   bool allowed(const JointVector& q) const noexcept override;
+  std::span<const int32_t> parents() const noexcept override;  ///< upper arm, forearm
+  Eigen::Vector3d base() const noexcept override;              ///< the shoulder
+  bool links(const JointVector& q, std::span<Pose> ends) const noexcept override;
 
   const PhantomGeometry& geometry() const noexcept { return geometry_; }
 

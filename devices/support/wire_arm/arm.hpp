@@ -217,6 +217,10 @@ class Arm : public Device, public Parameters {
       kinematics_ = kinematics::Extension<T>::of(*arm_);
       return &kinematics_;
     }
+    if (std::string_view(name) == HDV_EXT_LINKS && arm_ != nullptr) {
+      links_ = kinematics::Extension<T>::linksOf(*arm_);
+      return &links_;
+    }
     if (std::string_view(name) == HDV_EXT_CUT) {
       static constexpr hdv_ext_cut kCut{sizeof(hdv_ext_cut), 0, &cut};
       return &kCut;
@@ -410,6 +414,7 @@ class Arm : public Device, public Parameters {
   std::unique_ptr<Link> link_;
   codec::Wire wire_;
   std::vector<uint8_t> image_;
+  hdv_ext_links links_{};
   hdv_ext_kinematics kinematics_{};
   hdv_ext_calibration calibration_{};
   std::atomic<Trouble> trouble_{Trouble::kNone};

@@ -28,8 +28,8 @@ struct Form {
   std::set<std::string> needs, may;
 };
 
-const std::array<Form, 21>& forms() {
-  static const std::array<Form, 21> all = {{{"status", Kind::kStatus, {}, {}},
+const std::array<Form, 23>& forms() {
+  static const std::array<Form, 23> all = {{{"status", Kind::kStatus, {}, {}},
                                             {"list", Kind::kList, {}, {}},
                                             {"snapshot", Kind::kSnapshot, {}, {}},
                                             {"events", Kind::kEvents, {}, {"after"}},
@@ -47,8 +47,10 @@ const std::array<Form, 21>& forms() {
                                             {"dump", Kind::kDump, {}, {}},
                                             {"geometry", Kind::kGeometry, {"model"}, {"tolerance", "as"}},
                                             {"vertices", Kind::kVertices, {"model"}, {"after"}},
-                                            {"lead", Kind::kLead, {}, {"model", "hand"}},
-                                            {"unlead", Kind::kUnlead, {}, {"model", "hand"}},
+                                            {"lead", Kind::kLead, {}, {"model", "hand", "force"}},
+                                            {"unlead", Kind::kUnlead, {}, {"model", "hand", "force"}},
+                                            {"state", Kind::kState, {}, {}},
+                                            {"bell", Kind::kBell, {}, {}},
                                             {"stop", Kind::kStop, {}, {}}}};
   return all;
 }
@@ -200,6 +202,7 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
   take.text("model", request.model);
   take.text("device", request.device);
   take.text("hand", request.hand);
+  take.text("force", request.force);
   take.text("parameter", request.parameter);
   take.text("file", request.file);
   take.number("value", -1e300, 1e300, request.value);
@@ -212,7 +215,8 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
   if (take.has("seconds")) take.number("seconds", 0.05, 600, request.seconds.emplace(0));
   if (!request.file.empty() && request.file[0] != '/') take.complain("file", "an absolute path");
   const bool leads = form->kind == Kind::kLead || form->kind == Kind::kUnlead;
-  if (leads && take.has("model") == take.has("hand")) take.complain(form->word, "either a \"model\" or a \"hand\"");
+  if (leads && take.has("model") + take.has("hand") + take.has("force") != 1)
+    take.complain(form->word, "either a \"model\", a \"hand\" or a \"force\"");
   if (!take.complaint().empty()) return Error{take.complaint()};
   return request;
 }

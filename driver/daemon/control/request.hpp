@@ -34,11 +34,14 @@ struct Request {
     kVertices,
     kLead,
     kUnlead,
+    kState,
+    kBell,
     kStop
   };
   Kind kind = Kind::kStatus;
   std::string model, device, parameter, file;     ///< as the kind needs them
   std::string hand;                               ///< kLead, kUnlead: the device whose simulated hand is led
+  std::string force;                              ///< kLead, kUnlead: the device that is pushed on
   double value = 0;                               ///< kSet
   double tolerance = 0;                           ///< [m] kGeometry: chord error; 0: as the daemon chooses
   bool as_memory = false;                         ///< kGeometry: a descriptor of memory instead of lists in the answer

@@ -101,6 +101,12 @@ struct Device {
 
 enum class Pace { kClock, kDevice };
 
+/// Which processor instructions the inner loops of shapes use. Results differ in their last bits.
+enum class Instructions {
+  kAuto,     ///< the fastest that the processor has
+  kPortable  ///< those that every processor has: the same bits on all machines
+};
+
 struct Velocity {
   std::string estimator = "window";  ///< window, butterworth, foaw, least_squares, kalman
   double parameter = 3;              ///< samples, cut-off in Hz, or process noise: what the estimator takes
@@ -114,12 +120,26 @@ struct Servo {
   Pace pace = Pace::kClock;
   Velocity velocity;
   std::optional<double> spin_us;  ///< [us] busy wait before the deadline; none: chosen for the machine
-  double budget_us = 0;           ///< [us] of a tick for all shapes; 0: four fifths of the period
+  Instructions instructions = Instructions::kAuto;
+  double budget_us = 0;  ///< [us] of a tick for all shapes; 0: four fifths of the period
+};
+
+/// Whether programs may push on the arms with forces of their own.
+enum class ClientMode {
+  kOff,     ///< they may not
+  kAdd,     ///< their forces are added to those of the models
+  kInstead  ///< the models fade out while a program pushes
+};
+struct Clients {
+  ClientMode mode = ClientMode::kOff;
+  double max_force = 0;    ///< [N] of one program; 0: as much as the device's limit
+  bool exclusive = false;  ///< one program an arm; otherwise their forces add up
 };
 
 struct Scene {
   std::filesystem::path file;
   Servo servo;
+  Clients clients;
   std::vector<Model> models;
   std::vector<Device> devices;  ///< at least one
 };

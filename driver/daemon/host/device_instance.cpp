@@ -14,6 +14,16 @@ const Extension* extensionOf(const hdv_class& device_class, hdv_device* device, 
   return found != nullptr && found->struct_size >= sizeof(Extension) ? found : nullptr;
 }
 
+/// Links that can be drawn: of some number, each beginning at an earlier one.
+bool drawable(const hdv_ext_links* links) {
+  if (links == nullptr || links->link_count == 0 || links->link_count > HDV_MAX_LINKS || links->parent == nullptr ||
+      links->frames == nullptr)
+    return false;
+  for (uint32_t i = 0; i < links->link_count; ++i)
+    if (links->parent[i] < -1 || links->parent[i] >= static_cast<int32_t>(i)) return false;
+  return true;
+}
+
 /// What open() said about the hardware is used as limits: nothing in it may be nonsense.
 std::string wrongIn(const hdv_info& info, uint32_t kinematic_joints) {
   if (info.joint_count == 0 || info.joint_count > HDV_MAX_JOINTS)
@@ -71,6 +81,8 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
   instance->services_.forgetError();
   instance->kinematics_ = extensionOf<hdv_ext_kinematics>(*found, instance->device_, HDV_EXT_KINEMATICS);
   instance->calibration_ = extensionOf<hdv_ext_calibration>(*found, instance->device_, HDV_EXT_CALIBRATION);
+  const auto* links = extensionOf<hdv_ext_links>(*found, instance->device_, HDV_EXT_LINKS);
+  instance->links_ = drawable(links) ? links : nullptr;
   instance->cut_ = extensionOf<hdv_ext_cut>(*found, instance->device_, HDV_EXT_CUT);
   instance->hand_ = extensionOf<hdv_ext_hand>(*found, instance->device_, HDV_EXT_HAND);
   instance->pace_ = extensionOf<hdv_ext_pace>(*found, instance->device_, HDV_EXT_PACE);

@@ -9,6 +9,7 @@
 #include "base/result.hpp"
 #include "description/scene.hpp"
 #include "hapticd/device.h"
+#include "hapticd/device_links.h"
 #include "hapticd/device_pace.h"
 #include "hapticd/device_silence.h"
 #include "hapticd/device_trouble.h"
@@ -101,6 +102,8 @@ class DeviceInstance {
   const hdv_info& info() const { return info_; }                         ///< valid once open
   const hdv_ext_kinematics& kinematics() const { return *kinematics_; }  ///< every module has it
   const hdv_ext_calibration* calibration() const { return calibration_; }
+  /// Where its links are; nullptr: the module does not say. Also of an arm that is played back.
+  const hdv_ext_links* links() const { return links_; }
   hdv_device* handle() const { return device_; }
 
  private:
@@ -114,6 +117,7 @@ class DeviceInstance {
   hdv_info info_{};
   const hdv_ext_kinematics* kinematics_ = nullptr;
   const hdv_ext_calibration* calibration_ = nullptr;
+  const hdv_ext_links* links_ = nullptr;
   const hdv_ext_cut* cut_ = nullptr;
   const hdv_ext_hand* hand_ = nullptr;
   const hdv_ext_pace* pace_ = nullptr;

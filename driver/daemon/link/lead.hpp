@@ -19,7 +19,7 @@ template <class Record>
 class LeadSlot {
   static constexpr size_t kWords = sizeof(Record) / 8;
   static_assert(std::is_trivially_copyable_v<Record> && sizeof(Record) % 8 == 0);
-  static_assert(kWords <= std::size(hapticd_lead_page{}.words) && std::atomic<uint64_t>::is_always_lock_free);
+  static_assert(std::atomic<uint64_t>::is_always_lock_free);
 
  public:
   /// [rt] The record, if there is one with another count than `seen`, which it becomes. Tries once: a writer that was
@@ -53,6 +53,10 @@ class LeadSlot {
 using PoseSlot = LeadSlot<hapticd_target>;
 using PushSlot = LeadSlot<hapticd_push>;
 
+/// What the servo tells those who push: the other way round, it writes and they read.
+using StateSlot = LeadSlot<hapticd_state>;
+
+static_assert(sizeof(PoseSlot) <= sizeof(hapticd_lead_page) && sizeof(PushSlot) <= sizeof(hapticd_lead_page));
 static_assert(sizeof(PoseSlot) == offsetof(hapticd_lead_page, words) + sizeof(hapticd_target));
 static_assert(sizeof(PushSlot) == offsetof(hapticd_lead_page, words) + sizeof(hapticd_push));
 

@@ -189,6 +189,7 @@ Json servoJson(const scene::Servo& servo) {
                {"velocity", {{"estimator", servo.velocity.estimator}, {"parameter", real(servo.velocity.parameter)}}},
                {"budget_us", real(servo.budget_us)}};
   if (servo.spin_us) json["spin_us"] = real(*servo.spin_us);
+  json["instructions"] = servo.instructions == scene::Instructions::kPortable ? "portable" : "auto";
   return json;
 }
 
@@ -203,7 +204,24 @@ scene::Servo toServo(const Json& json) {
   servo.velocity.parameter = toReal(json.at("velocity").at("parameter"));
   servo.budget_us = toReal(json.at("budget_us"));
   if (json.contains("spin_us")) servo.spin_us = toReal(json["spin_us"]);
+  if (json.value("instructions", "auto") == "portable") servo.instructions = scene::Instructions::kPortable;
   return servo;
+}
+
+Json clientsJson(const scene::Clients& clients) {
+  return {{"mode", static_cast<int>(clients.mode)},
+          {"max_force", real(clients.max_force)},
+          {"exclusive", clients.exclusive}};
+}
+
+/// Recordings older than this had none.
+scene::Clients toClients(const Json& json) {
+  if (!json.contains("clients")) return {};
+  const Json& clients = json.at("clients");
+  const int mode = clients.at("mode");
+  if (mode < 0 || mode > static_cast<int>(scene::ClientMode::kInstead))
+    throw std::runtime_error("clients: no such mode");
+  return {static_cast<scene::ClientMode>(mode), toReal(clients.at("max_force")), clients.at("exclusive")};
 }
 
 }  // namespace
@@ -214,6 +232,7 @@ std::string sceneToJson(const scene::Scene& scene) {
   for (const scene::Device& device : scene.devices) devices.push_back(deviceJson(device));
   const Json json = {{"file", scene.file.string()},
                      {"servo", servoJson(scene.servo)},
+                     {"clients", clientsJson(scene.clients)},
                      {"models", std::move(models)},
                      {"devices", std::move(devices)}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -225,6 +244,7 @@ Result<scene::Scene> sceneFromJson(const std::string& json_text) {
     scene::Scene scene;
     scene.file = json.at("file").get<std::string>();
     scene.servo = toServo(json.at("servo"));
+    scene.clients = toClients(json);
     for (const Json& model : json.at("models")) scene.models.push_back(toModel(model));
     for (const Json& device : json.at("devices")) scene.devices.push_back(toDevice(device));
     return scene;

@@ -12,6 +12,7 @@ constexpr Range kMeters{-1e6, 1e6, "m"};
 constexpr Range kVersion{1, 1};
 
 constexpr std::string_view kPaces[] = {"clock", "device"};
+constexpr std::string_view kInstructions[] = {"auto", "portable"};
 constexpr std::string_view kEstimators[] = {"window", "butterworth", "foaw", "least_squares", "kalman"};
 
 constexpr Key kPoseKeys[] = {
@@ -43,6 +44,8 @@ constexpr Key kServoKeys[] = {
     object<&Servo::velocity>("velocity", kVelocity, "The velocity estimator."),
     real<&Servo::spin_us>("spin_us", {0, 1000, "us"}, nullptr,
                           "Busy wait before each deadline; default: chosen for the machine."),
+    choice<&Servo::instructions>("instructions", kInstructions, "auto",
+                                 "auto: the fastest that the processor has; portable: the same bits on every machine."),
     real<&Servo::budget_us>("budget_us", {0, 1e6, "us"}, "0",
                             "CPU time of all shapes in a tick; 0: four fifths of the period."),
 };
@@ -76,6 +79,15 @@ constexpr Key kDeviceReferenceKeys[] = {
                                 "Settings of the simulated hand that replace the file's."),
 };
 
+constexpr Key kClientsKeys[] = {
+    required(choice<&Clients::mode>("mode", kClientModes, nullptr,
+                                    "off: no program pushes; add: forces of programs are added to those of the models; "
+                                    "instead: the models fade out while a program pushes.")),
+    real<&Clients::max_force>("max_force", {0, 1000, "N"}, "0",
+                              "Largest force of one program; 0: as much as the device's limit."),
+    boolean<&Clients::exclusive>("exclusive", "false", "One program an arm; a second is refused."),
+};
+
 constexpr Key kSceneKeys[] = {
     required(integer<&SceneText::version>("hapticd", kVersion, nullptr, "Version of the format.")),
     object<&SceneText::servo>("servo", kServo, "Rate and settings of the servo loop."),
@@ -84,6 +96,8 @@ constexpr Key kSceneKeys[] = {
     any<&SceneText::devices>("devices", "a list of device files", "Several device files, each with its own probe."),
     any<&SceneText::hand>("hand", "a mapping of the hand's parameters",
                           "Settings of the simulated hand that replace the device file's."),
+    any<&SceneText::clients>("clients", "off, add, instead or a mapping with mode",
+                             "Whether programs may push on the arms; off unless given."),
     required(list<&SceneText::models>("models", kModelTable, {0, kMaxModels}, "The models of the scene.")),
 };
 
@@ -180,6 +194,7 @@ constexpr Format kAllFormats[] = {
 }  // namespace
 
 constexpr Table kModelTable{kModelKeys};
+constexpr Table kClientsTable{kClientsKeys};
 constexpr Table kDeviceReferenceTable{kDeviceReferenceKeys};
 constexpr Table kSceneTable{kSceneKeys};
 constexpr Table kDeviceTable{kDeviceKeys};

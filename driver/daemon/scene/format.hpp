@@ -35,9 +35,12 @@ struct DeviceReference {
 struct SceneText {
   int version = 0;
   Servo servo;
-  const Node *device = nullptr, *devices = nullptr, *hand = nullptr;
+  const Node *device = nullptr, *devices = nullptr, *hand = nullptr, *clients = nullptr;
   std::vector<ModelText> models;
 };
+
+/// The modes of `clients`, in the order of ClientMode.
+inline constexpr std::string_view kClientModes[] = {"off", "add", "instead"};
 
 struct DeviceText {
   int version = 0;
@@ -54,7 +57,7 @@ struct DaemonText {
   const Node* plugin_path = nullptr;
 };
 
-extern const Table kSceneTable, kModelTable, kDeviceReferenceTable, kDeviceTable, kDaemonTable;
+extern const Table kSceneTable, kModelTable, kClientsTable, kDeviceReferenceTable, kDeviceTable, kDaemonTable;
 
 /// A format by the key that its files begin with.
 struct Format {

@@ -28,6 +28,7 @@ class SceneLoader {
     scene_.models.reserve(text_.models.size());
     for (size_t i = 0; i < text_.models.size(); ++i)
       if (text_.models[i].node->isMap()) addModel(text_.models[i], "models[" + std::to_string(i) + "]");
+    if (text_.clients != nullptr) readClients(*text_.clients);
     addDevices(root);
     return std::move(scene_);
   }
@@ -112,6 +113,13 @@ class SceneLoader {
       return in_.problem(motion, key + ".path",
                          "missing, expected the CSV file (t,x,y,z,qw,qx,qy,qz) that the kinematic model follows");
     if (const auto file = in_.existingFile(*path, key + ".path")) model.path = readKinematicPath(*file, in_.problems());
+  }
+
+  /// A mode alone, or a mapping with it.
+  void readClients(const Node& node) {
+    if (node.isMap()) return in_.object(node, "clients", kClientsTable, &scene_.clients);
+    const std::vector<std::string> modes(std::begin(kClientModes), std::end(kClientModes));
+    if (const auto mode = in_.choice(node, "clients", modes)) scene_.clients.mode = static_cast<ClientMode>(*mode);
   }
 
   void addDevices(const Node& root) {

@@ -165,6 +165,9 @@ void addPaths(Json& scene) {
   const Json one{{"anyOf", {file, reference}}};
   properties["device"].update(one);
   properties["devices"].update({{"type", "array"}, {"items", one}, {"minItems", 1}, {"maxItems", kMaxDevices}});
+  Json modes = Json::array();
+  for (const std::string_view mode : kClientModes) modes.push_back(std::string(mode));
+  properties["clients"].update(Json{{"anyOf", {Json{{"enum", modes}}, schemaOf(kClientsTable)}}});
   Json& model = properties["models"]["items"]["properties"];
   model["motion"]["enum"] = {"static", "kinematic", "dynamic"};
   model["path"]["type"] = "string";

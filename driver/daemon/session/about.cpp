@@ -17,6 +17,7 @@
 #include "record/scene_json.hpp"
 #include "session/event_finder.hpp"
 #include "session/former_defaults.hpp"
+#include "session/instructions.hpp"
 
 namespace hapticd::servo {
 
@@ -63,6 +64,15 @@ Json infoJson(const hdv_info& info) {
           {"serial", std::string(info.serial, strnlen(info.serial, sizeof info.serial))},
           {"firmware", std::string(info.firmware, strnlen(info.firmware, sizeof info.firmware))},
           {"product", std::string(info.product, strnlen(info.product, sizeof info.product))}};
+}
+
+/// How the links of an arm hang together, for those who draw it.
+Json linksJson(Arm& arm) {
+  const hdv_ext_links* links = arm.device().links();
+  if (links == nullptr) return Json();
+  const Eigen::Vector3d base = arm.mount() * Eigen::Map<const Eigen::Vector3d>(links->base) + arm.origin();
+  return {{"parent", std::vector<int32_t>(links->parent, links->parent + links->link_count)},
+          {"base", {base.x(), base.y(), base.z()}}};
 }
 
 hdv_info toInfo(const Json& json) {
@@ -145,12 +155,14 @@ record::About aboutRun(const scene::Scene& scene, const World& world, const std:
                        {"id", c.id},
                        {"version", c.version},
                        {"info", infoJson(arm->info())}});
+    if (const Json links = linksJson(*arm); !links.is_null()) devices.back()["links"] = links;
   }
   Json json = {{"format", record::kRecordingFormat},
                {"hapticd", HAPTICD_VERSION},
                {"abi", fmt::format("{}.{}", HSP_ABI_MAJOR, HSP_ABI_MINOR)},
                {"compiler", __VERSION__},
                {"machine", machine()},
+               {"instructions", takenInstructions(scene.servo)},
                {"started", utcNow()},
                {"rate_hz", facts.rate},
                {"period_ns", facts.period_ns},
@@ -177,6 +189,7 @@ Result<RecordedRun> readAbout(const std::string& json_text) {
     run.facts.virtual_time = json.at("virtual_time");
     run.version = json.at("hapticd");
     run.started = json.at("started");
+    run.instructions = json.value("instructions", "");
     for (const Json& device : json.at("devices")) run.devices.push_back(toInfo(device.at("info")));
     for (const Json& file : json.at("files")) run.files.push_back({file.at("path"), file.at("hash")});
     auto scene = record::sceneFromJson(json.at("scene").dump());

@@ -36,6 +36,7 @@ struct RecordedRun {
   std::vector<hdv_info> devices;
   std::vector<Fingerprint> files;
   std::string version, started;
+  std::string instructions;  ///< that the shapes took; "": it is older than the choice
 };
 
 /// [main] Reads it back. An error says what is wrong with the text.

@@ -14,6 +14,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kClientModes[] = {"off", "add", "instead"};  ///< in the order of scene::ClientMode
+
 std::string text(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -77,6 +79,22 @@ Json poseJson(const Session& session, uint32_t place) {
   return {{"position", {p.x(), p.y(), p.z()}}, {"orientation", {q.w(), q.x(), q.y(), q.z()}}};
 }
 
+/// The programs that push on an arm, and how well they keep up.
+Json pushersJson(const Session& session, uint32_t index) {
+  Json list = Json::array();
+  for (const Leads::Pusher& pusher : session.leads.pushers(index)) {
+    const auto& client = session.runner.arms()[index]->clients().clients()[pusher.place];
+    const auto read = [](const std::atomic<uint64_t>& counter) { return counter.load(std::memory_order_relaxed); };
+    const uint64_t answers = read(client.answers), in_time = std::min(read(client.in_time), answers);
+    list.push_back({{"pid", pusher.pid},
+                    {"place", pusher.place},
+                    {"answers", answers},
+                    {"same_tick", answers > 0 ? static_cast<double>(in_time) / static_cast<double>(answers) : 0.0},
+                    {"silences", read(client.silences)}});
+  }
+  return list;
+}
+
 status::ModelNow nowOf(const Session& session, uint32_t place) {
   const status::Page& page = session.runner.telemetry().statusWriter()->page();
   return place < status::kMaxModels ? page.model[place].now.read().value_or(status::ModelNow{}) : status::ModelNow{};
@@ -129,6 +147,8 @@ std::string statusAnswer(const Session& session) {
                        {"fault", fault == Fault::kNone ? Json() : Json(describe(fault))},
                        {"force_n", {arm.force[0], arm.force[1], arm.force[2]}},
                        {"position_m", {arm.position[0], arm.position[1], arm.position[2]}}});
+    if (session.runner.arms()[i]->clients().possible())
+      devices.back()["clients"] = pushersJson(session, static_cast<uint32_t>(i));
   }
   return text({{"ok", true},
                {"scene", session.scene_file},
@@ -168,6 +188,7 @@ std::string snapshotAnswer(const Session& session) {
                        {"buttons", arm.info().buttons},
                        {"simulated", arm.simulated()},
                        {"guided", arm.hand().guided()},
+                       {"clients", kClientModes[static_cast<size_t>(session.runner.scene().clients.mode)]},
                        {"leader", leader ? Json(*leader) : Json()}});
   }
   return text({{"ok", true}, {"scene", session.scene_file}, {"next", next}, {"models", models}, {"devices", devices}});

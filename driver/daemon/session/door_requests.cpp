@@ -21,8 +21,18 @@ Result<uint32_t> RequestHandler::armOf(const std::string& device) const {
                                document::suggestion(device.substr(0, 100), names));
 }
 
+Result<Leads::Target> RequestHandler::pushOf(const std::string& device) const {
+  const auto arm = armOf(device);
+  if (!arm) return Error{arm.error()};
+  if (!runner_.arms()[*arm]->clients().possible())
+    return refuse("unsupported",
+                  "the scene does not let programs push on its arms\n  fix: clients: add (or instead) in the scene");
+  return Leads::Target{Order::Led::kForce, *arm, "device \"" + device + "\""};
+}
+
 /// What a request wants to lead, if it can be led at all.
 Result<Leads::Target> RequestHandler::leadOf(const Request& request) const {
+  if (!request.force.empty()) return pushOf(request.force);
   if (request.hand.empty()) {
     const auto place = placeOf(request.model);
     if (!place) return Error{place.error()};
@@ -54,7 +64,44 @@ Result<std::string> RequestHandler::lead(const control::Peer& peer, const Reques
   auto memory = leads_.begin(*target, peer);
   if (!memory) return refuse("busy", memory.error());
   attached_ = std::move(*memory);
-  return fmt::format(R"({{"ok":true,"bytes":{},"record":"hapticd_target"}})", HAPTICD_LEAD_BYTES);
+  return fmt::format(R"({{"ok":true,"bytes":{},"record":"{}"}})", HAPTICD_LEAD_BYTES,
+                     target->led == Order::Led::kForce ? "hapticd_push" : "hapticd_target");
+}
+
+/// Memory that all share who ask for it; made for the first of them.
+Result<void> RequestHandler::attach(std::unique_ptr<SealedMemory>& kept, const char* name, size_t bytes,
+                                    SealedMemory::Writers writers) {
+  if (!kept) {
+    auto memory = SealedMemory::create(name, bytes, writers);
+    if (!memory) return Error{memory.error()};
+    kept = std::move(*memory);
+  }
+  auto copy = kept->share();
+  if (!copy) return Error{copy.error()};
+  attached_ = std::move(*copy);
+  return {};
+}
+
+Result<std::string> RequestHandler::state() {
+  const auto arms = static_cast<uint32_t>(runner_.arms().size());
+  const bool first = !runner_.shared().state;
+  if (auto done = attach(runner_.shared().state, "hapticd-state", Door::stateBytes(arms), SealedMemory::Writers::kOne);
+      !done)
+    return Error{done.error()};
+  const SealedMemory& memory = *runner_.shared().state;
+  if (first) runner_.door().showState(memory.data(), arms);
+  return fmt::format(R"({{"ok":true,"bytes":{},"record":"hapticd_state","arms":{},"stride":{}}})", memory.bytes(), arms,
+                     Door::kStateStride);
+}
+
+Result<std::string> RequestHandler::bell() {
+  const bool first = !runner_.shared().bell;
+  if (auto done = attach(runner_.shared().bell, "hapticd-bell", sizeof(hapticd_bell), SealedMemory::Writers::kAll);
+      !done)
+    return Error{done.error()};
+  const SealedMemory& memory = *runner_.shared().bell;
+  if (first) runner_.door().hangBell(new (memory.data()) hapticd_bell{});
+  return fmt::format(R"({{"ok":true,"bytes":{},"record":"hapticd_bell"}})", memory.bytes());
 }
 
 Result<void> RequestHandler::unlead(const control::Peer& peer, const Request& request) {

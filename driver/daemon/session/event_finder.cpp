@@ -94,6 +94,8 @@ void EventFinder::look(double t, uint32_t index, const Arm& arm) noexcept HSP_RT
   }
   if (const uint64_t count = arm.hand().refused(); refused(t, count, note))
     add(HAPTICD_REFUSED, -1, number, static_cast<uint32_t>(Order::Led::kHand), static_cast<double>(count));
+  if (const uint64_t count = arm.clients().refused(); refused(t, count, note.pushes))
+    add(HAPTICD_REFUSED, -1, number, static_cast<uint32_t>(Order::Led::kForce), static_cast<double>(count));
 }
 
 const char* nameOfEvent(uint32_t kind) {

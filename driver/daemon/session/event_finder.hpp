@@ -45,10 +45,13 @@ class EventFinder {
     uint64_t refused = 0;
     double refused_told = -kRefusedPeriod;
   };
-  struct ArmNote {
-    Fault fault = Fault::kNone;
+  struct RefusedNote {
     uint64_t refused = 0;
     double refused_told = -kRefusedPeriod;
+  };
+  struct ArmNote : RefusedNote {  // of who leads the hand
+    Fault fault = Fault::kNone;
+    RefusedNote pushes;
   };
   static constexpr std::array<double, link::kMaxProbes> never() {
     std::array<double, link::kMaxProbes> times{};

@@ -32,7 +32,8 @@ Flight::Flight(std::unique_ptr<record::FlightRing> ring, const std::vector<std::
   for (size_t i = 0; i < arms.size(); ++i) {
     const std::string arm = "arm" + std::to_string(i) + "_";
     columns_.push_back({offsetOf(arm + "sequence"), offsetOf(arm + "q0"), offsetOf(arm + "dq0"),
-                        offsetOf(arm + "measured0"), offsetOf(arm + "command0"), arms[i]->info().joint_count});
+                        offsetOf(arm + "measured0"), offsetOf(arm + "command0"), arms[i]->info().joint_count,
+                        offsetOf(arm + "client_fx")});
   }
 }
 
@@ -90,6 +91,7 @@ void Flight::order(const Order& order) noexcept HSP_RT {
   row.kind = static_cast<uint32_t>(order.kind);
   row.target = order.target;
   row.param = order.param;
+  row.place = order.place;
   row.value = order.value;
   row.seconds = order.seconds;
   copyAll(row.position, order.position);
@@ -110,6 +112,9 @@ void Flight::tick(double t, double dt, Nanoseconds late, Nanoseconds spent, cons
   contacts(core, row);
   poses(core);
   for (uint32_t i = 0; i < arms.size(); ++i) lead(Order::Led::kHand, i, arms[i]->hand().taken());
+  for (uint32_t i = 0; i < arms.size(); ++i) pushes(i, *arms[i]);
+  links(t, arms);
+  motors(t, arms);
   activations(core);
   events(t, core, arms);
   std::byte* to = ring_->next(kTicks);
@@ -147,6 +152,39 @@ void Flight::tickArm(const ArmColumns& columns, const Arm& arm, const Core& core
   if (columns.velocity != 0) std::memcpy(row + columns.velocity, sample.velocity, bytes);
   if (columns.measured != 0) std::memcpy(row + columns.measured, sample.torque, bytes);
   std::memcpy(row + columns.command, arm.command().torque, bytes);
+  if (columns.client == 0) return;
+  ClientColumns client;
+  copy3(client.force, arm.clients().force());
+  copy3(client.torque, arm.clients().torque());
+  std::memcpy(row + columns.client, &client, sizeof client);
+}
+
+void Flight::links(double t, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+  constexpr double kPeriod = 1.0 / 60;  // [s] no screen shows more
+  if (t < links_due_) return;
+  links_due_ = t + kPeriod;
+  std::array<Arm::LinkEnd, HDV_MAX_LINKS> ends;
+  for (uint32_t arm = 0; arm < arms.size(); ++arm)
+    for (uint32_t link = 0, count = arms[arm]->links(ends); link < count; ++link)
+      push(kLinks, LinkRow{tick_, arm, link, ends[link]});
+}
+
+void Flight::motors(double t, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+  constexpr double kPeriod = 0.1;  // [s] copper is slow
+  if (t < motors_due_) return;
+  motors_due_ = t + kPeriod;
+  for (uint32_t arm = 0; arm < arms.size(); ++arm) {
+    const MotorHeat& heat = arms[arm]->heat();
+    for (uint32_t joint = 0; joint < heat.count(); ++joint)
+      push(kMotors, MotorRow{tick_, arm, joint, heat.winding(joint), heat.factor()});
+  }
+}
+
+void Flight::pushes(uint32_t index, const Arm& arm) noexcept HSP_RT {
+  if (!arm.clients().present()) return;
+  for (uint32_t place = 0; place < ClientForces::kMost; ++place)
+    if (const ClientForces::Client& client = arm.clients().clients()[place]; client.fresh)
+      push(kPushes, PushRow{tick_, index, place, client.push});
 }
 
 void Flight::events(double t, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {

@@ -16,7 +16,21 @@
 namespace hapticd::servo {
 
 /// The streams of a recording, in the order of the file.
-enum FlightStream : size_t { kTicks, kContacts, kPoses, kActivations, kOrders, kLeads, kEvents, kFlightStreams };
+/// Pushes stay empty where no program may push, links where no arm says where its own are, motors where no device file
+/// describes them.
+enum FlightStream : size_t {
+  kTicks,
+  kContacts,
+  kPoses,
+  kActivations,
+  kOrders,
+  kLeads,
+  kEvents,
+  kPushes,
+  kLinks,
+  kMotors,
+  kFlightStreams
+};
 
 /// Columns of every tick, before those of the arms.
 struct TickRow {
@@ -56,7 +70,7 @@ struct ActivationRow {
 
 struct OrderRow {
   uint64_t tick = 0;
-  uint32_t kind = 0, target = 0, param = 0, reserved = 0;
+  uint32_t kind = 0, target = 0, param = 0, place = 0;
   double value = 0, seconds = 0, position[3] = {}, orientation[4] = {};
 };
 
@@ -65,6 +79,32 @@ struct LeadRow {
   uint64_t tick = 0;
   uint32_t led = 0, target = 0;  ///< Order::Led; model or arm
   hapticd_target wanted{};
+};
+
+/// An answer of a program that pushes, which the tick took.
+struct PushRow {
+  uint64_t tick = 0;
+  uint32_t arm = 0, place = 0;
+  hapticd_push push{};
+};
+
+/// The far end of a link of an arm, for those who draw it: 60 times a second.
+struct LinkRow {
+  uint64_t tick = 0;
+  uint32_t arm = 0, link = 0;
+  Arm::LinkEnd end{};
+};
+
+/// A motor by the model of its heat: 10 times a second.
+struct MotorRow {
+  uint64_t tick = 0;
+  uint32_t arm = 0, joint = 0;
+  double winding = 0, share = 0;
+};
+
+/// Columns of one arm that programs may push on, behind those of its joints.
+struct ClientColumns {
+  double force[3] = {}, torque[3] = {};
 };
 
 /// [main] The streams of a run. @param rate [Hz] @param seconds that the black box keeps @param moving models that move
@@ -103,13 +143,16 @@ class Flight {
  private:
   /// Where the columns of one arm begin in a row, and how many joints it has.
   struct ArmColumns {
-    uint32_t arm = 0, position = 0, velocity = 0, measured = 0, command = 0, joints = 0;  ///< 0: no such column
+    uint32_t arm = 0, position = 0, velocity = 0, measured = 0, command = 0, joints = 0, client = 0;  ///< 0: none
   };
   void tickArm(const ArmColumns& columns, const Arm& arm, const Core& core, uint32_t index,
                std::byte* row) noexcept HSP_RT;
   void contacts(const Core& core, TickRow& tick) noexcept HSP_RT;
   void poses(const Core& core) noexcept HSP_RT;
   void lead(Order::Led led, uint32_t target, const hapticd_target* taken) noexcept HSP_RT;
+  void pushes(uint32_t index, const Arm& arm) noexcept HSP_RT;
+  void motors(double t, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+  void links(double t, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
   void events(double t, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
   void activations(const Core& core) noexcept HSP_RT;
   template <class Row>
@@ -120,6 +163,7 @@ class Flight {
   std::vector<uint32_t> faults_before_;
   Nanoseconds now_ = 0;
   uint64_t tick_ = 0;
+  double links_due_ = 0, motors_due_ = 0;  ///< [s]
   EventFinder events_;
 };
 

@@ -121,8 +121,9 @@ RowLayout orderColumns() {
              "1 enable, 2 disable, 3 move, 4 set, 5 clear, 6 hold, 7 adopt, 8 release; by the servo itself: 9 "
              "accuracy, 10 overran, 11 cut; 12 lead, 13 unlead");
   layout.add("target", ColumnType::kWord, "", "model, or arm of 5, 6, 11 and of leads that are not of a model");
-  layout.add("param", ColumnType::kWord, "", "of a set: index in the plugin's table; 12, 13: what is led, as in leads");
-  layout.add("reserved", ColumnType::kWord, "", "0");
+  layout.add("param", ColumnType::kWord, "",
+             "of a set: index in the plugin's table; 12, 13: what is led, as in leads, 2 a force");
+  layout.add("reserved", ColumnType::kWord, "", "12, 13 of a force: which of the arm's places; otherwise 0");
   layout.add("value", ColumnType::kReal, "",
              "of a set; 9: the level; 12, 13: process of the leader; 11: 1 found before the tick, 0 in it");
   layout.add("seconds", ColumnType::kReal, "s", "that a move takes; 11: that the servo was stuck");
@@ -143,6 +144,48 @@ RowLayout leadColumns() {
   vector(layout, "w", "rad/s", "wanted angular velocity");
   layout.add("time", ColumnType::kReal, "s", "CLOCK_MONOTONIC for which it was said, 0: for the tick");
   return layout;
+}
+
+/// Everything in the order of PushRow.
+RowLayout pushColumns() {
+  RowLayout layout;
+  layout.add("tick", ColumnType::kCount, "", "number of the tick that took the answer");
+  layout.add("arm", ColumnType::kWord, "", "that is pushed on");
+  layout.add("place", ColumnType::kWord, "", "of the program among those that push on this arm");
+  layout.add("answers", ColumnType::kCount, "", "number of the tick that is answered");
+  vector(layout, "f", "N", "force that the program wants, before its bound and its ramp, world frame");
+  vector(layout, "t", "N m", "torque that the program wants, before its ramp, world frame");
+  layout.add("woke_ns", ColumnType::kCount, "ns", "CLOCK_MONOTONIC when the program woke, 0: unknown");
+  layout.add("written_ns", ColumnType::kCount, "ns", "CLOCK_MONOTONIC when it wrote, 0: unknown");
+  return layout;
+}
+
+/// Everything in the order of LinkRow.
+RowLayout linkColumns() {
+  RowLayout layout;
+  layout.add("tick", ColumnType::kCount, "", "number of the tick; 60 times a second");
+  layout.add("arm", ColumnType::kWord, "", "arm");
+  layout.add("link", ColumnType::kWord, "", "number of the link; about.devices tells where it begins");
+  vector(layout, "", "m", "far end of the link, world frame");
+  quaternion(layout, "", "orientation of its body");
+  return layout;
+}
+
+/// Everything in the order of MotorRow.
+RowLayout motorColumns() {
+  RowLayout layout;
+  layout.add("tick", ColumnType::kCount, "", "number of the tick; 10 times a second");
+  layout.add("arm", ColumnType::kWord, "", "arm");
+  layout.add("joint", ColumnType::kWord, "", "that the motor moves");
+  layout.add("winding", ColumnType::kReal, "degC", "temperature of its winding, by the model of limits.motors");
+  layout.add("share", ColumnType::kReal, "", "that the hottest motor of the arm leaves of every force, 0 to 1");
+  return layout;
+}
+
+/// Everything in the order of ClientColumns.
+void clientColumns(RowLayout& layout, const std::string& arm) {
+  vector(layout, arm + "client_f", "N", "force of programs on the hand, bounded and ramped, before the limits");
+  vector(layout, arm + "client_t", "N m", "torque of programs on the hand, ramped, before the limits");
 }
 
 /// Everything in the order of hapticd_event.
@@ -166,9 +209,10 @@ RowLayout eventColumns() {
 std::vector<StreamSpec> flightStreams(const scene::Scene& scene, const std::vector<std::unique_ptr<Arm>>& arms,
                                       double rate, double seconds, size_t moving) {
   // A row more than is kept: the one being written. Contacts beyond four models at a time shorten what is kept of them.
-  constexpr uint64_t kModelsAtOnce = 4, kFewest = 1024, kRecords = 16384;
+  constexpr uint64_t kModelsAtOnce = 4, kFewest = 1024, kRecords = 16384, kNone = 2;
   const auto ticks = static_cast<uint64_t>(std::ceil(seconds * rate)) + 1;
   const uint64_t models = std::clamp<uint64_t>(scene.models.size(), 1, kModelsAtOnce);
+  const bool pushed = scene.clients.mode != scene::ClientMode::kOff;
   std::vector<StreamSpec> streams(kFlightStreams);
   streams[kTicks] = {"ticks", {}, ticks};
   streams[kContacts] = {"contacts", contactColumns(),
@@ -181,6 +225,12 @@ std::vector<StreamSpec> flightStreams(const scene::Scene& scene, const std::vect
   streams[kOrders] = {"orders", orderColumns(), kFewest};
   streams[kLeads] = {"leads", leadColumns(), std::max(kFewest, second)};
   streams[kEvents] = {"events", eventColumns(), kFewest};
+  streams[kPushes] = {"pushes", pushColumns(), pushed ? std::max(kFewest, ticks * arms.size()) : kNone};
+  uint64_t links = 0;
+  uint64_t motors = 0;
+  for (const auto& arm : arms) links += arm->linkCount(), motors += arm->heat().count();
+  streams[kLinks] = {"links", linkColumns(), std::max(kNone, links * static_cast<uint64_t>(61 * seconds))};
+  streams[kMotors] = {"motors", motorColumns(), std::max(kNone, motors * static_cast<uint64_t>(11 * seconds))};
   RowLayout& layout = streams[kTicks].layout;
   tickColumns(layout);
   for (size_t i = 0; i < arms.size(); ++i) {
@@ -194,6 +244,7 @@ std::vector<StreamSpec> flightStreams(const scene::Scene& scene, const std::vect
     if ((info.capabilities & HDV_C_TORQUE) != 0)
       jointColumns(layout, arm + "measured", info.joint_count, "N m or N", "joint torque, measured");
     jointColumns(layout, arm + "command", info.joint_count, "N m or N", "joint torque, as commanded");
+    if (pushed) clientColumns(layout, arm);
   }
   return streams;
 }

@@ -13,6 +13,7 @@ Order orderOf(Order::Kind kind, const Leads::Target& target) {
   order.kind = kind;
   order.target = target.index;
   order.param = static_cast<uint32_t>(target.led);
+  order.place = target.place;
   return order;
 }
 
@@ -22,17 +23,41 @@ bool same(const Leads::Target& a, const Leads::Target& b) {
 
 }  // namespace
 
-Result<Descriptor> Leads::begin(const Target& target, const control::Peer& peer) {
-  if (const auto pid = leader(target.led, target.index))
+/// Another place each time: what the last program there left may ramp out yet.
+Result<void> Leads::findPlace(Target& target, const control::Peer& peer) {
+  const auto others = pushers(target.index);
+  if (exclusive_ && !others.empty())
+    return Error{target.name + " is pushed on by process " + std::to_string(others.front().pid) +
+                 " already, and the scene lets one program alone (clients.exclusive)"};
+  for (const Lead& lead : leads_)
+    if (same(lead.target, target) && lead.peer.id == peer.id)
+      return Error{target.name + " is pushed on by this connection already"};
+  for (uint32_t i = 0; i < ClientForces::kMost; ++i) {
+    target.place = last_place_ = (last_place_ + 1) % ClientForces::kMost;
+    const bool taken =
+        std::any_of(others.begin(), others.end(), [&](auto& other) { return other.place == target.place; });
+    if (!taken) return {};
+  }
+  return Error{target.name + " is pushed on by " + std::to_string(others.size()) + " programs already, as many as can"};
+}
+
+Result<Descriptor> Leads::begin(Target target, const control::Peer& peer) {
+  if (target.led == Order::Led::kForce) {
+    if (auto found = findPlace(target, peer); !found) return Error{found.error()};
+  } else if (const auto pid = leader(target.led, target.index)) {
     return Error{target.name + " is led by process " + std::to_string(*pid) +
                  " already; a lead ends with unlead, or with the connection that asked for it"};
+  }
   auto memory = SealedMemory::create("hapticd-lead", HAPTICD_LEAD_BYTES, SealedMemory::Writers::kAll);
   if (!memory) return Error{memory.error()};
   auto shared = (*memory)->share();
   if (!shared) return Error{shared.error()};
   Order order = orderOf(Order::Kind::kLead, target);
   order.value = peer.pid;
-  order.slot = new ((*memory)->data()) link::PoseSlot;  // all zeros as it is
+  if (target.led == Order::Led::kForce)
+    order.push = new ((*memory)->data()) link::PushSlot;  // all zeros as it is
+  else
+    order.slot = new ((*memory)->data()) link::PoseSlot;
   const auto given = give_(order);
   leads_.push_back({target, peer, std::move(*memory)});  // also where the servo was late: it may obey yet
   if (given) return std::move(*shared);
@@ -77,6 +102,14 @@ std::optional<pid_t> Leads::leader(Order::Led led, uint32_t index) const {
   for (const Lead& lead : leads_)
     if (lead.target.led == led && lead.target.index == index) return lead.peer.pid;
   return std::nullopt;
+}
+
+std::vector<Leads::Pusher> Leads::pushers(uint32_t arm) const {
+  std::vector<Pusher> found;
+  for (const Lead& lead : leads_)
+    if (lead.target.led == Order::Led::kForce && lead.target.index == arm)
+      found.push_back({lead.peer.pid, lead.target.place});
+  return found;
 }
 
 bool Leads::holds(const control::Peer& peer) const {

@@ -12,6 +12,7 @@
 #include "base/result.hpp"
 #include "base/sealed_memory.hpp"
 #include "control/server.hpp"
+#include "servo/arm/client_forces.hpp"
 #include "servo/core/order.hpp"
 
 namespace hapticd::servo {
@@ -26,12 +27,14 @@ class Leads {
     Order::Led led = Order::Led::kModel;
     uint32_t index = 0;  ///< model or arm
     std::string name;    ///< "model door", for messages
+    uint32_t place = 0;  ///< of a force: given by begin()
   };
 
-  explicit Leads(Give give) : give_(std::move(give)) {}
+  /// @param exclusive one program pushes on an arm; otherwise as many as there are places
+  explicit Leads(Give give, bool exclusive = false) : give_(std::move(give)), exclusive_(exclusive) {}
 
   /// [main] Begins a lead. @return a descriptor of its memory. An error names the leader that is there already.
-  Result<Descriptor> begin(const Target& target, const control::Peer& peer);
+  Result<Descriptor> begin(Target target, const control::Peer& peer);
   /// [main] Ends the lead of this peer.
   Result<void> end(const Target& target, const control::Peer& peer);
   /// [main] Ends whatever leads a model: it moves otherwise, or leaves.
@@ -41,6 +44,13 @@ class Leads {
 
   /// [main] The process that leads a model or a hand, if one does.
   std::optional<pid_t> leader(Order::Led led, uint32_t index) const;
+  /// A program that pushes.
+  struct Pusher {
+    pid_t pid;
+    uint32_t place;
+  };
+  /// [main] Those that push on an arm.
+  std::vector<Pusher> pushers(uint32_t arm) const;
   /// [main] Something lives as long as the peer's connection.
   bool holds(const control::Peer& peer) const;
   /// [main] Numbers of the peers that hold something.
@@ -53,8 +63,11 @@ class Leads {
     std::unique_ptr<SealedMemory> memory;
   };
   Result<void> finish(Lead lead);
+  Result<void> findPlace(Target& target, const control::Peer& peer);
 
   Give give_;
+  bool exclusive_;
+  uint32_t last_place_ = 0;
   std::vector<Lead> leads_;
   std::vector<std::unique_ptr<SealedMemory>> kept_;  ///< of leads that the servo did not end: it may look there yet
 };

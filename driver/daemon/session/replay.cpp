@@ -46,7 +46,8 @@ SampleColumns sampleColumns(const RecordedStream& ticks, size_t index) {
 
 /// Streams that recordings of version 0.1 do not have.
 bool isLater(const std::string& stream) {
-  return stream == "leads" || stream == "events";
+  static constexpr std::string_view kLater[] = {"leads", "events", "pushes", "links", "motors"};
+  return std::find(std::begin(kLater), std::end(kLater), stream) != std::end(kLater);
 }
 
 /// What a stream must have for rows to be told apart and fed again.
@@ -104,12 +105,13 @@ class Replay::Player final : public Clock {
     feedRecords();
     feedOrders();
     feedLeads();
+    feedPushes();
     ++tick_;
     return now_;
   }
 
   void compare() {
-    for (const size_t stream : {kLeads, kContacts, kPoses, kActivations, kOrders, kTicks}) {  // causes before sums
+    for (const size_t stream : {kPushes, kLeads, kContacts, kPoses, kActivations, kOrders, kTicks}) {  // causes first
       if (recorded_[stream] == nullptr) continue;
       const RecordedStream& then = *recorded_[stream];
       for (uint64_t& row = compared_[stream];
@@ -175,7 +177,11 @@ class Replay::Player final : public Clock {
       order.seconds = row.seconds;
       std::memcpy(order.position, row.position, sizeof order.position);
       std::memcpy(order.orientation, row.orientation, sizeof order.orientation);
-      if (order.kind == Order::Kind::kLead) order.slot = newSlot(row.param, row.target);
+      order.place = row.place;
+      if (order.kind == Order::Kind::kLead && row.param == static_cast<uint32_t>(Order::Led::kForce))
+        order.push = newPushSlot(row.target, row.place);
+      else if (order.kind == Order::Kind::kLead)
+        order.slot = newSlot(row.param, row.target);
       replay_.loop_->give(order);
     }
   }
@@ -196,6 +202,23 @@ class Replay::Player final : public Clock {
       if (row.tick > tick_) return;
       const auto found = leads_.find({row.led, row.target});
       if (found != leads_.end()) found->second->put(row.wanted);
+    }
+  }
+
+  const link::PushSlot* newPushSlot(uint32_t arm, uint32_t place) {
+    push_slots_.push_back(std::make_unique<link::PushSlot>());
+    pushes_[{arm, place}] = push_slots_.back().get();
+    return push_slots_.back().get();
+  }
+
+  /// The answers of programs that the servo took.
+  void feedPushes() {
+    if (recorded_[kPushes] == nullptr) return;
+    for (const RecordedStream& stream = *recorded_[kPushes]; push_ < stream.rows(); ++push_) {
+      const auto row = at<PushRow>(stream.row(push_), 0);
+      if (row.tick > tick_) return;
+      const auto found = pushes_.find({row.arm, row.place});
+      if (found != pushes_.end()) found->second->put(row.push);
     }
   }
 
@@ -275,9 +298,11 @@ class Replay::Player final : public Clock {
   std::vector<const RecordedStream*> recorded_;
   std::vector<SampleColumns> arms_;
   std::vector<uint64_t> compared_;
-  uint64_t tick_ = 0, activation_ = 0, order_ = 0, lead_ = 0, end_ = 0;
+  uint64_t tick_ = 0, activation_ = 0, order_ = 0, lead_ = 0, push_ = 0, end_ = 0;
   std::vector<std::unique_ptr<link::PoseSlot>> slots_;
   std::map<std::pair<uint32_t, uint32_t>, link::PoseSlot*> leads_;  ///< the newest of each target
+  std::vector<std::unique_ptr<link::PushSlot>> push_slots_;
+  std::map<std::pair<uint32_t, uint32_t>, link::PushSlot*> pushes_;  ///< the newest of each place of an arm
   Nanoseconds now_ = 0;
 };
 
@@ -298,8 +323,9 @@ Result<std::unique_ptr<Replay>> Replay::prepare(const record::Recording& recordi
   for (size_t i = 0; i < scene.devices.size(); ++i) {
     replay->playbacks_.push_back(std::make_unique<host::Playback>());
     replay->playbacks_[i]->info = replay->run_.devices[i];
-    auto arm = Arm::open(scene.devices[i], scene.servo,
-                         {options.rate, replay->world_->needsVelocity(), replay->playbacks_[i].get()}, log);
+    auto arm =
+        Arm::open(scene.devices[i], scene.servo,
+                  {options.rate, replay->world_->needsVelocity(), replay->playbacks_[i].get(), scene.clients}, log);
     if (!arm) return Error{arm.error()};
     replay->arms_.push_back(std::move(*arm));
   }

@@ -65,7 +65,7 @@ RequestHandler::RequestHandler(Runner& runner, LoadScene load, host::Services::L
       dump_folder_(std::move(dump_folder)),
       scene_file_(std::filesystem::absolute(runner.scene().file).string()),
       places_(runner.world().places()),
-      leads_([this](const Order& order) { return give(order); }) {
+      leads_([this](const Order& order) { return give(order); }, runner.scene().clients.exclusive) {
   for (size_t i = 0; i < runner.scene().models.size(); ++i) places_[i] = {runner.scene().models[i], true, true};
 }
 
@@ -164,6 +164,10 @@ Result<std::string> RequestHandler::obey(const control::Peer& peer, const Reques
       return lead(peer, request);
     case Request::Kind::kUnlead:
       return plain(unlead(peer, request));
+    case Request::Kind::kState:
+      return state();
+    case Request::Kind::kBell:
+      return bell();
     case Request::Kind::kStop:
       runner_.stop();
       return good;

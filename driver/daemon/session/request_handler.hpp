@@ -58,8 +58,13 @@ class RequestHandler {
   static void remember(scene::Model& model, const hsp_param& param, const Order& order);
   Result<uint32_t> placeOf(const std::string& model) const;
   Result<uint32_t> armOf(const std::string& device) const;
+  Result<Leads::Target> pushOf(const std::string& device) const;
   Result<Leads::Target> leadOf(const control::Request& request) const;
   Result<std::string> lead(const control::Peer& peer, const control::Request& request);
+  Result<std::string> state();
+  Result<std::string> bell();
+  Result<void> attach(std::unique_ptr<SealedMemory>& kept, const char* name, size_t bytes,
+                      SealedMemory::Writers writers);
   Result<void> unlead(const control::Peer& peer, const control::Request& request);
   Result<void> give(const Order& order);
   Result<void> able(const std::string& model, bool enabled);

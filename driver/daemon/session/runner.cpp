@@ -166,7 +166,7 @@ Result<void> Runner::openBlackBox(const LoopSettings& settings) {
 
 Result<void> Runner::openArms(const host::Services::Log& log) {
   for (const scene::Device& device : scene_.devices) {
-    auto arm = Arm::open(device, scene_.servo, {options_.rate, world_->needsVelocity()}, log);
+    auto arm = Arm::open(device, scene_.servo, {options_.rate, world_->needsVelocity(), nullptr, scene_.clients}, log);
     if (!arm) return Error{arm.error()};
     arms_.push_back(std::move(*arm));
   }

@@ -10,6 +10,7 @@
 
 #include "base/os.hpp"
 #include "base/result.hpp"
+#include "base/sealed_memory.hpp"
 #include "description/scene.hpp"
 #include "record/recorder.hpp"
 #include "servo/loop/loop.hpp"
@@ -63,6 +64,7 @@ class Runner {
   const World& world() const { return *world_; }
   /// [any] One thread: an order for the servo.
   bool giveOrder(const Order& order) { return loop_->give(order); }
+  Door& door() { return loop_->door(); }
   /// [main] After the run: nothing is left behind.
   void endBlackBox() { telemetry_->flight()->ring().removeFile(); }
   /// [any] The same thread: a model takes a place; "": it has left.
@@ -71,6 +73,11 @@ class Runner {
   /// Folder of what a crash leaves behind, and of the quarantine; "": none.
   const std::string& stateDir() const { return options_.state_dir; }
   bool virtualTime() const { return options_.virtual_time; }
+  /// [any] One thread: memory that the loop shares with others until it has ended; nullptr until somebody asks.
+  struct Shared {
+    std::unique_ptr<SealedMemory> state, bell;
+  };
+  Shared& shared() { return shared_; }
   const Telemetry& telemetry() const { return *telemetry_; }
   const Loop& loop() const { return *loop_; }
   Nanoseconds wallTime() const { return wall_time_; }       ///< [main] that the loop took
@@ -114,6 +121,7 @@ class Runner {
   std::vector<std::unique_ptr<Arm>> arms_;
   std::unique_ptr<Telemetry> telemetry_;
   std::unique_ptr<EventLog> event_log_;
+  Shared shared_;
   std::unique_ptr<Clock> clock_;
   std::unique_ptr<Loop> loop_;
   std::unique_ptr<record::Recorder> recorder_;

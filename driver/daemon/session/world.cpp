@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "servo/velocity/probe_velocity.hpp"
+#include "session/instructions.hpp"
 
 namespace hapticd::servo {
 
@@ -38,6 +39,7 @@ hsp_activation activationFor(const scene::Scene& scene, const WorldOptions& opti
 
 Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const WorldOptions& options,
                                             const host::Services::Log& log) {
+  chooseInstructions(scene.servo);
   std::unique_ptr<World> world(new World);
   const uint64_t budget_ns = options.budgets ? budgetNs(scene.servo, options.rate) : 0;
   hsp_activation& activation = world->activation_;

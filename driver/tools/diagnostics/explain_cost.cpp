@@ -222,7 +222,9 @@ class Costs {
   }
 
   void addEstimator(const servo::World& world) {
-    if (!world.needsVelocity()) return add("velocity estimator", "", "no model and no limit needs a velocity", 0, 0);
+    const bool pushed = scene_.clients.mode != scene::ClientMode::kOff;
+    if (!world.needsVelocity() && !pushed)
+      return add("velocity estimator", "", "no model and no limit needs a velocity", 0, 0);
     auto estimator = servo::makeEstimator(scene_.servo.velocity, scene_.servo.rate);
     if (!estimator) return;
     const Nanoseconds begun = monotonicNow();
@@ -232,6 +234,7 @@ class Costs {
     for (const CostRow& row : rows_)
       if (row.there() && row.part.find(": velocity") != std::string::npos)
         asked_by += (asked_by.empty() ? "" : ", ") + row.asked_by;
+    if (pushed) asked_by += std::string(asked_by.empty() ? "" : ", ") + scene_.file.string() + " clients";
     add("velocity estimator", asked_by, scene_.servo.velocity.estimator, each, sizeof *estimator);
   }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Every function of the client library once, against a running daemon. Prints a line a check; exit 1 when one is off.
  * Usage: everything NAME ARM MODEL */
-#include <hapticd/client_library.h>
+#include <hapticd/client.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,7 +37,7 @@ static void reads(hapticd_client* c) {
   check("and columns",
         hapticd_columns(c, ticks, NULL, &bytes) > 20 && bytes >= 200 && hapticd_columns(c, 99, NULL, NULL) == -1);
   const uint64_t now = hapticd_written(c, ticks);
-  check("it waits for a tick", hapticd_wait(c, now + 20, 10000) == 1);
+  check("the bell wakes for a tick", hapticd_wait(c, now + 20, 10000) == 1);
   check("and not for one that is far", hapticd_wait(c, now + 1000000, 20) == 0);
   char* rows = malloc(64 * bytes);
   uint64_t row = 0;
@@ -73,9 +73,10 @@ static void asks(hapticd_client* c, const char* arm) {
 static void leads(hapticd_client* c, const char* arm, const char* model) {
   hapticd_error error;
   const hapticd_target target = {.position = {0, -0.25, 0}, .orientation = {1, 0, 0, 0}};
+  const hapticd_push none = {0};
   hapticd_lead* door = hapticd_lead_model(c, model, &error);
-  check("it leads a model", door != NULL);
-  if (door != NULL) hapticd_lead_put(door, &target);
+  check("it leads a model",
+        door != NULL && hapticd_lead_put(door, &target) == 0 && hapticd_lead_push(door, &none) == -1);
   check("once", hapticd_lead_model(c, model, &error) == NULL && strcmp(error.code, "busy") == 0);
   const int poses = hapticd_stream(c, "poses");
   char row[1024];
@@ -88,9 +89,36 @@ static void leads(hapticd_client* c, const char* arm, const char* model) {
   check("and the model goes there", fabs(y + 0.25) < 1e-6);
   hapticd_lead_end(door);
   hapticd_lead* hand = hapticd_lead_hand(c, arm, &error);
-  check("it leads a hand", hand != NULL);
-  if (hand != NULL) hapticd_lead_put(hand, &target);
+  check("it leads a hand", hand != NULL && hapticd_lead_put(hand, &target) == 0);
   hapticd_lead_end(hand);
+}
+
+static void pushes(hapticd_client* c, const char* arm) {
+  hapticd_error error;
+  hapticd_state state = {0};
+  hapticd_lead* lead = hapticd_lead_force(c, arm, &error);
+  const hapticd_target target = {0};
+  check("it pushes", lead != NULL && hapticd_lead_put(lead, &target) == -1);
+  check("there is a state",
+        hapticd_next_state(c, 0, UINT64_MAX, 5000, &state) == 1 && (state.flags & HAPTICD_GOOD) != 0);
+  check("not of an arm that is none", hapticd_next_state(c, 5, UINT64_MAX, 10, &state) == -1);
+  check("and none newer than the future", hapticd_next_state(c, 0, state.tick + 1000000, 10, &state) == 0);
+  int grew = 1, answered = 0;
+  for (uint64_t last = state.tick; answered < 1000; last = state.tick, ++answered) {
+    if (hapticd_next_state(c, 0, last, 1000, &state) != 1) break;
+    grew &= state.tick > last;
+    const hapticd_push push = {.tick = state.tick, .force = {0, 0.5, 0}};
+    hapticd_lead_push(lead, &push);
+  }
+  check("states grow", grew && answered == 1000);
+  const int ticks = hapticd_stream(c, "ticks");
+  char* row = malloc(65536);
+  uint64_t last = hapticd_written(c, ticks) - 1;
+  const int felt =
+      hapticd_read(c, ticks, &last, row, 1) == 1 && fabs(number(c, ticks, row, "arm0_client_fy") - 0.5) < 0.5;
+  check("and its force is in the rows", felt);
+  free(row);
+  hapticd_lead_end(lead);
 }
 
 int main(int argc, char** argv) {
@@ -103,6 +131,7 @@ int main(int argc, char** argv) {
   reads(c);
   asks(c, argv[2]);
   leads(c, argv[2], argv[3]);
+  pushes(c, argv[2]);
   hapticd_lead_end(NULL);
   hapticd_lead_model(c, argv[3], NULL); /* ends with its client */
   hapticd_close(c);

@@ -1,22 +1,28 @@
 #!/usr/bin/env python3
-"""The C library and its example against a running daemon.
+"""The C library, what it shares with Python, and the force loops of the examples against a running daemon.
 
-Usage: use_the_library.py HAPTICD SOURCE EVERYTHING EXAMPLE     prints a line a case; exit 1 when one is off.
+Usage: use_the_library.py HAPTICD SOURCE EVERYTHING SPRING LEAD_MODEL     prints a line a case; exit 1 when one is off.
 """
 import os
+import re
 import subprocess
 import sys
 import tempfile
 import time
 
-HAPTICD, SOURCE, EVERYTHING, EXAMPLE = sys.argv[1:5]
+HAPTICD, SOURCE, EVERYTHING, SPRING, LEAD_MODEL = sys.argv[1:6]
+CLIENT = os.path.join(SOURCE, "driver", "doors", "client", "python")
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
+sys.path.insert(0, CLIENT)
+import hapticd
+import numpy
 from e2e import check, finish
 
 SCENE = """hapticd: 1
 servo: {{rate: 1000}}
 device: {source}/config/devices/simulated-premium15.yaml
 hand: {{script: guided, tremor: 0, wander: 0}}
+clients: add
 models:
   - name: door
     plugin: nurbs_rigid
@@ -27,13 +33,43 @@ models:
 ARM = "simulated Premium 1.5"
 
 
-def examples():
-    done = subprocess.run([EXAMPLE, "door", "lib", "1"], env=environment, capture_output=True, text=True, timeout=60)
+def example(name, *arguments):
+    done = subprocess.run([sys.executable, os.path.join(CLIENT, "examples", name), "--name", "lib", *arguments],
+                          env=dict(environment, PYTHONPATH=CLIENT), capture_output=True, text=True, timeout=120)
+    return done.returncode, done.stdout, done.stderr
+
+
+def examples(folder):
+    code, out, err = example("spring.py", "--seconds", "2")
+    check("spring.py", code == 0 and "answers" in out and "% of the answers" in out, (out, err))
+    done = subprocess.run([SPRING, "lib", "1"], env=environment, capture_output=True, text=True, timeout=60)
+    ticks = re.match(r"(\d+) ticks answered", done.stdout)
+    check("spring.c", done.returncode == 0 and ticks and int(ticks[1]) > 100, done)
+    done = subprocess.run([SPRING, "nobody"], env=environment, capture_output=True, text=True, timeout=60)
+    check("spring.c tells of a daemon that is none", done.returncode == 1 and "hapticd run" in done.stderr, done)
+
+
+def leads_a_model():
+    done = subprocess.run([LEAD_MODEL, "door", "lib", "1"], env=environment, capture_output=True, text=True, timeout=60)
     check("lead_model.c", done.returncode == 0 and len(done.stdout.splitlines()) > 10 and " N" in done.stdout, done)
-    done = subprocess.run([EXAMPLE, "window", "lib"], env=environment, capture_output=True, text=True, timeout=60)
+    done = subprocess.run([LEAD_MODEL, "window", "lib"], env=environment, capture_output=True, text=True, timeout=60)
     check("lead_model.c tells of a model that is none", done.returncode == 1 and "window" in done.stderr, done)
-    done = subprocess.run([EXAMPLE, "door", "nobody"], env=environment, capture_output=True, text=True, timeout=60)
+    done = subprocess.run([LEAD_MODEL, "door", "nobody"], env=environment, capture_output=True, text=True, timeout=60)
     check("lead_model.c tells of a daemon that is none", done.returncode == 1 and "hapticd run" in done.stderr, done)
+
+
+def links(client):
+    rows, ticks = client.rows("links", last=200), client.rows("ticks", last=4000)
+    told = client.about["devices"][0]["links"]
+    check("the arm tells how its links hang together", told["parent"] == [-1, 0] and len(told["base"]) == 3, told)
+    tips = rows[rows["link"] == 1]
+    ticks = ticks[numpy.isin(ticks["tick"], tips["tick"])]
+    tips = tips[numpy.isin(tips["tick"], ticks["tick"])]
+    off = max(abs(tips[c] - ticks["arm0_" + c]).max() for c in "xyz")
+    check("the last link ends at the tip", len(tips) > 20 and off < 1e-12, (len(tips), off))
+    elbows = rows[rows["link"] == 0]
+    upper = numpy.sqrt(sum((elbows[c] - told["base"][i]) ** 2 for i, c in enumerate("xyz")))
+    check("the first begins at the shoulder", abs(upper - 0.215).max() < 1e-12, upper)
 
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
@@ -52,7 +88,10 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
     done = subprocess.run([EVERYTHING, "lib", ARM, "door"], env=environment, capture_output=True, text=True, timeout=120)
     print(done.stdout, end="")
     check("every function of the library", done.returncode == 0, done.stdout[-2000:] + done.stderr)
-    examples()
+    examples(folder)
+    leads_a_model()
+    with hapticd.connect("lib", folder=folder) as client:
+        links(client)
     daemon.terminate()
     check("the run ends in order", daemon.wait(timeout=30) == 0)
 finish()

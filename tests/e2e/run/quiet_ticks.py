@@ -14,8 +14,11 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+sys.path.insert(0, os.path.join(sys.argv[2], "driver", "doors", "client", "python"))
+import hapticd
 from e2e import check, finish
 
 HAPTICD, SOURCE, WITNESS, SHAPES = sys.argv[1:5]
@@ -62,6 +65,26 @@ def watched(scene, environment):
                 "calls": systemCalls(file["strace"]) if strace else []}
 
 
+def wakeUps(folder):
+    """The one call that the servo may make: it wakes who waits for its ticks, and only while somebody waits."""
+    log = os.path.join(folder, "strace")
+    environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder, WITNESS=os.path.join(folder, "witness"))
+    daemon = subprocess.Popen([strace, "-f", "--seccomp-bpf", "--decode-pids=comm", "-ttt", "-o", log, "-e", "trace=!clock_nanosleep",
+                               "-E", "LD_PRELOAD=" + WITNESS, HAPTICD, "run", os.path.join(SOURCE, "config", "scenes", "sphere.yaml"),
+                               "--for", str(2 * SECONDS), "--name", "bell"], env=environment, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL)
+    for _ in range(600):
+        if os.path.exists(os.path.join(folder, "bell.sock")):
+            break
+        time.sleep(0.05)
+    heard = 0
+    with hapticd.connect("bell", folder=folder) as client:
+        while daemon.poll() is None and heard < 200:
+            heard += client.wait(client.streams["ticks"].written, timeout=1)
+    daemon.wait(timeout=60)
+    return heard, systemCalls(log)
+
+
 def quiet(scene):
     seen = watched(scene, os.environ)
     name = os.path.basename(scene)
@@ -99,7 +122,12 @@ with concurrent.futures.ThreadPoolExecutor(2) as pool:
         good = seen["error"] is None and seen["sleeps"] > 100 and seen["allocations"] == 0 and seen["locks"] == 0
         good = good and (seen["page_faults"] == 0 or not can_lock) and not seen["calls"]
         check(f"{scene}: no allocation, lock, page fault or system call in {seen.get('sleeps')} ticks", good, seen)
-if not strace:
+if strace:
+    with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
+        heard, calls = wakeUps(scratch)
+        check("who waits for ticks is woken by FUTEX_WAKE, and the servo makes no other call",
+              heard >= 200 and len(calls) > 20 and set(calls) == {"futex"}, (heard, set(calls), len(calls)))
+else:
     print("skipped: system calls, strace is missing")
 with tempfile.TemporaryDirectory() as scratch:
     planted(scratch)

@@ -35,12 +35,14 @@ double delayOf(const scene::Velocity& velocity, double rate) {
 
 }  // namespace
 
-Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter)
+Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter,
+         const ArmOptions& options)
     : device_(std::move(device)),
       R_world_device_(described.mount.orientation.toRotationMatrix()),
       q_world_device_(described.mount.orientation),
       origin_world_(described.mount.position),
       hand_(device_->hand(), device_->handle(), R_world_device_, origin_world_),
+      clients_(options.clients, limiter.maxForce(), 1 / options.rate),
       limiter_(std::move(limiter)),
       heat_(described.limits.motors),
       weight_(described.limits, limiter_.maxForce()) {}
@@ -52,7 +54,7 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   (*device)->playBack(options.playback);
   if (auto opened = (*device)->open(); !opened) return Error{opened.error()};
   const Limiter limiter(described.limits, (*device)->info().max_force);
-  std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter));
+  std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter, options));
   arm->watchSamples(described.limits);
   const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
   arm->limiter_.expectMotion(delayOf(servo.velocity, options.rate), mass);
@@ -61,7 +63,8 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
       return Error{"device '" + described.name + "': " + no};
     arm->admittance_.emplace(*described.admittance, *arm->device_);
   }
-  if (described.limits.passivity.value_or((arm->info().capabilities & HDV_C_UNVERIFIED) != 0)) {
+  const bool unknown = (arm->info().capabilities & HDV_C_UNVERIFIED) != 0 || arm->clients_.possible();
+  if (described.limits.passivity.value_or(unknown)) {
     arm->passivity_.emplace(passivity::stableDamping(mass, 1 / options.rate), arm->info().damping,
                             arm->info().resolution_m);
   }
@@ -70,7 +73,8 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
     return Error{"device '" + described.name + "': limits.enable.button is " + std::to_string(*button) +
                  ", but the device has " + std::to_string(arm->info().buttons) +
                  " buttons; forces could never be enabled; expected a button of the device, counted from 0"};
-  if (options.needs_velocity || described.limits.velocity.value_or(0) > 0 || described.limits.power > 0) {
+  if (options.needs_velocity || arm->clients_.possible() || described.limits.velocity.value_or(0) > 0 ||
+      described.limits.power > 0) {
     auto estimator = makeEstimator(servo.velocity, options.rate, arm->info().resolution_m);
     if (!estimator) return Error{estimator.error()};
     arm->velocity_.emplace(*estimator);
@@ -239,6 +243,21 @@ std::optional<Eigen::Vector3d> Arm::handForce() const noexcept HSP_RT {
   const Eigen::Vector3d force_device = -TipInverse(J.topRows<3>()).force(torque);
   if (!force_device.allFinite()) return std::nullopt;
   return R_world_device_ * force_device;
+}
+
+uint32_t Arm::links(std::array<LinkEnd, HDV_MAX_LINKS>& ends) const noexcept HSP_RT {
+  const hdv_ext_links* links = device_->links();
+  if (links == nullptr || !probe_.valid) return 0;
+  std::array<double, 3 * HDV_MAX_LINKS> positions;
+  std::array<double, 4 * HDV_MAX_LINKS> orientations;
+  if (links->frames(device_->handle(), sample_.position, positions.data(), orientations.data()) != HSP_OK) return 0;
+  for (uint32_t i = 0; i < links->link_count; ++i) {
+    const double* q = &orientations[4 * i];
+    const Eigen::Vector3d p = R_world_device_ * Eigen::Map<const Eigen::Vector3d>(&positions[3 * i]) + origin_world_;
+    const Eigen::Quaterniond turn = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+    ends[i] = {{p.x(), p.y(), p.z()}, {turn.w(), turn.x(), turn.y(), turn.z()}};
+  }
+  return links->link_count;
 }
 
 /// Under compliance control shapes meet the virtual mass, not the arm that is on its way there.

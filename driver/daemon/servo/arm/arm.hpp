@@ -13,6 +13,7 @@
 #include "description/scene.hpp"
 #include "host/device_instance.hpp"
 #include "servo/arm/admittance.hpp"
+#include "servo/arm/client_forces.hpp"
 #include "servo/arm/led_hand.hpp"
 #include "servo/arm/tip_force.hpp"
 #include "servo/arm/weight.hpp"
@@ -29,6 +30,7 @@ struct ArmOptions {
   double rate = 1000;                        ///< [Hz]
   bool needs_velocity = false;               ///< run the estimator
   const host::Playback* playback = nullptr;  ///< samples from a recording instead of the hardware
+  scene::Clients clients = {};               ///< whether programs may push on it
 };
 
 class Arm {
@@ -85,8 +87,11 @@ class Arm {
   const Probe& probe() const noexcept { return probe_; }
   const hdv_sample& sample() const noexcept { return sample_; }     ///< as read() got it
   const hdv_command& command() const noexcept { return command_; }  ///< as write() gave it
-  LedHand& hand() noexcept { return hand_; }                        ///< of a simulated arm
+  const MotorHeat& heat() const noexcept { return heat_; }
+  LedHand& hand() noexcept { return hand_; }  ///< of a simulated arm
   const LedHand& hand() const noexcept { return hand_; }
+  ClientForces& clients() noexcept { return clients_; }  ///< programs that push on the hand
+  const ClientForces& clients() const noexcept { return clients_; }
   hsp_status readStatus() const noexcept { return read_status_; }    ///< of the last read
   hsp_status writeStatus() const noexcept { return write_status_; }  ///< of the last write
   /// [rt] Force [N] of the hand on the arm, world frame, from the joint torques of the newest sample less what carries
@@ -99,12 +104,22 @@ class Arm {
   const passivity::PassivityController* passivity() const noexcept { return passivity_ ? &*passivity_ : nullptr; }
   /// It can turn the hand; an arm of three joints only pushes.
   bool turns() const { return device_->info().joint_count > 3; }
+  /// An end of a link, world frame.
+  struct LinkEnd {
+    double position[3], orientation[4];  ///< [m], w x y z of the link's body
+  };
+  uint32_t linkCount() const { return device_->links() != nullptr ? device_->links()->link_count : 0; }
+  /// [rt] The far ends of the links as of the newest sample. 0: there are none, or they cannot be told now.
+  uint32_t links(std::array<LinkEnd, HDV_MAX_LINKS>& ends) const noexcept HSP_RT;
+  const Eigen::Matrix3d& mount() const noexcept { return R_world_device_; }
+  const Eigen::Vector3d& origin() const noexcept { return origin_world_; }  ///< [m] of the device frame, world
   bool estimatesVelocity() const { return velocity_.has_value(); }
   bool simulated() const noexcept { return (device_->info().capabilities & HDV_C_SIMULATED) != 0; }
   double rampOut() const noexcept { return limiter_.rampOut(); }  ///< [s]
 
  private:
-  Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter);
+  Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter,
+      const ArmOptions& options);
   bool judge(hsp_status status, Nanoseconds now) noexcept HSP_RT;
   void trip(Fault fault, double measured = 0) noexcept HSP_RT;
   void findCut(CutFound when) noexcept HSP_RT;
@@ -131,6 +146,7 @@ class Arm {
   std::optional<passivity::PassivityController> passivity_;
   std::optional<Admittance> admittance_;
   LedHand hand_;
+  ClientForces clients_;
   Limiter limiter_;
   MotorHeat heat_;
   Weight weight_;

@@ -33,17 +33,20 @@ struct Order {
   /// What a lead moves: `param` of kLead and kUnlead.
   enum class Led : uint32_t {
     kModel,  ///< the pose of a kinematic model
-    kHand    ///< where the hand of a simulated arm wants to be
+    kHand,   ///< where the hand of a simulated arm wants to be
+    kForce   ///< a force on the hand of an arm
   };
   Kind kind = Kind::kNone;
   uint32_t target = 0;  ///< model or arm
   uint32_t param = 0;   ///< kSet; of leads: Led
   uint32_t ticket = 0;  ///< of the request, for the answer
+  uint32_t place = 0;   ///< of leads of a force: which of the arm's
   double value = 0;     ///< kSet; kAccuracy: the level; kCut: 1 found before the tick's read, 0 at its write
   double seconds = 0;  ///< kMove: how long it takes at least, 0: the servo's choice; kCut: how long the servo was stuck
   double position[3] = {}, orientation[4] = {1, 0, 0, 0};  ///< kMove: world frame; no orientation (zeros): as it is
   ModelState* model = nullptr;                             ///< kAdopt: swapped with the empty place
   const link::PoseSlot* slot = nullptr;                    ///< kLead: its memory, valid until kUnlead was obeyed
+  const link::PushSlot* push = nullptr;                    ///< the same, of a force
 };
 
 }  // namespace hapticd::servo

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/allocation_count.hpp"
 #include "base/not_real_time.hpp"
@@ -105,9 +106,10 @@ void Loop::run() noexcept {
     if (dt > kLateFault && !simulated()) trip(Fault::kLate, dt);
     const double t = static_cast<double>(deadline - start) * kSecondsPerNanosecond;
     log_.begin(deadline, arms_);
-    tick(deadline, t, dt);
+    tick({n, deadline, t, dt});
     const Nanoseconds ended = monotonicNow();
     log_.tick(t, dt, woke - due, ended - begun - search_time_, core_, arms_);
+    door_.written(n);
     last = deadline;
     deadline += settings_.period_ns;
     tick_count_.store(n + 1, std::memory_order_relaxed);
@@ -189,9 +191,11 @@ void Loop::obey(const Order& order, Arm& arm) noexcept HSP_RT {
     case Order::Kind::kHold:
       return arm.limiter().trip(Fault::kStopped);
     case Order::Kind::kLead:
+      if (order.push != nullptr) return arm.clients().begin(order.place, *order.push);
       if (order.slot != nullptr) arm.hand().begin(*order.slot, arm.probe().position);
       return;
     case Order::Kind::kUnlead:
+      if (order.param == static_cast<uint32_t>(Order::Led::kForce)) return arm.clients().end(order.place);
       return arm.hand().end();
     default:
       return arm.cutAsThen(order.value > 0 ? Arm::CutFound::kInRead : Arm::CutFound::kInWrite, order.seconds);
@@ -252,20 +256,32 @@ Nanoseconds Loop::skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HS
   return deadline + missed * settings_.period_ns;
 }
 
-void Loop::tick(Nanoseconds now, double t, double dt) noexcept HSP_RT {
-  obey(t);
+void Loop::tick(const TickTime& tick) noexcept HSP_RT {
+  obey(tick.t);
   shedLoad();
-  for (const auto& arm : arms_) arm->hand().step(t, dt, epoch_);
-  for (size_t i = 0; i < arms_.size(); ++i) probes_[i] = arms_[i]->read(now, dt);
-  core_.publish(t, probes_);
-  if (settings_.lockstep) search(t);
-  core_.tick(t, dt, probes_);
-  for (uint32_t i = 0; i < arms_.size(); ++i) {
-    arms_[i]->carryWeight(core_.present() > 0);
-    arms_[i]->write(now, dt, core_.force(i), core_.torque(i), core_.exchange(i));
-  }
+  for (const auto& arm : arms_) arm->hand().step(tick.t, tick.dt, epoch_);
+  for (size_t i = 0; i < arms_.size(); ++i) probes_[i] = arms_[i]->read(tick.time, tick.dt);
+  door_.tell(tick, arms_);
+  core_.publish(tick.t, probes_);
+  if (settings_.lockstep) search(tick.t);
+  core_.tick(tick.t, tick.dt, probes_);
+  for (uint32_t i = 0; i < arms_.size(); ++i) write(i, tick);
   noteDeeds();
   wants_search_.store(core_.wantsSearch(), std::memory_order_relaxed);
+}
+
+/// Programs that push are asked as late as can be: whoever answers this tick is heard in it.
+void Loop::write(uint32_t index, const TickTime& tick) noexcept HSP_RT {
+  Arm& arm = *arms_[index];
+  ClientForces& clients = arm.clients();
+  clients.collect(tick.number, tick.dt);
+  arm.carryWeight(core_.present() > 0 || clients.present());
+  if (!clients.present() && clients.share() == 1)
+    return arm.write(tick.time, tick.dt, core_.force(index), core_.torque(index), core_.exchange(index));
+  passivity::Exchange exchange = core_.exchange(index);
+  exchange.recoverable = std::numeric_limits<double>::infinity();  // what a program has stored, nobody knows
+  arm.write(tick.time, tick.dt, clients.share() * core_.force(index) + clients.force(),
+            clients.share() * core_.torque(index) + clients.torque(), exchange);
 }
 
 }  // namespace hapticd::servo

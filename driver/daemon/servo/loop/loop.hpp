@@ -9,6 +9,7 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "servo/arm/arm.hpp"
+#include "servo/loop/door.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "servo/loop/tick_log.hpp"
 
@@ -62,6 +63,9 @@ class Loop {
   /// [any] CLOCK_MONOTONIC of the first time that an end was asked for; 0: never.
   Nanoseconds stopAsked() const noexcept { return stop_asked_.load(std::memory_order_relaxed); }
 
+  /// [any] What programs outside are told beside the rows.
+  Door& door() noexcept { return door_; }
+
   /// [any] Dry cycles that woke a period late or more; final once there were ticks.
   uint64_t lateDryCycles() const noexcept { return late_dry_cycles_.load(std::memory_order_relaxed); }
 
@@ -80,7 +84,8 @@ class Loop {
   bool finished() const noexcept { return finished_.load(std::memory_order_acquire); }
 
  private:
-  void tick(Nanoseconds now, double t, double dt) noexcept HSP_RT;
+  void tick(const TickTime& tick) noexcept HSP_RT;
+  void write(uint32_t index, const TickTime& tick) noexcept HSP_RT;
   void runDry() noexcept HSP_RT;
   void beat() noexcept HSP_RT;
   void obey(double t) noexcept HSP_RT;
@@ -103,6 +108,7 @@ class Loop {
   LoopSettings settings_;
   TickLog& log_;
   Lockstep lockstep_;
+  Door door_;
   std::vector<Probe> probes_;
   uint64_t ramp_ticks_ = 0;
   std::atomic<uint64_t>* beat_ = nullptr;

@@ -18,6 +18,7 @@ class MotorHeat {
   explicit MotorHeat(const std::vector<scene::Motor>& motors);
 
   bool empty() const noexcept { return count_ == 0; }
+  size_t count() const noexcept { return count_; }  ///< joints whose motors are modelled
 
   /// [rt] The torques [N m] at the joints are held for dt [s].
   void heat(const double* torque, double dt) noexcept HSP_RT;

@@ -82,6 +82,17 @@ bool hapticd_client::ask(const std::string& request, Answer& answer, hapticd_err
   return !hapticd::client::refused(answer.line, error);
 }
 
+std::byte* hapticd_client::page(const char* request, hapticd::client::Mapping& kept, size_t least, int protection) {
+  const std::lock_guard lock(mapping);
+  if (kept.data() != nullptr) return kept.data();
+  Answer answer;
+  if (!ask(request, answer, nullptr) || !answer.descriptor) return nullptr;
+  hapticd::client::Mapping memory(answer.descriptor.get(), 0, protection);
+  if (memory.data() == nullptr || memory.bytes() < least) return nullptr;
+  kept = std::move(memory);
+  return kept.data();
+}
+
 const char* hapticd_version(void) {
   return HAPTICD_VERSION;
 }

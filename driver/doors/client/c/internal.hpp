@@ -14,7 +14,7 @@
 #include "base/descriptors.hpp"
 #include "base/result.hpp"
 #include "control/client.hpp"
-#include "hapticd/client_library.h"
+#include "hapticd/client.h"
 
 namespace hapticd::client {
 
@@ -89,16 +89,20 @@ struct hapticd_client {
       : base(std::move(where)), line(std::move(on)), rows(std::move(box)) {}
   /// A request whose answer says that it was done.
   bool ask(const std::string& request, hapticd::client::Answer& answer, hapticd_error* error);
+  /// The memory of a request, mapped once. nullptr: it cannot be had
+  std::byte* page(const char* request, hapticd::client::Mapping& kept, size_t least, int protection);
 
   std::string base;  ///< of the daemon's files, "/run/hapticd/NAME"
   hapticd::control::Client line;
   hapticd::client::Rows rows;
-  std::mutex asking;
+  std::mutex asking, mapping;
+  hapticd::client::Mapping bell, states;
   std::list<hapticd_lead*> leads;
 };
 
 struct hapticd_lead {
   hapticd_client* client;
   std::string unlead;  ///< the request that ends it
+  bool pushes;
   hapticd::client::Mapping memory;
 };

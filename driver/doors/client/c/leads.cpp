@@ -20,7 +20,7 @@ hapticd_lead* leadOf(hapticd_client* client, const char* what, const char* name,
   if (memory.data() == nullptr) return tell(error, "damaged", "the memory of the lead cannot be mapped"), nullptr;
   request["do"] = "unlead";
   auto* lead = new hapticd_lead{client, request.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
-                                std::move(memory)};
+                                std::string_view(what) == "force", std::move(memory)};
   client->leads.push_back(lead);
   return lead;
 } catch (const std::exception& problem) {
@@ -38,8 +38,20 @@ hapticd_lead* hapticd_lead_hand(hapticd_client* client, const char* device, hapt
   return leadOf(client, "hand", device, error);
 }
 
-void hapticd_lead_put(hapticd_lead* lead, const hapticd_target* target) {
+hapticd_lead* hapticd_lead_force(hapticd_client* client, const char* device, hapticd_error* error) {
+  return leadOf(client, "force", device, error);
+}
+
+int hapticd_lead_put(hapticd_lead* lead, const hapticd_target* target) {
+  if (lead->pushes) return -1;
   reinterpret_cast<hapticd::link::PoseSlot*>(lead->memory.data())->put(*target);
+  return 0;
+}
+
+int hapticd_lead_push(hapticd_lead* lead, const hapticd_push* push) {
+  if (!lead->pushes) return -1;
+  reinterpret_cast<hapticd::link::PushSlot*>(lead->memory.data())->put(*push);
+  return 0;
 }
 
 void hapticd_lead_end(hapticd_lead* lead) try {

@@ -8,7 +8,6 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
-#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "internal.hpp"
@@ -151,15 +150,4 @@ uint64_t hapticd_written(hapticd_client* client, int stream) {
 long hapticd_read(hapticd_client* client, int stream, uint64_t* row, void* rows, size_t most) {
   const auto* found = streamOf(client, stream);
   return found != nullptr ? hapticd::client::Rows::read(*found, *row, rows, most) : -1;
-}
-
-int hapticd_wait(hapticd_client* client, uint64_t tick, int timeout_ms) {
-  constexpr timespec kPause{0, 1'000'000};
-  const int ticks = hapticd_stream(client, "ticks");
-  if (ticks < 0) return -1;
-  for (int waited = 0; hapticd_written(client, ticks) <= tick; ++waited) {
-    if (waited >= timeout_ms) return 0;
-    nanosleep(&kPause, nullptr);
-  }
-  return 1;
 }

@@ -5,7 +5,7 @@
  *     hapticd run SCENE        with a model that has `motion: kinematic` and a path
  *     ./lead_model MODEL [NAME [SECONDS]]
  */
-#include <hapticd/client_library.h>
+#include <hapticd/client.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -7,7 +7,6 @@
     ./plot_live.py depth --save depth.png    one picture, no window
 """
 import argparse
-import time
 
 import hapticd
 
@@ -48,7 +47,7 @@ with hapticd.connect(options.name) as h:
         return lines
 
     if options.save:
-        time.sleep(options.window)
+        h.wait(ticks.written + int(options.window * h.about["rate_hz"]), timeout=2 * options.window)
         draw()
         figure.savefig(options.save)
         print(f"{options.save}: {len(lines)} columns")

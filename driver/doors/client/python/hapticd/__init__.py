@@ -14,8 +14,11 @@ but Python; with numpy, rows are structured arrays, without it lists of tuples.
 """
 from ._client import Client, Events, connect
 from ._error import HapticdError, Refused
-from ._lead import PoseLead
+from ._lead import ForceLead, Lead, PoseLead
 from ._models import Model, Parameter
+from ._push import ForceThread
 from ._rows import Column, Stream
+from ._state import State
 
-__all__ = ["Client", "Column", "Events", "HapticdError", "Model", "Parameter", "PoseLead", "Refused", "Stream", "connect"]
+__all__ = ["Client", "Column", "Events", "ForceLead", "ForceThread", "HapticdError", "Lead", "Model", "Parameter", "PoseLead",
+           "Refused", "State", "Stream", "connect"]

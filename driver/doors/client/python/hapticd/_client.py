@@ -10,12 +10,14 @@ import select
 import socket
 import stat
 import time
-from typing import Any, Iterator, Optional
+from typing import Any, Callable, Iterator, Optional, Sequence
 
 from ._error import HapticdError, Refused
-from ._lead import PoseLead
+from ._lead import ForceLead, PoseLead
 from ._models import Model
+from ._push import ForceThread
 from ._rows import BlackBox, Stream
+from ._state import Bell, State, StatePage
 
 _MOST_LINE = 1 << 24
 
@@ -157,6 +159,8 @@ class Client:
             self._line.close()
             raise
         self._asked = 0
+        self._states: Optional[StatePage] = None
+        self._rings: Optional[Bell] = None
 
     # ---- rows
 
@@ -259,6 +263,62 @@ class Client:
         answer = self.ask(do="lead", **target)
         return PoseLead(self._line.descriptor(), answer["bytes"], lambda: self._unlead(target))
 
+    def lead_force(self, device: str) -> ForceLead:
+        """Pushes on the hand of an arm, tick by tick; `push` does it in a thread. The scene must allow it (`clients`)."""
+        target = {"force": device}
+        answer = self.ask(do="lead", **target)
+        return ForceLead(self._line.descriptor(), answer["bytes"], lambda: self._unlead(target))
+
+    def push(self, device: str, callback: Callable[[State], Optional[Sequence[float]]], priority: int = 70) -> ForceThread:
+        """Calls `callback(state)` once a tick in a thread of its own (SCHED_FIFO `priority` where that is allowed); the
+        force [N] that it gives back, in the world frame, is added to what the hand feels."""
+        return ForceThread(self, device, callback, priority)
+
+    def state(self, device: str) -> State:
+        """The arm in the newest tick. The first call waits for the next tick, at most `timeout` of the client."""
+        if self._states is None:
+            self._states = self._state_page()
+        end, seen = time.monotonic() + self.timeout, 0
+        while (state := self._states.read(self._arm(device))) is None:
+            if time.monotonic() > end:
+                raise HapticdError("the daemon tells of no tick; it may have ended")
+            seen = self._ring().wait("state", seen, 0.1)
+        return state
+
+    def _state_page(self) -> StatePage:
+        answer = self.ask(do="state")
+        return StatePage(self._line.descriptor(), answer["bytes"])
+
+    def _bell(self) -> Bell:
+        answer = self.ask(do="bell")
+        return Bell(self._line.descriptor(), answer["bytes"])
+
+    def _arm(self, device: str) -> int:
+        names = [d["name"] for d in self.about["devices"]]
+        if device not in names:
+            raise Refused(f"there is no device {device!r}, expected one of {names}", "unknown")
+        return names.index(device)
+
+    @property
+    def devices(self) -> list[str]:
+        """Names of the arms, in the order of the columns arm0_, arm1_, ..."""
+        return [d["name"] for d in self.about["devices"]]
+
+    def wait(self, tick: int, timeout: float = 1.0) -> bool:
+        """Sleeps until the rows of this tick are written, at most `timeout` seconds: whether they are."""
+        end = time.monotonic() + timeout
+        rows = self._box.streams["ticks"]
+        seen = rows.written
+        while seen <= tick and (left := end - time.monotonic()) > 0:
+            self._ring().wait("rows", seen, min(left, 0.1))
+            seen = rows.written
+        return seen > tick
+
+    def _ring(self) -> Bell:
+        if self._rings is None:
+            self._rings = self._bell()
+        return self._rings
+
     def _unlead(self, target: dict[str, str]) -> None:
         try:
             self.ask(do="unlead", **target)
@@ -268,6 +328,9 @@ class Client:
     def close(self) -> None:
         """Ends all leads of this connection."""
         self._line.close()
+        for memory in (self._states, self._rings):
+            if memory is not None:
+                memory.close()
         self._box.close()
 
     def __enter__(self) -> "Client":

@@ -9,6 +9,7 @@ import time
 from typing import Any, Callable, Optional, Sequence
 
 _TARGET = struct.Struct("<14d")
+_PUSH = struct.Struct("<Q6dQQ")
 _COUNT = struct.Struct("<Q")
 
 
@@ -34,12 +35,35 @@ class _Slot:
         self._memory.close()
 
 
-class PoseLead:
-    """Leads a kinematic model, or the hand of a simulated arm. Ends with `end()`, with the client, or with `with`."""
+class Lead:
+    """Something that this program leads. Ends with `end()`, with the client, or with `with`."""
 
     def __init__(self, fd: int, size: int, unlead: Callable[[], Any]) -> None:
         self._slot: Optional[_Slot] = _Slot(fd, size)
         self._unlead = unlead
+
+    def _put(self, record: bytes) -> None:
+        if self._slot is None:
+            raise ValueError("the lead has ended")
+        self._slot.put(record)
+
+    def end(self) -> None:
+        """Leads no more: a model brakes and stays, a force ramps out."""
+        if self._slot is None:
+            return
+        self._slot.close()
+        self._slot = None
+        self._unlead()
+
+    def __enter__(self) -> "Lead":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.end()
+
+
+class PoseLead(Lead):
+    """Leads a kinematic model, or the hand of a simulated arm."""
 
     def put(self, position: Sequence[float], orientation: Sequence[float] = (1.0, 0.0, 0.0, 0.0),
             linear: Sequence[float] = (0.0, 0.0, 0.0), angular: Sequence[float] = (0.0, 0.0, 0.0),
@@ -47,21 +71,21 @@ class PoseLead:
         """Where it shall be: position [m], orientation (a unit quaternion w, x, y, z), and how it moves there: linear
         [m/s] and angular [rad/s] velocity, in the world frame. `when` [s] on the clock of `time.monotonic()` says for
         which moment; without it, for now. Newest wins; nothing here waits."""
-        if self._slot is None:
-            raise ValueError("the lead has ended")
         stamp = time.monotonic() if when is None else when
-        self._slot.put(_TARGET.pack(*position, *orientation, *linear, *angular, stamp))
-
-    def end(self) -> None:
-        """The model brakes and stays."""
-        if self._slot is None:
-            return
-        self._slot.close()
-        self._slot = None
-        self._unlead()
+        self._put(_TARGET.pack(*position, *orientation, *linear, *angular, stamp))
 
     def __enter__(self) -> "PoseLead":
         return self
 
-    def __exit__(self, *_: object) -> None:
-        self.end()
+
+class ForceLead(Lead):
+    """Pushes on the hand of an arm. 3 ms after the last answer the force ramps out, and is gone after 20 ms."""
+
+    def put(self, tick: int, force: Sequence[float], torque: Sequence[float] = (0.0, 0.0, 0.0),
+            woke_ns: int = 0) -> None:
+        """The answer to a tick (the `tick` of the newest state): force [N] and torque [N m] on the hand, world frame.
+        `woke_ns` is time.monotonic_ns() when the program learnt of that tick, for the recording."""
+        self._put(_PUSH.pack(tick, *force, *torque, woke_ns, time.monotonic_ns()))
+
+    def __enter__(self) -> "ForceLead":
+        return self

@@ -47,10 +47,11 @@ struct Rig {
       int failure, std::function<Nanoseconds(Nanoseconds)> lateness = [](Nanoseconds) { return 0; },
       uint64_t ticks = 300, const char* shape = "wall", std::vector<scene::Value> values = {},
       const std::vector<scene::Model>& more = {}, const std::vector<scene::Value>& device = {},
-      const std::function<void(scene::Limits&)>& limit = [](scene::Limits&) {})
+      const std::function<void(scene::Limits&)>& limit = [](scene::Limits&) {}, const scene::Clients& clients = {})
       : clock(std::move(lateness)) {
     scene.models.push_back(testModel(shape, std::move(values)));
     scene.models.insert(scene.models.end(), more.begin(), more.end());
+    scene.clients = clients;
     scene.devices.resize(1);
     scene.devices[0].name = scene.devices[0].module = "gantry";
     scene.devices[0].library = TEST_DEVICE;
@@ -60,8 +61,8 @@ struct Rig {
     scene.devices[0].parameters.insert(scene.devices[0].parameters.end(), device.begin(), device.end());
     limit(scene.devices[0].limits);
     world = testWorld(scene);
-    auto arm =
-        Arm::open(scene.devices[0], scene.servo, {1000, false}, [](int, const std::string&, const std::string&) {});
+    auto arm = Arm::open(scene.devices[0], scene.servo, {1000, false, nullptr, clients},
+                         [](int, const std::string&, const std::string&) {});
     EXPECT_TRUE(arm) << (arm ? "" : arm.error());
     arms.push_back(std::move(*arm));
     EXPECT_TRUE(arms[0]->start(0, Eigen::Vector3d(0, -9.81, 0)));

@@ -17,10 +17,11 @@ struct Recorded : Rig {
   static constexpr uint64_t kTicks = 200;
 
   Recorded(const char* shape, std::vector<scene::Value> values, const std::vector<scene::Value>& device = {},
-           const std::vector<scene::Model>& more = {})
+           const std::vector<scene::Model>& more = {}, const scene::Clients& clients = {})
       : Rig(
             0, [this](Nanoseconds now) { return every(now), Nanoseconds{0}; }, kTicks, shape, std::move(values), more,
-            device) {}
+            device, [&](scene::Limits& limits) { limits.force = clients.mode != scene::ClientMode::kOff ? 5 : 0; },
+            clients) {}
   std::function<void(Nanoseconds)> every = [](Nanoseconds) {};  ///< before each tick
 
   /// Every step takes longer than it may.
@@ -130,6 +131,52 @@ TEST(Replay, IsTheSameWhereAModelWasLed) {
   EXPECT_GT(rig.world->core().models()[1].pose.position[1], -0.05);
   EXPECT_GT(rig.world->core().models()[1].lead.refused(), 2u);
   expectSame(rig.replay());
+}
+
+/// Two programs push on the arm: one dies, writes nonsense and comes again, the other is late.
+struct PushedOn {
+  explicit PushedOn(Recorded& rig) {
+    rig.every = [this, &rig](Nanoseconds) { before(rig); };
+  }
+  void before(Recorded& rig) {
+    for (uint32_t place : {0u, 2u}) {
+      Order order;
+      order.param = static_cast<uint32_t>(Order::Led::kForce);
+      order.place = place;
+      order.kind = tick == 90 && place == 2 ? Order::Kind::kUnlead : Order::Kind::kLead;
+      order.push = tick == 120 ? &again : &slots[place];
+      if (tick == 10 || (tick == 90 && place == 2) || (tick == 120 && place == 2)) rig.loop->give(order);
+      hapticd_push push{};
+      push.tick = tick - random() % 3;
+      for (double& force : push.force) force = static_cast<double>(random() % 1000) * 0.004 - 2;
+      if (tick % 17 == 3) push.torque[1] = HUGE_VAL;  // refused
+      const bool silent = place == 0 ? tick > 60 && tick < 80 : random() % 4 == 0;
+      if (!silent && tick > 10) (place == 2 && tick >= 120 ? again : slots[place]).put(push);
+    }
+    most = std::max(most, rig.arms[0]->clients().force().norm());
+    most_sent = std::max(most_sent, rig.arms[0]->force().norm());
+    ++tick;
+  }
+  uint64_t tick = 0;
+  double most = 0, most_sent = 0;
+  link::PushSlot slots[3], again;
+  std::mt19937_64 random{5};
+};
+
+TEST(Replay, IsTheSameWhereProgramsPushed) {
+  for (const scene::ClientMode mode : {scene::ClientMode::kAdd, scene::ClientMode::kInstead}) {
+    Recorded rig("wall", {}, {}, {}, {mode, 3, false});
+    PushedOn pushed(rig);
+    rig.record();
+    const record::FlightRing& ring = rig.telemetry->flight()->ring();
+    EXPECT_GT(ring.written(kPushes), 200u);
+    EXPECT_GT(pushed.most, 1);
+    EXPECT_GT(pushed.most_sent, 0.5);
+    EXPECT_LE(pushed.most_sent, 5.0001) << "what programs want goes through the limits";
+    EXPECT_GT(rig.arms[0]->clients().refused(), 5u);
+    EXPECT_EQ(rig.arms[0]->limiter().fault(), Fault::kNone);
+    expectSame(rig.replay());
+  }
 }
 
 TEST(BlackBox, HasTheSameRowsAsTheShortOneThatItReplaces) {

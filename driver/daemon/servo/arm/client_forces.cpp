@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "servo/arm/client_forces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hapticd::servo {
+
+namespace {
+
+using Eigen::Vector3d;
+
+void count(std::atomic<uint64_t>& counter) noexcept HSP_RT {
+  counter.store(counter.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+}
+
+double boundOf(double wanted, double device) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  return std::min(wanted > 0 ? wanted : kNone, device > 0 ? device : kNone);
+}
+
+/// Moves towards 0 or 1 and gets there: what is left by rounding is nobody's force.
+double faded(double gain, bool in, double dt) noexcept HSP_RT {
+  constexpr double kRounding = 1e-9;
+  const double next = gain + (in ? dt / ClientForces::kFadeIn : -dt / ClientForces::kFadeOut);
+  return next < kRounding ? 0 : std::min(next, 1.0);
+}
+
+}  // namespace
+
+ClientForces::ClientForces(const scene::Clients& clients, double device_force, double period)
+    : mode_(clients.mode),
+      max_force_(boundOf(clients.max_force, device_force)),
+      oldest_ticks_(static_cast<uint64_t>(std::max(1.0, std::floor(kOldest / period)))) {}
+
+void ClientForces::begin(uint32_t place, const link::PushSlot& slot) noexcept HSP_RT {
+  if (place >= kMost || !possible()) return;
+  Client& client = clients_[place];
+  if (client.slot == nullptr && client.gain == 0) ++places_;
+  client.slot = &slot;
+  client.seen = 0;
+  client.silence = kSilentAfter + kFadeOut;
+  client.answered = false;
+  for (std::atomic<uint64_t>* counter : {&client.answers, &client.in_time, &client.silences})
+    counter->store(0, std::memory_order_relaxed);
+}
+
+void ClientForces::end(uint32_t place) noexcept HSP_RT {
+  if (place >= kMost || clients_[place].slot == nullptr) return;
+  clients_[place].slot = nullptr;
+  if (clients_[place].gain == 0) --places_;
+}
+
+void ClientForces::step(uint64_t tick, double dt) noexcept HSP_RT {
+  force_.setZero();
+  torque_.setZero();
+  double most = 0;
+  for (Client& client : clients_) {
+    client.fresh = false;
+    if (client.slot == nullptr && client.gain == 0) continue;
+    step(client, tick, dt);
+    most = std::max(most, client.gain);
+    if (client.slot == nullptr && client.gain == 0) --places_;
+  }
+  if (mode_ != scene::ClientMode::kInstead) return;
+  const double wanted = 1 - most;
+  share_ = wanted > share_ ? std::min(wanted, share_ + dt / kFadeIn) : std::max(wanted, share_ - dt / kFadeOut);
+}
+
+void ClientForces::step(Client& client, uint64_t tick, double dt) noexcept HSP_RT {
+  const bool was_silent = client.silence > kSilentAfter;
+  client.silence = take(client, tick) ? 0 : client.silence + dt;
+  const bool silent = client.slot == nullptr || client.silence > kSilentAfter;
+  if (silent && !was_silent) count(client.silences);
+  client.gain = faded(client.gain, !silent, dt);
+  if (client.gain == 0) return;
+  const Vector3d wanted(client.push.force), turn(client.push.torque);
+  const double size = wanted.norm();
+  force_ += client.gain * (size > max_force_ ? Vector3d(wanted * (max_force_ / size)) : wanted);
+  torque_ += client.gain * turn;
+}
+
+/// A record that answers a newer tick than the last one did.
+bool ClientForces::take(Client& client, uint64_t tick) noexcept HSP_RT {
+  hapticd_push push;
+  // A second look: who writes just now has its answer ready for this tick.
+  if (client.slot == nullptr || (!client.slot->take(client.seen, push) && !client.slot->take(client.seen, push)))
+    return false;
+  if (!sound(push, tick)) {
+    ++refused_;
+    return false;
+  }
+  if ((client.answered && push.tick <= client.push.tick) || tick - push.tick > oldest_ticks_) return false;
+  client.push = push;
+  client.answered = client.fresh = true;
+  count(client.answers);
+  if (push.tick == tick) count(client.in_time);
+  return true;
+}
+
+bool ClientForces::sound(const hapticd_push& push, uint64_t tick) noexcept HSP_RT {
+  if (push.tick > tick) return false;
+  for (const double* numbers : {push.force, push.torque})
+    for (int i = 0; i < 3; ++i)
+      if (!(std::abs(numbers[i]) <= kLargestNumber)) return false;
+  return true;
+}
+
+}  // namespace hapticd::servo

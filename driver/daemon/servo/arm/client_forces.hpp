@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+/// Forces that programs outside put on the hand of one arm. Each program answers ticks; what it says is bounded, fades
+/// in, and ramps out once it is silent. The sum goes through everything that the force of a model goes through.
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "description/scene.hpp"
+#include "hapticd/client.h"
+#include "link/lead.hpp"
+
+namespace hapticd::servo {
+
+class ClientForces {
+ public:
+  static constexpr uint32_t kMost = 8;           ///< programs that push on one arm
+  static constexpr double kSilentAfter = 3e-3;   ///< [s] after its last answer the force of a program ramps out
+  static constexpr double kFadeOut = 17e-3;      ///< [s] from all of it to none: none is left 20 ms after the answer
+  static constexpr double kFadeIn = 50e-3;       ///< [s] from none to all of it
+  static constexpr double kOldest = 20e-3;       ///< [s] an answer to an older tick is none
+  static constexpr double kLargestNumber = 1e6;  ///< [N], [N m] beyond it a program is out of its mind
+
+  /// One program. Counts are read by other threads.
+  struct Client {
+    hapticd_push push{};                   ///< the last that was taken
+    double gain = 0, silence = 0;          ///< [s]
+    const link::PushSlot* slot = nullptr;  ///< its memory; nullptr: it has gone, and its force ramps out
+    uint64_t seen = 0;                     ///< count of the memory
+    bool answered = false;                 ///< ever
+    bool fresh = false;                    ///< `push` was taken in this tick
+    std::atomic<uint64_t> answers{0};      ///< that were taken
+    std::atomic<uint64_t> in_time{0};      ///< of these, in the tick that they answer
+    std::atomic<uint64_t> silences{0};     ///< times that it fell silent
+  };
+
+  /// [main] @param device_force [N] what the device's limits let through, 0: no bound @param period [s] of the servo
+  ClientForces(const scene::Clients& clients, double device_force, double period);
+
+  bool possible() const noexcept { return mode_ != scene::ClientMode::kOff; }  ///< programs may push
+
+  /// [rt] A program begins. @param slot its memory, valid until end() @param place less than kMost
+  void begin(uint32_t place, const link::PushSlot& slot) noexcept HSP_RT;
+  void end(uint32_t place) noexcept HSP_RT;  ///< [rt] it has gone
+
+  /// [rt] Once a tick, after the shapes: what the programs want now. @param tick number of this tick, @param dt [s]
+  void collect(uint64_t tick, double dt) noexcept HSP_RT {
+    if (places_ == 0 && share_ == 1) return;
+    step(tick, dt);
+  }
+
+  const Eigen::Vector3d& force() const noexcept { return force_; }    ///< [N] of all of them, world frame
+  const Eigen::Vector3d& torque() const noexcept { return torque_; }  ///< [N m]
+  double share() const noexcept { return share_; }       ///< of the models' force that is felt beside it: 0 to 1
+  bool present() const noexcept { return places_ > 0; }  ///< somebody pushes, or what is left of it ramps out
+  const std::array<Client, kMost>& clients() const noexcept { return clients_; }
+  uint64_t refused() const noexcept { return refused_; }  ///< [rt] answers that were refused so far
+
+ private:
+  void step(uint64_t tick, double dt) noexcept HSP_RT;
+  void step(Client& client, uint64_t tick, double dt) noexcept HSP_RT;
+  bool take(Client& client, uint64_t tick) noexcept HSP_RT;
+  bool sound(const hapticd_push& push, uint64_t tick) noexcept HSP_RT;
+
+  scene::ClientMode mode_;
+  double max_force_;
+  uint64_t oldest_ticks_;
+  uint32_t places_ = 0;  ///< that are taken
+  uint64_t refused_ = 0;
+  double share_ = 1;
+  Eigen::Vector3d force_ = Eigen::Vector3d::Zero(), torque_ = Eigen::Vector3d::Zero();
+  std::array<Client, kMost> clients_{};
+};
+
+}  // namespace hapticd::servo

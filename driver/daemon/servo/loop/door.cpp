@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "servo/loop/door.hpp"
+
+#include <algorithm>
+#include <new>
+
+#include "base/not_real_time.hpp"
+#include "base/os.hpp"
+#include "link/lead.hpp"
+
+namespace hapticd::servo {
+
+static_assert(Door::kStateStride >= sizeof(link::StateSlot));
+
+namespace {
+
+link::StateSlot& slotAt(std::byte* page, size_t arm) noexcept HSP_RT {
+  return *reinterpret_cast<link::StateSlot*>(page + Door::kStateAt + arm * Door::kStateStride);
+}
+
+hapticd_state stateOf(const TickTime& tick, const Arm& arm) noexcept HSP_RT {
+  hapticd_state state{};
+  const Probe& probe = arm.probe();
+  state.tick = tick.number;
+  state.time_ns = tick.time;
+  state.t = tick.t, state.dt = tick.dt;
+  std::copy_n(probe.position.data(), 3, state.position);
+  std::copy_n(probe.velocity.data(), 3, state.velocity);
+  state.orientation[0] = probe.orientation.w(), state.orientation[1] = probe.orientation.x();
+  state.orientation[2] = probe.orientation.y(), state.orientation[3] = probe.orientation.z();
+  std::copy_n(arm.sample().position, std::min<size_t>(std::size(state.joints), HDV_MAX_JOINTS), state.joints);
+  std::copy_n(arm.force().data(), 3, state.sent);
+  state.flags = probe.valid ? uint32_t{HAPTICD_GOOD} : 0u;
+  state.buttons = arm.sample().buttons;
+  state.fault = static_cast<uint32_t>(arm.limiter().fault());
+  state.joint_count = arm.info().joint_count;
+  return state;
+}
+
+}  // namespace
+
+void Door::showState(std::byte* page, uint32_t arms) noexcept {
+  for (uint32_t i = 0; i < arms; ++i) new (page + kStateAt + i * kStateStride) link::StateSlot;  // all zeros as it is
+  new (page) hapticd_state_page{arms, kStateStride, {}};
+  state_.store(page, std::memory_order_release);
+}
+
+void Door::write(std::byte* page, const TickTime& tick, const Arms& arms) noexcept HSP_RT {
+  for (size_t i = 0; i < arms.size(); ++i) slotAt(page, i).put(stateOf(tick, *arms[i]));
+}
+
+/// The word first, then the look at who waits, both in one order for all: who sets the flag after that look sees the
+/// new word before it sleeps.
+void Door::ring(uint32_t& word, uint32_t& waiting, uint64_t tick) noexcept HSP_RT {
+  std::atomic_ref<uint32_t>(word).store(static_cast<uint32_t>(tick + 1));
+  const std::atomic_ref<uint32_t> flag(waiting);
+  if (flag.load() == 0) return;
+  flag.store(0);
+  const NotRealTime the_one_call;                                       // it does not wait
+  if (os::wakeWaiting(&word, kMostWoken) == kMostWoken) flag.store(1);  // there may be more, for the next tick
+}
+
+}  // namespace hapticd::servo

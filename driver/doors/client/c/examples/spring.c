@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT */
+/* spring.c - pulls the hand to where it is now, with a force of this program's own.
+ *
+ *     cc spring.c -o spring $(pkg-config --cflags --libs hapticd-client)
+ *     hapticd run SCENE        with `clients: add` in the scene
+ *     ./spring [NAME [SECONDS [N/m]]]
+ */
+#include <hapticd/client.h>
+#include <sched.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+static uint64_t now_ns(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
+}
+
+int main(int argc, char** argv) {
+  const char* name = argc > 1 ? argv[1] : "hapticd";
+  const double seconds = argc > 2 ? atof(argv[2]) : 10, stiffness = argc > 3 ? atof(argv[3]) : 200;
+  const struct sched_param priority = {.sched_priority = 70};
+  hapticd_error error;
+  hapticd_client* client = hapticd_connect(name, &error);
+  hapticd_lead* lead = NULL;
+  hapticd_state state, first;
+  uint64_t answers = 0;
+
+  if (client == NULL) return fprintf(stderr, "error: %s\n", error.text), 1;
+  if (hapticd_next_state(client, 0, UINT64_MAX, 1000, &first) != 1) {
+    fprintf(stderr, "error: the daemon tells of no arm\n");
+    hapticd_close(client);
+    return 1;
+  }
+  lead = hapticd_lead_force(client, hapticd_device_name(client, 0), &error);
+  if (lead == NULL) {
+    fprintf(stderr, "error: %s\n", error.text);
+    hapticd_close(client);
+    return 1;
+  }
+  if (sched_setscheduler(0, SCHED_FIFO, &priority) != 0)
+    fprintf(stderr, "warning: no real-time priority: answers may come late, and late ones ramp out\n");
+
+  state = first;
+  while (state.t < first.t + seconds && hapticd_next_state(client, 0, state.tick, 1000, &state) == 1) {
+    hapticd_push push = {.tick = state.tick, .woke_ns = now_ns()};
+    for (int i = 0; i < 3; ++i)
+      push.force[i] = stiffness * (first.position[i] - state.position[i]) - 1 * state.velocity[i];
+    push.written_ns = now_ns();
+    hapticd_lead_push(lead, &push);
+    ++answers;
+  }
+  printf("%llu ticks answered\n", (unsigned long long)answers);
+  hapticd_lead_end(lead);
+  hapticd_close(client);
+  return 0;
+}

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+/// The bell: waits for rows and for states of a tick.
+#include <linux/futex.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <ctime>
+
+#include "internal.hpp"
+#include "link/lead.hpp"
+
+namespace {
+
+constexpr long kMsPerSecond = 1000, kNsPerMs = 1'000'000;
+
+long nowMs() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * kMsPerSecond + now.tv_nsec / kNsPerMs;
+}
+
+/// Sleeps until the word is another than `seen`, or it is woken for nothing, at most so long.
+void sleepOn(uint32_t& word, uint32_t& waiting, uint32_t seen, long ms) {
+  std::atomic_ref<uint32_t>(waiting).store(1);
+  if (std::atomic_ref<uint32_t>(word).load() != seen) return;  // it rang before it could know of us
+  const timespec limit{ms / kMsPerSecond, ms % kMsPerSecond * kNsPerMs};
+  syscall(SYS_futex, &word, FUTEX_WAIT, seen, &limit, nullptr, 0);
+}
+
+/// Asks until `there` says so. @return it did
+template <class There>
+bool waitFor(uint32_t& word, uint32_t& waiting, int timeout_ms, There&& there) {
+  constexpr long kLongest = 100;  // a wake-up may be lost to somebody who plays with the bell
+  const long end = nowMs() + timeout_ms;
+  for (;;) {
+    const uint32_t seen = std::atomic_ref<uint32_t>(word).load();
+    if (there()) return true;
+    const long left = end - nowMs();
+    if (left <= 0) return false;
+    sleepOn(word, waiting, seen, std::min(left, kLongest));
+  }
+}
+
+hapticd_bell* bellOf(hapticd_client* client) {
+  return reinterpret_cast<hapticd_bell*>(
+      client->page(R"({"do":"bell"})", client->bell, sizeof(hapticd_bell), PROT_READ | PROT_WRITE));
+}
+
+/// The newest state of an arm; the servo writes it in less than a microsecond.
+bool newest(std::byte* at, hapticd_state& state) {
+  constexpr int kTries = 1000;
+  for (int i = 0; i < kTries; ++i) {
+    uint64_t seen = 0;  // of one that was never written
+    if (reinterpret_cast<hapticd::link::StateSlot*>(at)->take(seen, state)) return true;
+    if (std::atomic_ref<uint64_t>(*reinterpret_cast<uint64_t*>(at)).load() == 0) return false;
+  }
+  return false;
+}
+
+}  // namespace
+
+int hapticd_wait(hapticd_client* client, uint64_t tick, int timeout_ms) try {
+  const int ticks = hapticd_stream(client, "ticks");
+  hapticd_bell* bell = bellOf(client);
+  if (bell == nullptr || ticks < 0) return -1;
+  return waitFor(bell->rows, bell->rows_waiting, timeout_ms, [&] { return hapticd_written(client, ticks) > tick; }) ? 1
+                                                                                                                    : 0;
+} catch (const std::exception&) {
+  return -1;
+}
+
+int hapticd_next_state(hapticd_client* client, int device, uint64_t after, int timeout_ms, hapticd_state* state) try {
+  const auto* page = reinterpret_cast<hapticd_state_page*>(
+      client->page(R"({"do":"state"})", client->states, sizeof(hapticd_state_page), PROT_READ));
+  hapticd_bell* bell = bellOf(client);
+  if (page == nullptr || bell == nullptr || device < 0 || static_cast<uint32_t>(device) >= page->arms) return -1;
+  std::byte* at = client->states.at(sizeof *page + size_t{page->stride} * static_cast<uint32_t>(device),
+                                    sizeof(hapticd::link::StateSlot));
+  if (at == nullptr) return -1;
+  return waitFor(bell->state, bell->state_waiting, timeout_ms,
+                 [&] { return newest(at, *state) && (after == UINT64_MAX || state->tick > after); })
+             ? 1
+             : 0;
+} catch (const std::exception&) {
+  return -1;
+}

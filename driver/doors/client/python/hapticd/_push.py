@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: MIT
+"""A force loop of one's own: a thread that answers every tick."""
+from __future__ import annotations
+
+import os
+import threading
+import time
+from typing import TYPE_CHECKING, Callable, Optional, Sequence
+
+from ._lead import ForceLead
+from ._state import Bell, State, StatePage
+
+if TYPE_CHECKING:
+    from ._client import Client
+
+_PATIENCE = 0.1  # s between two looks at whether anything is alive
+
+Force = Sequence[float]
+
+
+class ForceThread:
+    """Calls `callback(state)` in a thread once a tick; what it gives back, three numbers in N (or six with the torque in
+    N m), pushes on the hand. An exception in the callback ends the push and is raised by `end()`."""
+
+    def __init__(self, client: "Client", device: str, callback: Callable[[State], Optional[Force]], priority: int) -> None:
+        self._lead: ForceLead = client.lead_force(device)
+        self._page: StatePage = client._state_page()
+        self._bell: Bell = client._bell()
+        self._arm = client._arm(device)
+        self._callback, self._priority = callback, priority
+        self._stop = threading.Event()
+        self.answers = 0  #: ticks that were answered
+        self.real_time = False  #: the thread has the priority that was asked for
+        self.error: Optional[BaseException] = None  #: that ended it
+        self._thread = threading.Thread(target=self._run, name="hapticd-push", daemon=True)
+        self._thread.start()
+
+    def _run(self) -> None:
+        try:
+            os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(self._priority))  # 0: of this thread alone
+            self.real_time = True
+        except OSError:
+            pass  # it works without; late answers ramp the force out
+        try:
+            self._answer()
+        except BaseException as error:  # noqa: B902 - told in end()
+            self.error = error
+        finally:
+            self._bell.close()
+            self._page.close()
+
+    def _answer(self) -> None:
+        seen, last = self._bell.wait("state", -1, 0), -1
+        while not self._stop.is_set():
+            seen = self._bell.wait("state", seen, _PATIENCE)
+            woke = time.monotonic_ns()
+            state = self._page.read(self._arm)
+            if state is None or state.tick == last:
+                continue
+            last = state.tick
+            force = self._callback(state)
+            if force is not None:
+                self._lead.put(state.tick, force[:3], force[3:6] if len(force) >= 6 else (0.0, 0.0, 0.0), woke)
+                self.answers += 1
+
+    def end(self) -> None:
+        """Ends the push: the force ramps out. Raises what the callback raised."""
+        self._stop.set()
+        if threading.current_thread() is not self._thread:
+            self._thread.join()
+        self._lead.end()
+        if self.error is not None:
+            raise self.error
+
+    def __enter__(self) -> "ForceThread":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.end()

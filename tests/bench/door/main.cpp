@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: MIT
+#include "bench.hpp"
+
+int main() {
+  hapticd::bench::costs();
+  hapticd::bench::network();
+}
