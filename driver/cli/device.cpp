@@ -178,7 +178,7 @@ Json infoJson(const scene::Device& description, host::DeviceInstance& device) {
              {{"force", description.limits.force},
               {"torque", description.limits.torque},
               {"slew", description.limits.slew},
-              {"velocity", description.limits.velocity},
+              {"velocity", description.limits.velocity ? Json(*description.limits.velocity) : Json()},
               {"workspace", description.limits.workspace}}},
             {"available", static_cast<bool>(opened)}};
   if (!opened) return json["why"] = opened.error(), json;

@@ -7,6 +7,7 @@
 
 #include "cli/colour.hpp"
 #include "cli/command.hpp"
+#include "diagnostics/arm_controls.hpp"
 #include "diagnostics/doctor_checks.hpp"
 
 namespace hapticd::cli {
@@ -31,9 +32,26 @@ void print(const Finding& finding) {
   std::printf("      %-16s fix: %s\n", "", finding.fix.c_str());
 }
 
+/// What becomes of the force of one arm when there is no daemon any more.
+Finding checkArm(const std::string& file) {
+  document::Problems problems;
+  const auto found = controlsOfFile(file, catalog(), problems);
+  if (!found)
+    return {file, Verdict::kFail, problems.empty() ? "cannot be used" : problems.front().text(),
+            "the arm cannot be opened", "hapticd check " + file};
+  if (found->silenced_after_us)
+    return {found->arm, Verdict::kOk, "its motors are switched off when the daemon is gone or stands still", "", ""};
+  return {found->arm, Verdict::kWarn,
+          std::string("nothing is known that switches its motors off when the daemon is gone") +
+              (found->opened ? "" : "; the arm is not plugged in, so it could not be asked"),
+          "after SIGKILL, or when the machine dies, it may hold the last force",
+          "keep a switch of its power within reach; all of its controls: hapticd device controls " + file};
+}
+
 /// 0: all well, 1: warnings, 2: something fails.
-int doctor(bool json, double seconds) {
+int doctor(const std::vector<std::string>& arms, bool json, double seconds) {
   std::vector<Finding> findings = checkSystem(catalog());
+  for (const std::string& file : arms) findings.push_back(checkArm(file));
   if (!json)
     for (const Finding& finding : findings) print(finding);
   if (seconds > 0) {
@@ -64,16 +82,18 @@ int doctor(bool json, double seconds) {
 void addDoctor(CLI::App& app, int& exit_code) {
   auto json = std::make_shared<bool>(false);
   auto seconds = std::make_shared<double>(10);
+  auto arms = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand(
       "doctor", "Find what keeps real time or a device from working, with the command that fixes it.");
+  command->add_option("devices", *arms, "device files (YAML) of arms that are looked at as well");
   command->add_flag("--json", *json, "print JSON, for issue reports");
   command->add_option("--seconds", *seconds, "duration of the latency test [s]; 0: no test")
       ->check(within(0.0, 3600.0))
       ->capture_default_str();
   command->footer(
-      "The exit code is 0 if all checks pass, 1 with warnings, 2 if a check fails.\n\nExample:\n  hapticd doctor "
-      "--json > doctor.json");
-  command->callback([=, &exit_code] { exit_code = doctor(*json, *seconds); });
+      "The exit code is 0 if all checks pass, 1 with warnings, 2 if a check fails.\n\nExamples:\n  hapticd doctor "
+      "--json > doctor.json\n  hapticd doctor config/devices/premium15.yaml --seconds 0");
+  command->callback([=, &exit_code] { exit_code = doctor(*arms, *json, *seconds); });
 }
 
 }  // namespace hapticd::cli

@@ -18,7 +18,10 @@ constexpr std::size_t kMostProblems = 20;
 // Every value takes a byte or more, so that only aliases make a tree larger than its text.
 constexpr std::size_t kSpareNodes = 10'000;
 constexpr int kDeepest = 64;
-constexpr std::size_t kMostBytes = 1u << 30;
+// A tree takes some 250 times the bytes of its YAML, and 20 times those of its JSON; a part file takes its own.
+constexpr std::size_t kMostYaml = 2u << 20, kMostJson = 32u << 20;
+
+constexpr const char* kPartWay = "hapticd import";
 
 Json scalarOf(const YAML::Node& node) {
   const std::string& text = node.Scalar();
@@ -134,12 +137,13 @@ void Problems::throwIfAny() const {
 std::string readModelText(const std::string& path) {
   std::error_code unknown;
   if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown))  // a pipe would wait
-    throw ModelFileError(path + ":1:1: not a regular file of at most 1 GiB, expected a model file");
+    throw ModelFileError(path + ":1:1: not a regular file, expected a model file");
   std::ifstream in(path, std::ios::binary | std::ios::ate);
   if (!in) throw ModelFileError(path + ":1:1: cannot be read, expected a model file (format hapticd-model/1)");
   const std::streamoff size = in.tellg();
-  if (size < 0 || static_cast<std::size_t>(size) > kMostBytes)
-    throw ModelFileError(path + ":1:1: not a regular file of at most 1 GiB, expected a model file");
+  if (size < 0 || static_cast<std::size_t>(size) > kMostJson)
+    throw ModelFileError(path +
+                         ":1:1: larger than 32 MiB, expected a model file; for more, make a part file: " + kPartWay);
   std::string text(static_cast<std::size_t>(size), '\0');
   in.seekg(0);
   in.read(text.data(), size);
@@ -152,6 +156,9 @@ Json parseDocument(const std::string& text, const std::string& file) {
     Json json = Json::parse(text, nullptr, false);
     if (!json.is_discarded()) return json;
   }
+  if (text.size() > kMostYaml)
+    throw ModelFileError(file +
+                         ":1:1: larger than 2 MiB as YAML; give it as JSON (32 MiB), or as a part file: " + kPartWay);
   try {
     std::size_t left = text.size() + kSpareNodes;
     return treeOf(YAML::Load(text), left, 0);

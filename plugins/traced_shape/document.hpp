@@ -35,7 +35,7 @@ class Problems {
   std::vector<Problem> found_;
 };
 
-/// [main] All of a model file. @throws ModelFileError if it cannot be read or is larger than 1 GiB.
+/// [main] All of a model file. @throws ModelFileError if it cannot be read or is larger than 32 MiB.
 std::string readModelText(const std::string& path);
 
 /// [main] The text as a tree. Numbers become numbers, `.nan` and `.inf` too (as not-a-number and infinity); everything

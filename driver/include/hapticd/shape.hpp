@@ -22,12 +22,12 @@ struct ShapeInfo {
 };
 
 /// [main] The force [N] up to which a claim of stiffness must hold: what an arm lets through to the hand at most.
-/// @param unknown where the host, or an older one, does not say
+/// @param activation of the model  @param unknown what holds where the host, or an older one, does not say
 inline double forceToClaimFor(const hsp_activation& activation, double unknown) {
   return HSP_HAS(&activation, max_arm_force) && activation.max_arm_force > 0 ? activation.max_arm_force : unknown;
 }
 
-/// [main] Reports that the force jumps on purpose, by so many newtons at most. An older host is told nothing.
+/// [main] Reports that the force jumps on purpose, by so many `newtons` at most. An older host is told nothing.
 inline void reportJumps(hsp_report& report, double newtons) {
   if (!HSP_HAS(&report, max_jump)) return;
   report.flags |= HSP_R_JUMPS;

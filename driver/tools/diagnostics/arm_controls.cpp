@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "diagnostics/device_trial.hpp"
 #include "document/reader.hpp"
+#include "scene/load.hpp"
 #include "session/arm_force.hpp"
 
 namespace hapticd::diagnostics {
@@ -12,8 +14,8 @@ namespace {
 
 using document::numberText;
 
-Verdict onIf(bool has) {
-  return has ? Verdict::kOn : Verdict::kOff;
+ControlState onIf(bool has) {
+  return has ? ControlState::kOn : ControlState::kOff;
 }
 
 /// A bound of the device file. @param without what it takes
@@ -24,7 +26,7 @@ Control bound(const char* hazards, const char* name, double value, const char* u
 /// What the arm says of itself, once it is open.
 Control capability(const char* hazards, const char* name, bool opened, uint32_t capabilities, uint32_t flag,
                    const std::string& with, const std::string& without) {
-  if (!opened) return {hazards, name, Verdict::kUnknown, "the arm itself says it; it is not plugged in"};
+  if (!opened) return {hazards, name, ControlState::kUnknown, "the arm itself says it; it is not plugged in"};
   const bool has = (capabilities & flag) != 0;
   return {hazards, name, onIf(has), has ? with : without};
 }
@@ -53,8 +55,8 @@ void addLimits(const scene::Limits& limits, double force, bool simulated, std::v
 
 }  // namespace
 
-const char* nameOf(Verdict verdict) {
-  return verdict == Verdict::kOn ? "on" : verdict == Verdict::kOff ? "off" : "unknown";
+const char* nameOf(ControlState state) {
+  return state == ControlState::kOn ? "on" : state == ControlState::kOff ? "off" : "unknown";
 }
 
 std::vector<Control> controlsOf(const scene::Device& description, const host::DeviceInstance& device, bool opened) {
@@ -64,21 +66,21 @@ std::vector<Control> controlsOf(const scene::Device& description, const host::De
   alone.devices.push_back(description);
   const double force = opened ? servo::maxForceOf(alone, {info}) : servo::maxForceOf(alone);
   std::vector<Control> controls{
-      {"H4 H6 H8 H9 H13 H17 H21", "always", Verdict::kOn,
+      {"H4 H6 H8 H9 H13 H17 H21", "always", ControlState::kOn,
        "numbers are finite, orientations of unit length, forces explained by motion; a fault takes the force away "
        "within 2 ms"}};
   addLimits(description.limits, force, simulated, controls);
   const auto has = [&](const char* name) { return device.description().extension(device.handle(), name) != nullptr; };
-  controls.push_back({"H25 H26", "cut by a watchdog thread", onIf(has(HDV_EXT_CUT)),
+  controls.push_back({"H26 H33", "cut by a watchdog thread", onIf(has(HDV_EXT_CUT)),
                       has(HDV_EXT_CUT) ? "the module cuts its motors from any thread" : "the module has no hdv.cut"});
-  controls.push_back({"H25 H26", "silenced by another process", onIf(has("hdv.silence/1")),
+  controls.push_back({"H30 H32", "silenced by another process", onIf(has("hdv.silence/1")),
                       has("hdv.silence/1") ? "a guard switches the motors off once the daemon is gone"
                                            : "the module does not say how: nothing but the arm itself is left"});
-  controls.push_back(capability("H25 H26", "the hardware's own watchdog", opened, info.capabilities, HDV_C_WATCHDOG,
+  controls.push_back(capability("H30", "the hardware's own watchdog", opened, info.capabilities, HDV_C_WATCHDOG,
                                 "the arm cuts its motors when commands stop",
                                 "the arm holds the last force when the machine dies: keep a switch within reach"));
   if (!opened) {
-    controls.push_back({"H3", "force of an old sample", Verdict::kUnknown, "the arm itself says its rate"});
+    controls.push_back({"H3", "force of an old sample", ControlState::kUnknown, "the arm itself says its rate"});
   } else {
     controls.push_back({"H3", "force of an old sample", onIf(info.rate_hz > 0),
                         info.rate_hz > 0 ? "fades after " + numberText(2000 / info.rate_hz) + " ms"
@@ -86,12 +88,32 @@ std::vector<Control> controlsOf(const scene::Device& description, const host::De
   }
   const bool guarded = description.limits.passivity.value_or(opened && (info.capabilities & HDV_C_UNVERIFIED) != 0);
   controls.push_back({"H22", "passivity controller",
-                      opened || description.limits.passivity ? onIf(guarded) : Verdict::kUnknown,
+                      opened || description.limits.passivity ? onIf(guarded) : ControlState::kUnknown,
                       guarded ? "takes away energy that the loop creates" : "give limits.passivity: true"});
   controls.push_back({"H5", "calibration", onIf(device.calibration() != nullptr),
                       device.calibration() != nullptr ? "no force before the arm has its zero"
                                                       : "none needed: its positions are absolute"});
   return controls;
+}
+
+/// An arm that is not there is no error here: what it alone can say is unknown then.
+static void logNothing(int, const std::string&, const std::string&) {}
+
+std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog& catalog,
+                                          document::Problems& problems) {
+  const scene::LoadedDevice loaded = scene::loadDevice(file, catalog);
+  problems = loaded.problems;
+  if (!loaded.device) return std::nullopt;
+  const document::Problems wrong = tryDevice(file, catalog);
+  problems.insert(problems.end(), wrong.begin(), wrong.end());
+  if (!wrong.empty()) return std::nullopt;
+  auto device = host::DeviceInstance::create(*loaded.device, logNothing);
+  if (!device) return document::report(problems, file, 0, 0, "", device.error()), std::nullopt;
+  ArmControls found{loaded.device->name, static_cast<bool>((*device)->open()), {}, false};
+  found.controls = controlsOf(*loaded.device, **device, found.opened);
+  const uint32_t capabilities = found.opened ? (*device)->info().capabilities : 0;
+  found.silenced_after_us = (*device)->silenceable() || (capabilities & (HDV_C_WATCHDOG | HDV_C_SIMULATED)) != 0;
+  return found;
 }
 
 }  // namespace hapticd::diagnostics

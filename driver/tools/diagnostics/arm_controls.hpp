@@ -2,25 +2,40 @@
 /// Which of the controls of driver/docs/hazards.md one arm has: by its device file, by its module, and, where it is
 /// plugged in, by the arm itself.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "description/scene.hpp"
+#include "document/problem.hpp"
+#include "host/catalog.hpp"
 #include "host/device_instance.hpp"
 
 namespace hapticd::diagnostics {
 
-enum class Verdict { kOn, kOff, kUnknown };
-const char* nameOf(Verdict verdict);  ///< "on", "off", "unknown"
+enum class ControlState { kOn, kOff, kUnknown };
+const char* nameOf(ControlState state);  ///< "on", "off", "unknown"
 
 struct Control {
   std::string hazards;  ///< of hazards.md, "H1 H2"
   std::string name;
-  Verdict verdict = Verdict::kUnknown;
+  ControlState state = ControlState::kUnknown;
   std::string text;  ///< how far it goes; where it is off, what it takes to have it
 };
 
 /// [main] @param device created from the description; opened, if the arm is there
 std::vector<Control> controlsOf(const scene::Device& description, const host::DeviceInstance& device, bool opened);
+
+/// What one device file is found to have.
+struct ArmControls {
+  std::string arm;
+  bool opened = false;  ///< it is plugged in; otherwise what it alone can say is unknown
+  std::vector<Control> controls;
+  bool silenced_after_us = false;  ///< something switches its motors off when the daemon has gone
+};
+
+/// [main] Loads the file, and opens the arm if it is there; moves nothing. Nothing: `problems` say why.
+std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog& catalog,
+                                          document::Problems& problems);
 
 }  // namespace hapticd::diagnostics

@@ -20,7 +20,7 @@ class Daemon:
         self.arm = None if simulated else Rig(self.folder, **(rig or {}))
         self.scene = self.write("scene", models, servo)
         for name, file in zip(("rig", "ending", "slow", "broken"), (*modules, modules[-1], modules[-1])):
-            os.symlink(file, os.path.join(self.folder, name + ".so"))  # found by name: nothing else is looked at
+            shutil.copyfile(file, os.path.join(self.folder, name + ".so"))  # found by name; each loaded for itself
         self.environment = dict(os.environ, HAPTICD_PLUGIN_PATH=self.folder, STATE_DIRECTORY=self.folder, RUNTIME_DIRECTORY=self.folder)
         device = [] if simulated else ["--device", self.arm.device, "--allow-non-rt"]
         self.process = subprocess.Popen([*start, hapticd, "run", self.scene, *device, *arguments], env=self.environment,

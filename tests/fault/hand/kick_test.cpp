@@ -35,7 +35,9 @@ class Kick : public testing::TestWithParam<How> {};
 TEST_P(Kick, IsHeldBackAndThenSilenced) {
   Kicked kicked(kicking(GetParam(), GetParam() == kVibrates ? 7.5 : 8));
   EXPECT_GT(largest(kicked.sent), 0) << "nothing was tried: no test";
-  EXPECT_LE(largest(kicked.sent), Claim::kStep + 0.02 * Claim::kDrift) << "what a click may be, and a drift";
+  // The tip is 2 mm from the origin about which the model spins.
+  const double turned = GetParam() == kSpins ? Claim::kMargin * Claim::kUnclaimed * Claim::kOwnTurn * 1e-3 * 2e-3 : 0;
+  EXPECT_LE(largest(kicked.sent), Claim::kStep + turned + 0.02 * Claim::kDrift) << "what a click may be, and a drift";
   for (const Sent& sent : kicked.sent)
     if (sent.t > 0.2) {
       ASSERT_EQ(sent.force.norm(), 0) << sent.t;

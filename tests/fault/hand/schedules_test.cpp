@@ -123,7 +123,7 @@ class Player {
       ++faults;
       latched_ = true;
       since_ = tick_;
-      if (allowed_.count(fault) == 0) ++misnamed;
+      if (played_ < schedules_ && allowed_.count(fault) == 0) ++misnamed;  // then the run ends
     }
     if (latched_ && force > last_ * (1 + 1e-12)) ++grown;
     // The fault's own tick is in it; a planned end takes 20 ms.

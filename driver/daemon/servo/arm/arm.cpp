@@ -305,6 +305,7 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
   command.mode = HDV_OFF;
   const bool located = std::isfinite(sample_.position[0]) &&
                        kinematics.jacobian(device_->handle(), sample_.position, J.data()) == HSP_OK && J.allFinite();
+  if (!located) limiter_.sentNothing();
   const Weight::Torques weight = located ? weightTorques(J.topRows<3>(), dt) : Weight::Torques{};
   if (located && !limiter_.silent() && !comply(dt, force, weight)) {
     command.mode = HDV_TORQUE;

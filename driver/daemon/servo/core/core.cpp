@@ -317,6 +317,7 @@ bool Core::holdToClaim(ModelState& model, uint32_t index, uint32_t probe, const 
   step.p_world = p_world;
   step.p_model = model.claims.moves_itself ? model.frame.pointToModel(p_world) : Vector3d(ConstMap(in.position));
   step.velocity = ConstMap(in.velocity);
+  step.origin = model.frame.origin_world;
   step.turn = turn;
   step.in = in.flags, step.out = out.flags;
   ClaimBounds bounds = model.claims;

@@ -53,7 +53,7 @@ double Claim::explained(const ClaimStep& step, const ClaimBounds& bounds, double
   }
   if (bounds.moves_itself) {
     const double own = (step.p_world - p_world_).norm();
-    way = std::min(way, own + kOwnSpeed * dt);
+    way = std::min(way, own + ownWay(step, dt));
     if (dt > 0) speed = std::min(speed, own / dt + kOwnSpeed);
     change = std::min(change, speed);
     turned = std::min(turned, kOwnTurn * dt * explained_.norm());
@@ -62,6 +62,15 @@ double Claim::explained(const ClaimStep& step, const ClaimBounds& bounds, double
   const double stiffness = bounds.stiffness > 0 ? bounds.stiffness : kUnclaimed;
   return kMargin * stiffness * way + std::max(kDamping * change, kMargin * bounds.damping * speed) +
          (bounds.moves_itself ? turned : 0);
+}
+
+/// [m] How far the surface at the probe may have come by a pose that is the shape's own word: a body's speed along, and
+/// a body's speed round, so that a model that spins in place explains next to nothing there.
+double Claim::ownWay(const ClaimStep& step, double dt) const noexcept HSP_RT {
+  const double along = std::min((step.origin - origin_).norm(), kOwnSpeed * dt);
+  if (step.turn == nullptr) return along;
+  const Vector3d arm = step.p_world - step.origin;
+  return along + std::min((*step.turn * arm - arm).norm(), kOwnTurn * dt * arm.norm());
 }
 
 bool Claim::takePass(const ClaimStep& step) noexcept HSP_RT {
@@ -78,6 +87,7 @@ void Claim::remember(const ClaimStep& step) noexcept HSP_RT {
   p_model_ = step.p_model;
   velocity_ = step.velocity;
   normal_ = step.normal;
+  origin_ = step.origin;
 }
 
 bool pullsIn(const hsp_contact& contact, const Vector3d& p) noexcept HSP_RT {

@@ -26,6 +26,7 @@ struct ClaimStep {
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();   ///< [m] the probe
   Eigen::Vector3d p_model = Eigen::Vector3d::Zero();   ///< [m] the same in the frame of the model, after the step
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s] relative to the model; zero where it asks for none
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();    ///< [m] of the model, after the step
   const Eigen::Matrix3d* turn = nullptr;               ///< of the model since its last step; nullptr: it does not turn
   uint32_t in = 0, out = 0;                            ///< HSP_IN_*, HSP_OUT_*
 };
@@ -54,6 +55,7 @@ class Claim {
 
  private:
   double explained(const ClaimStep& step, const ClaimBounds& bounds, double dt) noexcept HSP_RT;
+  double ownWay(const ClaimStep& step, double dt) const noexcept HSP_RT;
   bool takePass(const ClaimStep& step) noexcept HSP_RT;
   void remember(const ClaimStep& step) noexcept HSP_RT;
 
@@ -63,6 +65,7 @@ class Claim {
   Eigen::Vector3d explained_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_world_ = Eigen::Vector3d::Zero(), p_model_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero(), normal_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
 };
 
 /// [rt] True if the force of a contact pulls the probe deeper in, or toward the surface from outside, by more than

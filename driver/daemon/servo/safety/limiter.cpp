@@ -189,7 +189,11 @@ void Limiter::trip(Fault fault, double measured) noexcept HSP_RT {
 
 void Limiter::cut(Fault fault, double measured) noexcept HSP_RT {
   trip(fault, measured);
-  fade_ = 0;
+  sentNothing();
+}
+
+void Limiter::sentNothing() noexcept HSP_RT {
+  if (fault() != Fault::kNone) fade_ = 0;
   last_force_.setZero();
   last_torque_.setZero();
 }

@@ -70,6 +70,10 @@ class Limiter {
   /// [rt] The motors were cut already: the fault latches and no force is left to ramp.
   void cut(Fault fault, double measured) noexcept HSP_RT;
 
+  /// [rt] After apply(): the arm could not be told the force, for nobody knows where it is. What is left of a ramp is
+  /// not taken up again, and another force grows from none.
+  void sentNothing() noexcept HSP_RT;
+
   /// [rt] A fault that ends by itself is over: the force ramps in again. Others stay.
   void recover() noexcept HSP_RT;
 

@@ -59,6 +59,15 @@ TEST(Request, SaysWhatIsWrongAndWhatWasExpected) {
   }
 }
 
+/// One reader of JSON takes the first of two keys, another the last: what was checked might not be what is done.
+TEST(Request, RefusesAKeyThatStandsThereTwice) {
+  const auto twice = parseRequest(R"({"do":"status","do":"stop"})");
+  ASSERT_FALSE(twice);
+  EXPECT_NE(twice.error().find("\"do\" stands there twice"), std::string::npos) << twice.error();
+  EXPECT_FALSE(parseRequest(R"({"do":"set","model":"a","parameter":"k","value":1,"value":2})"));
+  EXPECT_TRUE(parseRequest(R"({"do":"set","model":"a","parameter":"k","value":1})"));
+}
+
 TEST(Request, RefusesMoreThanItReads) {
   const std::string deep(40000, '[');
   EXPECT_FALSE(parseRequest(deep));

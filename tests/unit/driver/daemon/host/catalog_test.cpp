@@ -162,6 +162,7 @@ TEST(Catalog, TriesAFileAgainThatFailed) {
 }
 
 /// The values of a scene are set by the index that a description gives: it must be the one of the code that takes them.
+/// What was loaded once stays: a thread of it may live on.
 TEST(Catalog, DescribesWhatIsLoadedWhateverTheFileHoldsByNow) {
   const Replaceable plugin;
   plugin.put(kGood / "test_shape.so");
@@ -174,8 +175,8 @@ TEST(Catalog, DescribesWhatIsLoadedWhateverTheFileHoldsByNow) {
   loaded->reset();
   catalog.describeBy(describeInChild);
   catalog.refresh();
-  EXPECT_FALSE(catalog.shape("test_shape"));
-  EXPECT_TRUE(catalog.shape("small_minor"));
+  EXPECT_TRUE(catalog.shape("test_shape"));
+  EXPECT_FALSE(catalog.shape("small_minor"));
 }
 
 TEST(SearchPath, PutsTheEnvironmentFirst) {

@@ -64,7 +64,7 @@ TEST(Tables, DefaultsAreAcceptedByTheirOwnParsers) {
 TEST(Tables, DefaultsAreThoseOfTheStructs) {
   const std::string text =
       "hapticd: 1\nservo: {rate: 1000, activation_radius: 0.1, hysteresis: 0.05, gravity: [0, -9.81, 0], pace: clock, "
-      "velocity: {estimator: window, parameter: 3}, budget_us: 0}\nmodels: []\n";
+      "velocity: {estimator: window, parameter: 3}, budget_us: 0, instructions: auto}\nmodels: []\n";
   eachKey(*kFormats[0].table, "", [&](const std::string& path, const Key& key) {
     if (key.def == nullptr || path.find("servo.") != 0) return;
     EXPECT_NE(text.find(std::string(key.name) + ": " + key.def), std::string::npos) << path;

@@ -76,7 +76,7 @@ TEST_P(LateStep, LeavesTheMotorsOffAndAFault) {
   ASSERT_FALSE(watchdog.start(81));
   rig.loop->run();
   watchdog.stop();
-  EXPECT_EQ(watchdog.cuts(), 1u);
+  EXPECT_GE(watchdog.cuts(), 1u);  // and again where a busy machine lets the next tick be late too
   EXPECT_EQ(rig.arms[0]->limiter().fault(), Fault::kStuck);
   EXPECT_EQ(rig.log->mode, static_cast<uint32_t>(HDV_OFF));
   for (const BlackBoxRow& row : rig.telemetry->blackBox()) {

@@ -244,19 +244,37 @@ TEST(Claim, OfAShapeThatMovesItselfExplainsABodysSpeed) {
   Rested far(Vector3d::Zero(), bounds);
   ClaimStep step = at({0, 0, 0}, {0, 1000, 0});
   step.p_model = {1, 0, 0};
+  step.origin = -step.p_model;
   EXPECT_NEAR(far.next(step).y(), Claim::kMargin * 1000 * Claim::kOwnSpeed * kTick + Claim::kStep, 1e-6);
   Rested near(Vector3d::Zero(), bounds);
   step.p_model = {1e-3, 0, 0};
+  step.origin = -step.p_model;
   EXPECT_NEAR(near.next(step).y(), Claim::kMargin * 1000 * 1e-3 + Claim::kStep, 1e-6);
   bounds.damping = 20;
   bounds.stiffness = 1e-9;
   Rested fast(Vector3d::Zero(), bounds);
   step.p_model.setZero();
+  step.origin.setZero();
+  step.force.y() = 5000;
   step.velocity = {0, 400, 0};
   EXPECT_NEAR(fast.next(step).y(), std::max(Claim::kDamping, Claim::kMargin * 20) * Claim::kOwnSpeed + Claim::kStep,
               1e-6);
   Rested rubbed(Vector3d::Zero(), {1e-9, 0, 0, 0, true});
   EXPECT_NEAR(rubbed.next(step).y(), Claim::kDamping * Claim::kOwnSpeed + Claim::kStep, 1e-6);
+}
+
+/// Spinning in place turns the surface under the probe by no more than a body's turn, and explains no more.
+TEST(Claim, OfAShapeThatSpinsInPlaceExplainsNextToNothing) {
+  ClaimBounds bounds;
+  bounds.moves_itself = true;
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(M_PI, Vector3d::UnitX()).toRotationMatrix();
+  ClaimStep step = at({0, 2e-3, 0}, {0, 8, 0});
+  Rested there(Vector3d::Zero(), bounds);
+  there.next(at({0, 2e-3, 0}, {0, 0, 0}));
+  step.p_model = {0, -2e-3, 0};
+  step.turn = &turn;
+  EXPECT_NEAR(there.next(step).y(), Claim::kMargin * Claim::kUnclaimed * Claim::kOwnTurn * kTick * 2e-3 + Claim::kStep,
+              1e-6);
 }
 
 hsp_contact contact(double force, double depth) {

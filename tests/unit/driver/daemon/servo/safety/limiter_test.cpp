@@ -302,6 +302,17 @@ TEST(Limiter, AnOldSampleLetsTheForceFadeAndANewOneRampsIt) {
   EXPECT_NEAR(last, 4, 1e-9);
 }
 
+/// Found by random schedules: positions that were no numbers in the middle of a planned ramp, then 3.8 N from nothing.
+TEST(Limiter, ARampThatCouldNotBeSentIsNotTakenUpAgain) {
+  Limiter limiter(generous(), 8.5);
+  limited(limiter, {8, 0, 0});
+  limiter.trip(Fault::kStopped);
+  EXPECT_GT(limited(limiter, {8, 0, 0}).x(), 4);
+  limiter.sentNothing();
+  EXPECT_TRUE(limiter.silent());
+  EXPECT_EQ(limited(limiter, {8, 0, 0}).norm(), 0);
+}
+
 TEST(Limiter, AFaultTakesTheForceAwayTenTimesAsFastAsAPlannedEnd) {
   for (const Fault fault : {Fault::kStopped, Fault::kTooFast}) {
     Limiter limiter(generous(), 8.5);
