@@ -11,6 +11,7 @@
 #include "cli/command.hpp"
 #include "record/picture.hpp"
 #include "record/recording.hpp"
+#include "session/about.hpp"
 
 namespace hapticd::cli {
 
@@ -24,18 +25,28 @@ struct Options {
 
 /// The columns that are drawn; nullptr: a recording without them.
 struct Columns {
-  const record::Column *t, *depth, *lateness, *compute, *force[3], *position[3];
+  const record::Column *t, *depth, *model, *lateness, *compute, *fault, *force[3], *asked[3], *position[3];
 };
 
 std::optional<Columns> columnsOf(const record::RecordedStream& ticks, uint32_t arm) {
   const std::string prefix = "arm" + std::to_string(arm) + "_";
-  Columns c{ticks.find("t"), ticks.find("depth"), ticks.find("lateness_us"), ticks.find("compute_us"), {}, {}};
+  Columns c{ticks.find("t"),
+            ticks.find("depth"),
+            ticks.find("model"),
+            ticks.find("lateness_us"),
+            ticks.find("compute_us"),
+            ticks.find(prefix + "fault"),
+            {},
+            {},
+            {}};
   constexpr const char* kAxes[] = {"x", "y", "z"};
-  bool all = c.t != nullptr && c.depth != nullptr && c.lateness != nullptr && c.compute != nullptr;
+  bool all = c.t != nullptr && c.depth != nullptr && c.model != nullptr && c.lateness != nullptr &&
+             c.compute != nullptr && c.fault != nullptr;
   for (size_t i = 0; i < 3; ++i) {
     c.force[i] = ticks.find(prefix + "sent_f" + kAxes[i]);
+    c.asked[i] = ticks.find(prefix + "f" + kAxes[i]);
     c.position[i] = ticks.find(prefix + kAxes[i]);
-    all = all && c.force[i] != nullptr && c.position[i] != nullptr;
+    all = all && c.force[i] != nullptr && c.asked[i] != nullptr && c.position[i] != nullptr;
   }
   return all ? std::optional(c) : std::nullopt;
 }
@@ -43,18 +54,32 @@ std::optional<Columns> columnsOf(const record::RecordedStream& ticks, uint32_t a
 record::Sample sampleAt(const record::RecordedStream& ticks, const Columns& c, uint64_t row) {
   record::Sample sample;
   sample.t = ticks.number(row, *c.t);
-  const double depth = ticks.number(row, *c.depth);
-  sample.depth_m = std::isfinite(depth) ? depth : -1;  // nothing traced is far away, not at the surface
-  double square = 0;
+  sample.depth_m = ticks.number(row, *c.depth);
+  sample.model = static_cast<int>(ticks.number(row, *c.model));
+  double sent = 0, asked = 0;
   for (size_t i = 0; i < 3; ++i) {
-    square += ticks.number(row, *c.force[i]) * ticks.number(row, *c.force[i]);
+    sent = std::hypot(sent, ticks.number(row, *c.force[i]));
+    asked = std::hypot(asked, ticks.number(row, *c.asked[i]));
     sample.position_m[i] = ticks.number(row, *c.position[i]);
-    if (!std::isfinite(sample.position_m[i])) sample.position_m[i] = 0;
   }
-  sample.force_n = std::isfinite(square) ? std::sqrt(square) : 0;
+  sample.force_n = sent;
+  sample.asked_n = asked;
+  sample.fault = static_cast<uint32_t>(ticks.number(row, *c.fault));
   sample.lateness_us = ticks.number(row, *c.lateness);
   sample.compute_us = ticks.number(row, *c.compute);
   return sample;
+}
+
+/// Models and limits of the run, and whether its time was real; without them where its description cannot be read.
+record::RunNotes notesOf(const record::Recording& recording, uint32_t arm, bool& virtual_time) {
+  record::RunNotes notes;
+  notes.positions = true;
+  const auto about = servo::readAbout(recording.aboutJson());
+  if (!about) return notes;
+  virtual_time = about->facts.virtual_time;
+  for (const scene::Model& model : about->scene.models) notes.models.push_back(model.name);
+  if (arm < about->scene.devices.size()) notes.force_limit_n = about->scene.devices[arm].limits.force;
+  return notes;
 }
 
 int plot(const Options& options) {
@@ -86,7 +111,8 @@ int plot(const Options& options) {
   report.ticks = samples.size();
   report.seconds = samples.empty() ? 0 : samples.back().t - samples.front().t;
   report.rate_hz = report.seconds > 0 ? static_cast<double>(samples.size() - 1) / report.seconds : 0;
-  if (auto drawn = record::drawRun(report, samples, out, true); !drawn) return fail(kFailed, drawn.error());
+  const record::RunNotes notes = notesOf(**recording, options.arm, report.virtual_time);
+  if (auto drawn = record::drawRun(report, samples, notes, out); !drawn) return fail(kFailed, drawn.error());
   std::printf("%s: %zu ticks, %.2f s\n", out.c_str(), samples.size(), report.seconds);
   return kWorked;
 }
@@ -95,8 +121,9 @@ int plot(const Options& options) {
 
 void addPlot(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("plot", "Draw a recording: depth, force, lateness and position over time (SVG).");
+  CLI::App* command = app.add_subcommand(
+      "plot",
+      "Draw a recording: depth, force, lateness and position over time, with faults, limits and models by name (SVG).");
   command->add_option("file", options->file, "recording or black box")->required();
   command->add_option("--out", options->out, "picture to write; default: FILE.svg");
   command->add_option("--arm", options->arm, "index of the arm, from 0")->check(CLI::Range(0, 7));

@@ -100,14 +100,24 @@ std::vector<record::Sample> samplesOf(const servo::Telemetry& telemetry) {
   for (const servo::BlackBoxRow& row : telemetry.blackBox()) {
     record::Sample sample;
     sample.t = row.t;
-    // nothing traced is far away, not at the surface
-    sample.depth_m = row.model == UINT32_MAX ? -1 : static_cast<double>(row.depth_m);
+    const bool traced = row.model != UINT32_MAX;
+    sample.depth_m = traced ? static_cast<double>(row.depth_m) : std::nan("");
+    sample.model = traced ? static_cast<int>(row.model) : -1;
     sample.force_n = std::hypot(row.force[0], row.force[1], row.force[2]);
+    sample.asked_n = std::nan("");  // the black box has what was sent
+    sample.fault = row.fault;
     sample.lateness_us = static_cast<double>(row.lateness_us);
     sample.compute_us = static_cast<double>(row.compute_us);
     samples.push_back(sample);
   }
   return samples;
+}
+
+record::RunNotes notesOf(const servo::Runner& runner) {
+  record::RunNotes notes;
+  for (const scene::Model& model : runner.scene().models) notes.models.push_back(model.name);
+  if (!runner.scene().devices.empty()) notes.force_limit_n = runner.scene().devices[0].limits.force;
+  return notes;
 }
 
 record::LimitReport limitsOf(const std::string& device, const servo::Limiter& limiter) {
@@ -160,7 +170,7 @@ int conclude(const Options& options, servo::Runner& runner, const std::vector<st
   if (!options.report.empty())
     if (auto written = record::writeJson(report, options.report); !written) return fail(kFailed, written.error());
   if (!options.picture.empty())
-    if (auto drawn = record::drawRun(report, samplesOf(runner.telemetry()), options.picture); !drawn)
+    if (auto drawn = record::drawRun(report, samplesOf(runner.telemetry()), notesOf(runner), options.picture); !drawn)
       return fail(kFailed, drawn.error());
   return faults.empty() ? kWorked : kFailed;
 }

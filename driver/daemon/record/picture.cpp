@@ -1,131 +1,209 @@
 // SPDX-License-Identifier: MIT
 #include "record/picture.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "base/regular_file.hpp"
-#include "record/svg.hpp"
+#include "record/plot.hpp"
 
 namespace hapticd::record {
 
 namespace {
 
-constexpr double kWidth = 1000, kRowHeight = 170, kTop = 56, kLeft = 70, kPlotWidth = 640, kPlotHeight = 120;
-constexpr double kHistogramLeft = kLeft + kPlotWidth + 60, kHistogramWidth = kWidth - kHistogramLeft - 30;
-constexpr int kBins = 40;
-constexpr const char *kGrid = "#ddd", *kInk = "#444";
+constexpr double kOver = 640, kBeside = 300, kHeight = 120;  ///< [px] over time, histogram
+constexpr size_t kBins = 40;
+constexpr const char *kDepth = "#1b6ca8", *kForce = "#b5432a", *kTime = "#3a7d44", *kPlace = "#6a4c93";
 
 /// One row of the picture: a quantity over time and its histogram.
 struct Quantity {
-  const char *name, *unit, *colour;
+  std::string title, unit, colour;
   std::function<double(const Sample&)> value;
   std::function<bool(const Sample&)> counts;  ///< in the histogram
+  std::string counted;                        ///< "% of the ticks in contact"
+  bool logarithmic = false;
+  double least = -HUGE_VAL;  ///< what is below is drawn at the foot
 };
 
-struct Range {
-  double low = 0, high = 1;
-  double at(double y_top, double value) const {
-    return y_top + kPlotHeight * (1 - (std::clamp(value, low, high) - low) / (high - low));
-  }
-};
-
-/// The largest of 1, 2, 5 times a power of ten near a sixth of `span`.
-double niceStep(double span) {
-  const double raw = span / 6, power = std::pow(10, std::floor(std::log10(raw)));
-  for (const double factor : {1.0, 2.0, 5.0})
-    if (raw <= factor * power) return factor * power;
-  return 10 * power;
-}
-
-Range rangeOf(const Quantity& quantity, const std::vector<Sample>& samples) {
-  double low = 0, high = 0;
+/// Finite values from the smallest to the largest; of none 0 to 1. @param counted only of what the histogram counts
+Axis axisOf(const Quantity& q, const std::vector<Sample>& samples, bool counted) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
   for (const Sample& sample : samples) {
-    low = std::min(low, quantity.value(sample));
-    high = std::max(high, quantity.value(sample));
+    const double value = q.value(sample);
+    if (!std::isfinite(value) || (counted && !q.counts(sample))) continue;
+    low = std::min(low, std::max(value, q.least)), high = std::max(high, value);
   }
-  if (!(high > low)) high = low + 1;
-  const double step = niceStep(high - low);
-  return {std::floor(low / step) * step, std::ceil(high / step) * step};
+  if (!(high >= low)) low = 0, high = 1;
+  return axisOver(fmt::format("[{}]", q.unit), q.logarithmic ? std::max(low, 0.1) : low, high, q.logarithmic);
 }
 
-void drawAxes(Svg& svg, const Quantity& quantity, const Range& range, double y, double t0, double t1) {
-  svg.label(kLeft, y - 8, fmt::format("{} [{}]", quantity.name, quantity.unit), "start", kInk, 13);
-  const double step = niceStep(range.high - range.low);
-  for (double v = range.low; v <= range.high + step / 2; v += step) {
-    svg.line(kLeft, range.at(y, v), kLeft + kPlotWidth, range.at(y, v), std::abs(v) < step / 2 ? "#999" : kGrid);
-    svg.label(kLeft - 6, range.at(y, v) + 4, fmt::format("{:g}", std::abs(v) < step / 2 ? 0.0 : v), "end");
-  }
-  const double dt = niceStep(t1 - t0);
-  for (double t = std::ceil(t0 / dt) * dt; t <= t1 + 1e-9; t += dt)
-    svg.label(kLeft + kPlotWidth * (t - t0) / (t1 - t0), y + kPlotHeight + 16, fmt::format("{:g} s", t), "middle");
+Curve curveOf(const std::string& name, const std::string& colour, const std::vector<Sample>& samples,
+              const std::function<double(const Sample&)>& value) {
+  Curve curve{name, colour, {}, {}, 1.1};
+  for (const Sample& sample : samples) curve.x.push_back(sample.t), curve.y.push_back(value(sample));
+  return curve;
 }
 
-void drawCurve(Svg& svg, const Quantity& quantity, const Range& range, const std::vector<Sample>& samples, double y) {
-  const double t0 = samples.front().t, span = std::max(samples.back().t - t0, 1e-9);
-  std::vector<double> xy;
-  for (size_t i = 0; i < samples.size();) {
-    const int column = static_cast<int>(kPlotWidth * (samples[i].t - t0) / span);
-    double low = quantity.value(samples[i]), high = low;
-    for (; i < samples.size() && static_cast<int>(kPlotWidth * (samples[i].t - t0) / span) == column; ++i) {
-      low = std::min(low, quantity.value(samples[i]));
-      high = std::max(high, quantity.value(samples[i]));
-    }
-    for (const double v : {low, high}) xy.insert(xy.end(), {kLeft + column, range.at(y, v)});
-  }
-  svg.curve(xy, quantity.colour, 1.1);
-}
-
-void drawHistogram(Svg& svg, const Quantity& quantity, const Range& range, const std::vector<Sample>& samples,
-                   double y) {
-  std::vector<double> bins(kBins, 0);
+Panel histogramOf(const Quantity& q, const std::vector<Sample>& samples) {
+  Axis x = axisOf(q, samples, true);
+  x.label = fmt::format("{} [{}]", q.title, q.unit);
+  Bars bars{q.colour, {}, std::vector<double>(kBins, 0)};
   double counted = 0;
   for (const Sample& sample : samples) {
-    if (!quantity.counts(sample)) continue;
-    const double share = (quantity.value(sample) - range.low) / (range.high - range.low);
-    ++bins[static_cast<size_t>(std::clamp(static_cast<int>(share * kBins), 0, kBins - 1))];
+    const double value = q.value(sample);
+    if (!q.counts(sample) || !std::isfinite(value)) continue;
+    const double bin = std::floor(x.share(value) * kBins);
+    ++bars.counts[static_cast<size_t>(std::clamp(bin, 0.0, kBins - 1.0))];
     ++counted;
   }
-  const double most = std::max(1.0, *std::max_element(bins.begin(), bins.end())), bar = kPlotHeight / kBins;
-  for (int i = 0; i < kBins; ++i)
-    svg.rectangle(kHistogramLeft, y + kPlotHeight - (i + 1) * bar,
-                  kHistogramWidth * bins[static_cast<size_t>(i)] / most, bar * 0.9, quantity.colour);
-  svg.line(kHistogramLeft, y, kHistogramLeft, y + kPlotHeight, "#999");
-  svg.label(kHistogramLeft, y + kPlotHeight + 16, fmt::format("{:.0f} ticks", counted));
+  for (size_t i = 0; i <= kBins; ++i) bars.edges.push_back(x.at(static_cast<double>(i) / kBins));
+  for (double& count : bars.counts) count *= 100 / std::max(counted, 1.0);
+  const double most = *std::max_element(bars.counts.begin(), bars.counts.end());
+  Panel panel(fmt::format("{:.0f} ticks", counted), x, axisOver(q.counted, 0, std::max(most, 1.0)));
+  panel.bars = {std::move(bars)};
+  panel.height = kHeight;
+  return panel;
+}
+
+/// Parts of the time in which `name` gives the same words; "" is none. Parts less than a pixel apart are one.
+std::vector<Span> spansOf(const std::vector<Sample>& samples, const std::function<std::string(const Sample&)>& name) {
+  std::vector<Span> spans;
+  const double pixel = (samples.back().t - samples.front().t) / kOver;
+  std::string now;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const std::string next = name(samples[i]);
+    const bool goes_on = !spans.empty() && spans.back().name == next && samples[i].t - spans.back().to <= pixel;
+    if (next != now && !next.empty() && !goes_on) spans.push_back({samples[i].t, samples[i].t, next, ""});
+    now = next;
+    if (!now.empty()) spans.back().to = samples[std::min(i + 1, samples.size() - 1)].t;
+  }
+  return spans;
+}
+
+std::vector<Span> modelSpans(const std::vector<Sample>& samples, const RunNotes& notes) {
+  const auto touched = [&](const Sample& s) {
+    const auto model = static_cast<size_t>(s.model);
+    return s.depth_m > 0 && s.model >= 0 && model < notes.models.size() ? notes.models[model] : std::string();
+  };
+  std::vector<Span> spans = spansOf(samples, touched);
+  for (Span& span : spans) {
+    const auto place = std::find(notes.models.begin(), notes.models.end(), span.name) - notes.models.begin();
+    span.colour = colourOf(static_cast<size_t>(place) + 2);
+  }
+  return spans;
+}
+
+/// Where the limits took more than a hundredth of what the models asked for.
+std::vector<Span> limitSpans(const std::vector<Sample>& samples) {
+  std::vector<Span> spans = spansOf(samples, [](const Sample& s) {
+    return s.asked_n - s.force_n > std::max(0.01, 0.01 * s.asked_n) ? std::string("made smaller by limits") : "";
+  });
+  for (Span& span : spans) span.colour = "#e08a1e";
+  return spans;
+}
+
+/// The beginning of each fault; of many those that come first. The end of a run is none.
+std::vector<Mark> faultMarks(const std::vector<Sample>& samples) {
+  constexpr size_t kMost = 12;
+  constexpr uint32_t kStopped = 8;
+  std::vector<Mark> marks;
+  uint32_t now = 0;
+  for (const Sample& s : samples) {
+    if (s.fault != now && s.fault != 0 && s.fault != kStopped && marks.size() < kMost)
+      marks.push_back({s.t, nameOfFault(s.fault)});
+    now = s.fault;
+  }
+  return marks;
+}
+
+/// Outside, no more is drawn than three times what is inside: a hand far away would flatten every touch.
+double leastDepth(const std::vector<Sample>& samples) {
+  double deepest = 0.5e-3;
+  for (const Sample& s : samples)
+    if (std::isfinite(s.depth_m)) deepest = std::max(deepest, s.depth_m);
+  return -3e3 * deepest;
+}
+
+std::vector<Quantity> quantitiesOf(const RunReport& report, const std::vector<Sample>& samples, bool positions) {
+  const auto always = [](const Sample&) { return true; };
+  const auto in_contact = [](const Sample& s) { return s.depth_m > 0; };
+  const bool simulated = report.virtual_time;
+  std::vector<Quantity> all = {{"penetration depth", "mm", kDepth, [](const Sample& s) { return s.depth_m * 1e3; },
+                                in_contact, "% of the ticks in contact", false, leastDepth(samples)},
+                               {"force on the hand", "N", kForce, [](const Sample& s) { return s.force_n; }, in_contact,
+                                "% of the ticks in contact"},
+                               {simulated ? "compute time" : "lateness", "us", kTime,
+                                [simulated](const Sample& s) { return simulated ? s.compute_us : s.lateness_us; },
+                                always, "% of the ticks", true}};
+  constexpr const char* kCoordinates[] = {"x of the tip", "y of the tip", "z of the tip"};
+  for (size_t i = 0; i < 3 && positions; ++i)
+    all.push_back({kCoordinates[i], "mm", kPlace, [i](const Sample& s) { return s.position_m[i] * 1e3; }, always,
+                   "% of the ticks"});
+  return all;
+}
+
+/// What is more in the panel of the forces than the force itself.
+void addAsked(Panel& panel, const std::vector<Sample>& samples, const RunNotes& notes) {
+  const auto asked = [](const Sample& s) { return s.asked_n; };
+  if (std::any_of(samples.begin(), samples.end(), [](const Sample& s) { return std::isfinite(s.asked_n); }))
+    panel.curves.insert(panel.curves.begin(), curveOf("asked for by the models", "#b9b9b9", samples, asked));
+  panel.curves.back().name = "sent to the arm";
+  panel.spans = limitSpans(samples);
+  const double limit = notes.force_limit_n;
+  if (!std::isfinite(limit) || limit <= 0 || limit > 3 * panel.y.high) return;
+  panel.y = axisOver(panel.y.label, panel.y.low, std::max(panel.y.high, limit));
+  panel.bounds = {{limit, fmt::format("limits.force: {:g} N", limit)}};
+}
+
+std::string titleOf(const RunReport& report) {
+  std::string text = fmt::format("{}: {:.1f} s, {:.1f} Hz held", report.scene, report.seconds, report.rate_hz);
+  if (report.overruns > 0) text += fmt::format(", {} overruns", report.overruns);
+  return text;
 }
 
 }  // namespace
 
-Result<void> drawRun(const RunReport& report, const std::vector<Sample>& samples, const std::string& file,
-                     bool positions) {
+std::string nameOfFault(uint32_t fault) {
+  constexpr const char* kNames[] = {"",
+                                    "not finite",
+                                    "device lost",
+                                    "device at fault",
+                                    "stale samples",
+                                    "too fast",
+                                    "too late",
+                                    "not calibrated",
+                                    "stopped",
+                                    "stuck",
+                                    "overheated",
+                                    "jumped",
+                                    "orientation not of length 1"};
+  return fault < std::size(kNames) ? kNames[fault] : fmt::format("fault {}", fault);
+}
+
+Result<void> drawRun(const RunReport& report, const std::vector<Sample>& samples, const RunNotes& notes,
+                     const std::string& file) {
   if (samples.empty()) return Error{file + ": nothing to draw: the run had no tick"};
-  const auto always = [](const Sample&) { return true; };
-  const auto in_contact = [](const Sample& s) { return s.depth_m > 0; };
-  std::vector<Quantity> quantities = {
-      {"penetration depth (negative: distance)", "mm", "#1b6ca8",
-       [](const Sample& s) { return std::max(s.depth_m * 1e3, -10.0); }, in_contact},
-      {"force on the hand", "N", "#b5432a", [](const Sample& s) { return s.force_n; }, in_contact},
-      {report.virtual_time ? "compute time" : "lateness", "us", "#3a7d44",
-       [&](const Sample& s) { return report.virtual_time ? s.compute_us : s.lateness_us; }, always}};
-  constexpr const char* kCoordinates[] = {"x of the tip", "y of the tip", "z of the tip"};
-  for (size_t i = 0; i < 3 && positions; ++i)
-    quantities.push_back(
-        {kCoordinates[i], "mm", "#6a4c93", [i](const Sample& s) { return s.position_m[i] * 1e3; }, always});
-  Svg svg(kWidth, kTop + static_cast<double>(quantities.size()) * kRowHeight + 10);
-  svg.label(kLeft, 24,
-            fmt::format("{}: {:.1f} Hz held, {} overruns, {:.1f} s", report.scene, report.rate_hz, report.overruns,
-                        report.seconds),
-            "start", "#222", 15);
-  double y = kTop + 10;
-  for (const Quantity& quantity : quantities) {
-    const Range range = rangeOf(quantity, samples);
-    drawAxes(svg, quantity, range, y, samples.front().t, std::max(samples.back().t, samples.front().t + 1e-3));
-    drawCurve(svg, quantity, range, samples, y);
-    drawHistogram(svg, quantity, range, samples, y);
-    y += kRowHeight;
+  Picture picture(titleOf(report), {kOver, kBeside});
+  const double first = samples.front().t, last = std::max(samples.back().t, first + 1e-3);
+  for (const Quantity& q : quantitiesOf(report, samples, notes.positions)) {
+    Panel panel(q.title, {"time [s]", first, last}, axisOf(q, samples, false));
+    panel.curves = {curveOf("", q.colour, samples, q.value)};
+    panel.moments = faultMarks(samples);
+    panel.height = kHeight;
+    Panel beside = histogramOf(q, samples);
+    if (q.colour == kDepth) {
+      panel.title += " (negative: distance from the nearest model)";
+      panel.spans = modelSpans(samples, notes);
+    }
+    if (q.colour == kForce) addAsked(panel, samples, notes);
+    picture.add(std::move(panel));
+    picture.add(std::move(beside));
   }
-  return writeWhole(file, svg.finished());
+  return writeWhole(file, picture.svg());
 }
 
 }  // namespace hapticd::record

@@ -18,19 +18,24 @@ Json quantiles(const Histogram& h) {
   return {{"p50", h.quantile(0.5)}, {"p99", h.quantile(0.99)}, {"p999", h.quantile(0.999)}, {"max", h.max()}};
 }
 
+Json contactJson(const ContactStatistics& c) {
+  constexpr double kMm = 1e3;
+  return {{"contact_ticks", c.contactTicks()},
+          {"penetration_mm", {{"mean", c.meanDepth() * kMm}, {"std", c.stdDepth() * kMm}, {"max", c.maxDepth() * kMm}}},
+          {"force_n", {{"mean", c.meanForce()}, {"max", c.maxForce()}}},
+          {"buzz_mm", c.buzz() * kMm}};
+}
+
 Json modelJson(const ModelReport& model) {
-  constexpr double kMm = 1e3, kNs = 1e3;
-  const ContactStatistics& c = model.contact;
-  const Histogram& step = c.stepUs();
-  return {
-      {"plugin", model.plugin},
-      {"degraded",
-       {{"ticks", model.degraded_ticks}, {"level", model.coarsest}, {"residual_um", model.residual_m * 1e6}}},
-      {"contact_ticks", c.contactTicks()},
-      {"penetration_mm", {{"mean", c.meanDepth() * kMm}, {"std", c.stdDepth() * kMm}, {"max", c.maxDepth() * kMm}}},
-      {"force_n", {{"mean", c.meanForce()}, {"max", c.maxForce()}}},
-      {"buzz_mm", c.buzz() * kMm},
-      {"step_ns", {{"p50", step.quantile(0.5) * kNs}, {"p99", step.quantile(0.99) * kNs}, {"max", step.max() * kNs}}}};
+  constexpr double kNs = 1e3;
+  const Histogram& step = model.contact.stepUs();
+  Json json = {{"plugin", model.plugin},
+               {"degraded",
+                {{"ticks", model.degraded_ticks}, {"level", model.coarsest}, {"residual_um", model.residual_m * 1e6}}}};
+  json.update(contactJson(model.contact));
+  json["step_ns"] = {{"p50", step.quantile(0.5) * kNs}, {"p99", step.quantile(0.99) * kNs}, {"max", step.max() * kNs}};
+  for (const ArmContact& arm : model.arms) json["arms"][arm.device] = contactJson(arm.contact);
+  return json;
 }
 
 std::string timeLine(const char* name, const Histogram& h) {
@@ -38,16 +43,22 @@ std::string timeLine(const char* name, const Histogram& h) {
                      h.quantile(0.5), h.quantile(0.99), h.quantile(0.999), h.max());
 }
 
-std::string modelText(const ModelReport& model, const RunReport& report) {
-  const ContactStatistics& c = model.contact;
+std::string contactText(const ContactStatistics& c, const RunReport& report, const std::string& who) {
   const double seconds = report.rate_hz > 0 ? static_cast<double>(c.contactTicks()) / report.rate_hz : 0;
-  std::string text = fmt::format("{} ({})\n", model.name, model.plugin);
-  text += fmt::format("  contact   {:.2f} s ({} ticks)\n", seconds, c.contactTicks());
+  std::string text = fmt::format("  contact   {:.2f} s ({} ticks){}\n", seconds, c.contactTicks(), who);
   if (c.contactTicks() > 0) {
     text += fmt::format("  depth     mean {:.3f} mm   std {:.3f} mm   max {:.3f} mm   buzz {:.4f} mm\n",
                         c.meanDepth() * 1e3, c.stdDepth() * 1e3, c.maxDepth() * 1e3, c.buzz() * 1e3);
     text += fmt::format("  force     mean {:.2f} N   max {:.2f} N\n", c.meanForce(), c.maxForce());
   }
+  return text;
+}
+
+std::string modelText(const ModelReport& model, const RunReport& report) {
+  const ContactStatistics& c = model.contact;
+  std::string text = fmt::format("{} ({})\n", model.name, model.plugin);
+  if (model.arms.empty()) text += contactText(c, report, "");
+  for (const ArmContact& arm : model.arms) text += contactText(arm.contact, report, " by " + arm.device);
   if (model.degraded_ticks > 0)
     text += fmt::format(
         "  degraded  {} ticks, to level {} of 3, so that the tick's budget holds; residual up to {:.3g} um\n",

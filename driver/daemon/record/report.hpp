@@ -12,12 +12,19 @@
 
 namespace hapticd::record {
 
+/// What one arm felt of a model.
+struct ArmContact {
+  std::string device;
+  ContactStatistics contact;
+};
+
 struct ModelReport {
   std::string name, plugin;
-  ContactStatistics contact;
-  uint64_t degraded_ticks = 0;  ///< in which it answered coarser than asked, for a tick's budget
-  uint32_t coarsest = 0;        ///< level of accuracy, 0: as asked
-  double residual_m = 0;        ///< largest error that a coarser answer told
+  ContactStatistics contact;       ///< of the arm that is deepest in each tick
+  uint64_t degraded_ticks = 0;     ///< in which it answered coarser than asked, for a tick's budget
+  uint32_t coarsest = 0;           ///< level of accuracy, 0: as asked
+  double residual_m = 0;           ///< largest error that a coarser answer told
+  std::vector<ArmContact> arms{};  ///< of each, where there are several
 };
 
 /// In how many ticks limits made the force of one device smaller than the scene asked for.

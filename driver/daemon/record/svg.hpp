@@ -22,6 +22,11 @@ class Svg {
         "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" stroke-width=\"{}\"/>\n", x1, y1,
         x2, y2, colour, width);
   }
+  void dashes(double x1, double y1, double x2, double y2, const char* colour) {
+    text_ += fmt::format(
+        "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" stroke-dasharray=\"5 3\"/>\n", x1,
+        y1, x2, y2, colour);
+  }
   void rectangle(double x, double y, double width, double height, const char* fill) {
     text_ += fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"{}\"/>\n", x, y,
                          width, height, fill);

@@ -16,6 +16,15 @@ Telemetry::Telemetry(const scene::Scene& scene, double rate, uint32_t places)
   }
   names_.resize(models_.size());
   plugins_.resize(models_.size());
+  if (scene.devices.size() < 2) return;
+  for (const scene::Device& device : scene.devices) devices_.push_back(device.name);
+  by_arm_.resize(models_.size() * devices_.size());
+}
+
+std::vector<record::ArmContact> Telemetry::armsOf(size_t place) const {
+  std::vector<record::ArmContact> arms;
+  for (size_t i = 0; i < devices_.size(); ++i) arms.push_back({devices_[i], by_arm_[place * devices_.size() + i]});
+  return arms;
 }
 
 void Telemetry::attach(std::unique_ptr<Flight> flight) {
@@ -26,9 +35,11 @@ void Telemetry::attach(std::unique_ptr<Flight> flight) {
 void Telemetry::name(uint32_t place, const std::string& name, const std::string& plugin) {
   if (!names_[place].empty()) {
     if (left_.size() == kMostLeft) left_.erase(left_.begin());
-    left_.push_back({names_[place], plugins_[place], models_[place]});
+    left_.push_back(
+        {.name = names_[place], .plugin = plugins_[place], .contact = models_[place], .arms = armsOf(place)});
   }
   models_[place] = {};
+  for (size_t i = 0; i < devices_.size(); ++i) by_arm_[place * devices_.size() + i] = {};
   names_[place] = name;
   plugins_[place] = plugin;
 }
@@ -64,6 +75,15 @@ void Telemetry::keep(const BlackBoxRow& row) noexcept HSP_RT {
   if (row_count_ < rows_.size()) ++row_count_;
 }
 
+void Telemetry::bookArms(uint32_t index, double dt, const Core& core) noexcept HSP_RT {
+  for (uint32_t arm = 0; arm < devices_.size() && arm < core.probeCount(); ++arm) {
+    const Contact& contact = core.contact(index, arm);
+    const double force = Eigen::Map<const Vector3d>(contact.world.force).norm();
+    by_arm_[index * devices_.size() + arm].add(contact.traced && contact.world.depth_m > 0, contact.world.depth_m,
+                                               force, dt, 0);
+  }
+}
+
 void Telemetry::bookModels(double dt, const Core& core, BlackBoxRow& row) noexcept HSP_RT {
   for (const uint32_t index : core.live()) {
     const ModelState& model = core.models()[index];
@@ -76,6 +96,7 @@ void Telemetry::bookModels(double dt, const Core& core, BlackBoxRow& row) noexce
       force = std::max(force, Eigen::Map<const Vector3d>(contact.world.force).norm());
     }
     models_[index].add(depth > 0, depth, force, dt, model.step_ns);
+    bookArms(index, dt, core);
     if (depth > -HUGE_VAL && (row.model == UINT32_MAX || depth > row.depth_m)) {
       row.depth_m = static_cast<float>(depth);
       row.model = index;
@@ -103,7 +124,8 @@ record::RunReport Telemetry::report(const std::vector<std::string>& faults) cons
   report.page_faults = page_faults_;
   report.servo_allocations = allocations_;
   for (size_t i = 0; i < models_.size(); ++i)
-    if (!names_[i].empty()) report.models.push_back({names_[i], plugins_[i], models_[i]});
+    if (!names_[i].empty())
+      report.models.push_back({.name = names_[i], .plugin = plugins_[i], .contact = models_[i], .arms = armsOf(i)});
   // Names are keys in the report, and a model often takes the place of one of its name.
   std::map<std::string, int> times;
   for (record::ModelReport left : left_) {

@@ -87,6 +87,8 @@ class Telemetry final : public TickLog {
  private:
   std::vector<BlackBoxRow> fromFlight() const;
   void keep(const BlackBoxRow& row) noexcept HSP_RT;
+  std::vector<record::ArmContact> armsOf(size_t place) const;
+  void bookArms(uint32_t index, double dt, const Core& core) noexcept HSP_RT;
   void bookModels(double dt, const Core& core, BlackBoxRow& row) noexcept HSP_RT;
 
   std::vector<std::string> names_, plugins_;
@@ -94,7 +96,9 @@ class Telemetry final : public TickLog {
   double rate_, simulated_seconds_ = 0;
   record::Histogram lateness_us_, compute_us_;
   std::vector<record::ContactStatistics> models_;
-  std::vector<BlackBoxRow> rows_;  // where there is no flight
+  std::vector<std::string> devices_;               ///< where there are several
+  std::vector<record::ContactStatistics> by_arm_;  ///< [model * devices_.size() + arm]
+  std::vector<BlackBoxRow> rows_;                  // where there is no flight
   BlackBoxRow newest_;
   size_t next_ = 0, row_count_ = 0;
   uint64_t ticks_ = 0, overruns_ = 0, missed_ = 0, allocations_ = 0;

@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
-#include "plot/plot.hpp"
+#include "base/regular_file.hpp"
+#include "record/plot.hpp"
 
 namespace hapticd::table1 {
 
@@ -54,20 +56,35 @@ std::vector<double> histogram(const Recording& recording, double bin, size_t bin
   return counts;
 }
 
+std::string nameOf(const Row& row) {
+  return fmt::format("{}, {}", row.subject, row.moving ? "moving" : "at rest");
+}
+
+void save(const record::Picture& picture, const std::string& file) {
+  if (auto saved = writeWhole(file, picture.svg()); !saved) throw std::runtime_error(saved.error());
+}
+
 void drawHistograms(const Evaluation& e, const std::string& file) {
   constexpr double kBin = 0.25e-3;
   constexpr size_t kBins = 48;
-  plot::Picture picture("Depth in contact: ten rows of Table 1 (as Fig. 7 shows for the cylinder)", 2, 5, 420, 190);
+  record::Picture picture("Depth in contact: ten rows of Table 1 (as Fig. 7 shows for the cylinder)", {420, 420});
+  double most = 0;
   for (const Row& row : e.rows)
-    picture.histogram(fmt::format("{}, {}", row.subject, row.moving ? "moving" : "at rest"), {"depth [mm]", 0, 12},
-                      {"% of samples", 0, 30}, 0, kBin * 1e3, histogram(row.recording, kBin, kBins),
-                      row.moving ? "#d1495b" : "#1f5fa8");
-  picture.save(file);
+    for (const double share : histogram(row.recording, kBin, kBins)) most = std::max(most, share);
+  for (const Row& row : e.rows) {
+    record::Bars bars{row.moving ? "#d1495b" : "#1f5fa8", {}, histogram(row.recording, kBin, kBins)};
+    for (size_t i = 0; i <= kBins; ++i) bars.edges.push_back(1e3 * kBin * static_cast<double>(i));
+    record::Panel panel(nameOf(row), {"depth [mm]", 0, 12}, record::axisOver("% of samples", 0, most));
+    panel.bars = {bars};
+    panel.height = 110;
+    picture.add(std::move(panel));
+  }
+  save(picture, file);
 }
 
 /// Eq. 10 along the detent curve: the tip is where the surface's spring has added its share to the button's travel.
-plot::Curve closedForm() {
-  plot::Curve curve{"two springs, closed form", "#222", {}, {}, 1.2};
+record::Curve closedForm() {
+  record::Curve curve{"two springs, closed form", "#222", {}, {}, 1.2};
   const auto add = [&](double x2, double force) {
     curve.x.push_back(1e3 * (x2 + force / kSurface));
     curve.y.push_back(force);
@@ -78,34 +95,36 @@ plot::Curve closedForm() {
 }
 
 void drawButton(const Evaluation& e, const std::string& file) {
-  plot::Curve sent{"force commanded", "#1f5fa8", {}, {}, 1.2},
+  record::Curve sent{"force commanded", "#1f5fa8", {}, {}, 1.2},
       felt{"force from the load cells", "#d1495b", {}, {}, 0.6, true};
   for (size_t i = 0; i < e.pressed.samples.size(); i += 24) {
     const Sample& s = e.pressed.samples[i];
     sent.x.push_back(s.travel * 1e3), sent.y.push_back(s.contact ? s.force : 0);
     felt.x.push_back(s.travel * 1e3), felt.y.push_back(s.felt);
   }
-  plot::Picture picture("Force against travel of the push button, pressed slowly in and out (as Fig. 8)", 1, 1, 760,
-                        380);
-  picture.panel("", {"travel of the tip [mm]", -1, 17}, {"force [N]", -2, 20}, {felt, sent, closedForm()}, false);
-  picture.save(file);
+  record::Picture picture("Force against travel of the push button, pressed slowly in and out (as Fig. 8)", {760});
+  record::Panel panel("", {"travel of the tip [mm]", -1, 17}, {"force [N]", -2, 20}, {felt, sent, closedForm()});
+  panel.height = 290;
+  picture.add(std::move(panel));
+  save(picture, file);
 }
 
 void drawTrace(const Evaluation& e, const std::string& file) {
-  plot::Picture picture("Twelve seconds of tracing", 1, 4, 860, 170);
+  record::Picture picture("Twelve seconds of tracing", {860});
   for (const size_t i : {size_t{0}, size_t{3}, size_t{5}, size_t{9}}) {
     if (i >= e.rows.size()) continue;
     const Row& row = e.rows[i];
-    plot::Curve depth{"", row.moving ? "#d1495b" : "#1f5fa8", {}, {}, 1.0};
+    record::Curve depth{"", row.moving ? "#d1495b" : "#1f5fa8", {}, {}, 1.0};
     for (size_t k = 0; k < row.recording.samples.size(); k += 8) {
       const Sample& s = row.recording.samples[k];
       if (s.t < 6 || s.t > 18) continue;
       depth.x.push_back(s.t), depth.y.push_back(s.contact ? s.depth * 1e3 : std::nan(""));
     }
-    picture.panel(fmt::format("{}, {}", row.subject, row.moving ? "moving" : "at rest"), {"t [s]", 6, 18},
-                  {"depth [mm]", 0, 8}, {depth});
+    record::Panel panel(nameOf(row), {"t [s]", 6, 18}, {"depth [mm]", 0, 8}, {depth});
+    panel.height = 95;
+    picture.add(std::move(panel));
   }
-  picture.save(file);
+  save(picture, file);
 }
 
 std::string table(const Evaluation& e) {

@@ -10,15 +10,17 @@
 #include <random>
 #include <stdexcept>
 
+#include "base/regular_file.hpp"
 #include "delays.hpp"
-#include "plot/plot.hpp"
+#include "record/plot.hpp"
 #include "response.hpp"
 #include "servo/velocity/estimator.hpp"
 
 namespace {
 
-using hapticd::plot::Curve;
-using hapticd::plot::Picture;
+using hapticd::record::colourOf;
+using hapticd::record::Curve;
+using hapticd::record::Picture;
 namespace velocity = hapticd::velocity;
 namespace bench = hapticd::velocity_bench;
 
@@ -150,12 +152,12 @@ std::string claims() {
 
 void draw(const std::string& file) {
   constexpr double kRate = 1500, kStep = 10e-6;
-  Picture picture("Velocity estimators at 1500 Hz, steps of 10 um", 2, 2, 520, 300);
+  Picture picture("Velocity estimators at 1500 Hz, steps of 10 um", {520, 520});
   std::vector<Curve> gains, delays;
   Curve ideal{"ideal differentiator", "#999", {}, {}, 1.0};
   for (size_t i = 0; i < kKinds.size(); ++i) {
-    gains.push_back({kKinds[i].words, hapticd::plot::colours()[i], {}, {}});
-    delays.push_back({kKinds[i].words, hapticd::plot::colours()[i], {}, {}});
+    gains.push_back({kKinds[i].words, colourOf(i), {}, {}});
+    delays.push_back({kKinds[i].words, colourOf(i), {}, {}});
   }
   for (double f = 1; f <= 400; f *= 1.08) {
     ideal.x.push_back(f), ideal.y.push_back(1);
@@ -166,14 +168,14 @@ void draw(const std::string& file) {
     }
   }
   gains.push_back(ideal);
-  picture.panel("Gain against the ideal differentiator, 0.3 m/s", {"frequency [Hz]", 1, 400, true}, {"gain", 0, 1.6},
-                gains, false);
-  picture.panel("Delay", {"frequency [Hz]", 1, 100, true}, {"[ms]", -2, 8}, delays, false);
+  picture.add(
+      {"Gain against the ideal differentiator, 0.3 m/s", {"frequency [Hz]", 1, 400, true}, {"gain", 0, 1.6}, gains});
+  picture.add(hapticd::record::Panel("Delay", {"frequency [Hz]", 1, 100, true}, {"[ms]", -2, 8}, delays));
   std::vector<Curve> tap{{"truth", "#222", {}, {}, 2.2}}, slow{{"truth", "#222", {}, {}, 2.2}};
   for (const bool fast : {true, false})
     for (size_t i = 0; i < kKinds.size(); ++i) {
       auto estimator = velocity::make(kKinds[i].name, kKinds[i].parameter, kRate, kStep);
-      Curve curve{kKinds[i].words, hapticd::plot::colours()[i], {}, {}, 1.1};
+      Curve curve{kKinds[i].words, colourOf(i), {}, {}, 1.1};
       for (int k = 0; k < 0.5 * kRate; ++k) {
         const double t = k / kRate, x = fast ? taps(t).x : 0.002 * t + 1e-4 * std::sin(2 * M_PI * 8 * t);
         const double v = estimator.update({rounded(x, kStep), 0, 0}, k == 0 ? 0 : 1 / kRate).x();
@@ -186,9 +188,10 @@ void draw(const std::string& file) {
       }
       (fast ? tap : slow).push_back(curve);
     }
-  picture.panel("A tap on a wall of 45 Hz", {"t [ms]", -10, 40}, {"v [mm/s]", -300, 300}, tap);
-  picture.panel("Slow motion: the steps are seen", {"t [ms]", -10, 150}, {"v [mm/s]", -15, 20}, slow, false);
-  picture.save(file);
+  picture.add(hapticd::record::Panel("A tap on a wall of 45 Hz", {"t [ms]", -10, 40}, {"v [mm/s]", -300, 300}, tap));
+  picture.add(
+      hapticd::record::Panel("Slow motion: the steps are seen", {"t [ms]", -10, 150}, {"v [mm/s]", -15, 20}, slow));
+  if (auto saved = hapticd::writeWhole(file, picture.svg()); !saved) throw std::runtime_error(saved.error());
 }
 
 int run(bool write) {

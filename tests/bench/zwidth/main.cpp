@@ -9,20 +9,21 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "plot/plot.hpp"
+#include "base/regular_file.hpp"
+#include "record/plot.hpp"
 #include "servo/safety/passivity/bounds.hpp"
 #include "wall_loop.hpp"
 
 namespace {
 
 using namespace hapticd::zwidth;
-using hapticd::plot::Curve;
-using hapticd::plot::Picture;
+using hapticd::record::Curve;
+using hapticd::record::Picture;
 namespace passivity = hapticd::passivity;
 
 constexpr double kInNewtonPerMm = 1e-3;
 const std::string& colour(size_t i) {
-  return hapticd::plot::colours()[i % hapticd::plot::colours().size()];
+  return hapticd::record::colourOf(i);
 }
 
 /// Theory as a line, what a simulation found as dots.
@@ -78,8 +79,8 @@ void againstRate(Picture& picture, Page& page) {
   pairs.push_back(worst);
   std::vector<Curve> curves = curvesOf(pairs);
   curves.push_back(alone);
-  picture.panel("Stiffness against rate", {"rate [Hz]", 200, 20000, true}, {"K [N/mm]", 0.01, 1000, true}, curves,
-                false);
+  picture.add(hapticd::record::Panel("Stiffness against rate", {"rate [Hz]", 200, 20000, true},
+                                     {"K [N/mm]", 0.01, 1000, true}, curves));
 }
 
 void againstDamping(Picture& picture, Page& page) {
@@ -106,8 +107,8 @@ void againstDamping(Picture& picture, Page& page) {
     }
     page.row(line);
   }
-  picture.panel("Stiffness against damping (Z-width), 1 kHz, b = 1 N s/m", {"B [N s/m]", 0, 4.5}, {"K [N/mm]", 0, 2.2},
-                curvesOf(pairs));
+  picture.add(hapticd::record::Panel("Stiffness against damping (Z-width), 1 kHz, b = 1 N s/m", {"B [N s/m]", 0, 4.5},
+                                     {"K [N/mm]", 0, 2.2}, curvesOf(pairs)));
 }
 
 void againstDelay(Picture& picture, Page& page) {
@@ -127,7 +128,8 @@ void againstDelay(Picture& picture, Page& page) {
     }
     page.row(line);
   }
-  picture.panel("Stiffness against delay", {"delay [samples]", 0, 6}, {"K [N/mm]", 0.01, 2, true}, curvesOf(pairs));
+  picture.add(hapticd::record::Panel("Stiffness against delay", {"delay [samples]", 0, 6}, {"K [N/mm]", 0.01, 2, true},
+                                     curvesOf(pairs)));
 }
 
 void againstResolution(Picture& picture, Page& page) {
@@ -155,8 +157,8 @@ void againstResolution(Picture& picture, Page& page) {
     }
     page.row(line);
   }
-  picture.panel("Stiffness against resolution, 1 kHz", {"step of the position [um]", 3, 400, true},
-                {"K [N/mm]", 0.01, 3, true}, curvesOf(pairs));
+  picture.add(hapticd::record::Panel("Stiffness against resolution, 1 kHz", {"step of the position [um]", 3, 400, true},
+                                     {"K [N/mm]", 0.01, 3, true}, curvesOf(pairs)));
 }
 
 void againstWindow(Picture& picture, Page& page) {
@@ -194,8 +196,8 @@ void againstWindow(Picture& picture, Page& page) {
     }
     page.row(line);
   }
-  picture.panel("A device alone, best damping", {"window n [samples]", 1, 50, true}, {"K [N/mm]", 0.3, 10000, true},
-                curves);
+  picture.add(
+      {"A device alone, best damping", {"window n [samples]", 1, 50, true}, {"K [N/mm]", 0.3, 10000, true}, curves});
 }
 
 void bounce(Picture& picture, Page& page) {
@@ -213,12 +215,12 @@ void bounce(Picture& picture, Page& page) {
     found.x.push_back(rate), found.y.push_back(simulated);
     page.row(fmt::format("| {:.0f} | {:.4f} | {:.4f} |", rate, e, simulated));
   }
-  picture.panel("Bounce of the undamped sampled wall", {"rate [Hz]", 500, 10000, true},
-                {"speed after / before", 1, 1.3}, {theory, found});
+  picture.add(hapticd::record::Panel("Bounce of the undamped sampled wall", {"rate [Hz]", 500, 10000, true},
+                                     {"speed after / before", 1, 1.3}, {theory, found}));
 }
 
 int draw(bool write) {
-  Picture picture("How stiff a sampled wall may be: theory (lines) and simulation (dots)", 2, 3, 520, 300);
+  Picture picture("How stiff a sampled wall may be: theory (lines) and simulation (dots)", {520, 520});
   Page page;
   againstRate(picture, page);
   againstDamping(picture, page);
@@ -230,7 +232,8 @@ int draw(bool write) {
   if (!write) return 0;
   const std::filesystem::path folder = HAPTICD_SOURCE_DIR "/driver/docs/reports";
   std::filesystem::create_directories(folder / "pictures");
-  picture.save(folder / "pictures/zwidth.svg");
+  const auto saved = hapticd::writeWhole(folder / "pictures/zwidth.svg", picture.svg());
+  if (!saved) throw std::runtime_error(saved.error());
   std::ofstream out(folder / "zwidth.md");
   out << "# How stiff a wall may be\n\nMade by `zwidth --write` (in the build folder's `bench/`).\n\n"
          "A wall that is computed in ticks is felt one half to one and a half periods late, and gives back more energy "

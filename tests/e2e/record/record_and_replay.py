@@ -66,6 +66,10 @@ with tempfile.TemporaryDirectory() as scratch:
     status, text = hapticd("plot", teapot, "--from", "50")
     check("a time beyond the recording is refused with the times it has", status == 2 and "the recording covers" in text, text)
     check("and leaves no picture", not os.path.exists(teapot + ".svg"))
+    status, text = hapticd("plot", teapot, "--out", os.path.join(scratch, "teapot.svg"))
+    picture = open(os.path.join(scratch, "teapot.svg")).read() if status == 0 else text
+    for words in (">teapot<", "asked for by the models", "sent to the arm", "penetration depth", "x of the tip", "% of the ticks"):
+        check(f"the picture says {words}", words in picture, picture[:200])
     status, text = hapticd("plot", teapot, "--out", "/nonexistent/a.svg")
     check("a picture that cannot be written is bad input, as it is to run", status == 2 and "cannot be written" in text, text)
     status, text = hapticd("replay", teapot, "--set", "teapot.stiffness=900")

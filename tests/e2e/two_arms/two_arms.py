@@ -25,6 +25,12 @@ def run(folder, right, left):
     assert not result["faults"], result["faults"]
     assert len(result["limits"]) == 2, result["limits"]  # a row an arm
     model = result["models"]["sphere"]
+    arms = model["arms"]
+    assert len(arms) == 2, arms  # a row an arm
+    for hand, arm in zip((right, left), arms.values()):
+        assert (arm["contact_ticks"] > 2000) == (hand == IN), arms
+        assert arm["force_n"]["max"] <= model["force_n"]["max"] + 1e-12, (arms, model["force_n"])
+    assert all(f"ticks) by {name}" in done.stdout for name in arms), done.stdout
     return model["contact_ticks"], model["force_n"]["max"]
 
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -73,6 +74,19 @@ TEST_F(Report, TellsPeopleFaultsAndContact) {
     EXPECT_NE(text.find(words), std::string::npos) << text;
 }
 
+TEST_F(Report, HasARowForEachOfTwoArms) {
+  RunReport report = sample();
+  report.models[0].arms = {{"left", {}}, {"right", report.models[0].contact}};
+  ASSERT_TRUE(writeJson(report, file("r.json")));
+  const auto ball = nlohmann::json::parse(read(file("r.json"))).at("models").at("ball");
+  EXPECT_EQ(ball.at("arms").at("left").at("contact_ticks"), 0);
+  EXPECT_DOUBLE_EQ(ball.at("arms").at("right").at("penetration_mm").at("max"), 2);
+  EXPECT_EQ(ball.at("contact_ticks"), 1);
+  const std::string text = summary(report);
+  EXPECT_NE(text.find("(0 ticks) by left"), std::string::npos) << text;
+  EXPECT_NE(text.find("(1 ticks) by right"), std::string::npos) << text;
+}
+
 TEST_F(Report, TellsPeopleOfModelsThatAnsweredCoarserWithoutContact) {
   RunReport report = sample();
   EXPECT_EQ(summary(report).find("accuracy"), std::string::npos);
@@ -92,8 +106,18 @@ TEST_F(Report, DrawsEveryPeakAndEscapesNames) {
   std::vector<Sample> samples(5000);
   for (size_t i = 0; i < samples.size(); ++i) samples[i].t = static_cast<double>(i) * 1e-3;
   samples[2500].force_n = 7;
-  ASSERT_TRUE(drawRun(sample(), samples, file("run.svg")));
+  for (size_t i = 3000; i < 3500; ++i) {
+    samples[i].fault = i < 3250 ? 5 : 2;
+    samples[i].depth_m = i % 7 == 0 ? std::nan("") : 1e-3;
+    samples[i].model = 1;
+  }
+  ASSERT_TRUE(drawRun(sample(), samples, {.models = {"far", "<ball>"}, .force_limit_n = 8, .positions = true},
+                      file("run.svg")));
   const std::string svg = read(file("run.svg"));
+  for (const char* words :
+       {"too fast", "device lost", "&lt;ball&gt;", "limits.force: 8 N", "% of the ticks", "lateness"})
+    EXPECT_NE(svg.find(words), std::string::npos) << words;
+  EXPECT_EQ(svg.find("&gt;far&lt;"), std::string::npos);
   EXPECT_NE(svg.find("a &lt;scene&gt; &amp; more"), std::string::npos);
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   EXPECT_NE(svg.find("</svg>"), std::string::npos);
@@ -101,7 +125,7 @@ TEST_F(Report, DrawsEveryPeakAndEscapesNames) {
 }
 
 TEST_F(Report, SaysWhenThereIsNothingToDraw) {
-  EXPECT_FALSE(drawRun(sample(), {}, file("run.svg")));
+  EXPECT_FALSE(drawRun(sample(), {}, {}, file("run.svg")));
 }
 
 }  // namespace
