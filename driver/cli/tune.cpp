@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/clock.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
 #include "cli/probe_path.hpp"
@@ -92,8 +93,17 @@ std::string nameOfMotion(const Options& options) {
   return file.empty() ? "the motion of the scene's hand" : file;
 }
 
+/// On a terminal a bar; in a log a line every five seconds.
 bool showProgress(const tune::Progress& progress) {
-  if (isatty(STDERR_FILENO) != 0) {
+  static Nanoseconds told = monotonicNow();
+  constexpr Nanoseconds kEvery = 5'000'000'000;
+  if (isatty(STDERR_FILENO) == 0) {
+    if (monotonicNow() - told >= kEvery) {
+      told = monotonicNow();
+      std::fprintf(stderr, "tune: %zu of %zu settings tried, about %.0f s left\n", progress.done, progress.expected,
+                   progress.seconds_left);
+    }
+  } else {
     constexpr int kWidth = 30;
     const int filled = static_cast<int>(kWidth * progress.done / std::max<size_t>(progress.expected, 1));
     std::fprintf(stderr, "\r[%-*s] %zu of %zu settings, %.0f s left \033[K", kWidth,
@@ -117,14 +127,15 @@ std::string tunedName(const std::string& scene) {
 }
 
 int report(const Options& options, const tune::Findings& findings) {
-  std::fputs(tune::table(findings).c_str(), stdout);
+  const bool to_program = options.json == "-";
+  std::fputs(to_program ? tune::json(findings).c_str() : tune::table(findings).c_str(), stdout);
   bool saved = save(options.page, tune::page(findings));
   saved = save(options.picture, tune::picture(findings)) && saved;
-  saved = save(options.json, tune::json(findings)) && saved;
+  saved = (to_program || save(options.json, tune::json(findings))) && saved;
   if (options.write) {
     const std::string file = tunedName(options.scene);
     if (auto written = tune::writeScene(findings, options.scene, file); !written) return fail(kFailed, written.error());
-    std::printf("\nwritten: %s\n", file.c_str());
+    std::fprintf(to_program ? stderr : stdout, "\nwritten: %s\n", file.c_str());
   }
   if (!saved) return kFailed;
   return findings.tuning.reached ? kWorked : kFailed;
@@ -167,6 +178,7 @@ int tuneScene(const Options& options) {
   if (options.budget_us) findings.goal.budget_ns = *options.budget_us * 1e3;
   findings.goal.tolerance_m = options.tolerance_um * 1e-6;
   findings.goal.force_tolerance_n = options.force_tolerance;
+  findings.limit_seconds = options.limit_seconds;
 
   os::onStopSignal(onStop);
   auto tuning =
@@ -174,18 +186,14 @@ int tuneScene(const Options& options) {
   if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
   if (!tuning) return fail(kFailed, tuning.error());
   findings.tuning = std::move(*tuning);
+  tune::numberPoints(findings);
   if (!stopped)
     if (auto swept = sweep(*scene, *motion, uses_velocity, findings); !swept) return fail(kFailed, swept.error());
   return report(options, findings);
 }
 
-}  // namespace
-
-void addTune(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
-      "tune", "Measure the cost and the error of a scene's settings on this machine, and choose one.");
-  command->add_option("scene", options->scene, "scene file (YAML)")->required();
+/// What to aim at, and over which motion.
+void addGoal(CLI::App* command, const std::shared_ptr<Options>& options) {
   auto* budget = command
                      ->add_option("--budget-us", options->budget_us,
                                   "choose the most accurate setting whose tick time (p99) is below this [us]")
@@ -210,11 +218,30 @@ void addTune(CLI::App& app, int& exit_code) {
   command->add_option("--limit-seconds", options->limit_seconds, "stop trying settings after this [s]")
       ->check(within(1.0, 86400.0))
       ->capture_default_str();
+}
+
+void addOutputs(CLI::App* command, const std::shared_ptr<Options>& options) {
   command->add_flag("--write", options->write,
                     "write SCENE.tuned.yaml beside the scene, with the chosen setting and the reason");
   command->add_option("--page", options->page, "write a report (one HTML file that needs no network)");
   command->add_option("--picture", options->picture, "write the picture (SVG)");
-  command->add_option("--json", options->json, "write everything that was measured (JSON)");
+  command
+      ->add_option(
+          "--json", options->json,
+          "write everything that was measured (JSON) to this file; alone or as -: print it instead of the table")
+      ->expected(0, 1)
+      ->default_str("-");
+}
+
+}  // namespace
+
+void addTune(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "tune", "Measure the cost and the error of a scene's settings on this machine, and choose one.");
+  command->add_option("scene", options->scene, "scene file (YAML)")->required();
+  addGoal(command, options);
+  addOutputs(command, options);
   command->footer(
       "Errors are measured against a converged reference; the largest over the motion counts. Ctrl-C ends the "
       "measurement\nand keeps the results so far. The exit code is 1 if no setting reaches the goal.\n\nExample:\n  "

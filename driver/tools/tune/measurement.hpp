@@ -20,7 +20,9 @@ struct Answer {
 
 struct Cost {
   double p50_ns = 0, p99_ns = 0;  ///< of a tick of the core with all models, velocity estimation included
-  uint64_t bytes = 0;             ///< that the models hold in locked memory
+  /// The medians of its passes lie between these, and are never taken for more exact than kCostNoise.
+  double p50_low_ns = 0, p50_high_ns = 0;
+  uint64_t bytes = 0;  ///< that the models hold in locked memory
 };
 
 struct Run {
@@ -42,6 +44,11 @@ struct Difference {
 
   double geometry() const { return untraced > 0 ? 1 : std::max(foot_m, depth_m); }  ///< [m] 1 m: nothing was traced
 };
+
+constexpr double kCostNoise = 0.05;  ///< relative: what timings of the same thing differ by at the least
+
+/// Adds another measurement of the same setting: the quietest counts, and the interval holds both.
+void widen(Cost& cost, const Cost& again);
 
 enum class VelocityFrom { kEstimator, kMotion };
 

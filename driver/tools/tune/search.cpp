@@ -11,9 +11,8 @@ namespace hapticd::tune {
 namespace {
 
 constexpr int kPasses = 3;
-constexpr size_t kFewTogether = 256;                       ///< combinations that are all tried
-constexpr double kErrorNoise = 1e-10, kForceNoise = 1e-7;  ///< [m], [N] rounding: smaller errors are equal
-constexpr double kMargin = 0.5;                            ///< of a tolerance: what one motion shows, another exceeds
+constexpr size_t kFewTogether = 256;  ///< combinations that are all tried
+constexpr double kMargin = 0.5;       ///< of a tolerance: what one motion shows, another exceeds
 
 double geometryOf(const Candidate& c) {
   return std::max(c.error.geometry(), kErrorNoise);
@@ -24,7 +23,7 @@ double forceOf(const Candidate& c) {
 
 /// Better in one thing at least, and in none worse.
 bool beats(const Candidate& a, const Candidate& b) {
-  const bool cheaper = a.cost.p50_ns < b.cost.p50_ns * (1 - kCostNoise), no_dearer = a.cost.p50_ns <= b.cost.p50_ns;
+  const bool cheaper = clearlyCheaper(a, b), no_dearer = a.cost.p50_ns <= b.cost.p50_ns;
   const bool no_worse = geometryOf(a) <= geometryOf(b) && forceOf(a) <= forceOf(b);
   const bool better = geometryOf(a) < geometryOf(b) || forceOf(a) < forceOf(b);
   return no_worse && (cheaper || (no_dearer && better));
@@ -38,7 +37,7 @@ bool meets(const Candidate& c, const Goal& goal) {
 /// Of two that both meet the goal, or both do not.
 bool preferred(const Candidate& a, const Candidate& b, const Goal& goal, bool met) {
   const bool by_cost = goal.budget_ns ? !met : met;
-  if (by_cost) return a.cost.p50_ns < b.cost.p50_ns * (1 - kCostNoise);
+  if (by_cost) return clearlyCheaper(a, b);
   const auto badness = [&](const Candidate& c) {
     return std::max(c.error.geometry() / goal.tolerance_m, c.error.force_n / goal.force_tolerance_n);
   };
@@ -66,10 +65,12 @@ class Search {
       if (auto tried = attempt(planned_[i]); !tried) return Error{tried.error()};
     if (combinations() > kFewTogether)
       if (auto done = descend(); !done) return Error{done.error()};
-    if (auto again = measureFirstAgain(); !again) return Error{again.error()};
+    if (auto again = measureAgain(); !again) return Error{again.error()};
     Tuning tuning;
     tuning.candidates = std::move(candidates_);
     tuning.complete = going_;
+    tuning.out_of_time = out_of_time_;
+    tuning.planned = std::max(distinct(), tuning.candidates.size());
     markFront(tuning.candidates);
     std::tie(tuning.chosen, tuning.reached) = choose(tuning.candidates, options_.goal);
     return tuning;
@@ -112,19 +113,27 @@ class Search {
     const double spent = static_cast<double>(monotonicNow() - begun_) * kSecondsPerNanosecond;
     Progress progress{candidates_.size(), std::max(distinct(), candidates_.size()), 0};
     const double each = spent / static_cast<double>(progress.done);
-    progress.seconds_left =
-        std::min(each * static_cast<double>(progress.expected - progress.done), options_.seconds - spent);
-    going_ = spent < options_.seconds && (!options_.go_on || options_.go_on(progress));
+    const double left = each * static_cast<double>(progress.expected - progress.done);
+    progress.seconds_left = std::max(0.0, std::min(left, options_.seconds - spent));
+    out_of_time_ = spent >= options_.seconds;
+    going_ = (!options_.go_on || options_.go_on(progress)) && !out_of_time_;
     return {};
   }
 
   /// The first setting is the scene's own, which every other is held against; a machine that was busy or had its
-  /// processor slow at the start would make all the others look cheaper.
-  Result<void> measureFirstAgain() {
-    Candidate& first = candidates_[0];
-    auto run = measure(applied(scene_, knobs_, first.choice), motion_, kPasses, options_.log);
-    if (!run) return Error{run.error()};
-    if (run->cost.p50_ns < first.cost.p50_ns) first.cost = run->cost;
+  /// processor slow at the start would make all the others look cheaper. Those on the front are measured once more
+  /// beside it: what their two times differ by is the noise that is told.
+  Result<void> measureAgain() {
+    constexpr int kMost = 12;
+    markFront(candidates_);
+    int count = 0;
+    for (size_t i = 0; i < candidates_.size() && count < kMost; ++i) {
+      if (i > 0 && (!candidates_[i].on_front || !going_)) continue;
+      auto run = measure(applied(scene_, knobs_, candidates_[i].choice), motion_, kPasses, options_.log);
+      if (!run) return Error{run.error()};
+      widen(candidates_[i].cost, run->cost);
+      ++count;
+    }
     return {};
   }
 
@@ -154,7 +163,7 @@ class Search {
   std::vector<Choice> planned_;
   std::set<Choice> seen_;
   std::vector<Candidate> candidates_;
-  bool going_ = true;
+  bool going_ = true, out_of_time_ = false;
 };
 
 }  // namespace
@@ -164,6 +173,10 @@ Result<Tuning> search(const scene::Scene& scene, const Motion& motion, const std
   return Search(scene, motion, knobs, options).run();
 }
 
+bool clearlyCheaper(const Candidate& a, const Candidate& b) {
+  return a.cost.p50_high_ns < b.cost.p50_low_ns;
+}
+
 void markFront(std::vector<Candidate>& candidates) {
   for (Candidate& candidate : candidates)
     candidate.on_front = std::none_of(candidates.begin(), candidates.end(),
@@ -171,8 +184,7 @@ void markFront(std::vector<Candidate>& candidates) {
 }
 
 bool alike(const Candidate& a, const Candidate& b) {
-  const double ratio = a.cost.p50_ns / b.cost.p50_ns;
-  return std::abs(std::log(ratio)) < kCostNoise && geometryOf(a) == geometryOf(b) && forceOf(a) == forceOf(b);
+  return !clearlyCheaper(a, b) && !clearlyCheaper(b, a) && geometryOf(a) == geometryOf(b) && forceOf(a) == forceOf(b);
 }
 
 std::pair<size_t, bool> choose(const std::vector<Candidate>& candidates, const Goal& goal) {

@@ -23,6 +23,7 @@ struct Candidate {
   Cost cost;
   Difference error;  ///< from the converged reference
   bool on_front = false;
+  size_t point = 0;  ///< number in tables and pictures, from 1; 0: only a dot
 };
 
 struct Progress {
@@ -33,8 +34,10 @@ struct Progress {
 struct Tuning {
   std::vector<Candidate> candidates;  ///< [0] is the scene as it is
   size_t chosen = 0;
-  bool reached = false;   ///< the chosen one meets the goal
-  bool complete = false;  ///< not cut short by the time limit or the user
+  bool reached = false;      ///< the chosen one meets the goal
+  bool complete = false;     ///< not cut short by the time limit or the user
+  bool out_of_time = false;  ///< the time limit did it
+  size_t planned = 0;        ///< settings that there were to try
 };
 
 struct SearchOptions {
@@ -49,8 +52,13 @@ struct SearchOptions {
 Result<Tuning> search(const scene::Scene& scene, const Motion& motion, const std::vector<Knob>& knobs,
                       const SearchOptions& options);
 
-/// Marks the candidates that no other beats in cost, geometry and force at once. Costs within the noise of a timing
-/// (kCostNoise) are equal.
+constexpr double kErrorNoise = 1e-10, kForceNoise = 1e-7;  ///< [m], [N] rounding: smaller errors are equal
+
+/// Whether a costs less than b beyond the noise: the intervals of their times do not meet.
+bool clearlyCheaper(const Candidate& a, const Candidate& b);
+
+/// Marks the candidates that no other beats. Another beats one if its errors are nowhere larger and it is clearly
+/// cheaper; or its median is no larger and one of its errors is smaller.
 void markFront(std::vector<Candidate>& candidates);
 
 /// Equal but for the noise of timing and rounding.
@@ -58,7 +66,5 @@ bool alike(const Candidate& a, const Candidate& b);
 
 /// Index of the candidate to take, and whether it meets the goal.
 std::pair<size_t, bool> choose(const std::vector<Candidate>& candidates, const Goal& goal);
-
-constexpr double kCostNoise = 0.05;  ///< relative
 
 }  // namespace hapticd::tune

@@ -2,7 +2,9 @@
 /// Choosing among measured settings, and comparing answers; what is measured is tried in tests/e2e/tune.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "tune/motion.hpp"
 #include "tune/search.hpp"
@@ -13,6 +15,7 @@ namespace {
 Candidate candidate(double p50_ns, double foot_m, double force_n = 0) {
   Candidate c;
   c.cost.p50_ns = p50_ns;
+  c.cost.p50_low_ns = p50_ns, c.cost.p50_high_ns = p50_ns * (1 + kCostNoise);
   c.cost.p99_ns = 2 * p50_ns;
   c.error.foot_m = foot_m;
   c.error.force_n = force_n;
@@ -41,6 +44,41 @@ TEST(Front, IsNotLeftByBeingMoreAccurateInForceAlone) {
   markFront(all);
   EXPECT_TRUE(all[0].on_front);
   EXPECT_TRUE(all[1].on_front);
+}
+
+/// What the table says: no other setting is as accurate as one of the front and clearly cheaper.
+TEST(Front, KeepsItsWordOverRandomCostsAndErrors) {
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> few(1, 6), many(1, 40);
+  for (int trial = 0; trial < 2000; ++trial) {
+    std::vector<Candidate> all;
+    for (int i = many(random); i > 0; --i) {
+      all.push_back(candidate(100 * few(random), 1e-6 * few(random), 0.1 * few(random)));
+      all.back().cost.p50_high_ns *= 1 + 0.2 * few(random);
+    }
+    markFront(all);
+    size_t front = 0;
+    for (const Candidate& c : all) {
+      front += c.on_front ? 1 : 0;
+      const bool beaten = std::any_of(all.begin(), all.end(), [&](const Candidate& other) {
+        return clearlyCheaper(other, c) && other.error.foot_m <= c.error.foot_m &&
+               other.error.force_n <= c.error.force_n;
+      });
+      EXPECT_FALSE(c.on_front && beaten);
+    }
+    EXPECT_GT(front, 0u);
+  }
+}
+
+TEST(Cost, OfTwoMeasurementsIsAnIntervalThatHoldsBoth) {
+  Cost cost = candidate(100, 0).cost;
+  widen(cost, candidate(130, 0).cost);
+  EXPECT_EQ(cost.p50_ns, 100);
+  EXPECT_EQ(cost.p50_low_ns, 100);
+  EXPECT_GE(cost.p50_high_ns, 130);
+  widen(cost, candidate(90, 0).cost);
+  EXPECT_EQ(cost.p50_ns, 90);
+  EXPECT_GE(cost.p50_high_ns, 130);
 }
 
 TEST(Choice, IsTheCheapestWithinHalfOfTheTolerances) {
