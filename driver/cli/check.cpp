@@ -7,6 +7,7 @@
 
 #include "cli/colour.hpp"
 #include "cli/command.hpp"
+#include "diagnostics/device_advice.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/model_trial.hpp"
 #include "document/reader.hpp"
@@ -59,21 +60,6 @@ document::Problems farModels(const scene::Scene& scene) {
   return warnings;
 }
 
-/// A device whose force may be larger than its arm can give. Nothing is known of an arm that gives 0.
-document::Problems limitsBeyond(const std::string& file) {
-  document::Problems warnings;
-  const scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
-  if (!loaded.device) return warnings;
-  for (const scene::Value& value : loaded.device->parameters) {
-    const bool force = value.id == "device.max_force" || value.id == "max_force";
-    if (force && value.number > 0 && loaded.device->limits.force > value.number)
-      document::report(warnings, value.place, "limits.force",
-                       document::numberText(loaded.device->limits.force) + " N is more than the arm's " + value.id +
-                           " of " + document::numberText(value.number) + " N, expected no more");
-  }
-  return warnings;
-}
-
 /// What one file is told.
 struct Verdict {
   std::string file;
@@ -93,7 +79,7 @@ Verdict checkOne(const std::string& file, const Options& options) {
     document::sortByPlace(found);
   }
   verdict.warnings = trial.warnings;
-  if (!scene && found.empty()) verdict.warnings = limitsBeyond(file);
+  if (!scene && found.empty()) verdict.warnings = adviseDevice(file, catalog());
   if (!scene || !found.empty()) return verdict;
   document::Problems more = unstable(*scene, trial.stiffness);
   for (const document::Problem& far : farModels(*scene)) more.push_back(far);

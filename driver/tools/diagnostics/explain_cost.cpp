@@ -178,13 +178,31 @@ class Costs {
     if ((shape.description().flags & HSP_C_DEFORMS) != 0)
       add(name + ": deformation", where(model.place, key + ".plugin"),
           "it deforms in its own step; parts at rest are not computed", 0, 0);
+    else if (model.kinematic)
+      addPath(index);
     else
       addAsked(index, shape, HSP_R_MOVES, ": integrator", "moves by itself", "it is static, so nothing is integrated");
     addAsked(index, shape, HSP_R_VELOCITY, ": velocity", "it has damping, viscosity or friction", "it has no damping");
     const bool moves = model.kinematic || (shape.report().flags & HSP_R_MOVES) != 0;
     const bool placed = moves || !model.pose.position.isZero(0) || !model.pose.orientation.vec().isZero(0);
-    add(name + ": transform", placed ? where(model.place, key + ".pose") : "",
+    add(name + ": transform", placed ? where(model.place, key + (model.kinematic ? ".motion" : ".pose")) : "",
         placed ? "probe in, foot and normal out" : "it stands at the world's origin", placed ? transformCost() : 0, 0);
+  }
+
+  /// A kinematic model is moved: along its path, or by a program.
+  void addPath(size_t index) {
+    const scene::Model& model = scene_.models[index];
+    const std::string key = fmt::format("models[{}]", index), part = "model " + model.name + ": motion";
+    if (model.path.empty())
+      return add(part, where(model.place, key + ".motion"),
+                 "kinematic: it is moved from outside, so nothing is integrated", 0, 0);
+    scene::Scene still = scene_;
+    still.models[index].kinematic = false;
+    still.models[index].path.clear();
+    const auto less = measure(still, motion_);
+    add(part, where(model.place, key + ".path"),
+        fmt::format("kinematic: it follows the {} points of its path", model.path.size()),
+        less ? measured_.resting_ns() - less->resting_ns() : 0, model.path.size() * sizeof(scene::PathPoint));
   }
 
   /// What a parameter asked for: costs are those of the model with it, less those without it.

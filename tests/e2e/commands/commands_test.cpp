@@ -396,6 +396,41 @@ TEST_F(Commands, ExplainNamesTheVelocityEstimatorAsTheSceneDoes) {
   EXPECT_TRUE(has(outcome.text, "window (3): a model uses velocity")) << outcome.text;
 }
 
+TEST_F(Commands, ExplainNamesWhatMovesAKinematicModel) {
+  const std::string path = put("path.csv", "t,x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n1,0,0.01,0,1,0,0,0\n");
+  const std::string scene =
+      put("scene.yaml",
+          "hapticd: 1\nmodels:\n  - name: led\n    plugin: nurbs_rigid\n    motion: kinematic\n"
+          "    path: path.csv\n    parameters: {geometry: " HAPTICD_SOURCE_DIR "/config/models/sphere.yaml}\n");
+  const Outcome outcome = run("explain --cost " + scene, kShipped);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "it follows the 2 points of its path")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "models[0].path")) << outcome.text;
+  EXPECT_FALSE(has(outcome.text, "it is static")) << outcome.text;
+}
+
+TEST_F(Commands, CheckWarnsOfCountsWithoutScaleAndOfAWorkspaceThatLeavesTheTipOut) {
+  std::ifstream shipped(HAPTICD_SOURCE_DIR "/config/devices/woodenhaptics.yaml");
+  std::string text{std::istreambuf_iterator<char>(shipped), {}};
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+  };
+  const Outcome good = run("check " + put("arm.yaml", text), kShipped);
+  EXPECT_FALSE(has(good.text, "warning")) << good.text;
+  replace("scale: -1.9634954084936207e-4, ", "");
+  replace("limits: {force: 5,", "limits: {force: 9, workspace: 0.2,");
+  const Outcome outcome = run("check " + put("arm.yaml", text), kShipped);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "input.fields[0].scale: warning: not given, so each count of this i16 is 1 rad"))
+      << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "limits.workspace: warning: 0.2 m from the origin of the arm's frame")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "0.452 m away")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, "9 N is more than the arm's")) << outcome.text;
+  replace("workspace: 0.2", "workspace: 0.6");
+  EXPECT_FALSE(has(run("check " + put("arm.yaml", text), kShipped).text, "limits.workspace"));
+}
+
 TEST_F(Commands, DaemonFileIsCheckedBeforeAnythingRuns) {
   const std::string daemon = put("daemon.yaml", "hapticd-daemon: 1\nservo: {priority: 200}\n");
   const Outcome outcome = run("--config " + daemon + " plugin list");

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/device_advice.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdlib>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "document/node.hpp"
+#include "document/reader.hpp"
+#include "host/device_instance.hpp"
+#include "scene/load.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+using document::Node;
+
+/// A path of keys; nullptr where one is missing.
+const Node* find(const Node& root, std::initializer_list<const char*> keys) {
+  const Node* at = &root;
+  for (const char* key : keys) {
+    at = at->isMap() ? at->find(key) : nullptr;
+    if (at == nullptr) return nullptr;
+  }
+  return at;
+}
+
+/// A device whose force may be larger than its arm can give. Nothing is known of an arm that gives 0.
+void forceBeyondArm(const scene::Device& device, document::Problems& warnings) {
+  for (const scene::Value& value : device.parameters) {
+    const bool force = value.id == "device.max_force" || value.id == "max_force";
+    if (force && value.number > 0 && device.limits.force > value.number)
+      document::report(warnings, value.place, "limits.force",
+                       document::numberText(device.limits.force) + " N is more than the arm's " + value.id + " of " +
+                           document::numberText(value.number) + " N, expected no more");
+  }
+}
+
+/// Encoders count: without a scale each count would be a whole radian.
+void countsWithoutScale(const Node& root, const std::string& file, document::Problems& warnings) {
+  const Node* fields = find(root, {"parameters", "wire", "input", "fields"});
+  if (fields == nullptr || !fields->isSequence()) return;
+  for (size_t i = 0; i < fields->items.size(); ++i) {
+    const Node &field = fields->items[i], *is = find(field, {"is"}), *type = find(field, {"type"});
+    if (is == nullptr || is->scalar != "position" || type == nullptr) continue;
+    const bool whole = type->scalar.rfind('i', 0) == 0 || type->scalar.rfind('u', 0) == 0;
+    if (!whole || field.find("scale") != nullptr || field.find("scale_degrees") != nullptr) continue;
+    document::report(warnings, file, field.line, field.column, fmt::format("parameters.wire.input.fields[{}].scale", i),
+                     "not given, so each count of this " + type->scalar +
+                         " is 1 rad (or 1 m); expected 2 pi / (counts a motor turn * motor turns of one joint turn)");
+  }
+}
+
+/// Joints of the arm at rest: in the pose of its calibration, else at zero.
+std::array<double, HDV_MAX_JOINTS> restOf(const Node& root, uint32_t joints) {
+  std::array<double, HDV_MAX_JOINTS> q{};
+  const Node* pose = find(root, {"parameters", "calibration", "pose"});
+  if (pose == nullptr || !pose->isSequence() || pose->items.size() != joints) return q;
+  for (size_t i = 0; i < joints && i < q.size(); ++i) q[i] = document::toNumber(pose->items[i].scalar).value_or(0);
+  return q;
+}
+
+void restOutsideWorkspace(const Node& root, const scene::Device& device, document::Problems& warnings) {
+  const Node* limit = find(root, {"limits", "workspace"});
+  const double radius = device.limits.workspace;
+  if (radius <= 0 || limit == nullptr) return;
+  const auto arm = host::DeviceInstance::create(device, nullptr);
+  if (!arm) return;
+  const hdv_ext_kinematics& kinematics = (*arm)->kinematics();
+  Eigen::Vector3d tip = Eigen::Vector3d::Zero();
+  std::array<double, 4> turn{};
+  const auto q = restOf(root, kinematics.joint_count);
+  if (kinematics.forward((*arm)->handle(), q.data(), tip.data(), turn.data()) < 0 || !tip.allFinite()) return;
+  if (tip.norm() <= radius) return;
+  document::report(warnings, device.file.string(), limit->line, limit->column, "limits.workspace",
+                   fmt::format("{:g} m from the origin of the arm's frame, but at rest its tip is at [{:.3g}, {:.3g}, "
+                               "{:.3g}], {:.3g} m away, so no force would be felt there; expected more",
+                               radius, tip.x(), tip.y(), tip.z(), tip.norm()));
+}
+
+}  // namespace
+
+document::Problems adviseDevice(const std::filesystem::path& file, host::Catalog& catalog) {
+  document::Problems warnings, known;
+  const scene::LoadedDevice loaded = scene::loadDevice(file, catalog);
+  const auto root = loaded.device ? document::parseFile(file, known) : std::nullopt;
+  if (!root) return warnings;
+  forceBeyondArm(*loaded.device, warnings);
+  countsWithoutScale(*root, file.string(), warnings);
+  restOutsideWorkspace(*root, *loaded.device, warnings);
+  document::sortByPlace(warnings);
+  return warnings;
+}
+
+}  // namespace hapticd::diagnostics
