@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What the README shows to a researcher with a shape and to a developer of an application, taken from it and done.
+"""What the README shows to a researcher with a shape, an engineer with an arm and a developer of an application, done.
 
 Usage: readme_readers.py HAPTICD SOURCE_DIR CXX       exit 1 when one is off
 """
@@ -92,8 +92,29 @@ def own_client(folder):
         check(f"ctl {word} --help has an example of its own", code == 0 and re.search(r"Example:\n  hapticd ctl (--name left )?" + word, said), said[-300:])
 
 
+def own_arm(folder):
+    """An arm of the reader's invention: the README's commands, and one of its fields in a layout of another width."""
+    shown = re.search(r"^    (hapticd device new my-arm[^#]*?) *#", README, re.M)[1]
+    path = dict(os.environ, PATH=os.path.dirname(HAPTICD) + ":" + os.environ["PATH"])
+    code, said = run("sh", "-c", shown + " </dev/null", environment=path, cwd=folder)
+    check("device new writes the README's arm", code == 0 and os.path.exists(os.path.join(folder, "my-arm.yaml")), said)
+    trip = re.search(r"^    (echo .* \| hapticd device encode .*)$", README, re.M)[1]
+    code, said = run("sh", "-c", trip, environment=path, cwd=folder)
+    check("and its numbers go to bytes and back", code == 0 and ",good,0.09990" in said, said)
+    field = re.search(r"`(\{is: position, joint: 1, at: 2, type: i24, scale: 1.7e-5\})`", README)[1]
+    text = open(os.path.join(folder, "my-arm.yaml")).read()
+    text = re.sub(r"\{is: position, joint: 1, .*?\}", field, text)
+    open(os.path.join(folder, "my-arm.yaml"), "w").write(text)
+    counts = [100000, -5, 77]
+    report = (7).to_bytes(2, "little") + b"".join((c & 0xFFFFFF).to_bytes(3, "little") for c in counts) + b"\1"
+    open(os.path.join(folder, "capture.txt"), "w").write(report.hex(" ") + "\n")
+    code, said = run("sh", "-c", "hapticd device decode my-arm.yaml capture.txt", environment=path, cwd=folder)
+    check("a capture shows the joint of the README's field", code == 0 and ",good,1.7," in said and ",1,7," in said, said)
+
+
 with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
     own_shape(folder)
+    own_arm(folder)
     other_lines(folder)
     own_client(folder)
 finish()
