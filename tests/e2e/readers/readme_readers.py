@@ -47,6 +47,9 @@ def own_shape(folder):
     subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
     code, said = run(HAPTICD, "plugin", "check", os.path.join(folder, "my-plugins/floor.so"), "--timeout", "60")
     check("with the wrong sign the check says so", code == 1 and "pull the hand in" in said, said)
+    code, said = run(HAPTICD, "run", file, "--for", "2", "--virtual-time", "--report", report, environment=environment)
+    pulled = json.load(open(report))["models"]["ground"]["force_n"]["max"]
+    check("and the run silences it before it pulls with 2 N", "pulled" in said and pulled < 2, (pulled, said))
 
 
 def other_lines(folder):
