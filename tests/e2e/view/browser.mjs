@@ -78,3 +78,11 @@ export function look(page) {
     };
   });
 }
+
+/** Keeps each WebSocket of the page where a test can close it. */
+export const keepSockets = (page) => page.addInitScript(() => {
+  window.sockets = [];
+  window.WebSocket = class extends WebSocket {
+    constructor(...how) { super(...how); window.sockets.push(this); }
+  };
+});

@@ -6,7 +6,7 @@ import {mkdtempSync, readFileSync, rmSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
-import {Browser, pictures, shown} from './browser.mjs';
+import {Browser, keepSockets, pictures, shown} from './browser.mjs';
 import {hapticd, Sandbox, scenes, until} from './program.mjs';
 
 let browser;
@@ -187,14 +187,6 @@ test('a second page may not take a hand that is led, and gets it when the first 
     assert.deepEqual(other.wrong, []);
     await other.close();
   });
-});
-
-/** Keeps each WebSocket of the page where a test can close it. */
-const keepSockets = (page) => page.addInitScript(() => {
-  window.sockets = [];
-  window.WebSocket = class extends WebSocket {
-    constructor(...how) { super(...how); window.sockets.push(this); }
-  };
 });
 
 test('a connection that is lost comes back: what the pointer holds is led on, a hand that was let go waits', async () => {

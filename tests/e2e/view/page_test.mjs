@@ -5,14 +5,14 @@ import {execFileSync} from 'node:child_process';
 import {existsSync, readdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
-import {Browser, look, pictures, shown} from './browser.mjs';
+import {Browser, keepSockets, look, pictures, shown} from './browser.mjs';
 import {hapticd, root, Sandbox, scenes, until} from './program.mjs';
 
 const kHardware = ['sarcos']; // scenes whose device is no simulated one
 const all = readdirSync(join(root, 'config', 'scenes')).map((f) => f.replace('.yaml', '')).filter((s) => !kHardware.includes(s));
 const kPatience = 120; // s: a machine that is busy is slow, not wrong
 let browser;
-before(async () => { browser = await Browser.open(); });
+before(async () => { browser = await Browser.open({width: 1000, height: 660}); }); // few pixels: a processor draws them
 after(async () => { await browser.close(); });
 
 /** A page on a daemon whose hand follows its script. */
@@ -111,6 +111,9 @@ test('a part file of 20 000 triangles is drawn with its normals', async () => {
   }
 });
 
+/** [m] Of compliance control the rows have the virtual mass; the arm follows it, by 0.9 mm at most in 4 s of that scene. */
+const kBehind = {compliance: 5e-3};
+
 for (const scene of ['teapot', 'compliance', 'two-arms']) {
   test(`${scene}: the arms are drawn from their joints, and end at the tip`, async () => {
     await scripted(scene, async (page) => {
@@ -122,7 +125,7 @@ for (const scene of ['teapot', 'compliance', 'two-arms']) {
           return Math.min(...links.map(({to}) => Math.hypot(to.x - position[0], to.y - position[1], to.z - position[2])));
         });
       });
-      for (const distance of far) assert.ok(distance < 1e-3, `a link ends ${distance} m from the tip`);
+      for (const distance of far) assert.ok(distance < (kBehind[scene] ?? 1e-9), `a link ends ${distance} m from the tip`);
       const spaces = await page.evaluate(() => window.hapticdView.armModels.map((arm) => arm.workspace()));
       for (const box of spaces) assert.ok(box && box.max.x - box.min.x > 0.1, 'what it can reach is a box');
     });
@@ -270,6 +273,35 @@ test('a recording has a slider, and its rows are those of the file', async () =>
     await page.screenshot({path: join(pictures, 'recording.png')});
     assert.deepEqual(page.wrong, []);
     assert.equal(await page.locator('#run-tools').isVisible(), false, 'a recording cannot be changed');
+  } finally {
+    await page?.close();
+    await sandbox.close();
+  }
+});
+
+test('a recording goes on where it was when the connection is back', async () => {
+  const sandbox = new Sandbox();
+  let page;
+  try {
+    const h5 = join(sandbox.folder, 'run.h5');
+    execFileSync(hapticd, ['run', scenes('sphere'), '--virtual-time', '--for', '6', '--record', h5], {stdio: 'ignore'});
+    const [url] = await sandbox.start(['view', '--file', h5]).says(/http:\S+/);
+    page = await browser.page(url, keepSockets);
+    await shown(page);
+    await page.locator('#speed').selectOption('0.25');
+    await page.locator('#loop').uncheck();
+    await page.locator('#play').click();
+    await page.waitForFunction(() => window.hapticdView.timeline.state.playing === false);
+    await page.locator('#seek').evaluate((slider) => { slider.value = 4.5; slider.dispatchEvent(new Event('input')); });
+    await until(async () => Math.abs((await look(page)).t - 4.5) < 2e-3, kPatience, 'a row at 4.5 s');
+    await page.evaluate(() => window.sockets.at(-1).close());
+    await until(() => page.evaluate(() => window.sockets.length === 2 && window.sockets[1].readyState === 1), kPatience, 'the connection');
+    await until(async () => {
+      const state = await page.evaluate(() => window.hapticdView.timeline.state);
+      return !state.playing && !state.loop && state.speed === 0.25 && Math.abs(state.t - 4.5) < 5e-3;
+    }, kPatience, 'the same place, paused');
+    await until(async () => Math.abs((await look(page)).t - 4.5) < 5e-3, kPatience, 'its row');
+    assert.deepEqual(page.wrong, []);
   } finally {
     await page?.close();
     await sandbox.close();

@@ -9,7 +9,8 @@ const kKinds = {simulated: ['phantom', 'chain'], usb_hid: ['phantom', 'delta', '
 const kPhantomLengths = [0.215, 0.17, 0.0325]; // m: upper arm, forearm, short side (Cavusoglu et al. 2002)
 const kOpening = 55 * Math.PI / 180, kClosing = 65 * Math.PI / 180; // between the PHANToM's links
 const kDelta = {lengths: [0.06, 0.1025, 0.01443, 0.01125, 0.01125, -0.025, 0.04, -0.02309], angles: [105, -15, -135].map((a) => a * Math.PI / 180)};
-const kFar = 0.002; // m: a tip that is farther from its row means that the mechanism is another
+const kFar = 0.0005; // m: a tip that is farther from its row means that the mechanism is another
+const kFarBehind = 0.03; // m: of compliance control the rows have the virtual mass, and the arm follows it
 const kSamples = 4000; // poses that the box of the workspace is made of
 
 const vector = (list) => new Vector3(...(list ?? [0, 0, 0]));
@@ -143,13 +144,14 @@ export class ArmModel {
     this.mount = new Matrix4().compose(vector(position), new Quaternion(x, y, z, w), new Vector3(1, 1, 1));
     this.toDevice = this.mount.clone().invert();
     this.info = info ?? {};
+    this.far = device?.admittance ? kFarBehind : kFar;
   }
 
   /** Links in the world; none where they would not end at the tip of the row. */
   links(joints, position) {
     if (!this.mechanism) return [];
     const row = vector(position).applyMatrix4(this.toDevice), tip = this.mechanism.tip(joints);
-    if (tip && !(tip.distanceTo(row) < kFar)) return [];
+    if (tip && !(tip.distanceTo(row) < this.far)) return [];
     const links = this.mechanism.links(joints, row);
     for (const place of new Set(links.flatMap((l) => [l.from, l.to]))) place.applyMatrix4(this.mount);
     return links;

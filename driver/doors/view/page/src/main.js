@@ -143,6 +143,7 @@ class Page {
       recorded ? 'A recording can only be looked at' : control ? '' : 'This view only looks. To press with the mouse: hapticd run SCENE --view', again);
     this.#invite(again);
     if (!recorded) this.timeline.show(null);
+    else if (again) this.timeline.restore();
     this.view.setWorkspaces((about.scene?.devices ?? []).map((device, i) => ({
       box: this.armModels[i]?.workspace(), center: device.mount?.position ?? [0, 0, 0], radius: Number(device.limits?.workspace) || 0,
     })));

@@ -7,6 +7,7 @@ export class Timeline {
   constructor(ask) {
     this.ask = ask;
     this.state = null;
+    this.mode = {playing: true, speed: 1, loop: true}; // as it was asked for
     this.held = false; // the slider is in somebody's hand
     const seek = $('seek');
     $('play').onclick = () => this.toggle();
@@ -18,11 +19,22 @@ export class Timeline {
   }
 
   toggle() {
-    return this.state?.playing ? this.ask({do: 'pause'}) : this.#play();
+    if (!this.state?.playing) return this.#play();
+    this.mode.playing = false;
+    return this.ask({do: 'pause'});
   }
 
   #play() {
-    return this.ask({do: 'play', speed: Number($('speed').value), loop: $('loop').checked});
+    this.mode = {playing: true, speed: Number($('speed').value), loop: $('loop').checked};
+    return this.ask({do: 'play', speed: this.mode.speed, loop: this.mode.loop});
+  }
+
+  /** A new connection begins the recording anew: goes on as it was with the one before. */
+  async restore() {
+    const {playing, speed, loop} = this.mode, t = Number($('seek').value);
+    await this.ask({do: 'play', speed, loop});
+    if (!playing) await this.ask({do: 'pause'});
+    await this.ask({do: 'seek', t}); // last: it went on meanwhile
   }
 
   /** One seek at a time is under way; the last that was asked for meanwhile follows. */
