@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <vector>
 
 #include "cli/command.hpp"
@@ -14,6 +15,7 @@
 #include "record/recording.hpp"
 #include "session/about.hpp"
 #include "session/geometry_answer.hpp"
+#include "session/model_rerun.hpp"
 #include "session/world.hpp"
 
 namespace hapticd::cli {
@@ -36,6 +38,7 @@ class RecordedModelsImpl final : public RecordedModels {
     if (!recording) return Error{recording.error()};
     auto run = servo::readAbout((*recording)->aboutJson());
     if (!run) return Error{file + ": " + run.error()};
+    recording_ = std::move(*recording);
     for (const scene::Model& model : run->scene.models) models_.push_back(build(run->scene, model, run->facts.rate));
     std::string folder = (std::filesystem::temp_directory_path() / "hapticd-view-XXXXXX").string();
     if (mkdtemp(folder.data()) == nullptr) return Error{folder + ": cannot be created"};
@@ -60,11 +63,12 @@ class RecordedModelsImpl final : public RecordedModels {
   struct Built {
     std::string name, plugin, error;
     std::unique_ptr<servo::World> world;
+    std::unique_ptr<servo::ModelRerun> rerun;  ///< of a body that deforms, where the rows have the tips
   };
 
   /// A scene of that model alone: one that fails leaves the others.
-  static Built build(const scene::Scene& scene, const scene::Model& model, double rate) {
-    Built built{model.name, model.plugin, "", nullptr};
+  Built build(const scene::Scene& scene, const scene::Model& model, double rate) const {
+    Built built{model.name, model.plugin, "", nullptr, nullptr};
     auto found = catalog().shape(model.plugin);
     if (!found) {
       built.error = found.error();
@@ -75,16 +79,28 @@ class RecordedModelsImpl final : public RecordedModels {
     alone.models[0].library = (*found)->file;
     servo::WorldOptions options;
     options.rate = rate;
+    options.probe_count = static_cast<uint32_t>(std::max<size_t>(scene.devices.size(), 1));
     auto world = servo::World::build(alone, options, [](int, const std::string&, const std::string&) {});
-    if (world)
-      built.world = std::move(*world);
-    else
+    if (!world) {
       built.error = world.error();
+      return built;
+    }
+    built.world = std::move(*world);
+    if ((built.world->shapes()[0]->description().flags & HSP_C_DEFORMS) == 0) return built;
+    if (auto rerun = servo::ModelRerun::prepare(*recording_, *built.world)) built.rerun = std::move(*rerun);
     return built;
   }
 
+  /// As a daemon is asked, but for `"at"` of `geometry`: the time [s] of the recording that a body's shape is wanted
+  /// of.
   std::string answer(const std::string& line, Descriptor& memory) {
-    const auto request = control::parseRequest(line);
+    Json json = Json::parse(line, nullptr, false);
+    std::optional<double> at;
+    if (json.is_object() && json.contains("at") && json["at"].is_number()) {
+      at = json["at"].get<double>();
+      json.erase("at");
+    }
+    const auto request = control::parseRequest(at ? json.dump(-1, ' ', false, Json::error_handler_t::replace) : line);
     if (!request) return control::refusal(request.error());
     if (request->kind == Request::Kind::kList) return list();
     if (request->kind != Request::Kind::kGeometry) return control::refusal("a recording cannot be changed");
@@ -92,6 +108,7 @@ class RecordedModelsImpl final : public RecordedModels {
         std::find_if(models_.begin(), models_.end(), [&](const Built& built) { return built.name == request->model; });
     if (model == models_.end()) return control::refusal("the recording has no model \"" + request->model + "\"");
     if (!model->world) return control::refusal(model->error);
+    if (at && model->rerun) model->rerun->goTo(*at);
     const host::ShapeInstance& shape = *model->world->shapes()[0];
     auto drawn = request->as_memory ? servo::geometryInMemory(shape, request->tolerance, memory)
                                     : servo::geometryAnswer(shape, request->tolerance);
@@ -101,12 +118,16 @@ class RecordedModelsImpl final : public RecordedModels {
   std::string list() const {
     Json models = Json::array();
     for (const Built& built : models_)
-      models.push_back(
-          {{"name", built.name}, {"plugin", built.plugin}, {"enabled", true}, {"live_parameters", Json::array()}});
+      models.push_back({{"name", built.name},
+                        {"plugin", built.plugin},
+                        {"enabled", true},
+                        {"live_parameters", Json::array()},
+                        {"deforms", built.rerun != nullptr}});
     return Json({{"ok", true}, {"models", std::move(models)}}).dump(-1, ' ', false, Json::error_handler_t::replace);
   }
 
-  std::vector<Built> models_;
+  std::unique_ptr<record::Recording> recording_;
+  std::vector<Built> models_;  // after what they read
   std::string folder_, socket_;
   std::unique_ptr<control::Server> server_;
 };

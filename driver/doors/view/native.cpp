@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <string_view>
@@ -51,6 +52,7 @@ class Native final : public Conversation {
   void sendRows(size_t stream, uint64_t end);
   void jump();
   void sendVertices();
+  void askBodies();
   void answer(const Json& id, Json answer);
   void draw(const Json& id, const Json& request);
   void pass(const Json& id, Json request);
@@ -64,6 +66,12 @@ class Native final : public Conversation {
   std::vector<uint64_t> next_;  ///< row of each stream
   std::map<std::string, uint64_t> frames_;
   std::unique_ptr<Playback> playback_;
+  /// A body of the recording, as this page has it.
+  struct Body {
+    double time = NAN;  ///< [s] of the shape that was asked for last
+    bool asked = false;
+  };
+  std::map<std::string, Body> bodies_;
   std::map<uint32_t, std::unique_ptr<Lead>> leads_;
   uint32_t next_lead_ = 1;
 };
@@ -81,6 +89,7 @@ void Native::onTick() {
   if (!peer_.idle()) return;  // newest values only: what a slow page cannot take is skipped
   sendRows();
   sendVertices();
+  if (playback_) askBodies();
 }
 
 /// A run was found: what it is, and where its rows begin for this page.
@@ -99,6 +108,7 @@ void Native::begin() {
   peer_.text(hello.dump(-1, ' ', false, Json::error_handler_t::replace));
   next_.assign(rows.streams().size(), 0);
   frames_.clear();
+  bodies_.clear();
   list_number_ = status_number_ = 0;
   if (stage_.recorded()) {
     playback_ = std::make_unique<Playback>(rows, stage_.about());
@@ -175,6 +185,21 @@ void Native::sendVertices() {
     if (!live.vertices || frames_[model] == live.frame) continue;
     frames_[model] = live.frame;
     peer_.binary(live.vertices);
+  }
+}
+
+/// Each body of a recording is asked for its shape at the page's place in it as soon as the last one has come.
+void Native::askBodies() {
+  const double now = playback_->time();
+  for (const std::string& model : stage_.bodies()) {
+    Body& body = bodies_[model];
+    if (body.asked || body.time == now) continue;
+    body = {now, true};
+    stage_.drawAt(model, now, [this, model, alive = alive_](const Message& vertices) {
+      if (!*alive) return;
+      bodies_[model].asked = false;
+      if (vertices) peer_.binary(vertices);
+    });
   }
 }
 

@@ -21,6 +21,7 @@ class Playback {
   std::string obey(const Json& request);
 
   void advance();                                              ///< [main] goes on with the time that has passed
+  double time() const { return t_; }                           ///< [s] [main]
   const std::vector<uint64_t>& ends() const { return ends_; }  ///< [main] rows of each stream that have been
   /// [main] The rows from `seconds` before the present place on.
   std::vector<uint64_t> rowsFrom(double seconds) const;

@@ -189,4 +189,20 @@ void Stage::draw(const std::string& model, std::function<void(const Drawn&)> dra
   });
 }
 
+void Stage::drawAt(const std::string& model, double t, std::function<void(const Message&)> drawn) {
+  Json request = geometryOf(model);
+  request["at"] = t;
+  daemon_->ask(request, [this, model, drawn, run = run_](const Json& answer, const Descriptor& memory) {
+    const auto soft = soft_.find(model);
+    if (run != run_) return;
+    drawn(soft != soft_.end() ? verticesMessage(answer, memory.get(), soft->second.number, 0) : nullptr);
+  });
+}
+
+std::vector<std::string> Stage::bodies() const {
+  std::vector<std::string> names;
+  for (const auto& [name, soft] : soft_) names.push_back(name);
+  return names;
+}
+
 }  // namespace hapticd::view

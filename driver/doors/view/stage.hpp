@@ -55,6 +55,11 @@ class Stage {
   /// [main] The triangles of a model, from the cache where it does not deform.
   void draw(const std::string& model, std::function<void(const Drawn&)> drawn);
 
+  /// [main] The vertices that a body of the recording had at the time t [s]; nullptr: they cannot be had. Not called
+  /// where the run is another by then.
+  void drawAt(const std::string& model, double t, std::function<void(const Message&)> drawn);
+  std::vector<std::string> bodies() const;  ///< models that deform
+
   /// Newest vertices of a model that deforms, as they go to a page; frame 0: none yet.
   struct Live {
     uint64_t frame = 0;
