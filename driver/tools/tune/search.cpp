@@ -121,19 +121,26 @@ class Search {
   }
 
   /// The first setting is the scene's own, which every other is held against; a machine that was busy or had its
-  /// processor slow at the start would make all the others look cheaper. Those on the front are measured once more
-  /// beside it: what their two times differ by is the noise that is told.
+  /// processor slow at the start would make all the others look cheaper. So each of the front is measured once more,
+  /// and the first beside it: what the times of one differ by is the noise that is told.
   Result<void> measureAgain() {
     constexpr int kMost = 12;
+    if (auto done = measureAgain(candidates_[0]); !done) return done;
     markFront(candidates_);
     int count = 0;
-    for (size_t i = 0; i < candidates_.size() && count < kMost; ++i) {
-      if (i > 0 && (!candidates_[i].on_front || !going_)) continue;
-      auto run = measure(applied(scene_, knobs_, candidates_[i].choice), motion_, kPasses, options_.log);
-      if (!run) return Error{run.error()};
-      widen(candidates_[i].cost, run->cost);
+    for (size_t i = 1; i < candidates_.size() && count < kMost && going_; ++i) {
+      if (!candidates_[i].on_front) continue;
+      if (auto done = measureAgain(candidates_[i]); !done) return done;
+      if (auto done = measureAgain(candidates_[0]); !done) return done;
       ++count;
     }
+    return {};
+  }
+
+  Result<void> measureAgain(Candidate& candidate) {
+    auto run = measure(applied(scene_, knobs_, candidate.choice), motion_, kPasses, options_.log);
+    if (!run) return Error{run.error()};
+    widen(candidate.cost, run->cost);
     return {};
   }
 
