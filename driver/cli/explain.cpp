@@ -2,6 +2,7 @@
 /// `hapticd explain`: what a scene makes the daemon load, start and compute, why, and what it costs.
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -68,7 +69,11 @@ std::vector<uint64_t> measureSteps(servo::World& world, const scene::Scene& scen
   return medians;
 }
 
-void explainModels(const scene::Scene& scene, servo::World& world, const std::vector<uint64_t>& costs) {
+/// What models say of themselves at level debug, by their names.
+using Details = std::multimap<std::string, std::string>;
+
+void explainModels(const scene::Scene& scene, servo::World& world, const std::vector<uint64_t>& costs,
+                   const Details& details) {
   std::printf("models\n");
   for (size_t i = 0; i < scene.models.size(); ++i) {
     const scene::Model& model = scene.models[i];
@@ -93,6 +98,8 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
     say("  velocity", (report.flags & HSP_R_VELOCITY) != 0 ? "used (damping, viscosity or friction)" : "not used");
     say("  memory", bytes(report.locked_bytes));
     say("  cost", std::to_string(costs[i]) + " ns per tick near the surface (median of 300)");
+    const auto [begin, end] = details.equal_range(model.name);
+    for (auto detail = begin; detail != end; ++detail) say(detail == begin ? "  details" : "", detail->second);
   }
 }
 
@@ -153,12 +160,17 @@ int explain(const Options& options) {
   if (!scene) return kBadInput;
   if (options.cost || options.json) return explainCost(options, *scene);
   const SetupErrors once;
-  auto world = servo::World::build(*scene, {.rate = scene->servo.rate, .measure = true}, logToTerminal);
+  Details details;
+  const auto listen = [&details](int level, const std::string& who, const std::string& text) {
+    if (level == HSP_LOG_DEBUG) details.emplace(who, text);
+    logToTerminal(level, who, text);
+  };
+  auto world = servo::World::build(*scene, {.rate = scene->servo.rate, .measure = true}, listen);
   if (!world) return fail(kBadInput, world.error());
   const std::vector<uint64_t> costs = measureSteps(**world, *scene);
   explainServo(*scene, **world);
   explainSimulation(**world);
-  explainModels(*scene, **world, costs);
+  explainModels(*scene, **world, costs, details);
   explainFiles(*scene);
   std::printf("memory\n");
   say("models", bytes((*world)->lockedBytes()));

@@ -12,6 +12,7 @@
 #include "cli/import_mesh.hpp"
 #include "document/node.hpp"
 #include "import/bezier_import.hpp"
+#include "import/calibrate.hpp"
 #include "import/medial_import.hpp"
 #include "mesh_import/mesh_file.hpp"
 
@@ -25,6 +26,7 @@ struct Options {
   Placement placement;
   bool medial = false;
   MedialImport body;
+  std::string answers;  ///< to calibrate a soft body with
   double smooth_angle = 0;
   bool json = false;
 };
@@ -59,6 +61,10 @@ int importModel(const Options& options) {
     if (!mesh) return fail(kBadInput, mesh.error());
     const auto done = importMedial(body, *mesh, catalog());
     return done ? kWorked : fail(kFailed, done.error());
+  }
+  if (!options.answers.empty()) {
+    const auto done = calibrate({options.file, options.answers, options.out}, catalog());
+    return done ? kWorked : fail(kBadInput, done.error());
   }
   if (isMeshFile(options.file))
     return importMesh({options.file, options.out, options.placement.scale, options.smooth_angle, options.json});
@@ -116,6 +122,11 @@ void addMedialOptions(CLI::App& command, Options& options) {
   command.add_option("--mass", body.mass, "mass of a vertex [kg], written to a .yaml file")
       ->check(within(0.0, 1e6))
       ->needs(medial);
+  command
+      .add_option("--calibrate", options.answers,
+                  "fit the stiffness of a soft body (a model file with points or vertices) to presses: CSV "
+                  "x,y,z,depth,force [m, N], measured or computed, of small strain")
+      ->excludes(medial);
 }
 
 }  // namespace

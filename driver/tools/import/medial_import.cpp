@@ -12,9 +12,9 @@
 
 #include "document/node.hpp"
 #include "host/shape_instance.hpp"
+#include "import/active_model.hpp"
 #include "import/medial_axis.hpp"
 #include "import/nearest_points.hpp"
-#include "scene/load.hpp"
 
 namespace hapticd::importing {
 namespace {
@@ -31,33 +31,6 @@ bool endsWith(const std::string& name, const char* end) {
   std::string lower = name;
   for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return lower.ends_with(end);
-}
-
-/// A model of a plugin by itself, active.
-Result<std::unique_ptr<host::ShapeInstance>> activated(const char* plugin, const fs::path& geometry,
-                                                       host::Catalog& catalog) {
-  std::string quoted;
-  for (const char c : fs::absolute(geometry).string()) quoted += c == '\'' ? std::string("''") : std::string(1, c);
-  const std::string text = fmt::format(
-      "hapticd: 1\nmodels:\n  - name: body\n    plugin: {}\n    parameters: {{geometry: '{}'}}\n", plugin, quoted);
-  std::optional<scene::Scene> scene;
-  const document::Problems problems = scene::checkText(text, fs::current_path() / "import.yaml", catalog, &scene);
-  if (!scene || scene->models.empty())
-    return Error{problems.empty() ? std::string("no scene") : problems.front().text()};
-  std::string said;
-  auto shape =
-      host::ShapeInstance::create(scene->models[0], [&said](int level, const std::string&, const std::string& what) {
-        if (level >= HSP_LOG_WARNING) said = what;
-      });
-  if (!shape) return Error{shape.error()};
-  hsp_activation activation{};
-  activation.struct_size = sizeof activation;
-  activation.max_probes = 1;
-  activation.rate_hz = 1000;
-  activation.max_probe_speed = 1;
-  activation.pose.orientation[0] = 1;
-  if (const auto done = (*shape)->activate(activation); !done) return Error{said.empty() ? done.error() : said};
-  return shape;
 }
 
 Result<Triangles> tessellated(host::ShapeInstance& shape, double share) {
@@ -104,21 +77,10 @@ Result<Deviation> deviationFrom(host::ShapeInstance& body, const std::vector<Vec
   if (body.surfaces()->activate(body.handle(), &near) < 0) return Error{"the body cannot be traced"};
   Deviation deviation;
   for (const Vector3d& p : points) {
-    hsp_probe probe{};
-    Eigen::Map<Vector3d>(probe.position) = p;
-    probe.orientation[0] = 1;
-    probe.flags = HSP_IN_JUMP;
-    hsp_contact contact{};
-    hsp_step step{};
-    step.struct_size = sizeof step;
-    step.count = 1;
-    step.in = &probe;
-    step.out = &contact;
-    step.in_stride = sizeof probe;
-    step.out_stride = sizeof contact;
-    if (body.step(step) < 0) return Error{"the plugin gives no distance to the body"};
-    deviation.most = std::fmax(deviation.most, std::fabs(contact.depth_m));
-    deviation.mean += std::fabs(contact.depth_m) / static_cast<double>(points.size());
+    const auto contact = touched(body, p);
+    if (!contact) return Error{contact.error()};
+    deviation.most = std::fmax(deviation.most, std::fabs(contact->depth_m));
+    deviation.mean += std::fabs(contact->depth_m) / static_cast<double>(points.size());
   }
   return deviation;
 }

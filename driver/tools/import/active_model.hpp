@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+/// A model of a plugin by itself, for who wants to measure it as it will be felt.
+#pragma once
+#include <Eigen/Core>
+#include <filesystem>
+#include <memory>
+
+#include "base/result.hpp"
+#include "host/catalog.hpp"
+#include "host/shape_instance.hpp"
+
+namespace hapticd::importing {
+
+/// [main] An active model of `plugin` with this geometry, whose first surface is traced.
+Result<std::unique_ptr<host::ShapeInstance>> activated(const char* plugin, const std::filesystem::path& geometry,
+                                                       host::Catalog& catalog);
+
+/// [main] What a resting probe meets that was placed at `p` [m], in the model's frame.
+Result<hsp_contact> touched(host::ShapeInstance& body, const Eigen::Vector3d& p);
+
+}  // namespace hapticd::importing

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+#include "import/calibrate.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <vector>
+
+#include "document/csv.hpp"
+#include "document/node.hpp"
+#include "import/active_model.hpp"
+
+namespace hapticd::importing {
+namespace {
+
+using document::Node;
+using Eigen::Vector3d;
+
+constexpr int kRounds = 300;       ///< of the fit
+constexpr double kFitted = 1e-4;   ///< relative error that ends it
+constexpr double kGood = 0.05;     ///< relative error beyond which a place is told of
+constexpr double kReach = 0.7;     ///< of the distance of neighbouring points: how far a place counts
+constexpr double kStiffest = 1e6;  ///< [N/m] that a body may have
+constexpr std::size_t kMostBytes = std::size_t{1} << 26;
+
+struct Answer {
+  Vector3d place;
+  double depth, force;
+};
+
+/// A body of a file: where its points are, and what else the file says.
+struct Body {
+  Node root;
+  std::vector<Vector3d> points;
+  std::size_t columns = 0;  ///< of a grid; 0: vertices
+};
+
+Error first(const document::Problems& problems, const std::string& file) {
+  return Error{problems.empty() ? file + ": cannot be read" : problems.front().text()};
+}
+
+Result<std::vector<Answer>> readAnswers(const std::string& file) {
+  document::Problems problems;
+  document::CsvRules rules;
+  rules.headers = {"x,y,z,depth,force"};
+  const auto table = document::readCsv(file, kMostBytes, rules, problems);
+  if (!table || table->rows() == 0) return first(problems, file);
+  std::vector<Answer> answers;
+  for (std::size_t i = 0; i < table->rows(); ++i) {
+    const double* row = table->row(i);
+    if (!(row[3] > 0) || !(row[4] > 0))
+      return Error{
+          fmt::format("{}:{}: depth {} m, force {} N, expected both above 0", file, table->lines[i], row[3], row[4])};
+    answers.push_back({Vector3d(row), row[3], row[4]});
+  }
+  return answers;
+}
+
+/// A point or vertex; false where it has no three numbers.
+bool addPoint(const Node& node, Body& body) {
+  Vector3d p;
+  if (!node.isSequence() || node.items.size() < 3) return false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto number = document::toNumber(node.items[k].scalar);
+    if (!number) return false;
+    p[static_cast<Eigen::Index>(k)] = *number;
+  }
+  body.points.push_back(p);
+  return true;
+}
+
+Result<Body> readBody(const std::string& file) {
+  document::Problems problems;
+  auto root = document::parseFile(file, problems);
+  if (!root) return first(problems, file);
+  Body body;
+  const Error wrong{file + ": expected a model file with medial: points, or vertices"};
+  const Node* medial = root->isMap() ? root->find("medial") : nullptr;
+  if (medial == nullptr || !medial->isMap()) return wrong;
+  const Node *points = medial->find("points"), *vertices = medial->find("vertices");
+  if (points != nullptr && points->isSequence()) {
+    for (const Node& row : points->items) {
+      body.columns = row.items.size();
+      for (const Node& point : row.items)
+        if (!addPoint(point, body)) return wrong;
+    }
+  } else if (vertices != nullptr && vertices->isSequence()) {
+    for (const Node& vertex : vertices->items)
+      if (!addPoint(vertex, body)) return wrong;
+  }
+  if (body.points.empty() || (body.columns > 0 && body.points.size() % body.columns != 0)) return wrong;
+  body.root = std::move(*root);
+  return body;
+}
+
+std::string stiffnessText(const Body& body, const std::vector<double>& stiffness) {
+  std::string text = "  stiffness:";
+  const std::size_t columns = body.columns > 0 ? body.columns : stiffness.size();
+  for (std::size_t i = 0; i < stiffness.size(); ++i) {
+    if (i % columns == 0) text += body.columns > 0 ? "\n    - [" : " [";
+    text += fmt::format("{:.7g}{}", stiffness[i], i % columns == columns - 1 ? "]" : ", ");
+  }
+  return text + "\n";
+}
+
+std::string written(const Body& body, const std::vector<double>& stiffness, const Calibration& options) {
+  std::string text =
+      fmt::format("# {} with the stiffness of {}, by hapticd import --calibrate\nformat: hapticd-model/2\n",
+                  options.body, options.answers);
+  for (const document::Entry& entry : body.root.entries)
+    if (entry.key.scalar != "format" && entry.key.scalar != "medial")
+      text += fmt::format("{}: {}\n", entry.key.scalar, document::toJson(entry.value));
+  text += "medial:\n";
+  for (const document::Entry& entry : body.root.find("medial")->entries) {
+    const std::string& key = entry.key.scalar;
+    if (key == "stiffness" || key == "young" || key == "poisson" || key == "thickness") continue;
+    text += fmt::format("  {}:", key);
+    if (entry.value.isSequence() && !entry.value.items.empty()) {
+      text += "\n";
+      for (const Node& item : entry.value.items) text += fmt::format("    - {}\n", document::toJson(item));
+    } else {
+      text += fmt::format(" {}\n", document::toJson(entry.value));
+    }
+  }
+  return text + stiffnessText(body, stiffness);
+}
+
+/// Share of each answer in each point: that of the nearest answer is the largest.
+Eigen::MatrixXd sharesOf(const Body& body, const std::vector<Answer>& answers) {
+  const auto count = static_cast<Eigen::Index>(body.points.size()), places = static_cast<Eigen::Index>(answers.size());
+  double spacing = 0;  // mean distance to the nearest other point
+  for (const Vector3d& a : body.points) {
+    double least = HUGE_VAL;
+    for (const Vector3d& b : body.points)
+      if (&a != &b) least = std::min(least, (a - b).norm());
+    if (std::isfinite(least)) spacing += least / static_cast<double>(body.points.size());
+  }
+  const double width = std::pow(kReach * spacing, 2);
+  Eigen::MatrixXd shares(count, places);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    for (Eigen::Index j = 0; j < places; ++j)
+      shares(i, j) =
+          (body.points[static_cast<std::size_t>(i)] - answers[static_cast<std::size_t>(j)].place).squaredNorm();
+    const double nearest = shares.row(i).minCoeff();
+    for (Eigen::Index j = 0; j < places; ++j)
+      shares(i, j) = width > 0 ? std::exp(-0.5 * (shares(i, j) - nearest) / width) : 1;
+    shares.row(i) /= shares.row(i).sum();
+  }
+  return shares;
+}
+
+/// Force [N] of the written body at each answer.
+Result<std::vector<double>> feltForces(const Calibration& options, const std::vector<Answer>& answers,
+                                       host::Catalog& catalog) {
+  const auto body = activated("mat_deformable", options.out, catalog);
+  if (!body) return Error{body.error()};
+  const hsp_near near{};
+  if ((*body)->surfaces()->activate((*body)->handle(), &near) < 0) return Error{"the body cannot be traced"};
+  std::vector<double> forces;
+  for (const Answer& answer : answers) {
+    (*body)->reset();                                 // no dent of the press before
+    const auto foot = touched(**body, answer.place);  // the surface of the body, near that of the solid
+    if (!foot) return Error{foot.error()};
+    const Vector3d normal(foot->normal);
+    const auto pressed = touched(**body, Vector3d(foot->point) - answer.depth * normal);
+    if (!pressed) return Error{pressed.error()};
+    forces.push_back(Vector3d(pressed->force).dot(Vector3d(pressed->normal)));
+  }
+  return forces;
+}
+
+Result<void> save(const std::string& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text << std::flush;
+  if (!out) return Error{file + ": cannot be written, expected a file in a folder that you may write to"};
+  return {};
+}
+
+void tell(const std::vector<Answer>& answers, const std::vector<double>& forces, const Calibration& options) {
+  double worst = 0, squares = 0;
+  for (std::size_t j = 0; j < answers.size(); ++j) {
+    const double error = forces[j] / answers[j].force - 1;
+    worst = std::max(worst, std::fabs(error));
+    squares += error * error / static_cast<double>(answers.size());
+    if (std::fabs(error) > kGood)
+      std::fprintf(stderr, "warning: at (%.4g, %.4g, %.4g) m the body gives %.4g N, the answer is %.4g N\n",
+                   answers[j].place.x(), answers[j].place.y(), answers[j].place.z(), forces[j], answers[j].force);
+  }
+  std::printf("%s: force at %zu places within %.2f %%, rms %.2f %%\n", options.out.c_str(), answers.size(), 100 * worst,
+              100 * std::sqrt(squares));
+}
+
+}  // namespace
+
+Result<void> calibrate(const Calibration& options, host::Catalog& catalog) {
+  if (!options.out.ends_with(".yaml")) return Error{options.out + ": expected a name that ends in .yaml"};
+  const auto answers = readAnswers(options.answers);
+  if (!answers) return Error{answers.error()};
+  const auto body = readBody(options.body);
+  if (!body) return Error{body.error()};
+  const Eigen::MatrixXd shares = sharesOf(*body, *answers);
+  std::vector<double> stiffness(body->points.size(), answers->front().force / answers->front().depth), forces;
+  for (int round = 0; round < kRounds; ++round) {
+    if (const auto done = save(options.out, written(*body, stiffness, options)); !done) return Error{done.error()};
+    auto felt = feltForces(options, *answers, catalog);
+    if (!felt) return Error{felt.error()};
+    forces = std::move(*felt);
+    Eigen::VectorXd missing(static_cast<Eigen::Index>(forces.size()));
+    for (std::size_t j = 0; j < forces.size(); ++j) {
+      if (!(forces[j] > 0)) return Error{fmt::format("nothing is felt at place {} of {}", j + 1, options.answers)};
+      missing[static_cast<Eigen::Index>(j)] = std::log((*answers)[j].force / forces[j]);
+    }
+    if (missing.cwiseAbs().maxCoeff() < kFitted) break;
+    const Eigen::VectorXd change = shares * missing;
+    for (std::size_t i = 0; i < stiffness.size(); ++i)
+      stiffness[i] = std::min(kStiffest, stiffness[i] * std::exp(change[static_cast<Eigen::Index>(i)]));
+  }
+  tell(*answers, forces, options);
+  return {};
+}
+
+}  // namespace hapticd::importing
