@@ -2,16 +2,17 @@
 // Makes view.gif, the moving picture that the README begins with: a run is recorded, and its page is photographed at equal
 // steps of the run's own time, so that a slow machine makes the same picture.
 //
-// Usage: node driver/docs/pictures/view.mjs [OUT.gif]     after `npm ci` in tests/e2e/view; needs chromium, ffmpeg, gifsicle
+// Usage: node driver/docs/pictures/view.mjs [OUT.gif]     after `npm ci` in tests/e2e/view; needs the packages of
+// `driver/install-packages picture`
 import {execFileSync} from 'node:child_process';
-import {mkdtempSync, rmSync, statSync} from 'node:fs';
+import {mkdtempSync, readdirSync, rmSync, statSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {dirname, join} from 'node:path';
 import {fileURLToPath} from 'node:url';
 import {Browser, shown} from '../../../tests/e2e/view/browser.mjs';
 import {hapticd, Sandbox, scenes} from '../../../tests/e2e/view/program.mjs';
 
-const out = process.argv[2] ?? join(dirname(fileURLToPath(import.meta.url)), 'view.gif');
+const here = dirname(fileURLToPath(import.meta.url)), out = process.argv[2] ?? join(here, 'view.gif');
 const kFrom = 3, kSeconds = 6.6, kRate = 12; // s of the run; frames a second
 const kWidth = 1120, kHeight = 700, kMostBytes = 2e6;
 
@@ -46,10 +47,8 @@ try {
     });
     await page.screenshot({path: join(frames, `${String(i).padStart(4, '0')}.png`)});
   }
-  const raw = join(frames, 'raw.gif');
-  execFileSync('ffmpeg', ['-y', '-loglevel', 'error', '-framerate', String(kRate), '-i', join(frames, '%04d.png'), '-vf',
-    'scale=880:-1:flags=lanczos,split[a][b];[a]palettegen=max_colors=96:stats_mode=diff[p];[b][p]paletteuse=dither=none:diff_mode=rectangle', raw]);
-  execFileSync('gifsicle', ['-O3', '--lossy=60', raw, '-o', out]);
+  const shots = readdirSync(frames).filter((name) => name.endsWith('.png')).sort().map((name) => join(frames, name));
+  execFileSync(join(here, 'gif.py'), [out, '880', String(kRate), ...shots], {stdio: 'inherit'});
   const {size} = statSync(out);
   console.log(`${out}: ${size} bytes`);
   if (size > kMostBytes) throw new Error(`more than ${kMostBytes} bytes: show less`);
