@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// `hapticd import`: converts Bezier patches into a model file, triangle meshes into parts, and closed surfaces into
-/// soft bodies.
+/// `hapticd import`: converts CAD files and triangle meshes into parts, Bezier patches into a model file, and closed
+/// surfaces into soft bodies.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "cli/command.hpp"
+#include "cli/import_cad.hpp"
 #include "cli/import_mesh.hpp"
 #include "document/node.hpp"
 #include "import/bezier_import.hpp"
@@ -28,6 +29,7 @@ struct Options {
   MedialImport body;
   std::string answers;  ///< to calibrate a soft body with
   double smooth_angle = 0;
+  CadImport cad;
   bool json = false;
 };
 
@@ -38,19 +40,36 @@ std::string otherWay(const std::string& file) {
   const auto is = [&](std::initializer_list<const char*> endings) {
     return std::any_of(endings.begin(), endings.end(), [&](const char* one) { return ending == one; });
   };
-  if (is({".step", ".stp", ".iges", ".igs", ".brep", ".fcstd", ".sldprt", ".x_t", ".3dm"}))
-    return file + ": CAD files (" + ending +
-           ") are not read\n  two ways: in a CAD program export a mesh, then: hapticd import PART.stl -o PART.hpart "
-           "--scale 0.001\n  or, for exact untrimmed faces, the FreeCAD script of driver/docs/models.md, \"Getting "
-           "models "
-           "in\"";
+  if (is({".fcstd", ".sldprt", ".x_t", ".3dm"}))
+    return file + ": " + ending +
+           " files are not read\n  in a CAD program save it as STEP, then: hapticd import PART.step -o PART.hpart";
   if (is({".gltf", ".glb", ".fbx", ".dae", ".blend", ".3mf", ".off", ".wrl", ".x3d"}))
     return file + ": " + ending +
            " files are not read\n  export the mesh as .obj, .stl or .ply, then: hapticd import PART.stl -o PART.hpart";
   return "";
 }
 
+/// What the options of one format are worth with another one.
+std::string misplaced(const Options& options, bool cad) {
+  const bool placed = options.placement.scale != 1 || options.placement.fit > 0 || options.placement.center;
+  if (cad && placed) return "--scale, --fit and --center are not for CAD files, which state their unit";
+  if (!cad && options.cad.check) return "--check is for CAD files (.step, .iges, .brep)";
+  if (options.out.empty() && !options.cad.check)
+    return "--out is required: a name for what the file becomes, such as part.hpart";
+  return "";
+}
+
 int importModel(const Options& options) {
+  const bool from_cad = isCadFile(options.file) && !options.medial;
+  if (const std::string wrong = misplaced(options, from_cad); !wrong.empty())
+    return fail(kBadInput, options.file + ": " + wrong);
+  if (from_cad) {
+    CadImport how = options.cad;
+    how.file = options.file;
+    how.out = options.out;
+    how.json = options.json;
+    return importCad(how);
+  }
   if (const std::string way = otherWay(options.file); !way.empty()) return fail(kBadInput, way);
   if (options.medial) {
     MedialImport body = options.body;
@@ -135,20 +154,18 @@ void addImport(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "import",
-      "Convert Bezier patches (.bpt) into a model file, triangle meshes into a part, or a closed surface into a "
-      "soft body.");
+      "Convert CAD files and triangle meshes into parts, Bezier patches (.bpt) into a model file, or a closed surface "
+      "into a soft body.");
   command
       ->add_option(
           "file", options->file,
           "patches (.bpt): a count, then for each two degrees and its points; # is a comment. Triangles: .obj, .stl "
-          "or .ply. With --medial: .obj, .stl, or a model file with surfaces")
+          "or .ply. CAD: .step, .stp, .iges, .igs, .brep. With --medial: .obj, .stl, or a model file with surfaces")
       ->required();
-  command
-      ->add_option(
-          "-o,--out,out", options->out,
-          "model file: .yaml or .json; - for standard output. Of triangles: a part, .hpart. With --medial: .ma or "
-          ".yaml")
-      ->required();
+  command->add_option(
+      "-o,--out,out", options->out,
+      "model file: .yaml or .json; - for standard output. Of triangles and CAD: a part, .hpart. With --medial: "
+      ".ma or .yaml");
   CLI::Option* scale =
       command->add_option("--scale", options->placement.scale, "metres per unit of the file")->check(within(1e-9, 1e9));
   command->add_option("--fit", options->placement.fit, "scale so that the largest extent is this many metres")
@@ -165,12 +182,17 @@ void addImport(CLI::App& app, int& exit_code) {
       ->add_option("--smooth-angle", options->smooth_angle,
                    "triangles: interpolate normals over edges that bend by less than this [degrees]; default: 0")
       ->check(within(0.0, 180.0));
-  command->add_flag("--json", options->json, "triangles: write a report of the repairs (JSON)");
+  command->add_flag("--json", options->json, "triangles and CAD: write the report as JSON");
+  command->add_flag("--check", options->cad.check, "CAD: write nothing, say what would be lost");
+  command->add_option("--time", options->cad.time_s, "CAD: longest time [s]; default: 600")->check(within(1.0, 1e6));
+  command->add_option("--memory", options->cad.memory_mb, "CAD: most memory [MB]; default: 4096")
+      ->check(within(64.0, 1e7));
   addMedialOptions(*command, *options);
   command->footer(
       "Comment lines are copied, so that credit and licence are kept.\n\nExample:\n  hapticd import "
       "config/models/teapot.bpt --up z --fit 0.13 --center -o teapot.yaml\n  hapticd import bracket.stl --scale 0.001 "
-      "-o bracket.hpart\n  hapticd import --medial hand.stl --scale 0.001 --tolerance 0.001 hand.ma");
+      "-o bracket.hpart\n  hapticd import engine.step -o engine.hpart\n  hapticd import --medial hand.stl --scale "
+      "0.001 --tolerance 0.001 hand.ma");
   command->callback([options, &exit_code] { exit_code = importModel(*options); });
 }
 

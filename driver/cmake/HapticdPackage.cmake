@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 # `cpack` in the build folder makes two Debian packages: hapticd (the daemon, its plugins and modules) and hapticd-dev
-# (headers and CMake package for plugins of one's own). Licences of what is linked: see dpkg's own records.
+# (headers and CMake package for plugins of one's own). Where Open CASCADE is there, a third: hapticd-import (CAD files).
+# Licences of what is linked: see dpkg's own records.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME hapticd)
 set(CPACK_PACKAGE_CONTACT "hapticd developers <hapticd@example.org>")
@@ -18,4 +19,11 @@ set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_CONTROL_EXTRA "${PROJECT_SOURCE_DIR}/driver
 set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_SUGGESTS "python3, python3-numpy") # the package hapticd for Python
 set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_GENERATE_SHLIBS ON)               # libhapticd.so.0
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "hapticd (= ${PROJECT_VERSION}), g++, cmake, make")
+if(TARGET hapticd-import)
+  list(APPEND CPACK_COMPONENTS_ALL cad)
+  set(CPACK_DEBIAN_CAD_PACKAGE_NAME hapticd-import)
+  set(CPACK_DEBIAN_CAD_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_CAD_PACKAGE_DEPENDS "hapticd (= ${PROJECT_VERSION})")
+  set(CPACK_DEBIAN_UNSPECIFIED_PACKAGE_SUGGESTS "hapticd-import, python3, python3-numpy")
+endif()
 include(CPack)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// What a traced shape does with a part in place of a model file.
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cstdio>
 #include <span>
 #include <stdexcept>
 
@@ -8,6 +10,28 @@
 #include "traced_shape.hpp"
 
 namespace hapticd {
+namespace {
+
+/// A size or a place that was hardly meant. "": nothing is odd.
+std::string oddPlace(const Eigen::AlignedBox3d& box, const hsp_pose& pose) {
+  constexpr double kHuge = 10, kTiny = 1e-3, kFar = 2;  // [m]
+  const double size = box.diagonal().norm();
+  char text[160];
+  if (size > kHuge || size < kTiny) {
+    std::snprintf(text, sizeof text,
+                  "%.3g m large, expected what a hand can feel; a wrong unit? (--scale of hapticd import)", size);
+    return text;
+  }
+  const Eigen::Quaterniond turn(pose.orientation[0], pose.orientation[1], pose.orientation[2], pose.orientation[3]);
+  const Eigen::Vector3d origin = turn.conjugate() * -Eigen::Vector3d(pose.position);
+  const double away = box.exteriorDistance(origin);
+  if (away <= kFar) return "";
+  std::snprintf(text, sizeof text,
+                "its nearest point is %.3g m from the world's origin, where no arm reaches; expected a pose", away);
+  return text;
+}
+
+}  // namespace
 
 void TracedShape::loadPart(const std::string& bytes, const hsp_activation& activation, hsp_report& report) {
   if (!takes_parts_)
@@ -25,6 +49,8 @@ void TracedShape::loadPart(const std::string& bytes, const hsp_activation& activ
   if (host() != nullptr && host()->log != nullptr) {
     for (const std::string& warning : part_->warnings())
       host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": " + warning).c_str());
+    if (const std::string odd = oddPlace(part_->bounds(), activation.pose); !odd.empty())
+      host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": " + odd).c_str());
     if (sides_ == kFront && part_->open())
       host()->log(
           host(), HSP_LOG_WARNING,

@@ -189,9 +189,10 @@ class EdgeCutter {
   void run() {
     std::vector<double> stops{edge_.t0, edge_.t1};
     const bool is_spline = curve_.kind == CurveKind::kSpline;
+    const double narrow = 1e-9 * (edge_.t1 - edge_.t0);  // an edge may end by a rounding before or behind its last knot
     if (is_spline)
       for (const double knot : geometry_.splineCurve(edge_.curve).breaks())
-        if (knot > edge_.t0 && knot < edge_.t1) stops.push_back(knot);
+        if (knot > edge_.t0 + narrow && knot < edge_.t1 - narrow) stops.push_back(knot);
     std::sort(stops.begin(), stops.end());
     for (std::size_t i = 0; i + 1 < stops.size(); ++i) halve(stops[i], stops[i + 1], 0);
   }

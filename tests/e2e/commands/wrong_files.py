@@ -11,6 +11,7 @@ import os
 import re
 import subprocess
 import sys
+import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 from e2e import check, finish
@@ -43,7 +44,19 @@ for file in files:
     more = [f"line {n}: {text}" for n, texts in told.items() if n not in wanted for text in texts]
     check(os.path.basename(file), done.returncode == 2 and wanted and not missing and not more, f"missing {missing}, more {more}\n{done.stdout}{done.stderr}")
 
-for name in ("part.step", "part.IGES", "part.glb"):
+for name in ("part.dae", "part.glb"):
     done = subprocess.run([HAPTICD, "import", name, "-o", "part.hpart"], capture_output=True, text=True, timeout=120)
     check(f"import of {name} says which way leads here", done.returncode == 2 and "hapticd import PART.stl -o PART.hpart" in done.stderr, done.stderr)
+
+with tempfile.TemporaryDirectory() as folder:
+    part, mesh, scene = (os.path.join(folder, name) for name in ("egg.hpart", "egg.obj", "scene.yaml"))
+    with open(mesh, "w") as out:
+        out.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    for scale, pose, told in (("0.1", "", ""), ("1000", "", "1.41e+03 m large"), ("0.0001", "", "a wrong unit?"),
+                              ("0.1", "pose: {position: [0, -5, 0]}, ", "its nearest point is 4.9 m from the world's origin")):
+        subprocess.run([HAPTICD, "import", mesh, "--scale", scale, "-o", part], capture_output=True, check=True, timeout=120)
+        with open(scene, "w") as out:
+            out.write(f"hapticd: 1\nmodels:\n  - {{name: egg, plugin: nurbs_rigid, {pose}parameters: {{geometry: egg.hpart}}}}\n")
+        done = subprocess.run([HAPTICD, "check", scene], capture_output=True, text=True, timeout=120)
+        check(f"check of a part: {told or 'no warning'}", done.returncode == 0 and (told in done.stdout if told else "warning" not in done.stdout), done.stdout)
 finish()

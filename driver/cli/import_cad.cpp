@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "cli/import_cad.hpp"
+
+#include <poll.h>
+#include <spawn.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <vector>
+
+#include "base/regular_file.hpp"
+#include "cli/command.hpp"
+
+extern char** environ;
+
+namespace hapticd::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The importer: beside this program's tree, or in the installation. "": it is not there.
+std::string importer() {
+  std::error_code error;
+  for (const fs::path& folder : {host::executableDir() / ".." / "libexec" / "hapticd", fs::path(HAPTICD_LIBEXEC)})
+    if (const fs::path file = (folder / "hapticd-import").lexically_normal(); fs::exists(file, error))
+      return file.string();
+  return "";
+}
+
+int failWithoutImporter(const std::string& file) {
+  return fail(kBadInput,
+              file +
+                  ": CAD files are read by hapticd-import, which is not installed\n  fix: install the package "
+                  "hapticd-import; or build it: install libocct-data-exchange-dev, configure anew, cmake --build "
+                  "build/release --target hapticd-import\n  or export a mesh in a CAD program, then: hapticd import "
+                  "PART.stl -o PART.hpart --scale 0.001");
+}
+
+std::string whole(double number) {
+  return std::to_string(static_cast<long long>(number));
+}
+
+std::vector<std::string> wordsOf(const std::string& program, const CadImport& options) {
+  std::vector<std::string> words{program, "--memory", whole(options.memory_mb), "--time", whole(options.time_s)};
+  if (options.check) words.emplace_back("--check");
+  if (options.json) words.emplace_back("--json");
+  if (!options.check) words.insert(words.end(), {"--out", options.out});
+  words.insert(words.end(), {"--", options.file});
+  return words;
+}
+
+Result<pid_t> start(std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  pid_t child = 0;
+  const int failed = posix_spawn(&child, arguments[0], nullptr, nullptr, arguments.data(), environ);
+  if (failed != 0) return Error{words[0] + ": cannot be started: " + std::strerror(failed)};
+  return child;
+}
+
+/// Waits for the child and ends it when its time is up. @return its status; `late` if it was ended
+int wait(pid_t child, double seconds, bool& late) {
+  const int handle = static_cast<int>(syscall(SYS_pidfd_open, child, 0));  // glibc 2.36's header lacks extern "C"
+  pollfd ended{handle, POLLIN, 0};
+  const int timeout_ms = static_cast<int>(std::min(1000 * seconds, 2e9));
+  late = handle >= 0 && poll(&ended, 1, timeout_ms) == 0;
+  if (late) kill(child, SIGKILL);
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (handle >= 0) close(handle);
+  return status;
+}
+
+}  // namespace
+
+bool isCadFile(const std::string& file) {
+  std::string ending = fs::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const char* const known[] = {".step", ".stp", ".iges", ".igs", ".brep", ".rle"};
+  return std::any_of(std::begin(known), std::end(known), [&](const char* one) { return ending == one; });
+}
+
+int importCad(const CadImport& options) {
+  if (!options.check && fs::path(options.out).extension() != ".hpart")
+    return fail(kBadInput, options.out + ": CAD files become a part, expected a name that ends in .hpart");
+  const std::string program = importer();
+  if (program.empty()) return failWithoutImporter(options.file);
+  const auto readable = openRegular(options.file);
+  if (!readable) return fail(kBadInput, options.file + ": " + readable.error());
+  close(*readable);
+  const auto child = start(wordsOf(program, options));
+  if (!child) return fail(kFailed, child.error());
+  bool late = false;
+  const int status = wait(*child, options.time_s, late);
+  if (late || (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL)))
+    return fail(kBadInput, options.file + ": was not read within " + whole(options.time_s) +
+                               " s, nothing was written\n  fix: --time SECONDS for a large file");
+  if (WIFSIGNALED(status))
+    return fail(kBadInput, options.file + ": Open CASCADE broke off while reading it (" + strsignal(WTERMSIG(status)) +
+                               "), nothing was written: the file is damaged, or its shapes are\n  fix: open and save "
+                               "it in a CAD program");
+  return WEXITSTATUS(status);
+}
+
+}  // namespace hapticd::cli

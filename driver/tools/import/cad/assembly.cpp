@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "cad_import/assembly.hpp"
+
+#include <BRep_Builder.hxx>
+#include <Quantity_ColorRGBA.hxx>
+#include <TDF_LabelSequence.hxx>
+#include <TDataStd_Name.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS_Compound.hxx>
+#include <XCAFDoc_ColorTool.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_Location.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <cmath>
+
+namespace hapticd::cad {
+namespace {
+
+constexpr std::size_t kMostNodes = 1'000'000;
+constexpr int kDeepest = 200;
+
+std::string nameOf(const TDF_Label& label) {
+  Handle(TDataStd_Name) name;
+  if (!label.FindAttribute(TDataStd_Name::GetID(), name)) return "";
+  const TCollection_ExtendedString& wide = name->Get();
+  std::string text(static_cast<std::size_t>(wide.LengthOfCString()) + 1, '\0');
+  Standard_PCharacter at = text.data();
+  wide.ToUTF8CString(at);
+  text.resize(text.find('\0'));
+  if (text.rfind("=>[", 0) == 0) return "";  // what a reference without a name is called
+  for (const char* kind : {"COMPOUND", "COMPSOLID", "SOLID", "SHELL", "FACE"})  // and shapes without one
+    if (text == kind) return "";
+  return text;
+}
+
+std::uint32_t packed(const Quantity_ColorRGBA& colour) {
+  Standard_Real rgb[3];
+  colour.GetRGB().Values(rgb[0], rgb[1], rgb[2], Quantity_TOC_sRGB);
+  const auto byte = [](double share) { return static_cast<std::uint32_t>(std::lround(255 * share)) & 255u; };
+  return byte(rgb[0]) | byte(rgb[1]) << 8 | byte(rgb[2]) << 16 | byte(static_cast<double>(colour.Alpha())) << 24;
+}
+
+/// Solids, then shells of no solid, then the faces of no shell as one compound.
+std::vector<TopoDS_Shape> piecesOf(const TopoDS_Shape& shape) {
+  std::vector<TopoDS_Shape> pieces;
+  for (TopExp_Explorer at(shape, TopAbs_SOLID); at.More(); at.Next()) pieces.push_back(at.Current());
+  for (TopExp_Explorer at(shape, TopAbs_SHELL, TopAbs_SOLID); at.More(); at.Next()) pieces.push_back(at.Current());
+  TopExp_Explorer loose(shape, TopAbs_FACE, TopAbs_SHELL);
+  if (!loose.More()) return pieces;
+  TopoDS_Compound sheet;
+  const BRep_Builder builder;
+  builder.MakeCompound(sheet);
+  for (; loose.More(); loose.Next()) builder.Add(sheet, loose.Current());
+  pieces.push_back(sheet);
+  return pieces;
+}
+
+class Tree {
+ public:
+  Tree(const Handle(TDocStd_Document) & document, CadFile& file)
+      : shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
+        colours_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
+        file_(file) {}
+
+  void run() {
+    TDF_LabelSequence roots;
+    shapes_->GetFreeShapes(roots);
+    for (const TDF_Label& root : roots) walk(root, gp_Trsf(), -1, 0, 0);
+  }
+
+ private:
+  std::uint32_t colourOf(const TDF_Label& label) const {
+    Quantity_ColorRGBA colour;
+    for (const XCAFDoc_ColorType type : {XCAFDoc_ColorSurf, XCAFDoc_ColorGen})
+      if (colours_->GetColor(label, type, colour)) return packed(colour);
+    return 0;
+  }
+
+  void colourParts(const TDF_Label& label) {
+    TDF_LabelSequence parts;
+    XCAFDoc_ShapeTool::GetSubShapes(label, parts);
+    for (const TDF_Label& part : parts)
+      if (const std::uint32_t colour = colourOf(part); colour != 0)
+        file_.colours[XCAFDoc_ShapeTool::GetShape(part).TShape().get()] = colour;
+  }
+
+  void walk(const TDF_Label& label, gp_Trsf pose, int parent, std::uint32_t colour, int depth) {
+    if (depth > kDeepest) throw CadError("assemblies are nested deeper than 200 levels");
+    TDF_Label shape = label;
+    if (XCAFDoc_ShapeTool::IsReference(label)) {
+      pose.Multiply(XCAFDoc_ShapeTool::GetLocation(label).Transformation());
+      XCAFDoc_ShapeTool::GetReferredShape(label, shape);
+    }
+    Node node;
+    node.body_name = nameOf(shape);
+    node.name = shape == label ? "" : nameOf(label);
+    if (node.name.empty()) node.name = node.body_name;
+    node.parent = parent;
+    node.pose = pose;
+    node.colour = colourOf(label);
+    if (node.colour == 0) node.colour = colourOf(shape);
+    if (node.colour == 0) node.colour = colour;
+    if (!XCAFDoc_ShapeTool::IsAssembly(shape)) {
+      colourParts(shape);
+      return addShape(XCAFDoc_ShapeTool::GetShape(shape), node, file_);
+    }
+    const auto index = static_cast<int>(file_.nodes.size());
+    file_.nodes.push_back(node);
+    TDF_LabelSequence components;
+    XCAFDoc_ShapeTool::GetComponents(shape, components);
+    for (const TDF_Label& component : components) walk(component, pose, index, node.colour, depth + 1);
+  }
+
+  Handle(XCAFDoc_ShapeTool) shapes_;
+  Handle(XCAFDoc_ColorTool) colours_;
+  CadFile& file_;
+};
+
+}  // namespace
+
+void addShape(const TopoDS_Shape& shape, Node node, CadFile& file) {
+  if (shape.IsNull()) return;
+  const std::vector<TopoDS_Shape> pieces = piecesOf(shape);
+  if (file.nodes.size() + pieces.size() >= kMostNodes) throw CadError("more than 1,000,000 instances");
+  const gp_Trsf pose = node.pose;
+  const std::string name = node.name, body_name = node.body_name;
+  if (pieces.size() > 1) {
+    const int parent = static_cast<int>(file.nodes.size());
+    file.nodes.push_back(node);
+    node.parent = parent;
+  }
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    node.shape = pieces[i].Located(TopLoc_Location());
+    node.pose = pose * pieces[i].Location().Transformation();
+    const auto own = file.colours.find(pieces[i].TShape().get());
+    Node& added = file.nodes.emplace_back(node);
+    if (own != file.colours.end()) added.colour = own->second;
+    if (pieces.size() == 1) continue;
+    added.name = added.body_name = (body_name.empty() ? name : body_name) + " " + std::to_string(i + 1);
+  }
+}
+
+void readTree(const Handle(TDocStd_Document) & document, CadFile& file) {
+  Tree(document, file).run();
+}
+
+}  // namespace hapticd::cad

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+/// The tree of an XCAF document.
+#pragma once
+#include <TDocStd_Document.hxx>
+
+#include "cad_import/cad_file.hpp"
+
+namespace hapticd::cad {
+
+/// [main] Appends the shapes of a document with their names, colours and poses. @throws CadError
+void readTree(const Handle(TDocStd_Document) & document, CadFile& file);
+
+/// [main] Appends a shape: one node for each solid, free shell and heap of loose faces in it, in a common assembly if
+/// there are several.
+void addShape(const TopoDS_Shape& shape, Node node, CadFile& file);
+
+}  // namespace hapticd::cad

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+/// One body: its faces, loops, coedges, edges and vertices as records of a part.
+#pragma once
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Vertex.hxx>
+#include <optional>
+#include <string>
+
+#include "cad_import/healing.hpp"
+#include "cad_import/recognition.hpp"
+#include "cad_import/surfaces.hpp"
+
+namespace hapticd::cad {
+
+class BodyBuilder {
+ public:
+  /// @param name of the body, for losses
+  BodyBuilder(const Colours& colours, std::string name, brep::Part& part);
+
+  /// [main] Appends the body and returns its index. Faces that cannot be kept become losses.
+  std::uint32_t add(const TopoDS_Shape& shape, std::uint32_t name, std::uint32_t colour);
+  /// How many of its spline faces were planes, cylinders and their kind.
+  std::size_t recognisedFaces() const { return recognised_; }
+
+ private:
+  struct Sizes {
+    std::size_t surfaces, curves3, curves2, reals, vertices, edges, coedges, loops, faces, losses;
+  };
+  Sizes sizes() const;
+  void cutBack(const Sizes& to);
+  void tryFace(const TopoDS_Face& face);
+  bool addDisguised(const TopoDS_Face& face);
+  void addFace(const TopoDS_Face& face, const brep::Surface* shape);
+  void addLoop(const TopoDS_Face& face, const TopoDS_Shape& wire);
+  void addCoedge(const TopoDS_Face& face, const TopoDS_Edge& edge);
+  std::uint32_t edgeOf(const TopoDS_Edge& edge);
+  std::uint32_t vertexOf(const TopoDS_Vertex& vertex);
+  void note(const std::string& what, const Kept& kept);
+  bool isClosed(const brep::Body& body) const;
+
+  const Colours& colours_;
+  std::string name_;
+  brep::Part& part_;
+  TopTools_IndexedMapOfShape edges_, vertices_;  ///< of the body; equal in whatever orientation
+  std::vector<std::uint32_t> edge_index_, vertex_index_;
+  std::size_t face_number_ = 0, recognised_ = 0;
+  std::optional<Unfolding> unfolding_;  ///< of the face in work, if its surface was recognised
+};
+
+}  // namespace hapticd::cad

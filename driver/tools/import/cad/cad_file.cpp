@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "cad_import/cad_file.hpp"
+
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <IGESCAFControl_Reader.hxx>
+#include <IGESData_IGESModel.hxx>
+#include <STEPCAFControl_Reader.hxx>
+#include <TColStd_SequenceOfAsciiString.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS_Compound.hxx>
+#include <XCAFApp_Application.hxx>
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "cad_import/assembly.hpp"
+#include "cad_import/losses.hpp"
+#include "cad_import/progress.hpp"
+
+namespace hapticd::cad {
+namespace {
+
+Handle(TDocStd_Document) newDocument() {
+  Handle(TDocStd_Document) document;
+  XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document);
+  return document;
+}
+
+/// A unit's name as files of this project write it.
+std::string shortUnit(std::string unit) {
+  std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::pair<const char*, const char*> known[] = {{"millimetre", "mm"}, {"millimeter", "mm"}, {"centimetre", "cm"},
+                                                       {"centimeter", "cm"}, {"metre", "m"},       {"meter", "m"},
+                                                       {"inch", "in"},       {"inches", "in"},     {"foot", "ft"},
+                                                       {"micrometre", "um"}, {"kilometre", "km"}};
+  for (const auto& [name, symbol] : known)
+    if (unit == name) return symbol;
+  return unit;
+}
+
+double millimetresIn(const std::string& unit) {
+  const std::pair<const char*, double> known[] = {{"mm", 1},     {"cm", 10},   {"m", 1000}, {"in", 25.4},
+                                                  {"ft", 304.8}, {"um", 1e-3}, {"km", 1e6}};
+  for (const auto& [symbol, size] : known)
+    if (unit == symbol) return size;
+  return 1;
+}
+
+void readStep(const std::string& file, CadFile& cad) {
+  STEPCAFControl_Reader reader;
+  reader.SetNameMode(true);
+  reader.SetColorMode(true);
+  reader.SetLayerMode(true);
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone)
+    throw CadError("it is not a STEP file, or it is damaged (expected ISO-10303-21 with shapes in it)");
+  TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
+  reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
+  cad.unit = lengths.IsEmpty() ? "mm" : shortUnit(lengths.First().ToCString());
+  Handle(TDocStd_Document) document = newDocument();
+  const Handle(Progress) progress = new Progress("reading shapes");
+  if (!reader.Transfer(document, progress->Start())) throw CadError("there are no shapes in it");
+  readTree(document, cad);
+  findLostFaces(reader.ChangeReader().WS(), millimetresIn(cad.unit), cad.losses);
+}
+
+void readIges(const std::string& file, CadFile& cad) {
+  IGESCAFControl_Reader reader;
+  reader.SetNameMode(true);
+  reader.SetColorMode(true);
+  reader.SetLayerMode(true);
+  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) throw CadError("it is not an IGES file, or it is damaged");
+  const auto model = Handle(IGESData_IGESModel)::DownCast(reader.Model());
+  if (!model.IsNull() && !model->GlobalSection().UnitName().IsNull())
+    cad.unit = shortUnit(model->GlobalSection().UnitName()->ToCString());
+  Handle(TDocStd_Document) document = newDocument();
+  const Handle(Progress) progress = new Progress("reading shapes");
+  if (!reader.Transfer(document, progress->Start())) throw CadError("there are no shapes in it");
+  readTree(document, cad);
+  findLostFaces(reader.WS(), 1, cad.losses);
+}
+
+void readBrep(const std::string& file, CadFile& cad) {
+  TopoDS_Shape shape;
+  const BRep_Builder builder;
+  const Handle(Progress) progress = new Progress("reading shapes");
+  if (!BRepTools::Read(shape, file.c_str(), builder, progress->Start()) || shape.IsNull())
+    throw CadError("it is not a BREP file of Open CASCADE, or it is damaged");
+  cad.unit = "mm";
+  Node node;
+  node.name = node.body_name = std::filesystem::path(file).stem().string();
+  addShape(shape, node, cad);
+}
+
+/// The loose faces of a file that knows no solids (IGES) are looked at together, so that they can be sewn.
+void gatherLooseFaces(CadFile& cad, const std::string& name) {
+  TopoDS_Compound all;
+  const BRep_Builder builder;
+  builder.MakeCompound(all);
+  int gathered = 0;
+  std::vector<Node> kept;
+  for (const Node& node : cad.nodes) {
+    const bool loose = node.parent < 0 && !node.shape.IsNull() && node.shape.ShapeType() == TopAbs_COMPOUND;
+    if (loose) {
+      builder.Add(all, node.shape.Moved(TopLoc_Location(node.pose)));
+      if (node.colour != 0)
+        for (TopExp_Explorer at(node.shape, TopAbs_FACE); at.More(); at.Next())
+          cad.colours.emplace(at.Current().TShape().get(), node.colour);
+      ++gathered;
+    } else {
+      kept.push_back(node);
+    }
+  }
+  if (gathered < 2) return;
+  std::swap(cad.nodes, kept);
+  for (Node& node : cad.nodes)  // the roots that went stood among the others
+    if (node.parent >= 0) return std::swap(cad.nodes, kept);
+  Node node;
+  node.name = node.body_name = name;
+  node.shape = all;
+  cad.nodes.push_back(node);
+}
+
+}  // namespace
+
+CadFile readCad(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  CadFile cad;
+  cad.unit = "mm";
+  if (ending == ".step" || ending == ".stp")
+    readStep(file, cad);
+  else if (ending == ".iges" || ending == ".igs")
+    readIges(file, cad);
+  else if (ending == ".brep" || ending == ".rle")
+    readBrep(file, cad);
+  else
+    throw CadError("expected a name that ends in .step, .stp, .iges, .igs, .brep or .rle");
+  const std::string name = std::filesystem::path(file).stem().string();
+  gatherLooseFaces(cad, name);
+  for (Node& node : cad.nodes) {
+    if (node.parent < 0 && node.name.empty()) node.name = name;
+    if (node.parent < 0 && node.body_name.empty()) node.body_name = node.name;
+  }
+  return cad;
+}
+
+}  // namespace hapticd::cad

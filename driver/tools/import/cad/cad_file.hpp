@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+/// A CAD file as Open CASCADE reads it: a tree of assemblies and shapes with names, colours and poses. Lengths are
+/// millimetres here: that is what its readers give, whatever the unit of the file.
+#pragma once
+#include <TopoDS_Shape.hxx>
+#include <cstdint>
+#include <gp_Trsf.hxx>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "kernels/brep/part.hpp"
+
+namespace hapticd::cad {
+
+/// What the user must know about a file that cannot be imported.
+struct CadError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// An assembly, or a shape where it stands.
+struct Node {
+  std::string name;
+  std::string body_name;     ///< of the shape itself; instances have names of their own
+  std::uint32_t colour = 0;  ///< as in brep::Face
+  int parent = -1;           ///< index of the assembly that holds it
+  TopoDS_Shape shape;        ///< null: an assembly. Its own location is none.
+  gp_Trsf pose;              ///< to the frame of the file [mm]
+};
+
+struct CadFile {
+  std::vector<Node> nodes;                                 ///< parents stand before their children
+  std::string unit;                                        ///< "mm", "in"
+  std::unordered_map<const void*, std::uint32_t> colours;  ///< of faces and other shapes, by their TShape
+  std::vector<brep::Loss> losses;                          ///< faces of the file that the reader could not make
+};
+
+/// [main] Reads .step, .stp, .iges, .igs, .brep and .rle. @throws CadError
+CadFile readCad(const std::string& file);
+
+}  // namespace hapticd::cad

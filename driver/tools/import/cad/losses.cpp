@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "cad_import/losses.hpp"
+
+#include <Bnd_Box.hxx>
+#include <IGESGeom_TrimmedSurface.hxx>
+#include <Interface_Check.hxx>
+#include <Interface_EntityIterator.hxx>
+#include <Interface_Graph.hxx>
+#include <Interface_InterfaceModel.hxx>
+#include <StepGeom_CartesianPoint.hxx>
+#include <StepRepr_RepresentationItem.hxx>
+#include <StepShape_FaceSurface.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_Binder.hxx>
+#include <Transfer_TransientProcess.hxx>
+#include <XSControl_TransferReader.hxx>
+#include <cmath>
+#include <gp_Pnt.hxx>
+#include <unordered_set>
+
+namespace hapticd::cad {
+namespace {
+
+using Entity = Handle(Standard_Transient);
+
+bool isFace(const Entity& entity) {
+  return entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface)) || entity->IsKind(STANDARD_TYPE(IGESGeom_TrimmedSurface));
+}
+
+/// Extent of the points that a face of a STEP file is made of [mm]; 0 where none are found.
+double extentOf(const Interface_Graph& graph, const Entity& face, double to_mm) {
+  constexpr std::size_t kMostEntities = 20'000;
+  Bnd_Box box;
+  std::vector<Entity> open{face};
+  std::unordered_set<const Standard_Transient*> met;
+  while (!open.empty() && met.size() < kMostEntities) {
+    const Entity entity = open.back();
+    open.pop_back();
+    if (!met.insert(entity.get()).second) continue;
+    if (const auto point = Handle(StepGeom_CartesianPoint)::DownCast(entity); !point.IsNull()) {
+      if (point->NbCoordinates() == 3 &&
+          std::isfinite(point->CoordinatesValue(1) + point->CoordinatesValue(2) + point->CoordinatesValue(3)))
+        box.Add(gp_Pnt(point->CoordinatesValue(1), point->CoordinatesValue(2), point->CoordinatesValue(3)));
+      continue;
+    }
+    for (Interface_EntityIterator next = graph.Shareds(entity); next.More(); next.Next()) open.push_back(next.Value());
+  }
+  const double extent = box.IsVoid() ? 0 : to_mm * std::sqrt(box.SquareExtent());
+  return extent < 1e9 ? extent : 1e9;
+}
+
+std::string reasonOf(const Handle(Transfer_Binder) & binder) {
+  if (binder.IsNull()) return "it belongs to no solid, shell or set of surfaces that could be read";
+  const Handle(Interface_Check) check = binder->Check();
+  if (check->NbFails() > 0) return check->CFail(1);
+  if (check->NbWarnings() > 0) return check->CWarning(1);
+  return "the reader made nothing of it";
+}
+
+std::string nameOf(const Handle(Interface_InterfaceModel) & model, const Entity& entity) {
+  const Handle(TCollection_HAsciiString) label = model->StringLabel(entity);
+  std::string text = "face " + std::string(label.IsNull() ? "" : label->ToCString());
+  const auto item = Handle(StepRepr_RepresentationItem)::DownCast(entity);
+  if (!item.IsNull() && !item->Name().IsNull() && item->Name()->Length() > 0)
+    text += " '" + std::string(item->Name()->ToCString()) + "'";
+  return text;
+}
+
+}  // namespace
+
+void findLostFaces(const Handle(XSControl_WorkSession) & session, double to_mm, std::vector<brep::Loss>& losses) {
+  const Handle(Interface_InterfaceModel) model = session->Model();
+  const Handle(Transfer_TransientProcess) made = session->TransferReader()->TransientProcess();
+  if (model.IsNull() || made.IsNull()) return;
+  std::vector<Entity> lost;
+  for (Standard_Integer i = 1; i <= model->NbEntities(); ++i) {
+    const Entity entity = model->Value(i);
+    if (!isFace(entity)) continue;
+    const Handle(Transfer_Binder) binder = made->Find(entity);
+    if (binder.IsNull() || TransferBRep::ShapeResult(binder).IsNull()) lost.push_back(entity);
+  }
+  if (lost.empty()) return;
+  const Interface_Graph graph(model);
+  for (const Entity& entity : lost)
+    losses.push_back(
+        {nameOf(model, entity), reasonOf(made->Find(entity)), 1e-3 * extentOf(graph, entity, to_mm), brep::kNone});
+}
+
+}  // namespace hapticd::cad

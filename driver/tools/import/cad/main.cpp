@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd-import`: a CAD file to a part file. `hapticd import` starts it, and takes its end for the file's fault.
+#include <sys/prctl.h>
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Standard_ErrorHandler.hxx>
+#include <Standard_Failure.hxx>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <new>
+
+#include "base/regular_file.hpp"
+#include "cad_import/part_builder.hpp"
+#include "kernels/brep/part_file.hpp"
+
+namespace hapticd::cad {
+namespace {
+
+constexpr int kWorked = 0, kFailed = 1, kBadInput = 2;
+
+struct Options {
+  std::string file, out;
+  double memory_mb = 0, time_s = 0;  ///< 0: no limit
+  bool check = false, json = false;
+};
+
+/// What the file may cost. Sanitizers take more addresses than any limit.
+void setLimits(const Options& options) {
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const auto limit = [](auto resource, double most) {
+    const rlimit value{static_cast<rlim_t>(most), static_cast<rlim_t>(most)};
+    if (most > 0) setrlimit(resource, &value);
+  };
+  limit(RLIMIT_CPU, options.time_s);
+#ifndef HAPTICD_SANITIZED
+  limit(RLIMIT_AS, options.memory_mb * 1024 * 1024);
+#endif
+}
+
+int fail(int exit_code, const std::string& message) {
+  std::fprintf(stderr, "error: %s\n", message.c_str());
+  return exit_code;
+}
+
+int import(const Options& options) {
+  const auto begun = std::chrono::steady_clock::now();
+  Report report;
+  CadFile file = readCad(options.file);
+  brep::Part part = buildPart(file, report);
+  part.source.file = std::filesystem::path(options.file).filename().string();
+  const std::string bytes = brep::writePart(part);
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  if (!options.check)
+    if (const auto written = writeWhole(options.out, bytes); !written) return fail(kFailed, written.error());
+  const std::string out = options.check ? options.file : options.out;
+  std::fputs((options.json ? jsonOf(part, report, out) : textOf(part, report, out)).c_str(), stdout);
+  return kWorked;
+}
+
+int guarded(const Options& options) {
+  try {
+    OCC_CATCH_SIGNALS
+    return import(options);
+  } catch (const Standard_Failure& failure) {
+    return fail(kBadInput, options.file + ": Open CASCADE failed: " + failure.DynamicType()->Name() + " " +
+                               failure.GetMessageString());
+  } catch (const std::bad_alloc&) {
+    return fail(kBadInput, options.file + ": it needs more memory than is allowed\n  fix: --memory MEGABYTES");
+  } catch (const std::exception& error) {
+    return fail(kBadInput, options.file + ": " + error.what());
+  }
+}
+
+}  // namespace
+}  // namespace hapticd::cad
+
+int main(int argc, char** argv) {
+  CLI::App app("Converts CAD files (STEP, IGES, BREP) into parts. hapticd import starts it.", "hapticd-import");
+  hapticd::cad::Options options;
+  app.add_option("file", options.file, ".step, .stp, .iges, .igs, .brep or .rle")->required();
+  app.add_option("-o,--out", options.out, "the part file, .hpart");
+  app.add_option("--memory", options.memory_mb, "most memory [MB]");
+  app.add_option("--time", options.time_s, "most time of the processor [s]");
+  app.add_flag("--check", options.check, "write nothing, say what would be lost");
+  app.add_flag("--json", options.json, "report as JSON");
+  CLI11_PARSE(app, argc, argv);
+  hapticd::cad::setLimits(options);
+  // What Open CASCADE tells goes nowhere: the report has what matters.
+  Message::DefaultMessenger()->ChangePrinters().Clear();
+  return hapticd::cad::guarded(options);
+}

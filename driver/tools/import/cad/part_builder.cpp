@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "cad_import/part_builder.hpp"
+
+#include <BRepBuilderAPI_Transform.hxx>
+#include <Standard_Failure.hxx>
+#include <cmath>
+#include <gp_Quaternion.hxx>
+#include <map>
+
+#include "cad_import/bodies.hpp"
+#include "cad_import/progress.hpp"
+
+namespace hapticd::cad {
+namespace {
+
+using brep::kNone;
+using brep::Part;
+
+class PartBuilder {
+ public:
+  PartBuilder(CadFile& file, Report& report) : file_(file), report_(report) {}
+
+  Part run() {
+    part_.source.unit = file_.unit;
+    part_.losses = file_.losses;
+    const Handle(Progress) progress = new Progress("converting");
+    Message_ProgressScope scope(progress->Start(), "converting", static_cast<double>(file_.nodes.size()));
+    std::vector<std::uint32_t> instance_of;
+    for (Node& node : file_.nodes) {
+      instance_of.push_back(addNode(node, instance_of));
+      scope.Next();
+    }
+    if (part_.faces.empty())
+      throw CadError(part_.losses.empty() ? "there are no faces in it"
+                                          : "none of its faces can be kept; the first: " + part_.losses.front().what +
+                                                ": " + part_.losses.front().reason);
+    brep::linkCoedges(part_);
+    return std::move(part_);
+  }
+
+ private:
+  std::uint32_t nameIndex(const std::string& name) {
+    if (name.empty()) return kNone;
+    const auto [known, added] = names_.emplace(name, static_cast<std::uint32_t>(part_.names.size()));
+    if (added) part_.names.push_back(name);
+    return known->second;
+  }
+
+  std::uint32_t addNode(Node& node, const std::vector<std::uint32_t>& instance_of) {
+    brep::Instance instance;
+    instance.name = nameIndex(node.name);
+    instance.colour = node.colour;
+    if (node.parent >= 0) instance.parent = instance_of[static_cast<std::size_t>(node.parent)];
+    if (!node.shape.IsNull()) {
+      instance.body = bodyOf(node);
+      if (instance.body == kNone) return kNone;
+    }
+    place(node.pose, instance);
+    part_.instances.push_back(instance);
+    return static_cast<std::uint32_t>(part_.instances.size() - 1);
+  }
+
+  static bool isRigid(const gp_Trsf& pose) { return !pose.IsNegative() && std::abs(pose.ScaleFactor() - 1) < 1e-12; }
+
+  /// The rotation is made orthogonal to the last bit that a part file asks for.
+  static void place(const gp_Trsf& pose, brep::Instance& instance) {
+    if (!isRigid(pose)) return;  // the body has the pose in it
+    const gp_Quaternion turn = pose.GetRotation();
+    const gp_Mat rows = turn.Normalized().GetMatrix();
+    for (int i = 0; i < 3; ++i) {
+      const auto at = static_cast<std::size_t>(4 * i);
+      for (int j = 0; j < 3; ++j) instance.pose[at + static_cast<std::size_t>(j)] = rows(i + 1, j + 1);
+      instance.pose[at + 3] = pose.TranslationPart().Coord(i + 1) * kMetres;
+    }
+  }
+
+  /// A body is built once, but mirrored and scaled ones where they stand. kNone: nothing of it can be kept.
+  std::uint32_t bodyOf(Node& node) {
+    const std::string name = node.body_name.empty() ? node.name : node.body_name;
+    if (!isRigid(node.pose)) {
+      report_.steps.push_back(name + ": mirrored or scaled, made a body of its own");
+      return build(BRepBuilderAPI_Transform(node.shape, node.pose, true).Shape(), name, node.colour);
+    }
+    const auto key = std::pair(static_cast<const void*>(node.shape.TShape().get()), node.shape.Orientation());
+    if (const auto known = bodies_.find(key); known != bodies_.end()) return known->second;
+    return bodies_[key] = build(node.shape, name, node.colour);
+  }
+
+  std::uint32_t build(const TopoDS_Shape& shape, const std::string& name, std::uint32_t colour) {
+    TopoDS_Shape whole = shape;
+    try {
+      whole = healed(shape, name, file_.colours, report_.steps);
+    } catch (const Standard_Failure& failure) {
+      report_.steps.push_back(name + ": healing failed (" + failure.DynamicType()->Name() + "), left as it is");
+    }
+    BodyBuilder builder(file_.colours, name, part_);
+    const std::uint32_t body = builder.add(whole, nameIndex(name), colour);
+    report_.recognised += builder.recognisedFaces();
+    if (part_.bodies[body].face_count > 0) return body;
+    part_.bodies.pop_back();
+    return kNone;
+  }
+
+  CadFile& file_;
+  Report& report_;
+  Part part_;
+  std::map<std::string, std::uint32_t> names_;
+  std::map<std::pair<const void*, TopAbs_Orientation>, std::uint32_t> bodies_;
+};
+
+}  // namespace
+
+Part buildPart(CadFile& file, Report& report) {
+  return PartBuilder(file, report).run();
+}
+
+}  // namespace hapticd::cad

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+/// Where an import stands, on a terminal; and limits of time for single steps of it.
+#pragma once
+#include <Message_ProgressIndicator.hxx>
+#include <chrono>
+#include <string>
+
+namespace hapticd::cad {
+
+/// Open CASCADE asks this object while it works: it shows how far the work is, and stops it after a time.
+class Progress : public Message_ProgressIndicator {
+ public:
+  /// @param what words for the terminal. @param seconds the step is broken off after these; 0: never.
+  explicit Progress(std::string what, double seconds = 0);
+  ~Progress() override;
+  Standard_Boolean UserBreak() override;
+  /// Whether the limit of time ended the step.
+  bool late() const { return late_; }
+
+ protected:
+  void Show(const Message_ProgressScope& scope, const Standard_Boolean force) override;
+
+ private:
+  std::string what_;
+  std::chrono::steady_clock::time_point end_, shown_;
+  bool limited_ = false, late_ = false, terminal_ = false, drawn_ = false;
+};
+
+}  // namespace hapticd::cad

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+/// Planes, cylinders, cones and spheres that a CAD program wrote as splines: their feet have closed forms.
+#pragma once
+#include <Geom_Surface.hxx>
+#include <optional>
+
+#include "cad_import/curves.hpp"
+
+namespace hapticd::cad {
+
+/// [main] The surface that a spline surface is over [lo, hi], if it is one to within 1e-6 mm everywhere. Its own normal
+/// points where that of the spline does, so that loops keep their sense.
+std::optional<brep::Surface> recognised(const Handle(Geom_Surface) & surface, const brep::Vector2& lo,
+                                        const brep::Vector2& hi);
+
+/// The curves of a face's edges in the parameters of the surface that was recognised.
+class Unfolding {
+ public:
+  /// @param surface the spline, @param lo, hi the range of the face in it
+  Unfolding(const Handle(Geom_Surface) & surface, const brep::Vector2& lo, const brep::Vector2& hi,
+            const brep::Surface& shape);
+
+  /// [main] Appends the pcurve of an edge and widens the box of the face by it.
+  /// @param curve of the edge in space. @param record the same as it stands in the part. @param uv a point of the old
+  /// pcurve, at `t`: it tells on which side of a seam the coedge runs. @param within [m] farthest it may be from the
+  /// edge
+  /// @throws Unkept if the edge leaves the surface
+  std::uint32_t addPlaneCurve(const Handle(Geom_Curve) & curve, const brep::Curve3& record, double t0, double t1,
+                              const gp_Pnt2d& uv, double t, double within, brep::Part& part);
+
+  const brep::Vector2& lo() const { return lo_; }
+  const brep::Vector2& hi() const { return hi_; }
+
+ private:
+  struct Sample {
+    double t;
+    brep::Vector2 uv, slope;
+  };
+  double angleAt(const gp_Pnt2d& uv) const;
+  Sample sampleAt(const Handle(Geom_Curve) & curve, double t, double near_u, double within) const;
+  void widen(const brep::Vector2& uv);
+
+  Handle(Geom_Surface) surface_;
+  brep::Vector2 middle_;
+  brep::Surface shape_;
+  brep::Vector2 lo_{1e300, 1e300}, hi_{-1e300, -1e300};
+};
+
+}  // namespace hapticd::cad

@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""Files that are no CAD files, or damaged ones: an error that names the file, or a part with its losses; never a crash.
+
+Usage: cad_hostile.py HAPTICD MAKE_PARTS
+"""
+import os
+import random
+import re
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish, program
+
+HAPTICD, MAKE_PARTS = sys.argv[1:3]
+run = program(HAPTICD, timeout=800)
+folder = tempfile.mkdtemp(prefix="hapticd-hostile-")
+join = lambda name: os.path.join(folder, name)
+part = join("out.hpart")
+source = random.Random(3)
+
+
+def put(name, content):
+    with open(join(name), "wb") as out:
+        out.write(content)
+    return join(name)
+
+
+def refused(what, file, *arguments):
+    code, out, err = run("import", file, "-o", part, *arguments)
+    check(what, code == 2 and err.startswith("error: ") and file in err and not os.path.exists(part), f"exit {code}: {out}{err}")
+
+
+def survived(what, file):
+    """Read or refused, but told; what is written can be read."""
+    if os.path.exists(part):
+        os.remove(part)
+    code, out, err = run("import", file, "-o", part, "--time", "20")
+    good = code == 0 or (code == 2 and err.startswith("error: ") and file in err)
+    if good and code == 0:
+        good = run("part", "info", part)[0] == 0
+    check(what, good, f"exit {code}: {out}{err}")
+    if os.path.exists(part):
+        os.remove(part)
+    return code
+
+
+subprocess.run([MAKE_PARTS, folder], check=True, timeout=300)
+step, iges, brep = (open(join(name), "rb").read() for name in ("bracket.step", "box.iges", "loose.brep"))
+refused("there is no such file", join("nowhere.step"))
+for ending in ("step", "iges", "brep"):
+    refused(f"an empty .{ending}", put(f"empty.{ending}", b""))
+    refused(f"noise in a .{ending}", put(f"noise.{ending}", source.randbytes(20000)))
+    refused(f"text in a .{ending}", put(f"text.{ending}", b"a part it is not\n" * 50))
+refused("STEP without shapes", put("bare.step", re.sub(rb"(?s)DATA;.*ENDSEC;", b"DATA;\nENDSEC;", step)))
+refused("an IGES file that is called .step", put("other.step", iges))
+refused("too little memory", put("large.step", step), "--memory", "64")
+
+for name, whole in (("step", step), ("iges", iges), ("brep", brep)):
+    for share in (0.3, 0.6, 0.9):
+        survived(f"a .{name} that ends after {share:.0%}", put(f"cut.{name}", whole[:int(share * len(whole))]))
+    for trial in range(4):  # digits become others: references, counts and coordinates are wrong
+        damaged = bytearray(whole)
+        digits = [i for i, b in enumerate(damaged) if 48 <= b <= 57]
+        for i in source.sample(digits, 12):
+            damaged[i] = 48 + source.randrange(10)
+        survived(f"a .{name} with wrong digits, {trial}", put(f"wrong.{name}", bytes(damaged)))
+survived("huge coordinates", put("huge.step", re.sub(rb"CARTESIAN_POINT\('',\(", b"CARTESIAN_POINT('',(9.E300,", step, count=3)))
+survived("no numbers", put("nan.step", step.replace(b"(0.,0.,", b"(NAN,0.,", 3)))
+survived("a face of itself", put("loop.step", re.sub(rb"(#\d+) = OPEN_SHELL|(#\d+) = CLOSED_SHELL\('',\((#\d+)", rb"\2 = CLOSED_SHELL('',(\2", step)))
+survived("a huge count", put("count.brep", re.sub(rb"Surfaces \d+", b"Surfaces 2000000000", brep)))
+finish()
