@@ -92,8 +92,11 @@ def pushes(run, event):
     while time.monotonic() < end:
         if run.process.poll() is not None and event.startswith("disk"):
             return True
-        if run.arm.wait_for_force(0.5):
-            return True
+        try:
+            if run.arm.wait_for_force(0.5):
+                return True
+        except TimeoutError:  # the arm is not even opened yet
+            pass
     return False
 
 
