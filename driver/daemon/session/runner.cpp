@@ -216,8 +216,9 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   std::atomic<bool> ready{false};
   const bool may_lag = mayLag();
   const auto hung = [&watched] { watch::dieOf("a step that did not come back", watched.inServo()); };
-  watch::Watchdog watchdog(watched, hung,
-                           may_lag ? watch::Watchdog::kMissedInVirtualMachine : watch::Watchdog::kMissedAfter);
+  using watch::Watchdog;
+  Watchdog watchdog(watched, hung, may_lag ? Watchdog::kMissedInVirtualMachine : Watchdog::kMissedAfter,
+                    may_lag ? Watchdog::kStuckInVirtualMachine : Watchdog::kStuckAfter);
   watchdog.onLateEnd([] { watch::endAnyway(keepsTheEnd()); });
   if (const auto code = watchdog.start(options_.priority + 1))
     return Error{"cannot start the watchdog thread: " + code.message()};

@@ -56,7 +56,7 @@ bool Watchdog::judge(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcep
     if (hangs && ++checks_since_cut_ == kHungAfter / kCheckEvery) hung_();
     return false;
   }
-  if (counted_ <= (phase.waits ? missed_after_ : kStuckAfter) || mayBePaused(phase, overdue)) return false;
+  if (counted_ <= patience(phase) || mayBePaused(phase, overdue)) return false;
   servo_.cut(static_cast<double>(overdue) * kSecondsPerNanosecond);
   cut_in_ = phase;
   checks_since_cut_ = 0;
@@ -64,9 +64,14 @@ bool Watchdog::judge(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcep
   return true;
 }
 
+Nanoseconds Watchdog::patience(Phase phase) const noexcept {
+  if (phase.waits) return missed_after_;
+  return servo_.simulated() ? std::max(stuck_after_, kStuckSimulated) : stuck_after_;
+}
+
 /// Where no hand can be hurt, a thread that was merely not scheduled is no fault.
 bool Watchdog::mayBePaused(Phase phase, Nanoseconds stuck) const noexcept {
-  const bool works = !phase.waits && servo_.cpuTime() - cpu_at_phase_ + kCheckEvery > kStuckAfter;
+  const bool works = !phase.waits && servo_.cpuTime() - cpu_at_phase_ + kCheckEvery > kStuckSimulated;
   return servo_.simulated() && !works && stuck <= kSimulatedPause;
 }
 

@@ -19,6 +19,9 @@ class Watchdog {
   static constexpr Nanoseconds kLateCounts = 1'000'000;  ///< of such a way
   /// With the way to the next look 3 ms, in which 8.5 N give a free tip of 75 g 4.3 mJ.
   static constexpr Nanoseconds kStuckAfter = 2'500'000;
+  /// A virtual machine charges a thread for time that its processor was somewhere else.
+  static constexpr Nanoseconds kStuckInVirtualMachine = 10'000'000;
+  static constexpr Nanoseconds kStuckSimulated = 20'000'000;  ///< at least: no hand is hurt by a simulated arm
   /// The tick to come is so late. A virtual machine has its processors paused one by one.
   static constexpr Nanoseconds kMissedAfter = 2'500'000, kMissedInVirtualMachine = 50'000'000;
   static constexpr Nanoseconds kHungAfter = 500'000'000;       ///< nothing comes back after that
@@ -26,8 +29,10 @@ class Watchdog {
   static constexpr Nanoseconds kSimulatedPause = 200'000'000;  ///< a busy machine may pause a simulation so long
 
   /// [main] @param hung what ends the process  @param missed_after [ns] that a tick may begin late
-  Watchdog(Watched& servo, std::function<void()> hung, Nanoseconds missed_after = kMissedAfter)
-      : servo_(servo), hung_(std::move(hung)), missed_after_(missed_after) {}
+  /// @param stuck_after [ns] that it may take
+  Watchdog(Watched& servo, std::function<void()> hung, Nanoseconds missed_after = kMissedAfter,
+           Nanoseconds stuck_after = kStuckAfter)
+      : servo_(servo), hung_(std::move(hung)), missed_after_(missed_after), stuck_after_(stuck_after) {}
   ~Watchdog() { stop(); }
 
   /// [main] Before start(): what ends the process where its end was asked for and does not come.
@@ -38,9 +43,9 @@ class Watchdog {
   void stop();
 
   /// [any] One look; the thread does nothing else. True: it cut. A look that comes late saw nothing of the time before
-  /// it: the whole machine may have stood still, this thread and the servo alike. Such a time counts as one millisecond,
-  /// so that the servo gets a moment to end its tick; a servo that is stuck is then cut by the third look at the latest
-  /// if all come late, and within 3 ms once the looks are on time.
+  /// it: the whole machine may have stood still, this thread and the servo alike. Such a time counts as one
+  /// millisecond, so that the servo gets a moment to end its tick; a servo that is stuck is then cut by the third look
+  /// at the latest if all come late, and within 3 ms once the looks are on time.
   bool check(Nanoseconds now) noexcept;
 
   uint64_t cuts() const noexcept { return cuts_.load(); }
@@ -54,11 +59,12 @@ class Watchdog {
   };
   bool judge(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcept;
   void watchEnd() noexcept;
+  Nanoseconds patience(Phase phase) const noexcept;
   bool mayBePaused(Phase phase, Nanoseconds stuck) const noexcept;
 
   Watched& servo_;
   std::function<void()> hung_, late_;
-  Nanoseconds missed_after_;
+  Nanoseconds missed_after_, stuck_after_;
 
   Phase cut_in_;  ///< that phase was cut, once
   Phase phase_;

@@ -23,8 +23,9 @@ double missing(double x, double nu) {
     return 1 - (1 - 2 * nu) * x / (2 * kept * kept);
   }
   const double k = 3 - 4 * nu;
-  const double above = k * std::sinh(2 * x) - 2 * x;
-  const double below = k * std::cosh(2 * x) + 2 * x * x + 5 - 12 * nu + 8 * nu * nu;
+  const double grows = std::exp(2 * x), shrinks = 1 / grows;  // sinh and cosh of our own: the same bits everywhere
+  const double above = k * (grows - shrinks) / 2 - 2 * x;
+  const double below = k * (grows + shrinks) / 2 + 2 * x * x + 5 - 12 * nu + 8 * nu * nu;
   return 1 - above / below;
 }
 

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+/// The numbers that the limiter promises, each at a place where a slip of one operator or constant shows: found missing
+/// by tests/mutation.
+#include <gtest/gtest.h>
+
+#include "servo/safety/limiter.hpp"
+
+namespace hapticd::servo {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kTick = 1e-3;
+
+scene::Limits bare() {
+  scene::Limits limits;
+  limits.ramp_in = 0;
+  limits.slew = 0;
+  return limits;
+}
+
+struct Applied {
+  Vector3d force, torque;
+};
+
+Applied applied(Limiter& limiter, const Vector3d& force, const Vector3d& torque = Vector3d::Zero(),
+                const Vector3d& position = Vector3d::Zero()) {
+  Applied out{force, torque};
+  limiter.apply(out.force, out.torque, position, kTick);
+  return out;
+}
+
+TEST(Limiter, FadesOverTwoCentimetresBeyondTheWorkspace) {
+  scene::Limits limits = bare();
+  limits.workspace = 0.1;
+  for (const auto& [distance, share] :
+       {std::pair{0.05, 1.0}, {0.1, 1.0}, {0.11, 0.5}, {0.115, 0.25}, {0.12, 0.0}, {0.2, 0.0}}) {
+    Limiter limiter(limits, 8.5);
+    EXPECT_NEAR(applied(limiter, {4, 0, 0}, Vector3d::Zero(), {0, distance, 0}).force.x(), 4 * share, 1e-9) << distance;
+    EXPECT_EQ(limiter.clips().ticks[static_cast<size_t>(Limit::kWorkspace)], share < 1 ? 1u : 0u) << distance;
+  }
+}
+
+TEST(Limiter, BoundsTheTorqueAndItsGrowth) {
+  scene::Limits limits = bare();
+  limits.torque = 0.2;
+  Limiter capped(limits, 8.5);
+  EXPECT_NEAR(applied(capped, Vector3d::Zero(), {0, 0.5, 0}).torque.y(), 0.2, 1e-12);
+  EXPECT_EQ(capped.clips().ticks[static_cast<size_t>(Limit::kTorque)], 1u);
+  EXPECT_NEAR(applied(capped, Vector3d::Zero(), {0, 0.1, 0}).torque.y(), 0.1, 1e-12);
+  EXPECT_EQ(capped.clips().ticks[static_cast<size_t>(Limit::kTorque)], 1u) << "it did not bind";
+  limits.torque = 0;
+  limits.torque_slew = 0.5;
+  Limiter slow(limits, 8.5);
+  EXPECT_NEAR(applied(slow, Vector3d::Zero(), {0, 0.1, 0}).torque.y(), 0.5 * kTick, 1e-12);
+  EXPECT_NEAR(applied(slow, Vector3d::Zero(), {0, 0.1, 0}).torque.y(), 2 * 0.5 * kTick, 1e-12);
+}
+
+TEST(Limiter, RecoversOnlyFromWhatEndsByItself) {
+  for (const Fault fault : {Fault::kTooFast, Fault::kStopped, Fault::kNotFinite, Fault::kDeviceLost, Fault::kStale}) {
+    Limiter limiter(bare(), 8.5);
+    applied(limiter, {4, 0, 0});
+    limiter.trip(fault);
+    while (!limiter.silent()) applied(limiter, {4, 0, 0});
+    limiter.recover();
+    EXPECT_EQ(limiter.fault() == Fault::kNone, endsByItself(fault)) << static_cast<int>(fault);
+    EXPECT_EQ(limiter.recovered(), endsByItself(fault) ? fault : Fault::kNone);
+  }
+}
+
+TEST(Limiter, SaysWhatTheRampsLetFlow) {
+  scene::Limits limits = bare();
+  limits.ramp_in = 0.1;
+  limits.ramp_out = 0.02;
+  Limiter limiter(limits, 8.5);
+  for (int i = 0; i < 50; ++i) applied(limiter, {4, 0, 0});
+  EXPECT_NEAR(limiter.allowed(), 0.5, 1e-9);
+  limiter.trip(Fault::kStopped);
+  for (int i = 0; i < 10; ++i) applied(limiter, {4, 0, 0});
+  EXPECT_NEAR(limiter.allowed(), 0.25, 1e-9);
+}
+
+TEST(Limiter, ASpeedAtItsLimitIsNoFault) {
+  scene::Limits limits = bare();
+  limits.velocity = 3;
+  Limiter limiter(limits, 8.5);
+  limiter.watchSpeed(3);
+  EXPECT_EQ(limiter.fault(), Fault::kNone);
+  limiter.watchSpeed(3.0001);
+  EXPECT_EQ(limiter.fault(), Fault::kTooFast);
+}
+
+}  // namespace
+}  // namespace hapticd::servo
