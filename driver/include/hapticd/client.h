@@ -32,7 +32,7 @@ typedef struct hapticd_target {
  * was more than 20 ms ago. 3 ms after its last answer the force of a program ramps out, and is gone after 20 ms. */
 typedef struct hapticd_push {
   uint64_t tick;                /* that it answers: must grow and may not lie ahead */
-  double force[3], torque[3];   /* N, N m on the hand */
+  double force[3], torque[3];   /* N, N m on the hand; a torque needs limits.torque in the device file */
   uint64_t woke_ns, written_ns; /* CLOCK_MONOTONIC: when the program woke for that tick and when it wrote; 0: unknown */
 } hapticd_push;
 

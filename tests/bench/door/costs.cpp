@@ -51,7 +51,7 @@ void poses() {
 }
 
 void pushes() {
-  servo::ClientForces forces({scene::ClientMode::kAdd, 3, false}, 10, kPeriod);
+  servo::ClientForces forces({scene::ClientMode::kAdd, 3, false}, 10, 1, kPeriod);
   uint64_t tick = 0;
   const auto collect = [&](int) { forces.collect(tick++, kPeriod); };
   cost("an arm that may be pushed, nobody there", nothing, collect);

@@ -42,7 +42,7 @@ Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& desc
       q_world_device_(described.mount.orientation),
       origin_world_(described.mount.position),
       hand_(device_->hand(), device_->handle(), R_world_device_, origin_world_),
-      clients_(options.clients, limiter.maxForce(), 1 / options.rate),
+      clients_(options.clients, limiter.maxForce(), described.limits.torque, 1 / options.rate),
       limiter_(std::move(limiter)),
       heat_(described.limits.motors),
       weight_(described.limits, limiter_.maxForce()) {}

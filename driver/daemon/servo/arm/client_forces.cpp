@@ -15,6 +15,12 @@ void count(std::atomic<uint64_t>& counter) noexcept HSP_RT {
   counter.store(counter.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
 
+Vector3d bounded(const double* wanted, double most) noexcept HSP_RT {
+  const Vector3d v = Eigen::Map<const Vector3d>(wanted);
+  const double size = v.norm();
+  return size > most ? Vector3d(v * (most / size)) : v;
+}
+
 double boundOf(double wanted, double device) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   return std::min(wanted > 0 ? wanted : kNone, device > 0 ? device : kNone);
@@ -29,9 +35,10 @@ double faded(double gain, bool in, double dt) noexcept HSP_RT {
 
 }  // namespace
 
-ClientForces::ClientForces(const scene::Clients& clients, double device_force, double period)
+ClientForces::ClientForces(const scene::Clients& clients, double device_force, double device_torque, double period)
     : mode_(clients.mode),
       max_force_(boundOf(clients.max_force, device_force)),
+      max_torque_(device_torque),
       oldest_ticks_(static_cast<uint64_t>(std::max(1.0, std::floor(kOldest / period)))) {}
 
 void ClientForces::begin(uint32_t place, const link::PushSlot& slot) noexcept HSP_RT {
@@ -75,10 +82,8 @@ void ClientForces::step(Client& client, uint64_t tick, double dt) noexcept HSP_R
   if (silent && !was_silent) count(client.silences);
   client.gain = faded(client.gain, !silent, dt);
   if (client.gain == 0) return;
-  const Vector3d wanted(client.push.force), turn(client.push.torque);
-  const double size = wanted.norm();
-  force_ += client.gain * (size > max_force_ ? Vector3d(wanted * (max_force_ / size)) : wanted);
-  torque_ += client.gain * turn;
+  force_ += client.gain * bounded(client.push.force, max_force_);
+  torque_ += client.gain * bounded(client.push.torque, max_torque_);
 }
 
 /// A record that answers a newer tick than the last one did.

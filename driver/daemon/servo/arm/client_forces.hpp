@@ -35,8 +35,10 @@ class ClientForces {
     std::atomic<uint64_t> silences{0};     ///< times that it fell silent
   };
 
-  /// [main] @param device_force [N] what the device's limits let through, 0: no bound @param period [s] of the servo
-  ClientForces(const scene::Clients& clients, double device_force, double period);
+  /// [main] @param device_force [N] what the device's limits let through, 0: no bound
+  /// @param device_torque [N m] the same; 0: nobody has said what a wrist may feel, and programs turn nothing
+  /// @param period [s] of the servo
+  ClientForces(const scene::Clients& clients, double device_force, double device_torque, double period);
 
   bool possible() const noexcept { return mode_ != scene::ClientMode::kOff; }  ///< programs may push
 
@@ -64,7 +66,7 @@ class ClientForces {
   bool sound(const hapticd_push& push, uint64_t tick) noexcept HSP_RT;
 
   scene::ClientMode mode_;
-  double max_force_;
+  double max_force_, max_torque_;
   uint64_t oldest_ticks_;
   uint32_t places_ = 0;  ///< that are taken
   uint64_t refused_ = 0;

@@ -15,10 +15,11 @@ namespace hapticd::servo {
 namespace {
 
 constexpr double kBound = 4;  // [N]
+constexpr double kTorque = 1;  // [N m]
 
 struct Pushed {
   explicit Pushed(scene::ClientMode mode = scene::ClientMode::kAdd, double rate = 1000)
-      : dt(1 / rate), forces({mode, kBound, false}, 10, dt) {}
+      : dt(1 / rate), forces({mode, kBound, false}, 10, kTorque, dt) {}
 
   /// One tick; `x` [N] of program 0, unless it is silent.
   void tick(std::optional<double> x = std::nullopt) {
@@ -59,6 +60,23 @@ TEST(ClientForces, FadesInAndIsThenWhatTheProgramWants) {
   EXPECT_EQ(p.forces.torque().y(), 0.02);
   p.tick(-1);
   EXPECT_EQ(p.x(), -1);
+}
+
+TEST(ClientForces, TurnsTheHandOnlyAsFarAsTheDeviceFileLets) {
+  for (const double most : {0.0, 0.1, 2.0}) {
+    ClientForces forces({scene::ClientMode::kAdd, kBound, false}, 10, most, 1e-3);
+    link::PushSlot slot;
+    forces.begin(0, slot);
+    for (uint64_t tick = 1000; tick < 1100; ++tick) {
+      hapticd_push push{};
+      push.tick = tick;
+      push.torque[2] = -1e6;
+      slot.put(push);
+      forces.collect(tick, 1e-3);
+      ASSERT_LE(forces.torque().norm(), most * (1 + 1e-12));
+    }
+    EXPECT_NEAR(forces.torque().z(), -most, 1e-9);
+  }
 }
 
 TEST(ClientForces, IsGoneTwentyMillisecondsAfterTheLastAnswer) {
@@ -107,7 +125,7 @@ TEST(ClientForces, AddUpAndAreBoundedOneByOne) {
     p.tick(1000);
   }
   EXPECT_DOUBLE_EQ(p.x(), kBound + 1.5);
-  ClientForces of_weak_arm({scene::ClientMode::kAdd, 0, false}, 2.5, 1e-3);
+  ClientForces of_weak_arm({scene::ClientMode::kAdd, 0, false}, 2.5, kTorque, 1e-3);
   link::PushSlot slot;
   of_weak_arm.begin(0, slot);
   for (uint64_t tick = 0; tick < 100; ++tick) {
