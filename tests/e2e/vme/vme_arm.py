@@ -13,7 +13,8 @@ import tempfile
 
 HAPTICD, BOARD, SOURCE, MODULES = sys.argv[1:5]
 CONFIG = pathlib.Path(SOURCE) / "config"
-TRIES = 12  # of a machine that stands still in the middle of a real-time run; any other failure counts at once
+TRIES = 8  # of a machine that stands still in the middle of a real-time run; any other failure counts at once
+SKIPPED = 77  # for the test runner: nothing was found wrong, and nothing could be shown
 LATE = 2e-3  # [s] the watchdog cuts a tick that is 3 ms old, and the board looks every 0.67 ms
 
 
@@ -83,14 +84,17 @@ def alike(found, measure):
 
 
 def attempt(what, check):
+    """0: shown; SKIPPED: the machine was late in every run. Ends the program where the arm is at fault."""
     for _ in range(TRIES):
         problem, report = check()
         if not problem:
-            return print(f"{what}: ok", flush=True)
+            print(f"{what}: ok", flush=True)
+            return 0
         if not (excuse := late(report)):
-            break
+            sys.exit(f"{what}: {problem}")
         print(f"{what}: once more, the machine was late ({excuse}): {problem}", flush=True)
-    sys.exit(f"{what}: {problem}")
+    print(f"{what}: SKIPPED, the machine was late in each of {TRIES} runs", flush=True)
+    return SKIPPED
 
 
 def main():
@@ -116,9 +120,9 @@ def main():
                 return f"faults {faults}", report
             return "", report
 
-        attempt("strokes a cylinder by force", lambda: strokes(False))
-        attempt("strokes a cylinder by compliance", lambda: strokes(True))
-        attempt("a bus that falls silent is named and survived", falls_silent)
+        sys.exit(max([attempt("strokes a cylinder by force", lambda: strokes(False)),
+                      attempt("strokes a cylinder by compliance", lambda: strokes(True)),
+                      attempt("a bus that falls silent is named and survived", falls_silent)]))
 
 
 main()
