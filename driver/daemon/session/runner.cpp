@@ -206,6 +206,28 @@ void Runner::stopArms() {
   for (const auto& arm : arms_) arm->stop();
 }
 
+/// Until the loop has ended: feeds the service manager, passes on what the servo has to say, keeps the guard up to
+/// date.
+void Runner::lookAfter(sim::ProximityThread& proximity, bool anyhow, const std::function<void(const Runner&)>& every) {
+  RealClock clock(0);
+  watch::Feeder feeder;
+  bool told = false;
+  for (Nanoseconds status_due = 0; !loop_->finished();) {
+    if (clock.now() >= status_due) {
+      status_due = clock.now() + kStatusPeriod;
+      if (!told && loop_->ticks() > kReadyTicks) told = watch::notify(readyMessage(*loop_)) || true;
+      feeder.feed(clock.now(), loop_->ticks());
+      if (!warnings_.empty() && !anyhow) break;
+      host::Services::passOn(log::write);
+      event_log_->tell(*telemetry_->flight());
+      every(*this);
+    }
+    clock.waitUntil(clock.now() + proximity.turn(kStatusPeriod));
+    if (guard_) tellGuard();
+    if (suspend_) stopProcess();
+  }
+}
+
 Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every,
                              const std::function<void()>& ended) {
   const Nanoseconds begun = monotonicNow();
@@ -241,22 +263,7 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   RealClock clock(0);
   while (!ready) clock.waitUntil(clock.now() + kReadyPoll);
   std::move(refused.begin(), refused.end(), std::back_inserter(warnings_));
-  watch::Feeder feeder;
-  bool told = false;
-  for (Nanoseconds status_due = 0; !loop_->finished();) {
-    if (clock.now() >= status_due) {
-      status_due = clock.now() + kStatusPeriod;
-      if (!told && loop_->ticks() > kReadyTicks) told = watch::notify(readyMessage(*loop_)) || true;
-      feeder.feed(clock.now(), loop_->ticks());
-      if (!warnings_.empty() && !anyhow) break;
-      host::Services::passOn(log::write);
-      event_log_->tell(*telemetry_->flight());
-      every(*this);
-    }
-    clock.waitUntil(clock.now() + proximity.turn(kStatusPeriod));
-    if (guard_) tellGuard();
-    if (suspend_) stopProcess();
-  }
+  lookAfter(proximity, anyhow, every);
   watch::notify("STOPPING=1");
   servo.join();
   wall_time_ = monotonicNow() - begun;

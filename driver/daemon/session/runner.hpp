@@ -20,6 +20,10 @@
 #include "watch/guard_process.hpp"
 #include "watch/watched.hpp"
 
+namespace hapticd::sim {
+class ProximityThread;
+}
+
 namespace hapticd::servo {
 
 struct RunOptions {
@@ -104,6 +108,7 @@ class Runner {
   Result<void> openArms(const host::Services::Log& log);
   Result<void> runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every,
                        const std::function<void()>& ended);
+  void lookAfter(sim::ProximityThread& proximity, bool anyhow, const std::function<void(const Runner&)>& every);
   void stopArms();
   void stopProcess();
   bool mayLag() const;
