@@ -1,6 +1,7 @@
 """What the scripts share that meet the program as a user does."""
 import subprocess
 import sys
+import time
 
 failures = 0
 
@@ -16,6 +17,26 @@ def check(name, holds, told=""):
 def finish():
     """The exit code says whether all held."""
     sys.exit(1 if failures else 0)
+
+
+def until(predicate, seconds=20):
+    """True once it holds; False: it did not in time."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if predicate():
+            return True
+        time.sleep(0.01)
+    return False
+
+
+def refused(action, word):
+    """The daemon refuses it with a code, and a text that has the word. The package hapticd must be found."""
+    import hapticd
+    try:
+        action()
+    except hapticd.Refused as error:
+        return word in str(error) and error.code != ""
+    return False
 
 
 def program(path, environment=None, timeout=120, together=False):

@@ -21,7 +21,7 @@ HAPTICD, SOURCE = sys.argv[1], sys.argv[2]
 sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
 sys.path.insert(0, os.path.join(SOURCE, "driver", "doors", "client", "python"))
 import hapticd
-from e2e import check, finish
+from e2e import check, finish, refused, until
 
 SCENE = """hapticd: 1
 servo: {{rate: 1000}}
@@ -68,23 +68,6 @@ class Daemon:
     def stop(self):
         self.run.send_signal(signal.SIGTERM)
         return self.run.wait(timeout=30)
-
-
-def until(predicate, seconds=10):
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        if predicate():
-            return True
-        time.sleep(0.01)
-    return False
-
-
-def refused(action, word):
-    try:
-        action()
-    except hapticd.Refused as error:
-        return word in str(error) and error.code != ""
-    return False
 
 
 def door(rows):
