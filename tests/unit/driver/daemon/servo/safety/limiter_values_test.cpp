@@ -3,7 +3,7 @@
 /// by tests/mutation.
 #include <gtest/gtest.h>
 
-#include "servo/safety/limiter.hpp"
+#include "limiter_rig.hpp"
 
 namespace hapticd::servo {
 namespace {
@@ -11,13 +11,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kTick = 1e-3;
-
-scene::Limits bare() {
-  scene::Limits limits;
-  limits.ramp_in = 0;
-  limits.slew = 0;
-  return limits;
-}
 
 struct Applied {
   Vector3d force, torque;
@@ -31,7 +24,7 @@ Applied applied(Limiter& limiter, const Vector3d& force, const Vector3d& torque 
 }
 
 TEST(Limiter, FadesOverTwoCentimetresBeyondTheWorkspace) {
-  scene::Limits limits = bare();
+  scene::Limits limits = generous();
   limits.workspace = 0.1;
   for (const auto& [distance, share] :
        {std::pair{0.05, 1.0}, {0.1, 1.0}, {0.11, 0.5}, {0.115, 0.25}, {0.12, 0.0}, {0.2, 0.0}}) {
@@ -42,7 +35,7 @@ TEST(Limiter, FadesOverTwoCentimetresBeyondTheWorkspace) {
 }
 
 TEST(Limiter, BoundsTheTorqueAndItsGrowth) {
-  scene::Limits limits = bare();
+  scene::Limits limits = generous();
   limits.torque = 0.2;
   Limiter capped(limits, 8.5);
   EXPECT_NEAR(applied(capped, Vector3d::Zero(), {0, 0.5, 0}).torque.y(), 0.2, 1e-12);
@@ -58,7 +51,7 @@ TEST(Limiter, BoundsTheTorqueAndItsGrowth) {
 
 TEST(Limiter, RecoversOnlyFromWhatEndsByItself) {
   for (const Fault fault : {Fault::kTooFast, Fault::kStopped, Fault::kNotFinite, Fault::kDeviceLost, Fault::kStale}) {
-    Limiter limiter(bare(), 8.5);
+    Limiter limiter(generous(), 8.5);
     applied(limiter, {4, 0, 0});
     limiter.trip(fault);
     while (!limiter.silent()) applied(limiter, {4, 0, 0});
@@ -69,7 +62,7 @@ TEST(Limiter, RecoversOnlyFromWhatEndsByItself) {
 }
 
 TEST(Limiter, SaysWhatTheRampsLetFlow) {
-  scene::Limits limits = bare();
+  scene::Limits limits = generous();
   limits.ramp_in = 0.1;
   limits.ramp_out = 0.02;
   Limiter limiter(limits, 8.5);
@@ -81,7 +74,7 @@ TEST(Limiter, SaysWhatTheRampsLetFlow) {
 }
 
 TEST(Limiter, ASpeedAtItsLimitIsNoFault) {
-  scene::Limits limits = bare();
+  scene::Limits limits = generous();
   limits.velocity = 3;
   Limiter limiter(limits, 8.5);
   limiter.watchSpeed(3);
