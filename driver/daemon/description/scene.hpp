@@ -134,6 +134,7 @@ struct Clients {
   ClientMode mode = ClientMode::kOff;
   double max_force = 0;    ///< [N] of one program; 0: as much as the device's limit
   bool exclusive = false;  ///< one program an arm; otherwise their forces add up
+  double answer_time = 0;  ///< [s] after a tick began in which the servo listens for answers; 0: it waits for nobody
 };
 
 struct Scene {

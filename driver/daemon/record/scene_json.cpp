@@ -211,7 +211,8 @@ scene::Servo toServo(const Json& json) {
 Json clientsJson(const scene::Clients& clients) {
   return {{"mode", static_cast<int>(clients.mode)},
           {"max_force", real(clients.max_force)},
-          {"exclusive", clients.exclusive}};
+          {"exclusive", clients.exclusive},
+          {"answer_time", real(clients.answer_time)}};
 }
 
 /// Recordings older than this had none.
@@ -221,7 +222,8 @@ scene::Clients toClients(const Json& json) {
   const int mode = clients.at("mode");
   if (mode < 0 || mode > static_cast<int>(scene::ClientMode::kInstead))
     throw std::runtime_error("clients: no such mode");
-  return {static_cast<scene::ClientMode>(mode), toReal(clients.at("max_force")), clients.at("exclusive")};
+  return {static_cast<scene::ClientMode>(mode), toReal(clients.at("max_force")), clients.at("exclusive"),
+          clients.contains("answer_time") ? toReal(clients.at("answer_time")) : 0};
 }
 
 }  // namespace

@@ -123,6 +123,8 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
   settings.period_ns = static_cast<Nanoseconds>(std::llround(1e9 / options.rate));
   settings.ticks = options.duration ? static_cast<uint64_t>(std::llround(*options.duration * options.rate)) : 0;
   settings.lockstep = options.virtual_time;
+  if (!options.virtual_time)  // never so much of a tick that it ends late
+    settings.answer_time = std::min(static_cast<Nanoseconds>(scene.clients.answer_time * 1e9), settings.period_ns / 4);
   // A simulation at a terminal starts at once: there is no hand, and nobody waits for READY.
   const bool watched = std::getenv("NOTIFY_SOCKET") != nullptr;
   settings.dry_cycles = !options.virtual_time && (watched || !runner->onlySimulated()) ? kDryCycles : 0;

@@ -59,6 +59,17 @@ void ClientForces::end(uint32_t place) noexcept HSP_RT {
   if (clients_[place].gain == 0) --places_;
 }
 
+bool ClientForces::awaits(uint64_t tick) const noexcept HSP_RT {
+  constexpr uint64_t kKeepsUp = 2;  // [ticks] who answers every tenth tick is not waited for in the nine others
+  const auto awaited = [&](const Client& client) {
+    if (client.slot == nullptr || !client.answered || tick - client.push.tick > kKeepsUp) return false;
+    hapticd_push push;
+    uint64_t seen = client.seen;
+    return !client.slot->take(seen, push) || push.tick < tick;
+  };
+  return places_ > 0 && std::any_of(clients_.begin(), clients_.end(), awaited);
+}
+
 void ClientForces::step(uint64_t tick, double dt) noexcept HSP_RT {
   force_.setZero();
   torque_.setZero();

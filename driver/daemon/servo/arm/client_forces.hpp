@@ -46,6 +46,9 @@ class ClientForces {
   void begin(uint32_t place, const link::PushSlot& slot) noexcept HSP_RT;
   void end(uint32_t place) noexcept HSP_RT;  ///< [rt] it has gone
 
+  /// [rt] A program that answered one of the last two ticks has not answered this one yet.
+  bool awaits(uint64_t tick) const noexcept HSP_RT;
+
   /// [rt] Once a tick, after the shapes: what the programs want now. @param tick number of this tick, @param dt [s]
   void collect(uint64_t tick, double dt) noexcept HSP_RT {
     if (places_ == 0 && share_ == 1) return;

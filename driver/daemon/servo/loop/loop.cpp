@@ -101,14 +101,14 @@ void Loop::run() noexcept {
     }
     const Nanoseconds begun = monotonicNow();
     tick_begun_.store(begun, std::memory_order_relaxed);
-    search_time_ = 0;
+    search_time_ = listen_time_ = 0;
     const double dt = static_cast<double>(deadline - last) * kSecondsPerNanosecond;
     if (dt > kLateFault && !simulated()) trip(Fault::kLate, dt);
     const double t = static_cast<double>(deadline - start) * kSecondsPerNanosecond;
     log_.begin(deadline, arms_);
     tick({n, deadline, t, dt});
     const Nanoseconds ended = monotonicNow();
-    log_.tick(t, dt, woke - due, ended - begun - search_time_, core_, arms_);
+    log_.tick(t, dt, woke - due, ended - begun - search_time_ - listen_time_, core_, arms_);
     door_.written(n);
     last = deadline;
     deadline += settings_.period_ns;
@@ -265,9 +265,20 @@ void Loop::tick(const TickTime& tick) noexcept HSP_RT {
   core_.publish(tick.t, probes_);
   if (settings_.lockstep) search(tick.t);
   core_.tick(tick.t, tick.dt, probes_);
+  if (settings_.answer_time > 0) listen(tick);
   for (uint32_t i = 0; i < arms_.size(); ++i) write(i, tick);
   noteDeeds();
   wants_search_.store(core_.wantsSearch(), std::memory_order_relaxed);
+}
+
+/// Spins, since no sleep is that short, until every program that keeps up has answered, or its time is over.
+void Loop::listen(const TickTime& tick) noexcept HSP_RT {
+  const auto awaited = [&](const auto& arm) { return arm->clients().awaits(tick.number); };
+  const Nanoseconds begun = monotonicNow();
+  const Nanoseconds over = tick_begun_.load(std::memory_order_relaxed) + settings_.answer_time;
+  Nanoseconds now = begun;
+  while (now < over && std::any_of(arms_.begin(), arms_.end(), awaited)) now = monotonicNow();
+  listen_time_ = now - begun;
 }
 
 /// Programs that push are asked as late as can be: whoever answers this tick is heard in it.

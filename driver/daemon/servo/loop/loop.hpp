@@ -17,10 +17,11 @@ namespace hapticd::servo {
 
 struct LoopSettings {
   Nanoseconds period_ns = 1'000'000;
-  uint64_t ticks = 0;       ///< length of the run in periods; 0: until stopped
-  bool lockstep = false;    ///< search in step with the ticks (virtual time) instead of from a thread of its own
-  bool paced = false;       ///< the clock follows an arm's samples: a tick is when it says, not when the deadline was
-  uint64_t dry_cycles = 0;  ///< before the first tick: wake-ups and traffic with motors off, to judge the machine
+  uint64_t ticks = 0;     ///< length of the run in periods; 0: until stopped
+  bool lockstep = false;  ///< search in step with the ticks (virtual time) instead of from a thread of its own
+  bool paced = false;     ///< the clock follows an arm's samples: a tick is when it says, not when the deadline was
+  Nanoseconds answer_time = 0;  ///< after a tick began, in which programs that push are listened for
+  uint64_t dry_cycles = 0;      ///< before the first tick: wake-ups and traffic with motors off, to judge the machine
 };
 
 /// [main] The arm whose samples drive the loop: the first that can, if the scene wants one to. nullptr: the clock does.
@@ -85,6 +86,7 @@ class Loop {
 
  private:
   void tick(const TickTime& tick) noexcept HSP_RT;
+  void listen(const TickTime& tick) noexcept HSP_RT;
   void write(uint32_t index, const TickTime& tick) noexcept HSP_RT;
   void runDry() noexcept HSP_RT;
   void beat() noexcept HSP_RT;
@@ -115,6 +117,7 @@ class Loop {
   double epoch_ = 0;  ///< [s] CLOCK_MONOTONIC of the first tick, in a run on the real clock
   // In virtual time the simulation side works in this thread too; what it takes is not the servo's.
   Nanoseconds search_time_ = 0;
+  Nanoseconds listen_time_ = 0;  ///< of this tick, spent on programs that had not answered yet
   uint64_t search_allocations_ = 0;
   SpscRing<Order> orders_{256};
   std::atomic<uint64_t> orders_done_{0};

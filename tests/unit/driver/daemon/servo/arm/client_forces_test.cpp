@@ -14,7 +14,7 @@
 namespace hapticd::servo {
 namespace {
 
-constexpr double kBound = 4;  // [N]
+constexpr double kBound = 4;   // [N]
 constexpr double kTorque = 1;  // [N m]
 
 struct Pushed {
@@ -60,6 +60,28 @@ TEST(ClientForces, FadesInAndIsThenWhatTheProgramWants) {
   EXPECT_EQ(p.forces.torque().y(), 0.02);
   p.tick(-1);
   EXPECT_EQ(p.x(), -1);
+}
+
+TEST(ClientForces, AwaitsWhoKeepsUpAndHasNotAnsweredYet) {
+  Pushed p;
+  EXPECT_FALSE(p.forces.awaits(p.now)) << "nobody is there";
+  p.begin();
+  EXPECT_FALSE(p.forces.awaits(p.now)) << "has never answered";
+  p.tick(1);
+  EXPECT_TRUE(p.forces.awaits(p.now));
+  p.put(0, 1, 1);
+  EXPECT_TRUE(p.forces.awaits(p.now)) << "answers the tick before";
+  p.put(0, 1);
+  EXPECT_FALSE(p.forces.awaits(p.now));
+  p.run(2e-3, std::nullopt);
+  EXPECT_TRUE(p.forces.awaits(p.now)) << "one answer may be lost";
+  p.run(1e-3, std::nullopt);
+  EXPECT_FALSE(p.forces.awaits(p.now)) << "is too slow to wait for";
+  p.tick(1);
+  p.begin(1);
+  EXPECT_TRUE(p.forces.awaits(p.now));
+  p.forces.end(0);
+  EXPECT_FALSE(p.forces.awaits(p.now));
 }
 
 TEST(ClientForces, TurnsTheHandOnlyAsFarAsTheDeviceFileLets) {
