@@ -49,7 +49,7 @@ hsp_status MatDeformable::meet(const hsp_probe& probe, const hsp_step& step, uin
     met.depth = depth;
     met.before = track.inside;
     met.known = track.counted;
-    met.placed = !track.met;
+    met.placed = !track.met || track.hopped;
     body_->placeOf(Vector3d(probe.position), track.foot, located.surface, searchOptions().newton.envelope, met.place);
   } else if (depth > 0) {  // more probes than one surface answers: that of the body at rest
     push(probe, located.surface, track, contact);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
+#include "foot_scan.hpp"
 #include "kernels/medial/contour.hpp"
 #include "push_through.hpp"
 #include "soft_body.hpp"
@@ -22,7 +24,10 @@ constexpr double kOtherFoot = 0.02;    ///< difference of parameters from which 
 
 class GridBody final : public SoftBody {
  public:
-  GridBody(const medial::BodyData& data, const medial::BodyOptions& options) : body_(data, options) {}
+  GridBody(const medial::BodyData& data, const medial::BodyOptions& options)
+      : body_(data, options), felt_(body_.feltSurface() != nullptr) {
+    if (felt_) scan_.emplace(body_.skeleton());
+  }
 
   void find(const Vector3d& p, uint32_t flags, const FindOptions& options, Track& track) const noexcept override {
     const medial::Skeleton& skeleton = body_.skeleton();
@@ -48,10 +53,15 @@ class GridBody final : public SoftBody {
       const SkeletonFoot other = skeleton.nearest(p, offer[0], offer[1], options.newton);
       if (other.depth > track.foot.depth) track.foot = other;
     }
+    if (!felt_ || !(track.foot.depth > 0)) return;
+    if (const auto rival = scan_->rival(p, track.foot, track.scanned)) {
+      const SkeletonFoot other = skeleton.nearest(p, (*rival)[0], (*rival)[1], options.newton);
+      if (other.converged && other.depth > track.foot.depth) track.foot = other;
+    }
   }
 
   Felt felt(const Vector3d& p, const Vector3d& moved, Track& track) const noexcept override {
-    return body_.skeleton().curve() ? feltTurning(p, moved, track) : feltOnSheet(moved, track);
+    return body_.skeleton().curve() ? feltTurning(p, moved, felt_, track) : feltOnSheet(p, moved, felt_, track);
   }
 
   medial::BodyForce press(const Vector3d& p, const SkeletonFoot& foot, const Felt& felt,
@@ -59,7 +69,7 @@ class GridBody final : public SoftBody {
     return body_.press(p, foot, felt.normal, felt.depth, closing_speed);
   }
   void placeOf(const Vector3d& p, const SkeletonFoot& foot, const Felt& felt, medial::Envelope envelope,
-               medial::FeltPlace& place) const noexcept override {
+               medial::FeltPlace& place) noexcept override {
     body_.placeOf(p, foot, felt.normal, envelope, felt.normal.dot(foot.normal) > kSameSide, place);
   }
   medial::FeltSurface* feltSurface() noexcept override { return body_.feltSurface(); }
@@ -76,7 +86,9 @@ class GridBody final : public SoftBody {
     return std::make_unique<medial::Contour>(body_.skeleton(), chord_error);
   }
   std::unique_ptr<medial::MovingMesh> hull() const override { return contour(kHullError * greatestRadius()); }
-  std::size_t bytes() const noexcept override { return sizeof *this - sizeof body_ + body_.bytes(); }
+  std::size_t bytes() const noexcept override {
+    return sizeof *this - sizeof body_ + body_.bytes() + (scan_ ? scan_->bytes() : 0);
+  }
 
   std::vector<FeltMaterial> feltMaterial() const override {
     std::vector<FeltMaterial> all;
@@ -138,6 +150,8 @@ class GridBody final : public SoftBody {
   }
 
   medial::Body body_;
+  std::optional<FootScan> scan_;  ///< of a body that is felt
+  bool felt_;  ///< what is new in creases and where a body is pushed through holds for bodies that are felt
 };
 
 }  // namespace

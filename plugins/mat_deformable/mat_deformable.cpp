@@ -18,6 +18,12 @@ using medial::SkeletonFoot;
 constexpr double kShowPeriod = 1.0 / 60;  ///< [s] between two sets of displacements for drawing
 constexpr double kFinestMesh = 1e-6;      ///< [m] finer meshes are for files, not for drawing
 constexpr double kGapFactor = 1.5;        ///< so many ticks without a step: the body was left alone meanwhile
+constexpr double kHop = 0.2;              ///< of the radius: a foot that goes farther at once has not been followed
+constexpr double kSweep = 4;              ///< times the probe's way that a foot may go on the inside of a bend
+
+bool hasHopped(const SkeletonFoot& foot, const Vector3d& center, const Vector3d& moved) noexcept {
+  return (foot.center - center).norm() > kHop * foot.radius + kSweep * moved.norm();
+}
 
 }  // namespace
 
@@ -225,8 +231,11 @@ MatDeformable::Located MatDeformable::locate(const hsp_probe& probe, const hsp_s
     track.pushed.setZero();
     track.met = false;
   }
-  body_->find(p, probe.flags, findOptions(step), track);
   const Vector3d moved = track.known ? Vector3d(p - track.last) : Vector3d(Vector3d::Zero());
+  const Vector3d center = track.foot.center;
+  const bool followed = track.known;
+  body_->find(p, probe.flags, findOptions(step), track);
+  track.hopped = followed && hasHopped(track.foot, center, moved);
   track.offered = false;
   track.known = true;
   track.last = p;

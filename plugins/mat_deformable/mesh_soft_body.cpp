@@ -16,11 +16,13 @@ using Eigen::Vector3d;
 using medial::MedialMesh;
 using medial::SkeletonFoot;
 
+constexpr double kSameSide = 0.99;   ///< cosine of the direction to the probe and the one that is felt
 constexpr double kHullError = 0.05;  ///< of the greatest radius
 
 class MeshSoftBody final : public SoftBody {
  public:
   MeshSoftBody(const medial::MeshBodyData& data, const medial::BodyOptions& options) : body_(data, options) {
+    felt_ = body_.feltSurface() != nullptr;
     for (const medial::Sphere& sphere : body_.mesh().vertices())
       greatest_radius_ = std::max(greatest_radius_, sphere.radius);
   }
@@ -32,15 +34,17 @@ class MeshSoftBody final : public SoftBody {
         body_.foot(p, track.known ? track.foot.element : MedialMesh::kNoStart, options.crease, MedialMesh::kMostVisits);
   }
   Felt felt(const Vector3d& p, const Vector3d& moved, Track& track) const noexcept override {
-    return feltTurning(p, moved, track);
+    return feltTurning(p, moved, felt_, track);
   }
-  medial::BodyForce press(const Vector3d&, const SkeletonFoot& foot, const Felt& felt,
+  medial::BodyForce press(const Vector3d& p, const SkeletonFoot& foot, const Felt& felt,
                           double closing_speed) const noexcept override {
-    return body_.press(foot, felt.normal, felt.depth, closing_speed);
+    return body_.press(p, foot, felt.normal, felt.depth, closing_speed);
   }
-  void placeOf(const Vector3d&, const SkeletonFoot&, const Felt&, medial::Envelope,
-               medial::FeltPlace&) const noexcept override {}
-  medial::FeltSurface* feltSurface() noexcept override { return nullptr; }
+  void placeOf(const Vector3d& p, const SkeletonFoot& foot, const Felt& felt, medial::Envelope,
+               medial::FeltPlace& place) noexcept override {
+    body_.placeOf(p, foot, felt.normal, felt.normal.dot(p - foot.center) > kSameSide * (p - foot.center).norm(), place);
+  }
+  medial::FeltSurface* feltSurface() noexcept override { return body_.feltSurface(); }
   void yield(std::span<const medial::Press> contacts) noexcept override { body_.deformation().press(contacts); }
   SkeletonFoot search(const Vector3d& p, const FindOptions& options) const noexcept override {
     return body_.foot(p, MedialMesh::kNoStart, options.crease);
@@ -79,6 +83,7 @@ class MeshSoftBody final : public SoftBody {
  private:
   medial::MeshBody body_;
   double greatest_radius_ = 0;
+  bool felt_ = false;  ///< a probe that is pushed through fades out; other bodies keep their bits
 };
 
 }  // namespace

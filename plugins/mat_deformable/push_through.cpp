@@ -10,6 +10,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kDeepest = 1.0 / 3;    ///< of the radius left under a stroke whose direction is still followed at once
+constexpr double kHop = 0.05;           ///< [rad] turns below this are let pass
+constexpr double kFollowed = 3;         ///< times as fast as over a skeleton without curvature a direction may turn
+constexpr double kLeastArm = 0.05;      ///< of the radius: nearer to the skeleton any turn is let pass
 constexpr double kOpposite = 1e-9;      ///< directions nearer to opposite than this have no plane to turn in
 constexpr double kSideways = 0.5;       ///< a direction less across a sheet than this is on neither side of it
 constexpr double kSettled = 1 - 1e-14;  ///< cosine of directions that are the same
@@ -36,6 +39,33 @@ double asideOf(const Vector3d& moved, const Vector3d& pushed) noexcept {
   return (moved - moved.dot(pushed) * pushed).norm();
 }
 
+/// [m] Along the direction that pushes, from p to the sphere about the foot.
+double wayOut(const Vector3d& p, const Track& track) noexcept {
+  const Vector3d d = p - track.foot.center;
+  const double along = d.dot(track.pushed), radius = track.foot.radius;
+  return std::sqrt(std::max(0.0, along * along + radius * radius - d.squaredNorm())) - along;
+}
+
+/// A probe that has left the body. On the far side of where it came in it is still pushed back, less and less.
+Felt outside(const Vector3d& p, bool fades, Track& track) noexcept {
+  const medial::SkeletonFoot& foot = track.foot;
+  const double left = foot.radius > 0 ? 1 + foot.depth / foot.radius : 0, through = -track.pushed.dot(foot.normal);
+  if (fades && left > 0 && through > 0) {
+    const double depth = left * through * wayOut(p, track);
+    if (depth > 0) return {track.pushed, depth};
+  }
+  track.side = 0;
+  track.pushed.setZero();
+  return {foot.normal, foot.depth};
+}
+
+/// Whether the foot went to another part of the surface: no motion so short turns its direction so far.
+bool hops(const Vector3d& wanted, const Vector3d& moved, const Track& track) noexcept {
+  const double least = std::max(track.foot.radius - track.foot.depth, kLeastArm * track.foot.radius);
+  const double angle = std::acos(std::clamp(wanted.dot(track.pushed), -1.0, 1.0));
+  return angle > kHop + (least > 0 ? kFollowed * moved.norm() / least : M_PI);
+}
+
 /// Turns the direction of the track toward `wanted`, for a probe that moved by `way` [m].
 void turn(const Vector3d& wanted, double way, Track& track) noexcept {
   const double arm = armOf(track.foot, track.pushed);
@@ -44,12 +74,9 @@ void turn(const Vector3d& wanted, double way, Track& track) noexcept {
 
 }  // namespace
 
-Felt feltTurning(const Vector3d& p, const Vector3d& moved, Track& track) noexcept HSP_RT {
+Felt feltTurning(const Vector3d& p, const Vector3d& moved, bool fades, Track& track) noexcept HSP_RT {
   const medial::SkeletonFoot& foot = track.foot;
-  if (!(foot.depth > 0)) {
-    track.pushed.setZero();
-    return {foot.normal, foot.depth};
-  }
+  if (!(foot.depth > 0)) return outside(p, fades, track);
   const bool entered = track.pushed.isZero(0);
   Vector3d wanted = foot.normal;
   if (!entered && !foot.rim && wanted.dot(track.pushed) < 0)  // on the other side of a sheet
@@ -61,20 +88,12 @@ Felt feltTurning(const Vector3d& p, const Vector3d& moved, Track& track) noexcep
   }
   const double through = -track.pushed.dot(foot.normal);
   if (!(through > 0)) return {track.pushed, foot.depth};
-  // Along the direction from p to the sphere about the foot.
-  const Vector3d d = p - foot.center;
-  const double along = d.dot(track.pushed);
-  const double way = std::sqrt(std::max(0.0, along * along + foot.radius * foot.radius - d.squaredNorm())) - along;
-  return {track.pushed, foot.depth + through * std::max(0.0, way - foot.depth)};
+  return {track.pushed, foot.depth + through * std::max(0.0, wayOut(p, track) - foot.depth)};
 }
 
-Felt feltOnSheet(const Vector3d& moved, Track& track) noexcept HSP_RT {
+Felt feltOnSheet(const Vector3d& p, const Vector3d& moved, bool fades, Track& track) noexcept HSP_RT {
   const medial::SkeletonFoot& foot = track.foot;
-  if (!(foot.depth > 0)) {
-    track.side = 0;
-    track.pushed.setZero();
-    return {foot.normal, foot.depth};
-  }
+  if (!(foot.depth > 0)) return outside(p, fades, track);
   const bool entered = track.pushed.isZero(0), rim = foot.rim || foot.across.isZero(0);
   const double cosine = foot.normal.dot(foot.across), lean = track.pushed.dot(foot.across);
   if (entered || (rim && std::fabs(lean) < kSideways)) {
@@ -87,6 +106,7 @@ Felt feltOnSheet(const Vector3d& moved, Track& track) noexcept HSP_RT {
     if (track.side == 0) track.side = cosine < 0 ? -1 : 1;
     if (track.side * cosine < 0) wanted -= 2 * cosine * foot.across;
   }
+  if (fades && !entered && !rim && track.settled && hops(wanted, moved, track)) track.settled = false;
   if (entered || (!rim && track.settled)) {
     track.pushed = wanted;
     track.settled = !rim;

@@ -37,6 +37,8 @@ struct Track {
   // On a surface that is felt:
   bool met = false;      ///< the probe has been at the surface since it came near; else it may have begun inside
   bool counted = false;  ///< `inside` is that of the last tick
+  uint32_t scanned = 0;  ///< sample of the body that was looked at last
+  bool hopped = false;   ///< the foot went to another part of the surface in this tick
   double inside = 0;     ///< [m] by how much the probe was inside the present surface
 };
 
@@ -77,7 +79,7 @@ class SoftBody {
                                   double closing_speed) const noexcept = 0;
   /// [rt] The place that the probe is at, for a surface that is felt.
   virtual void placeOf(const Eigen::Vector3d& p, const medial::SkeletonFoot& foot, const Felt& felt,
-                       medial::Envelope envelope, medial::FeltPlace& place) const noexcept = 0;
+                       medial::Envelope envelope, medial::FeltPlace& place) noexcept = 0;
   virtual medial::FeltSurface* feltSurface() noexcept = 0;  ///< [any] nullptr: its dynamics are seen alone
   /// [rt] Gives way to all contacts of a tick, where its dynamics are seen alone.
   virtual void yield(std::span<const medial::Press> contacts) noexcept = 0;

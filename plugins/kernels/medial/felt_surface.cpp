@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 using Eigen::Vector4d;
 
 constexpr double kAsleep = 1e-7;  ///< [m] amplitude below which no one sees or feels a node move
+constexpr double kSteepest = 1;   ///< slope of a dent: on the inside of a bend the foot runs as fast as it likes
 constexpr double kNearby = 1e-6;  ///< [m] a probe so near to a surface touches it
 /// The step of an undamped node is a rotation: rounding may turn it into a growing spiral, by at most a few units in
 /// the last place a tick. So much is taken off.
@@ -266,7 +267,9 @@ Vector3d FeltSurface::slopeAt(const FeltPlace& place) const noexcept {
   const Vector3d aside = place.turn * (moved - moved.dot(place.normal) * place.normal);
   su += aside.dot(place.tangent_u);  // the foot follows a part of the way: the normal turns by the rest
   sv += aside.dot(place.tangent_v);
-  return place.scale * (su * place.toward_u + sv * place.toward_v - aside);
+  const Vector3d slope = place.scale * (su * place.toward_u + sv * place.toward_v - aside);
+  const double steepness = slope.norm();
+  return steepness > kSteepest ? Vector3d(kSteepest / steepness * slope) : slope;
 }
 
 void FeltSurface::advance(double dt, std::span<FeltContact> contacts) noexcept {

@@ -51,7 +51,8 @@ FootMotion footMotion(const Skeleton& skeleton, const Vector3d& p, const Skeleto
     const auto& range = skeleton.parameters()[a];
     const double pull = tangent[a].dot(normal) + slope[a];
     held[a] = held[a] || (at[a] <= range.front() && pull <= 0) || (at[a] >= range.back() && pull >= 0);
-    aside[a] = tangent[a] - tangent[a].dot(normal) * normal;
+    // A direction that is not that of the foot says nothing of how the foot follows: as on a flat skeleton, then.
+    aside[a] = direct ? Vector3d(tangent[a] - tangent[a].dot(normal) * normal) : tangent[a];
   }
   Matrix2d h;
   h << aside[0].dot(aside[0]), aside[0].dot(aside[1]), aside[0].dot(aside[1]), aside[1].dot(aside[1]);

@@ -55,6 +55,8 @@ class MedialMesh {
   /// body whose parts are all as near.
   void nearest(const Eigen::Vector3d& p, uint32_t start, double band, MeshFeet& out,
                int most_visits = INT_MAX) const noexcept;
+  /// [any] The foot of p on one cone or slab.
+  HullFoot footOn(uint32_t element, const Eigen::Vector3d& p) const noexcept;
   /// [any] Signed distance of p to the body: negative inside.
   double distance(const Eigen::Vector3d& p) const noexcept;
 
@@ -77,7 +79,6 @@ class MedialMesh {
     bool leaf = false;
   };
 
-  HullFoot footOn(uint32_t element, const Eigen::Vector3d& p) const noexcept;
   static double lowerBound(const Node& node, const Eigen::Vector3d& p) noexcept;
   void gather(const MeshData& data);
   void buildTree();

@@ -15,6 +15,9 @@ using Eigen::Vector4d;
 
 constexpr int kMostRings = 8;
 constexpr double kOwnShare = 0.5;  ///< of its weight that a vertex keeps when it is spread; the rest goes to neighbours
+constexpr double kAside = 1e-6;    ///< [m] by which a probe is moved to see how its foot follows
+constexpr double kNear = 1e-4;     ///< [m] from so near the direction to the probe says little
+constexpr double kApart = 0.1;     ///< of the radius: feet on joined parts are two from so far on
 constexpr double kOpposite = 4;    ///< normals farther apart than acos(1 / this - 1) count less and less
 
 /// One value for all stays one.
@@ -101,6 +104,46 @@ void MeshDeformation::reach(const Press& contact, Reach& out) noexcept {
   }
 }
 
+PlaceNode& MeshDeformation::nodeOf(FeltPlace& place, uint32_t node) noexcept {
+  if (place_[node] == UINT32_MAX && place.count < FeltPlace::kMost) {
+    place_[node] = static_cast<uint32_t>(place.count);
+    place.nodes[place.count++] = {node, 0, 0, 0};
+  }
+  return place.nodes[place_[node] == UINT32_MAX ? 0 : place_[node]];  // what finds no room goes to the first corner
+}
+
+void MeshDeformation::spread(FeltPlace& place) noexcept {
+  const std::size_t count = place.count;
+  std::array<PlaceNode, FeltPlace::kMost> before;
+  std::copy_n(place.nodes.begin(), count, before.begin());
+  for (std::size_t k = 0; k < count; ++k) {
+    const uint32_t begin = first_[before[k].node], end = first_[before[k].node + 1];
+    if (begin == end) continue;
+    const auto give = [&](PlaceNode& to, double share) {
+      to.weight += share * before[k].weight;
+      to.weight_u += share * before[k].weight_u;
+      to.weight_v += share * before[k].weight_v;
+    };
+    give(place.nodes[k], kOwnShare - 1);
+    for (uint32_t n = begin; n < end; ++n) give(nodeOf(place, neighbour_[n]), (1 - kOwnShare) / (end - begin));
+  }
+}
+
+void MeshDeformation::nodesAt(uint32_t element, const Eigen::Array2d& parameter, FeltPlace& place) noexcept {
+  const MedialMesh::Element& corners = mesh_->elements()[element];
+  const std::array<double, 3> weights = mesh_->weights(element, parameter);
+  place.count = 0;
+  for (std::size_t i = 0; i < corners.count; ++i) {
+    PlaceNode& corner = nodeOf(place, corners.vertex[i]);
+    corner.weight = weights[i];
+    if (corners.count < 2) continue;
+    corner.weight_u = i == 0 ? -1 : i == 1 ? 1 : 0;
+    corner.weight_v = corners.count < 3 ? 0 : i == 0 ? -1 : i == 2 ? 1 : 0;
+  }
+  for (int ring = std::min(options().rings, kMostRings); ring > 0; --ring) spread(place);
+  for (std::size_t k = 0; k < place.count; ++k) place_[place.nodes[k].node] = UINT32_MAX;
+}
+
 void MeshDeformation::press(std::span<const Press> contacts) noexcept {
   if (!options().dynamics) clear();
   const std::size_t count = std::min(contacts.size(), static_cast<std::size_t>(kMaxContacts));
@@ -135,6 +178,47 @@ MeshBody::MeshBody(const MeshBodyData& data, const BodyOptions& options) : optio
   for (std::size_t i = 0; i < (same ? 1 : count); ++i)
     material.push_back({pick(mass, i), pick(damping_, i), pick(stiffness_, i)});
   deformation_.emplace(mesh_, material, options.deformation);
+  if (!options.felt.on) return;
+  std::vector<Tissue> tissue;
+  for (const Oscillator& o : material)
+    tissue.push_back({o.stiffness, o.damping, o.mass, options.felt.relaxation_share, options.felt.relaxation_time});
+  felt_.emplace(*deformation_, tissue, std::vector<double>(count, 1.0), options.felt.contact_ratio, options.felt.tick);
+}
+
+/// How parameters follow the probe is measured on the cone or slab of the foot: its closed form is cheap.
+void MeshBody::placeOf(const Vector3d& p, const SkeletonFoot& foot, const Vector3d& normal, bool direct,
+                       FeltPlace& place) noexcept {
+  deformation_->nodesAt(foot.element, {foot.u, foot.v}, place);
+  place.normal = normal;
+  place.stiffness = material(stiffness_, foot);
+  const MedialMesh::Element& element = mesh_.elements()[foot.element];
+  const auto center = [&](std::size_t corner) { return mesh_.vertices()[element.vertex[corner]].center; };
+  place.toward_u = place.toward_v = Vector3d::Zero();
+  for (Eigen::Index k = 0; k < 3 && element.count > 1; ++k) {
+    const Vector3d aside = kAside * Vector3d::Unit(k);
+    const Eigen::Array2d there = mesh_.footOn(foot.element, p + aside).parameter;
+    const Eigen::Array2d back = mesh_.footOn(foot.element, p - aside).parameter;
+    place.toward_u[k] = (there[0] - back[0]) / (2 * kAside);
+    place.toward_v[k] = (there[1] - back[1]) / (2 * kAside);
+  }
+  place.tangent_u = element.count > 1 ? Vector3d(center(1) - center(0)) : Vector3d(Vector3d::Zero());
+  place.tangent_v = element.count > 2 ? Vector3d(center(2) - center(0)) : Vector3d(Vector3d::Zero());
+  const double distance = (p - foot.center).norm();
+  place.turn = direct && distance > kNear ? 1 / distance : 0;
+}
+
+/// The foot on a cone or slab may lie on its end, where the next one begins: that is no part of its own, and a flat
+/// sheet of many slabs is flat.
+double MeshBody::apart(const MeshFoot& a, const MeshFoot& b) const noexcept {
+  const MedialMesh::Element &one = mesh_.elements()[a.element], &other = mesh_.elements()[b.element];
+  const auto begin = one.vertex.begin(), end = begin + one.count;
+  const bool joined = std::any_of(other.vertex.begin(), other.vertex.begin() + other.count,
+                                  [&](uint32_t vertex) { return std::find(begin, end, vertex) != end; });
+  if (!joined) return 1;
+  const double gap = std::min((mesh_.footOn(a.element, b.center).center - b.center).norm(),
+                              (mesh_.footOn(b.element, a.center).center - a.center).norm());
+  const double whole = kApart * std::max(a.radius, b.radius);
+  return gap < whole ? gap / whole : 1;
 }
 
 SkeletonFoot MeshBody::foot(const Vector3d& p, uint32_t start, double crease, int most_visits) const noexcept {
@@ -165,7 +249,8 @@ SkeletonFoot MeshBody::foot(const Vector3d& p, uint32_t start, double crease, in
   Vector3d sum = best.normal;
   for (std::size_t i = 1; i < feet.count; ++i) {
     const double cosine = feet.feet[i].normal.dot(best.normal);
-    const double opposite = std::min(1.0, kOpposite * (1 + cosine));
+    double opposite = std::min(1.0, kOpposite * (1 + cosine));
+    for (std::size_t k = 0; k < i && felt_; ++k) opposite *= apart(feet.feet[k], feet.feet[i]);
     sum += opposite * (1 - (feet.feet[i].distance - best.distance) / crease) * feet.feet[i].normal;
   }
   foot.normal = sum.normalized();
@@ -201,7 +286,7 @@ double MeshBody::greatestStiffness() const noexcept {
 
 std::size_t MeshBody::bytes() const noexcept {
   return sizeof *this - sizeof mesh_ + mesh_.bytes() + (stiffness_.capacity() + damping_.capacity()) * sizeof(double) +
-         deformation_->bytes();
+         deformation_->bytes() + (felt_ ? felt_->bytes() : 0);
 }
 
 }  // namespace hapticd::medial

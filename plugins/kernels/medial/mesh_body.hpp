@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "kernels/medial/body.hpp"
+#include "kernels/medial/felt_surface.hpp"
 #include "kernels/medial/medial_mesh.hpp"
 #include "kernels/medial/nodes.hpp"
+#include "kernels/medial/shear.hpp"
 
 namespace hapticd::medial {
 
@@ -31,6 +33,9 @@ class MeshDeformation : public Nodes {
   /// [rt] Moves vertices so that the contour is at no contact outside the probe; u, v are weights 1 and 2 of a slab,
   /// u the place along a cone. Without dynamics the displacements are those of these contacts alone.
   void press(std::span<const Press> contacts) noexcept;
+  /// [rt] The vertices that shape a felt surface at a foot, with their derivatives: the corners' weights, spread over
+  /// `rings` of neighbours, so that neighbouring cones and slabs yield together.
+  void nodesAt(uint32_t element, const Eigen::Array2d& parameter, FeltPlace& place) noexcept;
   /// [rt] Displacement of the skeleton (x, y, z) and change of the radius at a foot [m].
   Eigen::Vector4d at(uint32_t element, const Eigen::Array2d& parameter) const noexcept;
   std::size_t bytes() const noexcept;
@@ -48,6 +53,8 @@ class MeshDeformation : public Nodes {
   void reach(const Press& contact, Reach& out) noexcept;
   void spread(Reach& reach) noexcept;
   void add(Reach& reach, uint32_t node, double weight) noexcept;
+  void spread(FeltPlace& place) noexcept;
+  PlaceNode& nodeOf(FeltPlace& place, uint32_t node) noexcept;
 
   const MedialMesh* mesh_;
   std::vector<uint32_t> first_, neighbour_;  ///< neighbours of vertex i: neighbour_[first_[i]] and on
@@ -74,17 +81,31 @@ class MeshBody {
   /// [rt] The force on a probe `depth` below the surface along `normal`: spring, and damping against `closing_speed`.
   BodyForce press(const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
                   double closing_speed) const noexcept;
-  double greatestStiffness() const noexcept;  ///< [any] [N/m]
+  /// [rt] The same on a probe at `p`, with springs to the contour `shear_distance` beside it, whichever cones and slabs
+  /// that is on. They turn the force toward the stiffer neighbour; its part along the normal stays.
+  BodyForce press(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
+                  double closing_speed) const noexcept;
+  /// [rt] The place of the surface that a probe at `p` is at, with its foot, as a felt surface needs it.
+  /// @param direct whether `normal` is the direction from the foot to the probe
+  void placeOf(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, bool direct,
+               FeltPlace& place) noexcept;
+  FeltSurface* feltSurface() noexcept { return felt_ ? &*felt_ : nullptr; }  ///< [any] nullptr: it is only seen
+  double greatestStiffness() const noexcept;                                 ///< [any] [N/m]
   double stiffness(std::size_t vertex) const noexcept { return stiffness_[stiffness_.size() == 1 ? 0 : vertex]; }
   std::size_t bytes() const noexcept;
 
  private:
+  std::size_t neighboursOf(const Eigen::Vector3d& surface, const SkeletonFoot& foot, const Eigen::Vector3d& normal,
+                           std::array<ShearSpring, 6>& springs) const noexcept;
+  /// 0: both feet are on one place of the body; 1: on two.
+  double apart(const MeshFoot& a, const MeshFoot& b) const noexcept;
   double material(const std::vector<double>& values, const SkeletonFoot& foot) const noexcept;
 
   BodyOptions options_;
   MedialMesh mesh_;
   std::vector<double> stiffness_, damping_;  ///< one a vertex, or one for all
   std::optional<MeshDeformation> deformation_;
+  std::optional<FeltSurface> felt_;
 };
 
 }  // namespace hapticd::medial

@@ -4,6 +4,7 @@
 
 #include "bodies.hpp"
 #include "kernels/medial/body.hpp"
+#include "kernels/medial/mesh_body.hpp"
 
 namespace hapticd::medial {
 namespace {
@@ -81,6 +82,50 @@ TEST(ShearDistance, PullsTowardTheStifferNeighbour) {
   const Vector3d force = onPlate(.12, at(.006));
   EXPECT_GT(force.x(), 5e-4 * force.z());
   EXPECT_NEAR(force.y(), 0, 1e-9);
+}
+
+/// A slab mesh on a plate of `size` m whose stiffness grows along x by 20 N/m a millimetre, of n x n vertices.
+MeshBodyData meshPlate(double size, int n) {
+  MeshBodyData data;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) {
+      data.mesh.vertices.push_back({{size * (i / (n - 1.0) - .5), size * (j / (n - 1.0) - .5), 0}, .01});
+      data.stiffness.push_back(3000 + 20e3 * data.mesh.vertices.back().center.x());
+      const int a = i * n + j;
+      if (i + 1 == n || j + 1 == n) continue;
+      data.mesh.triangles.push_back({a, a + n, a + n + 1});
+      data.mesh.triangles.push_back({a, a + n + 1, a + 1});
+    }
+  }
+  return data;
+}
+
+BodyForce onMesh(double size, int n, const Vector3d& p) {
+  const MeshBody body(meshPlate(size, n), at(.006));
+  const SkeletonFoot foot = body.foot(p, MedialMesh::kNoStart, 0);
+  return body.press(p, foot, foot.normal, foot.depth, 0);
+}
+
+/// Whatever cones and slabs the neighbours are on.
+TEST(ShearDistance, OnAMeshTurnsTheForceAsOnAGrid) {
+  const Vector3d p(.001, .002, .006), grid = onPlate(.12, at(.006));
+  for (const double size : {.06, .12, .18}) {
+    for (const int n : {2, 5, 13}) {
+      const BodyForce answer = onMesh(size, n, p);
+      EXPECT_NEAR(answer.normal, 3020 * .004, 1e-9);
+      EXPECT_NEAR(answer.force.z(), answer.normal, 1e-9);
+      EXPECT_LT((answer.force - grid).norm(), 1e-9 * grid.norm()) << size << " " << n;
+    }
+  }
+}
+
+TEST(ShearDistance, OnAMeshDoesNotJumpFromSlabToSlab) {
+  Vector3d before = onMesh(.12, 5, {-.02, -.013, .006}).force;
+  for (int i = 1; i <= 400; ++i) {
+    const Vector3d force = onMesh(.12, 5, {-.02 + 1e-4 * i, -.013 + 3e-5 * i, .006}).force;
+    EXPECT_LT((force - before).norm(), 3500 * 1.05e-4);
+    before = force;
+  }
 }
 
 }  // namespace
