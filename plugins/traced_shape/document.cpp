@@ -1,65 +1,54 @@
 // SPDX-License-Identifier: MIT
 #include "document.hpp"
 
-#include <yaml-cpp/yaml.h>
+#include <utility>
 
-#include <charconv>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-
+#include "document/node.hpp"
 #include "model_file.hpp"
 
 namespace hapticd {
 namespace {
 
 using Json = nlohmann::json;
+using document::Node;
 constexpr std::size_t kMostProblems = 20;
-// Every value takes a byte or more, so that only aliases make a tree larger than its text.
-constexpr std::size_t kSpareNodes = 10'000;
-constexpr int kDeepest = 64;
 // A tree takes some 250 times the bytes of its YAML, and 20 times those of its JSON; a part file takes its own.
 constexpr std::size_t kMostYaml = 2u << 20, kMostJson = 32u << 20;
 
 constexpr const char* kPartWay = "hapticd import";
 
-Json scalarOf(const YAML::Node& node) {
-  const std::string& text = node.Scalar();
-  if (node.Tag() == "!") return text;  // quoted
-  if (text == ".nan" || text == ".NaN" || text == ".NAN") return std::numeric_limits<double>::quiet_NaN();
-  if (text == ".inf" || text == "+.inf" || text == ".Inf") return std::numeric_limits<double>::infinity();
-  if (text == "-.inf" || text == "-.Inf") return -std::numeric_limits<double>::infinity();
-  if (text == "true") return true;
-  if (text == "false") return false;
-  const char *first = text.data(), *last = first + text.size();
-  if (first != last && *first == '+') ++first;
-  double value = 0;
-  const auto [end, error] = std::from_chars(first, last, value);
-  if (error == std::errc::result_out_of_range && end == last)
-    return std::numeric_limits<double>::infinity();  // reported as not finite
-  if (error == std::errc() && end == last && first != last && std::isalpha(static_cast<unsigned char>(*first)) == 0)
-    return value;
-  return text;
+[[noreturn]] void throwAll(const document::Problems& problems) {
+  std::string all;
+  for (const document::Problem& problem : problems) all.append(all.empty() ? "" : "\n").append(problem.text());
+  throw ModelFileError(all);
 }
 
-Json treeOf(const YAML::Node& node, std::size_t& left, int depth) {
-  if (left-- == 0 || depth > kDeepest) throw YAML::ParserException(node.Mark(), "too large or too deep");
-  switch (node.Type()) {
-    case YAML::NodeType::Scalar:
+[[noreturn]] void throwOne(const std::string& file, const std::string& what) {
+  document::Problems problems;
+  document::report(problems, file, 1, 1, "", what);
+  throwAll(problems);
+}
+
+Json scalarOf(const Node& node) {
+  if (node.quoted) return node.scalar;
+  if (node.scalar == "true") return true;
+  if (node.scalar == "false") return false;
+  if (const auto number = document::toNumber(node.scalar)) return *number;
+  return node.scalar;
+}
+
+Json treeOf(const Node& node) {
+  switch (node.kind) {
+    case Node::Kind::kScalar:
       return scalarOf(node);
-    case YAML::NodeType::Sequence: {
+    case Node::Kind::kSequence: {
       Json list = Json::array();
-      for (const YAML::Node& item : node) list.push_back(treeOf(item, left, depth + 1));
+      for (const Node& item : node.items) list.push_back(treeOf(item));
       return list;
     }
-    case YAML::NodeType::Map: {
+    case Node::Kind::kMap: {
       Json map = Json::object();
-      for (const auto& item : node) {
-        if (!item.first.IsScalar()) throw YAML::ParserException(item.first.Mark(), "a key that is no text");
-        if (map.contains(item.first.Scalar()))
-          throw YAML::ParserException(item.first.Mark(), "key " + item.first.Scalar() + " appears twice");
-        map[item.first.Scalar()] = treeOf(item.second, left, depth + 1);
-      }
+      for (const document::Entry& entry : node.entries) map[entry.key.scalar] = treeOf(entry.value);
       return map;
     }
     default:
@@ -72,21 +61,20 @@ bool looksLikeJson(const std::string& text) {
   return first != std::string::npos && text[first] == '{';
 }
 
-/// Where the value at `path` stands, or the nearest value around it.
-YAML::Mark markOf(YAML::Node node, const Path& path) {
-  YAML::Mark mark = node.Mark();
+/// The value at `path`, or the nearest value around it.
+const Node& nodeAt(const Node& root, const Path& path) {
+  const Node* node = &root;
   for (const PathStep& step : path) {
-    YAML::Node inner;
-    if (node.IsMap() && !step.key.empty()) {
-      inner.reset(node[step.key]);
-    } else if (node.IsSequence() && step.index < node.size()) {
-      inner.reset(node[step.index]);
+    const Node* inner = nullptr;
+    if (!step.key.empty()) {
+      inner = node->find(step.key);
+    } else if (step.index < node->items.size()) {
+      inner = &node->items[step.index];
     }
-    if (!inner.IsDefined() || inner.Mark().is_null()) break;
-    node.reset(inner);
-    mark = node.Mark();
+    if (inner == nullptr) break;
+    node = inner;
   }
-  return mark;
+  return *node;
 }
 
 std::string nameOf(const Path& path) {
@@ -101,12 +89,6 @@ std::string nameOf(const Path& path) {
   return name;
 }
 
-std::string line(const std::string& file, int row, int column, const std::string& what) {
-  std::string text = file;
-  text.append(":").append(std::to_string(row)).append(":").append(std::to_string(column));
-  return text.append(": ").append(what);
-}
-
 }  // namespace
 
 void Problems::add(const Path& path, const std::string& what) {
@@ -119,36 +101,26 @@ bool Problems::full() const {
 
 void Problems::throwIfAny() const {
   if (found_.empty()) return;
-  YAML::Node root;
-  try {
-    root = YAML::Load(text_);
-  } catch (const YAML::Exception&) {  // JSON that YAML does not read: no positions
-  }
-  std::string all;
+  document::Problems all, unread;
+  const auto root = document::parseText(text_, file_, unread);  // JSON that YAML does not read: no positions
   for (const Problem& problem : found_) {
-    const YAML::Mark mark = root.IsDefined() ? markOf(root, problem.path) : YAML::Mark::null_mark();
-    const std::string name = nameOf(problem.path);
-    all.append(all.empty() ? "" : "\n");
-    all.append(line(file_, mark.line + 1, mark.column + 1, name.empty() ? problem.what : name + ": " + problem.what));
+    document::Place place{file_, 1, 1};
+    if (root) {
+      const Node& node = nodeAt(*root, problem.path);
+      place.line = node.line, place.column = node.column;
+    }
+    all.push_back({place, nameOf(problem.path), problem.what});
   }
-  throw ModelFileError(all);
+  throwAll(all);
 }
 
 std::string readModelText(const std::string& path) {
-  std::error_code unknown;
-  if (std::filesystem::exists(path, unknown) && !std::filesystem::is_regular_file(path, unknown))  // a pipe would wait
-    throw ModelFileError(path + ":1:1: not a regular file, expected a model file");
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in) throw ModelFileError(path + ":1:1: cannot be read, expected a model file (format hapticd-model/1)");
-  const std::streamoff size = in.tellg();
-  if (size < 0 || static_cast<std::size_t>(size) > kMostJson)
-    throw ModelFileError(path +
-                         ":1:1: larger than 32 MiB, expected a model file; for more, make a part file: " + kPartWay);
-  std::string text(static_cast<std::size_t>(size), '\0');
-  in.seekg(0);
-  in.read(text.data(), size);
-  if (!in) throw ModelFileError(path + ":1:1: cannot be read, expected a model file (format hapticd-model/1)");
-  return text;
+  document::Problems problems;
+  auto text = document::readFile(path, kMostJson, problems);
+  if (text) return *std::move(text);
+  throwOne(path, problems.front().what +
+                     "; expected a model file (format hapticd-model/1) of 32 MiB at most; for more, " +
+                     "make a part file: " + kPartWay);
 }
 
 Json parseDocument(const std::string& text, const std::string& file) {
@@ -157,14 +129,11 @@ Json parseDocument(const std::string& text, const std::string& file) {
     if (!json.is_discarded()) return json;
   }
   if (text.size() > kMostYaml)
-    throw ModelFileError(file +
-                         ":1:1: larger than 2 MiB as YAML; give it as JSON (32 MiB), or as a part file: " + kPartWay);
-  try {
-    std::size_t left = text.size() + kSpareNodes;
-    return treeOf(YAML::Load(text), left, 0);
-  } catch (const YAML::Exception& e) {
-    throw ModelFileError(line(file, e.mark.line + 1, e.mark.column + 1, "not YAML or JSON: " + e.msg));
-  }
+    throwOne(file, std::string("larger than 2 MiB as YAML; give it as JSON (32 MiB), or as a part file: ") + kPartWay);
+  document::Problems problems;
+  const auto root = document::parseText(text, file, problems);
+  if (!root || !problems.empty()) throwAll(problems);
+  return treeOf(*root);
 }
 
 }  // namespace hapticd
