@@ -109,6 +109,7 @@ Result<void> writeJson(const RunReport& report, const std::string& file) {
                {"missed_ticks", report.missed_ticks},
                {"lateness_us", quantiles(report.lateness_us)},
                {"compute_us", quantiles(report.compute_us)},
+               {"arms_us", quantiles(report.arms_us)},
                {"page_faults", report.page_faults},
                {"servo_allocations", report.servo_allocations},
                {"models", Json::object()},
@@ -140,6 +141,7 @@ std::string summary(const RunReport& report) {
     text += timeLine("lateness", report.lateness_us);
   }
   text += timeLine("compute", report.compute_us);
+  text += timeLine("in arms", report.arms_us);
   text += fmt::format("  servo     {} page faults, {} allocations after warm-up\n", report.page_faults,
                       report.servo_allocations);
   text += fmt::format("  process   {:.1f} MB resident, first tick {:.0f} ms after the start\n",

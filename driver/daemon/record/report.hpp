@@ -41,6 +41,7 @@ struct RunReport {
   bool virtual_time = false;
   uint64_t ticks = 0, overruns = 0, missed_ticks = 0;
   Histogram lateness_us, compute_us;
+  Histogram arms_us;               ///< part of compute: the physics of simulated arms, the traffic of others
   long page_faults = 0;            ///< of the servo thread after its warm-up
   uint64_t servo_allocations = 0;  ///< the same
   uint64_t resident_bytes = 0;

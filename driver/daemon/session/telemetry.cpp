@@ -44,18 +44,19 @@ void Telemetry::name(uint32_t place, const std::string& name, const std::string&
   plugins_[place] = plugin;
 }
 
-void Telemetry::tick(double t, double dt, Nanoseconds late, Nanoseconds spent, const Core& core,
+void Telemetry::tick(double t, double dt, Nanoseconds late, const Spent& spent, const Core& core,
                      const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
   BlackBoxRow row;
   row.t = t;
   simulated_seconds_ = t + 1 / rate_;
   row.lateness_us = static_cast<float>(static_cast<double>(late) * 1e-3);
-  row.compute_us = static_cast<float>(static_cast<double>(spent) * 1e-3);
+  row.compute_us = static_cast<float>(static_cast<double>(spent.total) * 1e-3);
   lateness_us_.add(row.lateness_us);
   compute_us_.add(row.compute_us);
+  arms_us_.add(static_cast<double>(spent.in_arms) * 1e-3);
   bookModels(dt, core, row);
-  if (flight_) flight_->tick(t, dt, late, spent, core, arms);
-  if (status_) status_->tick({booked_, overruns_, missed_, t}, late, spent, core, arms);
+  if (flight_) flight_->tick(t, dt, late, spent.total, core, arms);
+  if (status_) status_->tick({booked_, overruns_, missed_, t}, late, spent.total, core, arms);
   ++booked_;
   if (!arms.empty()) {
     const Arm& arm = *arms.front();
@@ -121,6 +122,7 @@ record::RunReport Telemetry::report(const std::vector<std::string>& faults) cons
   report.missed_ticks = missed_;
   report.lateness_us = lateness_us_;
   report.compute_us = compute_us_;
+  report.arms_us = arms_us_;
   report.page_faults = page_faults_;
   report.servo_allocations = allocations_;
   for (size_t i = 0; i < models_.size(); ++i)

@@ -63,7 +63,7 @@ class Telemetry final : public TickLog {
   }
 
   /// [rt] Books one tick.
-  void tick(double t, double dt, Nanoseconds late, Nanoseconds spent, const Core& core,
+  void tick(double t, double dt, Nanoseconds late, const Spent& spent, const Core& core,
             const Arms& arms) noexcept HSP_RT override;
 
   /// [rt] `missed` whole periods were skipped.
@@ -94,7 +94,7 @@ class Telemetry final : public TickLog {
   std::vector<std::string> names_, plugins_;
   std::vector<record::ModelReport> left_;  ///< models that are not there any more
   double rate_, simulated_seconds_ = 0;
-  record::Histogram lateness_us_, compute_us_;
+  record::Histogram lateness_us_, compute_us_, arms_us_;
   std::vector<record::ContactStatistics> models_;
   std::vector<std::string> devices_;               ///< where there are several
   std::vector<record::ContactStatistics> by_arm_;  ///< [model * devices_.size() + arm]

@@ -108,7 +108,7 @@ void Loop::run() noexcept {
     log_.begin(deadline, arms_);
     tick({n, deadline, t, dt});
     const Nanoseconds ended = monotonicNow();
-    log_.tick(t, dt, woke - due, ended - begun - search_time_ - listen_time_, core_, arms_);
+    log_.tick(t, dt, woke - due, {ended - begun - search_time_ - listen_time_, read_time_}, core_, arms_);
     door_.written(n);
     last = deadline;
     deadline += settings_.period_ns;
@@ -260,7 +260,9 @@ void Loop::tick(const TickTime& tick) noexcept HSP_RT {
   obey(tick.t);
   shedLoad();
   for (const auto& arm : arms_) arm->hand().step(tick.t, tick.dt, epoch_);
+  read_time_ = monotonicNow();
   for (size_t i = 0; i < arms_.size(); ++i) probes_[i] = arms_[i]->read(tick.time, tick.dt);
+  read_time_ = monotonicNow() - read_time_;
   door_.tell(tick, arms_);
   core_.publish(tick.t, probes_);
   if (settings_.lockstep) search(tick.t);

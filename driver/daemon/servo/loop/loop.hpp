@@ -117,6 +117,7 @@ class Loop {
   double epoch_ = 0;  ///< [s] CLOCK_MONOTONIC of the first tick, in a run on the real clock
   // In virtual time the simulation side works in this thread too; what it takes is not the servo's.
   Nanoseconds search_time_ = 0;
+  Nanoseconds read_time_ = 0;    ///< of this tick
   Nanoseconds listen_time_ = 0;  ///< of this tick, spent on programs that had not answered yet
   uint64_t search_allocations_ = 0;
   SpscRing<Order> orders_{256};
