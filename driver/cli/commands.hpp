@@ -8,13 +8,14 @@ namespace hapticd::cli {
 using AddCommand = void(CLI::App& app, int& exit_code);
 
 // clang-format off: a command is a line
-AddCommand addCheck, addCompletion, addCtl, addDevice, addDeviceCalibrate, addDeviceControls, addDeviceDecode,
+AddCommand addCheck, addClient, addCompletion, addCtl, addDevice, addDeviceCalibrate, addDeviceControls, addDeviceDecode,
     addDeviceKinematics, addDeviceNew, addDeviceRecord, addDoctor, addExplain, addExport, addImport, addManual, addPart,
     addPlot, addPlugin, addPluginCheck, addPluginNew, addReplay, addRun, addTop, addTrace, addTune, addView;
 
 /// A command that hangs under another one ("device calibrate") comes after it.
 constexpr AddCommand* kCommands[] = {
     addCheck,
+    addClient,
     addCompletion,
     addCtl,
     addDevice,

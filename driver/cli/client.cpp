@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd client`: runs a program of OpenHaptics (HDAPI) on the arm of a running daemon.
+#include "control/client.hpp"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/clock.hpp"
+#include "base/os.hpp"
+#include "cli/command.hpp"
+#include "status/page_file.hpp"
+
+namespace hapticd::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string name = "hapticd", scene;
+  bool env = false;
+};
+
+/// The folder of our libHD.so.
+Result<std::string> libraryFolder() {
+  std::error_code error;
+  const fs::path folder = (host::executableDir() / ".." / "lib" / "hapticd" / "hdapi").lexically_normal();
+  if (fs::exists(folder / "libHD.so.3.4", error)) return folder.string();
+  return Error{folder.string() +
+               ": libHD.so.3.4 is not there, expected it beside this program\n  fix: cmake --build build/release "
+               "--target hdapi, or install the package hapticd"};
+}
+
+std::string pathWith(const std::string& folder) {
+  const char* others = std::getenv("LD_LIBRARY_PATH");
+  return others != nullptr && *others != '\0' ? folder + ":" + others : folder;
+}
+
+bool isRunning(const std::string& name) {
+  const std::string file = "/" + name + ".sock";
+  return control::connectTo(status::runtimeFolder(false) + file) || control::connectTo("/run/hapticd" + file);
+}
+
+volatile sig_atomic_t program = 0;  ///< for the signal handler
+
+void passOn(int signal) {
+  if (program > 0) kill(static_cast<pid_t>(program), signal);
+}
+
+/// In the child: becomes `words`. What it prints of its own goes nowhere if it is `silent`.
+[[noreturn]] void become(std::vector<std::string> words, bool silent) {
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  if (silent && std::freopen("/dev/null", "w", stdout) == nullptr) std::_Exit(kFailed);
+  if (silent) setpgid(0, 0);  // Ctrl-C is for the program; the daemon ends after it
+  execvp(arguments[0], arguments.data());
+  std::fprintf(stderr, "error: %s: cannot be started: %s\n", arguments[0], std::strerror(errno));
+  std::_Exit(kBadInput);
+}
+
+pid_t start(const std::vector<std::string>& words, bool silent) {
+  const pid_t child = fork();
+  if (child == 0) become(words, silent);
+  return child;
+}
+
+int endOf(pid_t child) {
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  constexpr int kBySignal = 128;  // as shells say it
+  return WIFEXITED(status) ? WEXITSTATUS(status) : kBySignal + WTERMSIG(status);
+}
+
+/// Starts a daemon and waits until it can be asked.
+Result<pid_t> startDaemon(const Options& options) {
+  constexpr int kTries = 600;
+  constexpr useconds_t kPauseUs = 50'000;
+  std::string scene = options.scene;
+  if (scene.empty()) {
+    const auto shipped = host::shippedFile("hdapi/simulated.yaml");
+    if (!shipped)
+      return Error{"no daemon runs as \"" + options.name + "\"\n  fix: hapticd run SCENE, or --scene SCENE"};
+    scene = shipped->string();
+  }
+  std::fprintf(stderr, "no daemon runs as \"%s\": starting one for this program with %s\n", options.name.c_str(),
+               scene.c_str());
+  const pid_t child = start({(host::executableDir() / "hapticd").string(), "run", scene, "--name", options.name}, true);
+  if (child < 0) return Error{std::string("the daemon cannot be started: ") + std::strerror(errno)};
+  for (int i = 0; i < kTries; ++i) {
+    if (isRunning(options.name)) return child;
+    if (waitpid(child, nullptr, WNOHANG) == child) return Error{"the daemon ended at once, for the reason above"};
+    usleep(kPauseUs);
+  }
+  kill(child, SIGTERM);
+  endOf(child);
+  return Error{"the daemon cannot be asked after 30 s\n  fix: start it by itself (hapticd run) and see what it says"};
+}
+
+int runWithDaemon(const Options& options, const std::vector<std::string>& words) {
+  const auto daemon = startDaemon(options);
+  if (!daemon) return fail(kFailed, daemon.error());
+  os::onStopSignal(passOn);
+  program = start(words, false);
+  const int code = program > 0 ? endOf(static_cast<pid_t>(program)) : fail(kFailed, std::strerror(errno));
+  kill(*daemon, SIGTERM);
+  endOf(*daemon);
+  return code;
+}
+
+int client(const Options& options, const std::vector<std::string>& words) {
+  const auto folder = libraryFolder();
+  if (!folder) return fail(kFailed, folder.error());
+  const std::string path = pathWith(*folder);
+  if (options.env) {
+    std::printf("export LD_LIBRARY_PATH='%s'\nexport HAPTICD_NAME='%s'\n", path.c_str(), options.name.c_str());
+    return kWorked;
+  }
+  if (words.empty()) return fail(kBadInput, "no program is named, expected: hapticd client PROGRAM [ARGUMENTS]");
+  setenv("LD_LIBRARY_PATH", path.c_str(), 1);
+  setenv("HAPTICD_NAME", options.name.c_str(), 1);
+  if (!isRunning(options.name)) return runWithDaemon(options, words);
+  if (!options.scene.empty())
+    return fail(kBadInput, "a daemon runs as \"" + options.name + "\" already, so that --scene has no effect\n  fix: " +
+                               "leave --scene out, or choose another --name");
+  become(words, false);
+}
+
+}  // namespace
+
+void addClient(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("client", "Run an OpenHaptics (HDAPI) program on a daemon's arm.");
+  command->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
+  command->add_option("--scene", options->scene, "scene of the daemon that is started where none runs");
+  command->add_flag("--env", options->env, "print the environment that the program needs, for a shell");
+  command->prefix_command();
+  command->footer(
+      "The program finds hapticd's own libHD.so and the daemon of --name. Where none runs, one is started with the\n"
+      "simulated arm, and ends with the program. Options of this command stand before PROGRAM; its exit code is the "
+      "program's.\n\nExamples:\n  hapticd client ./my_program --its-own option\n  eval \"$(hapticd client --env)\"");
+  command->callback([command, options, &exit_code] {
+    std::vector<std::string> words = command->remaining();
+    if (!words.empty() && words.front() == "--") words.erase(words.begin());
+    exit_code = client(*options, words);
+  });
+}
+
+}  // namespace hapticd::cli

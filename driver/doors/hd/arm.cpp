@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+#include "arm.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hapticd::hd {
+
+namespace {
+
+constexpr uint64_t kHoldNs = 100'000'000;  ///< a force holds for so long after the frame that set it
+constexpr double kNsPerSecond = 1e9, kMmPerMetre = 1000;
+
+constexpr HDenum kCapabilities[] = {HD_FORCE_OUTPUT, HD_MAX_FORCE_CLAMPING, HD_FORCE_RAMPING, HD_SOFTWARE_FORCE_LIMIT,
+                                    HD_ONE_FRAME_LIMIT};
+
+uint32_t bitOf(HDenum capability) {
+  const auto found = std::find(std::begin(kCapabilities), std::end(kCapabilities), capability);
+  return found != std::end(kCapabilities) ? 1u << (found - std::begin(kCapabilities)) : 0;
+}
+
+/// What the daemon's reasons for not letting a force flow are here (hapticd_state.fault). HD_SUCCESS: nothing to tell.
+HDerror errorOf(uint32_t fault) {
+  constexpr uint32_t kNone = 0, kDeviceLost = 2, kStale = 4, kTooFast = 5, kStopped = 8, kOverheated = 10;
+  switch (fault) {
+    case kNone:
+    case kStopped:
+      return HD_SUCCESS;  // the daemon ends; that it is gone is told by the scheduler
+    case kDeviceLost:
+    case kStale:
+      return HD_COMM_ERROR;
+    case kTooFast:
+      return HD_EXCEEDED_MAX_VELOCITY;
+    case kOverheated:
+      return HD_WARM_MOTORS;
+    default:
+      return HD_DEVICE_FAULT;
+  }
+}
+
+double sizeOf(const double v[3]) {
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+bool allFinite(const double v[3]) {
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+void scaleTo(double v[3], double most) {
+  const double size = sizeOf(v);
+  if (size > most)
+    for (int i = 0; i < 3; ++i) v[i] *= most / size;
+}
+
+}  // namespace
+
+void Arm::open(std::shared_ptr<Link> link, Facts facts) {
+  constexpr double kRampTime = 0.05;  // s to the greatest force
+  link_ = std::move(link);
+  facts_ = std::move(facts);
+  motion_ = {};
+  frame_ = last_ = {};
+  ended_ = pushed_ = seen_ = false;  // a frame that is open ends as it would have: the daemon was lost meanwhile
+  told_fault_ = 0;
+  std::fill_n(held_force_, 3, 0.0), std::fill_n(held_torque_, 3, 0.0);
+  capabilities_ = bitOf(HD_MAX_FORCE_CLAMPING) | bitOf(HD_FORCE_RAMPING) | bitOf(HD_SOFTWARE_FORCE_LIMIT) |
+                  bitOf(HD_ONE_FRAME_LIMIT);
+  bounds_ = {0, 0, facts_.max_force / kRampTime};
+  refresh();
+  see(frame_);
+}
+
+void Arm::close() {
+  link_.reset();  // the connection ends with the last who holds it, and the force with the connection
+  in_frame_ = false;
+  capabilities_ = 0;
+}
+
+/// Another thread may have seen a newer one already.
+void Arm::look(const hapticd_state& state) {
+  if (seen_ && state.tick <= now_.tick) return;
+  seen_ = true;
+  now_ = state;
+  motion_.add(state);
+}
+
+void Arm::tick(const hapticd_state& state, uint64_t ns) {
+  look(state);
+  woke_ns_ = ns;
+}
+
+void Arm::refresh() {
+  hapticd_state state;
+  if (isOpen() && link_->next(UINT64_MAX, 0, state) == 1) look(state);
+}
+
+/// The force is that of the last frame.
+const Frame& Arm::newest() {
+  refresh();
+  newest_ = frame_;
+  see(newest_);
+  return newest_;
+}
+
+void Arm::see(Frame& frame) const {
+  frame.state = now_;
+  if (facts_.pushable)  // the daemon estimates it for those who push
+    std::copy_n(now_.velocity, 3, frame.velocity);
+  else
+    motion_.velocity(frame.velocity);
+  motion_.angularVelocity(frame.angular);
+}
+
+void Arm::begin(uint64_t scheduler_tick) {
+  if (in_frame_) return;
+  if (scheduler_tick != UINT64_MAX && ended_ && ended_in_ == scheduler_tick && isEnabled(HD_ONE_FRAME_LIMIT))
+    return errors_.push(HD_ILLEGAL_BEGIN, handle_);
+  last_ = frame_;
+  if (scheduler_tick == UINT64_MAX) refresh();
+  frame_ = {};
+  see(frame_);
+  in_frame_ = true;
+  reportFault();
+}
+
+void Arm::reportFault() {
+  const uint32_t fault = now_.fault;
+  if (fault == told_fault_) return;
+  told_fault_ = fault;
+  if (const HDerror error = errorOf(fault); error != HD_SUCCESS) errors_.push(error, handle_, static_cast<int>(fault));
+}
+
+void Arm::end(uint64_t scheduler_tick, uint64_t ns, bool pushes) {
+  if (!in_frame_) return errors_.push(HD_ILLEGAL_END, handle_);
+  in_frame_ = false;
+  ended_ = scheduler_tick != UINT64_MAX;
+  ended_in_ = scheduler_tick;
+  if (pushes && forceOn() && force_since_ns_ == 0) force_since_ns_ = ns;
+  double force[3], torque[3];
+  std::copy_n(frame_.force, 3, force), std::copy_n(frame_.torque, 3, torque);
+  if (const HDerror error = checked(ns, force); error != HD_SUCCESS) {
+    errors_.push(error, handle_);
+    std::fill_n(force, 3, 0.0);
+  }
+  if (facts_.output_dof <= 3 || !allFinite(torque)) std::fill_n(torque, 3, 0.0);
+  std::copy_n(force, 3, held_force_), std::copy_n(torque, 3, held_torque_);
+  last_end_ns_ = ns;
+  if (pushes && forceOn()) answer(frame_.state.tick, force, torque, ns);
+}
+
+/// What the library lets out of what the program asked for. An error: nothing of it.
+HDerror Arm::checked(uint64_t ns, double force[3]) const {
+  if (!forceOn()) return HD_SUCCESS;
+  if (!allFinite(force)) return HD_FORCE_ERROR;
+  if (bounds_.velocity > 0 && sizeOf(frame_.velocity) * kMmPerMetre > bounds_.velocity) return HD_EXCEEDED_MAX_VELOCITY;
+  const double step[3] = {force[0] - last_.force[0], force[1] - last_.force[1], force[2] - last_.force[2]};
+  if (bounds_.impulse > 0 && sizeOf(step) > bounds_.impulse) return HD_EXCEEDED_MAX_FORCE_IMPULSE;
+  if (facts_.max_force > 0 && sizeOf(force) > facts_.max_force) {
+    if (isEnabled(HD_MAX_FORCE_CLAMPING))
+      scaleTo(force, facts_.max_force);
+    else if (isEnabled(HD_SOFTWARE_FORCE_LIMIT))
+      return HD_EXCEEDED_MAX_FORCE;
+  }
+  if (isEnabled(HD_FORCE_RAMPING) && bounds_.ramp > 0)
+    scaleTo(force, bounds_.ramp * static_cast<double>(ns - force_since_ns_) / kNsPerSecond);
+  return HD_SUCCESS;
+}
+
+/// The servo ignores a second answer to a tick, and one to a tick before it.
+void Arm::answer(uint64_t tick, const double force[3], const double torque[3], uint64_t ns) {
+  if (pushed_ && tick <= pushed_tick_) return;
+  hapticd_push push{};
+  push.tick = tick;
+  std::copy_n(force, 3, push.force), std::copy_n(torque, 3, push.torque);
+  push.woke_ns = woke_ns_, push.written_ns = ns;
+  link_->push(push);
+  pushed_tick_ = tick, pushed_ = true;
+}
+
+void Arm::heartbeat(uint64_t ns) {
+  if (!isOpen() || !forceOn()) return;
+  constexpr double kNothing[3] = {};
+  const bool holds = ns - last_end_ns_ < kHoldNs;
+  answer(now_.tick, holds ? held_force_ : kNothing, holds ? held_torque_ : kNothing, ns);
+}
+
+bool Arm::isCapability(HDenum capability) {
+  return bitOf(capability) != 0;
+}
+
+bool Arm::isEnabled(HDenum capability) const {
+  return (capabilities_ & bitOf(capability)) != 0;
+}
+
+bool Arm::enable(HDenum capability, bool on, std::string& why) {
+  if (on && capability == HD_FORCE_OUTPUT && !link_->lead(why)) return false;
+  capabilities_ = on ? capabilities_ | bitOf(capability) : capabilities_ & ~bitOf(capability);
+  if (!forceOn()) force_since_ns_ = 0;  // it ramps in anew
+  return bitOf(capability) != 0;
+}
+
+double Arm::motorTemperature(int joint) const {
+  const auto place = static_cast<size_t>(joint);
+  if (!isOpen() || place >= facts_.motors.size()) return 0;
+  double celsius[16];
+  constexpr size_t kMost = std::size(celsius);
+  if (place >= kMost) return 0;
+  std::fill_n(celsius, kMost, facts_.motors[place].ambient);
+  link_->temperatures(celsius, kMost);
+  const Facts::Motor& motor = facts_.motors[place];
+  const double span = motor.hottest - motor.ambient;
+  return span > 0 ? std::clamp((celsius[place] - motor.ambient) / span, 0.0, 1.0) : 0;
+}
+
+}  // namespace hapticd::hd

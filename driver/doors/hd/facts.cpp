@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "facts.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace hapticd::hd {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kMmPerMetre = 1000;
+
+/// Arms that HDAPI programs know by name: usable workspace in mm, as their makers publish it.
+struct Known {
+  const char* product;  ///< part of the device's own name for itself
+  const char* model;    ///< as HD_DEVICE_MODEL_TYPE says it
+  double size[3];
+};
+constexpr Known kKnown[] = {
+    {"Premium 1.5", "PHANTOM Premium 1.5", {381, 267, 191}},
+    {"Premium 3.0", "PHANTOM Premium 3.0", {838, 584, 406}},
+    {"Falcon", "", {102, 102, 102}},
+    {"Sarcos", "", {1000, 1000, 1000}},
+};
+constexpr Known kOther = {"", "", {160, 120, 70}};
+
+const Known& knownAs(const std::string& product) {
+  const auto found = std::find_if(std::begin(kKnown), std::end(kKnown),
+                                  [&](const Known& known) { return product.find(known.product) != std::string::npos; });
+  return found != std::end(kKnown) ? *found : kOther;
+}
+
+/// A box about the place where the arm stands; the largest that a link of it may reach is a quarter longer.
+void readWorkspace(const Known& known, const Json& mount, Facts& facts) {
+  constexpr double kBeyondUsable = 1.25;
+  for (size_t i = 0; i < 3; ++i) {
+    const double middle = mount.at("position").at(i).get<double>() * kMmPerMetre, half = known.size[i] / 2;
+    facts.usable[i] = middle - half, facts.usable[i + 3] = middle + half;
+    facts.workspace[i] = middle - kBeyondUsable * half, facts.workspace[i + 3] = middle + kBeyondUsable * half;
+  }
+  facts.tabletop = -facts.usable[1];
+}
+
+void readInfo(const Json& info, Facts& facts) {
+  constexpr int kFull = 6;               // degrees of freedom
+  constexpr double kDampingTime = 1e-3;  // s: N s/mm for each N/mm, what a wall of 1 kHz bears in any case
+  facts.joints = info.at("joint_count");
+  const Json& torque = info.at("max_torque");
+  const auto motors = std::count_if(torque.begin(), torque.end(),
+                                    [](const Json& most) { return most.is_string() || most.get<double>() > 0; });
+  facts.input_dof = facts.joints >= kFull ? kFull : 3;
+  facts.output_dof = motors >= kFull ? kFull : 3;
+  facts.max_force = info.at("max_force");
+  facts.continuous_force = info.at("continuous_force");
+  facts.max_stiffness = info.at("max_stiffness").get<double>() / kMmPerMetre;
+  facts.max_damping = facts.max_stiffness * kDampingTime;
+  facts.serial = info.at("serial");
+  facts.firmware_text = info.at("firmware");
+  facts.firmware = std::strtod(facts.firmware_text.c_str(), nullptr);
+}
+
+void readScene(const Json& scene, size_t device, Facts& facts) {
+  const Json& arm = scene.at("devices").at(device);
+  const Json& limits = arm.at("limits");
+  if (const Json& enable = limits.at("enable"); enable.is_object()) facts.enable_button = enable.value("button", -1);
+  if (const double force = limits.at("force"); force > 0)
+    facts.max_force = facts.max_force > 0 ? std::min(facts.max_force, force) : force;
+  constexpr size_t kHottest = 7, kAmbient = 8;  // places in the list that a motor is
+  for (const Json& motor : limits.at("motors")) facts.motors.push_back({motor.at(kHottest), motor.at(kAmbient)});
+  facts.pushable = scene.contains("clients") && scene.at("clients").at("mode") != 0;
+}
+
+}  // namespace
+
+bool readFacts(const char* about, int device, Facts& facts) try {
+  const auto place = static_cast<size_t>(device);
+  const Json json = Json::parse(about);
+  const Json& arm = json.at("devices").at(place);
+  const std::string product = arm.at("info").at("product");
+  const Known& known = knownAs(product);
+  facts.name = arm.at("name");
+  facts.model = known.model[0] != '\0' ? known.model : product.empty() ? facts.name : product;
+  facts.driver = json.at("hapticd");
+  facts.rate = json.at("rate_hz");
+  readInfo(arm.at("info"), facts);
+  readScene(json.at("scene"), place, facts);
+  readWorkspace(known, json.at("scene").at("devices").at(place).at("mount"), facts);
+  return true;
+} catch (const std::exception&) {
+  return false;
+}
+
+HDstring keptForever(const std::string& text) {
+  static auto& lock = *new std::mutex;
+  static auto& texts = *new std::set<std::string>;
+  const std::lock_guard guard(lock);
+  return texts.insert(text).first->c_str();
+}
+
+}  // namespace hapticd::hd

@@ -1,0 +1,10 @@
+/* SPDX-License-Identifier: MIT */
+/* hdu.h - all that HDU has. */
+#ifndef HAPTICD_HDU_H
+#define HAPTICD_HDU_H
+#include <HDU/hduError.h>
+#include <HDU/hduMath.h>
+#include <HDU/hduMatrix.h>
+#include <HDU/hduQuaternion.h>
+#include <HDU/hduVector.h>
+#endif

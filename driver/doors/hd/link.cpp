@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include "link.hpp"
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+namespace hapticd::hd {
+
+namespace {
+
+struct Close {
+  void operator()(hapticd_client* client) const { hapticd_close(client); }
+};
+
+std::string namesOf(hapticd_client* client) {
+  std::string names;
+  for (int i = 0; hapticd_device_name(client, i) != nullptr; ++i)
+    names += (i > 0 ? ", \"" : "\"") + std::string(hapticd_device_name(client, i)) + '"';
+  return names;
+}
+
+/// Where a column begins in its row; -1: there is none.
+long placeOf(const hapticd_column* columns, long count, const char* name) {
+  for (long i = 0; i < count; ++i)
+    if (std::strcmp(columns[i].name, name) == 0) return columns[i].offset;
+  return -1;
+}
+
+}  // namespace
+
+std::shared_ptr<Link> Link::open(const std::string& name, Facts& facts, std::string& why, int& number) {
+  const char* wanted = std::getenv("HAPTICD_NAME");
+  hapticd_error error;
+  errno = 0;
+  std::unique_ptr<hapticd_client, Close> client(
+      hapticd_connect(wanted != nullptr && *wanted != '\0' ? wanted : nullptr, &error));
+  number = client ? 0 : errno != 0 ? errno : ECONNREFUSED;
+  if (!client) return why = error.text, nullptr;
+  const int device = name.empty() ? 0 : hapticd_device(client.get(), name.c_str());
+  if (device < 0 || hapticd_device_name(client.get(), device) == nullptr) {
+    why = "the daemon has no device \"" + name + "\"; it has " + namesOf(client.get()) +
+          "\n  fix: one of these names, or HD_DEFAULT_DEVICE for the first";
+    return nullptr;
+  }
+  if (!readFacts(hapticd_about(client.get()), device, facts)) {
+    why = "what the daemon says of itself cannot be understood: it is of another version\n  fix: restart the daemon";
+    return nullptr;
+  }
+  hapticd_state first;
+  constexpr int kFirstMs = 1000;
+  if (hapticd_next_state(client.get(), device, UINT64_MAX, kFirstMs, &first) != 1)
+    return why = "the daemon tells of no tick for 1 s", nullptr;
+  auto link = std::make_shared<Link>(client.get(), device);
+  (void)client.release();
+  return link;
+}
+
+bool Link::lead(std::string& why) {
+  if (leads()) return true;
+  hapticd_error error;
+  lead_ = hapticd_lead_force(client_, hapticd_device_name(client_, device_), &error);
+  if (!leads()) why = error.text;
+  return leads();
+}
+
+void Link::temperatures(double* of_joint, size_t most) const {
+  constexpr size_t kRows = 64;
+  const int stream = hapticd_stream(client_, "motors");
+  const hapticd_column* columns = nullptr;
+  size_t bytes = 0;
+  const long count = hapticd_columns(client_, stream, &columns, &bytes);
+  const long arm = placeOf(columns, count, "arm"), joint = placeOf(columns, count, "joint"),
+             winding = placeOf(columns, count, "winding");
+  if (arm < 0 || joint < 0 || winding < 0) return;
+  const uint64_t written = hapticd_written(client_, stream);
+  uint64_t row = written > kRows ? written - kRows : 0;
+  std::vector<char> rows(kRows * bytes);
+  const long got = hapticd_read(client_, stream, &row, rows.data(), kRows);
+  for (long i = 0; i < got; ++i) {
+    const char* at = rows.data() + static_cast<size_t>(i) * bytes;
+    uint32_t of_arm = 0, of = 0;
+    std::memcpy(&of_arm, at + arm, sizeof of_arm);
+    std::memcpy(&of, at + joint, sizeof of);
+    if (of_arm == static_cast<uint32_t>(device_) && of < most) std::memcpy(&of_joint[of], at + winding, sizeof(double));
+  }
+}
+
+}  // namespace hapticd::hd

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+/// One arm of a running daemon, through libhapticd.
+#pragma once
+#include <atomic>
+#include <memory>
+#include <string>
+
+#include "facts.hpp"
+#include "hapticd/client.h"
+
+namespace hapticd::hd {
+
+/// Of several threads one may open, lead and close; the others may wait, push and read.
+class Link {
+ public:
+  /// [main] Connects to the daemon of $HAPTICD_NAME. @param name of the arm; empty: the first. @param why becomes the
+  /// reason and its cure @param number becomes errno or 0. nullptr: it cannot
+  static std::shared_ptr<Link> open(const std::string& name, Facts& facts, std::string& why, int& number);
+  Link(hapticd_client* client, int device) : client_(client), device_(device) {}
+  Link(const Link&) = delete;
+  Link& operator=(const Link&) = delete;
+  ~Link() { hapticd_close(client_); }
+
+  /// [any] As hapticd_next_state.
+  int next(uint64_t after, int timeout_ms, hapticd_state& state) const {
+    return hapticd_next_state(client_, device_, after, timeout_ms, &state);
+  }
+  /// [any] A daemon of this name runs; perhaps not the one that was connected to.
+  bool runs() const { return hapticd_alive(client_) == 1; }
+  /// [main] The one that was connected to runs.
+  bool alive() const {
+    return !lost && runs() && hapticd_ask(client_, R"({"do":"snapshot"})", nullptr, 0, nullptr) >= 0;
+  }
+  std::atomic<bool> lost{false};  ///< no tick came for long
+
+  /// [main] From now on push() counts. @return false: `why` says why not
+  bool lead(std::string& why);
+  bool leads() const { return lead_ != nullptr; }
+  void push(const hapticd_push& push) const {
+    if (lead_ != nullptr) hapticd_lead_push(lead_, &push);
+  }
+  /// [any] Newest temperatures of the windings in degC, of as many joints as `most`; others stay as they are.
+  void temperatures(double* of_joint, size_t most) const;
+
+ private:
+  hapticd_client* client_;
+  int device_;
+  std::atomic<hapticd_lead*> lead_{nullptr};
+};
+
+}  // namespace hapticd::hd

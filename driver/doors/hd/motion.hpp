@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+/// How an arm moved in the last ticks: velocities that the daemon does not tell.
+#pragma once
+#include <array>
+#include <cstddef>
+
+#include "hapticd/client.h"
+
+namespace hapticd::hd {
+
+class Motion {
+ public:
+  void add(const hapticd_state& state);  ///< one newer than the last; others are left out
+  /// [m/s] By least squares over the states that were kept; zeros while there are fewer than two.
+  void velocity(double out[3]) const;
+  /// [rad/s] From the oldest orientation that was kept to the newest, world frame.
+  void angularVelocity(double out[3]) const;
+
+ private:
+  static constexpr size_t kKept = 8;
+  const hapticd_state& at(size_t age) const { return kept_[(next_ + kKept - 1 - age) % kKept]; }
+  std::array<hapticd_state, kKept> kept_{};
+  size_t next_ = 0, count_ = 0;
+};
+
+}  // namespace hapticd::hd

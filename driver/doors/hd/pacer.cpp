@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+#include "pacer.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <ctime>
+
+#include "library.hpp"
+
+namespace hapticd::hd {
+
+namespace {
+
+constexpr uint64_t kNsPerSecond = 1'000'000'000, kNsPerMs = 1'000'000;
+constexpr int kPatienceMs = 20;                 ///< then the library ticks by itself
+constexpr uint64_t kSilentNs = 500 * kNsPerMs;  ///< then the daemon counts as gone, although its process may live
+constexpr uint64_t kLookNs = 100 * kNsPerMs;    ///< between two looks whether the process lives
+
+void sleepNs(uint64_t ns) {
+  const timespec time{static_cast<time_t>(ns / kNsPerSecond), static_cast<long>(ns % kNsPerSecond)};
+  clock_nanosleep(CLOCK_MONOTONIC, 0, &time, nullptr);
+}
+
+}  // namespace
+
+uint64_t nowNs() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<uint64_t>(now.tv_sec) * kNsPerSecond + static_cast<uint64_t>(now.tv_nsec);
+}
+
+double Pacer::rate() const {
+  const Guard guard(library_.lock);
+  return library_.rate();
+}
+
+Pacer::Lead Pacer::first() const {
+  const Guard guard(library_.lock);
+  for (size_t i = 0; i < kMostArms; ++i)
+    if (const Arm& arm = library_.arms()[i]; arm.isOpen()) return {arm.link(), static_cast<HHD>(i)};
+  return {};
+}
+
+uint64_t Pacer::wait() {
+  const std::lock_guard waiting(waiting_);
+  const Lead lead = first();
+  if (lead.link != followed_) {
+    followed_ = lead.link;
+    seen_ = UINT64_MAX, silent_since_ns_ = 0, lost_ = false;
+  }
+  hapticd_state state;
+  const bool there = waitFor(lead, state);
+  const uint64_t ns = nowNs();
+  if (there) {
+    seen_ = state.tick;
+    silent_since_ns_ = 0, lost_ = lead.link->lost = false;
+    show(lead, state, ns);
+  } else if (lead.link) {
+    missed(lead);
+  }
+  return ns;
+}
+
+bool Pacer::waitFor(const Lead& lead, hapticd_state& state) {
+  const auto period = static_cast<uint64_t>(static_cast<double>(kNsPerSecond) / rate());
+  const bool alone = !lead.link || lost_ || silent_since_ns_ != 0;
+  if (!alone) return lead.link->next(seen_, kPatienceMs, state) == 1;
+  sleepNs(period);
+  return lead.link && lead.link->next(seen_, 0, state) == 1;
+}
+
+/// No state came. The error is told once an outage.
+void Pacer::missed(const Lead& lead) {
+  const uint64_t now = nowNs();
+  if (silent_since_ns_ == 0) silent_since_ns_ = now, looked_ns_ = 0;
+  if (lost_ || now - looked_ns_ < kLookNs) return;
+  looked_ns_ = now;
+  if (lead.link->runs() && now - silent_since_ns_ < kSilentNs) return;
+  lost_ = lead.link->lost = true;
+  library_.errors.push(HD_COMM_ERROR, lead.handle, ECONNRESET);
+}
+
+void Pacer::show(const Lead& lead, const hapticd_state& state, uint64_t ns) {
+  const Guard guard(library_.lock);
+  for (Arm& arm : library_.arms()) {
+    if (!arm.isOpen()) continue;
+    hapticd_state own = state;
+    if (arm.link() == lead.link || arm.link()->next(UINT64_MAX, 0, own) == 1) arm.tick(own, ns);
+  }
+}
+
+void Pacer::endTick() {
+  const Guard guard(library_.lock);
+  const uint64_t ns = nowNs();
+  for (Arm& arm : library_.arms()) arm.heartbeat(ns);
+}
+
+}  // namespace hapticd::hd

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+/// Ticks for the scheduler: those of the daemon, or, where none is there, of this process's own clock.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <mutex>
+
+#include "errors.hpp"
+#include "link.hpp"
+
+namespace hapticd::hd {
+
+class Library;
+
+class Pacer {
+ public:
+  explicit Pacer(Library& library) : library_(library) {}
+  /// Waits for a tick and shows its states to the arms. One thread after the other. @return CLOCK_MONOTONIC [ns] when
+  /// it began
+  uint64_t wait();
+  void endTick();  ///< [servo] every arm hears that the program lives
+  double rate() const;
+
+ private:
+  struct Lead {
+    std::shared_ptr<Link> link;
+    HHD handle = HD_INVALID_HANDLE;
+  };
+  Lead first() const;
+  bool waitFor(const Lead& lead, hapticd_state& state);
+  void missed(const Lead& lead);
+  void show(const Lead& lead, const hapticd_state& state, uint64_t ns);
+
+  Library& library_;
+  std::mutex waiting_;
+  std::shared_ptr<Link> followed_;  ///< the arm that the ticks are those of
+  uint64_t seen_ = UINT64_MAX, silent_since_ns_ = 0, looked_ns_ = 0;
+  bool lost_ = false;  ///< and told so
+};
+
+uint64_t nowNs();
+
+}  // namespace hapticd::hd

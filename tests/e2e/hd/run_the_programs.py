@@ -1,0 +1,250 @@
+#!/usr/bin/env python3
+"""Programs of the HDAPI, run by `hapticd client` on the simulated arm of a daemon; what they pushed is in its rows.
+
+Usage: run_the_programs.py HAPTICD SOURCE PROGRAMS     prints a line a case; exit 1 when one is off.
+PROGRAMS is the folder of the built hd_... programs.
+"""
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy
+
+HAPTICD, SOURCE, PROGRAMS = sys.argv[1:4]
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
+sys.path.insert(0, os.path.join(SOURCE, "driver", "doors", "client", "python"))
+import hapticd
+from e2e import check, finish, until
+
+HEAD = """hapticd: 1
+servo: {{rate: 1000}}
+device: {source}/config/devices/simulated-premium15.yaml
+hand: {hand}
+clients: {clients}
+models: {models}
+"""
+STROKES = "{radius: 0.02}"
+SPHERE = """
+  - name: ball
+    plugin: nurbs_rigid
+    parameters: {{geometry: {source}/config/models/sphere.yaml, stiffness: 800}}
+"""
+TWO = """hapticd: 1
+servo: {{rate: 1000}}
+devices:
+  - {{file: {source}/config/devices/simulated-premium15.yaml, name: left, mount: {{position: [-0.1, 0, 0.09]}}}}
+  - {{file: {source}/config/devices/simulated-premium15.yaml, name: right, mount: {{position: [0.1, 0, 0.09]}}}}
+clients: add
+models: []
+"""
+ARM = "simulated Premium 1.5"
+
+
+class Daemon:
+    """A run of a scene under its own name, for as long as the `with`."""
+
+    def __init__(self, folder, name, text):
+        self.folder, self.name = folder, name
+        self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
+        self.scene = os.path.join(folder, name + ".yaml")
+        with open(self.scene, "w") as file:
+            file.write(text)
+
+    def start(self):
+        self.run = subprocess.Popen([HAPTICD, "run", self.scene, "--name", self.name], env=self.environment,
+                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        until(self.answers, 30)
+        return self
+
+    def answers(self):
+        try:
+            return bool(self.connect().status())
+        except (hapticd.HapticdError, OSError):
+            return False
+
+    __enter__ = start
+
+    def stop(self, how=signal.SIGTERM):
+        self.run.send_signal(how)
+        return self.run.wait(timeout=30)
+
+    def __exit__(self, *_):
+        check(f"the run {self.name} ends in order", self.stop() == 0)
+
+    def connect(self):
+        return hapticd.connect(self.name, folder=self.folder)
+
+    def command(self, program, *arguments):
+        return [HAPTICD, "client", "--name", self.name, os.path.join(PROGRAMS, "hd_" + program), *arguments]
+
+    def program(self, name, *arguments):
+        """Runs a program and shows its own checks."""
+        done = subprocess.run(self.command(name, *arguments), env=self.environment, capture_output=True, text=True,
+                              timeout=120)
+        print(done.stdout, end="")
+        check(f"{name} {' '.join(arguments)}", done.returncode == 0, done)
+        return done
+
+
+def scene(models="[]", clients="add", hand=STROKES):
+    return HEAD.format(source=SOURCE, hand=hand, clients=clients, models=models.format(source=SOURCE))
+
+
+def pushes_of(daemon, program, *arguments):
+    """Answers that a program gave, and the ticks that they are about: [N], [m]."""
+    with daemon.connect() as client:
+        first_push, first_tick = client.streams["pushes"].written, client.streams["ticks"].written
+        daemon.program(program, *arguments)
+        pushes, ticks = client.streams["pushes"].read(first_push)[1], client.streams["ticks"].read(first_tick)[1]
+    both, at_push, at_tick = numpy.intersect1d(pushes["answers"], ticks["tick"], return_indices=True)
+    pushes, ticks = pushes[at_push], ticks[at_tick]
+    force = numpy.stack([pushes["f" + c] for c in "xyz"], axis=1)
+    position = numpy.stack([ticks["arm0_" + c] for c in "xyz"], axis=1)
+    return force, position, pushes, ticks
+
+
+def plain(daemon):
+    """Programs that check themselves."""
+    for program in ("hello", "hello98"):
+        daemon.program(program, "PHANTOM Premium 1.5")
+    daemon.program("names", os.path.join(HERE, "functions.txt"))
+    for program in ("hdu", "values", "scheduler", "constructor"):
+        daemon.program(program)
+
+
+def client_force(daemon):
+    """[N] that programs push with now."""
+    with daemon.connect() as client:
+        row = client.rows("ticks", last=2)[-1]
+        return max(abs(row["arm0_client_f" + c]) for c in "xyz")
+
+
+def spring(daemon):
+    force, position, pushes, _ = pushes_of(daemon, "forces", "spring", "2")
+    check("a spring answers ticks", len(pushes) > 500, len(pushes))
+    full = pushes["answers"] > pushes["answers"][0] + 60  # the library's own ramp is over
+    off = abs(force + 200 * position)[full].max()
+    check("0.2 N/mm over millimetres is 200 N/m of that tick's position", off < 1e-9, off)
+    check("no force stays behind", until(lambda: client_force(daemon) == 0))
+
+
+def clamp(daemon):
+    force, *_ = pushes_of(daemon, "forces", "clamp", "1")
+    largest = numpy.linalg.norm(force, axis=1).max()
+    check("a force is clamped to what the device bears", abs(largest - 8.5) < 1e-9, largest)
+
+
+def poll(daemon):
+    force, _, pushes, _ = pushes_of(daemon, "forces", "poll", "2")
+    pushing = pushes["answers"][force[:, 0] > 0]
+    check("a force that is set 60 times a second holds between", len(pushing) > 0.2 * (pushing[-1] - pushing[0]),
+          (len(pushing), pushing[-1] - pushing[0]))
+    rest = pushes["answers"][-1] - pushing[-1]
+    check("and ends after the last, while the program lives", rest > 100 and force[-1][0] == 0, rest)
+
+
+def sphere(folder):
+    """The program's ball and the scene's, which is as large and as stiff, are felt at the same place."""
+    hand = "{script: guided, tremor: 0, wander: 0}"
+    with Daemon(folder, "ball", scene(SPHERE, hand=hand)) as daemon, daemon.connect() as client:
+        with client.lead_hand(ARM) as lead:
+            for step in range(100):
+                lead.put([0.004 * step / 100, 0.003, 0.06 - 0.013 * step / 100])
+                time.sleep(0.01)
+            force, _, _, ticks = pushes_of(daemon, "forces", "sphere", "1")
+    shape = numpy.stack([ticks["arm0_f" + c] for c in "xyz"], axis=1)
+    inside = numpy.linalg.norm(shape, axis=1) > 0.05
+    inside[:60] = False
+    check("both balls push", inside.sum() > 100, inside.sum())
+    off = abs(force - shape)[inside].max() if inside.any() else None
+    check("the same force within 1 mN, place for place", off is not None and off < 1e-3, off)
+
+
+def wall(daemon):
+    """A wall far stiffer than the rate allows: the daemon's limits hold whatever the program asks."""
+    *_, ticks = pushes_of(daemon, "forces", "wall", "2")
+    sent = numpy.sqrt(sum(ticks["arm0_sent_f" + c] ** 2 for c in "xyz"))
+    check("10 N/mm stays within the force limit", 0 < sent.max() <= 8.5 * 1.0001, sent.max())
+    check("without a fault", (ticks["arm0_fault"] == 0).all())
+
+
+def two_arms(folder):
+    with Daemon(folder, "two", TWO.format(source=SOURCE)) as daemon, daemon.connect() as client:
+        daemon.program("two_arms", "left", "right")
+        pushes = client.rows("pushes", last=2000)
+        left, right = pushes[pushes["arm"] == 0], pushes[pushes["arm"] == 1]
+        check("each arm gets its own force", len(left) > 100 and len(right) > 100 and (left["fy"] == 0).all() and
+              (right["fx"] == 0).all() and left["fx"].max() == 0.5 and right["fy"].max() == 0.25)
+
+
+def outage(folder):
+    daemon = Daemon(folder, "short", scene()).start()
+    program = subprocess.Popen(daemon.command("outage"), env=daemon.environment, stdin=subprocess.PIPE,
+                               stdout=subprocess.PIPE, text=True)
+    check("it is ready", program.stdout.readline() == "ready\n")
+    daemon.stop(signal.SIGKILL)
+    program.stdin.write("gone\n")
+    program.stdin.flush()
+    while (line := program.stdout.readline()) not in ("gone\n", ""):
+        print(line, end="")
+    daemon.start()
+    rest, _ = program.communicate("back\n", timeout=60)
+    print(rest, end="")
+    check("outage", program.returncode == 0, program.returncode)
+    daemon.stop()
+
+
+def refused(folder):
+    """What a program and its user are told where it cannot work."""
+    with Daemon(folder, "off", scene(clients="off")) as daemon:
+        done = subprocess.run(daemon.command("forces", "spring", "0.2"), env=daemon.environment, capture_output=True,
+                              text=True, timeout=60)
+        check("a scene that lets nobody push is an error of forces, with a cure",
+              "the force cannot be felt" in done.stdout and "clients: add" in done.stderr, done)
+        daemon.program("hello", "PHANTOM Premium 1.5")
+    environment = dict(os.environ, RUNTIME_DIRECTORY=folder, HAPTICD_NAME="nobody",
+                       LD_LIBRARY_PATH=os.path.join(os.path.dirname(HAPTICD), "..", "lib", "hapticd", "hdapi"))
+    done = subprocess.run([os.path.join(PROGRAMS, "hd_forces")], env=environment, capture_output=True, text=True,
+                          timeout=60)
+    check("no daemon is told with its cure", done.returncode == 1 and "hapticd run" in done.stderr, done)
+
+
+def command(folder):
+    """`hapticd client` itself."""
+    environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
+
+    def run(*arguments):
+        return subprocess.run([HAPTICD, "client", "--name", "own", *arguments], env=environment, capture_output=True,
+                              text=True, timeout=120)
+    done = run(os.path.join(PROGRAMS, "hd_forces"), "spring", "0.5")
+    check("a daemon is started where none runs", done.returncode == 0 and "starting one" in done.stderr, done)
+    check("and ends with the program", not os.path.exists(os.path.join(folder, "own.sock")))
+    done = run("sh", "-c", "exit 7")
+    check("the exit code is the program's", done.returncode == 7, done)
+    done = run("--env")
+    check("--env prints what a shell needs", "hdapi" in done.stdout and "HAPTICD_NAME='own'" in done.stdout, done)
+    done = run()
+    check("a program must be named", done.returncode == 2 and "PROGRAM" in done.stderr, done)
+    done = run("/no/such/program")
+    check("a program that is none is told", done.returncode == 2 and "/no/such/program" in done.stderr, done)
+    done = run("--scene", os.path.join(folder, "none.yaml"), "true")
+    check("a scene that is none is told", done.returncode == 1 and "none.yaml" in done.stderr, done)
+
+
+with tempfile.TemporaryDirectory(dir="/dev/shm") as place:
+    with Daemon(place, "plain", scene()) as plain_daemon:
+        plain(plain_daemon)
+        spring(plain_daemon)
+        clamp(plain_daemon)
+        poll(plain_daemon)
+        wall(plain_daemon)
+    sphere(place)
+    two_arms(place)
+    outage(place)
+    refused(place)
+    command(place)
+finish()
