@@ -2,6 +2,7 @@
 /// A step of a body whose surface is felt: all probes meet it as it is, then it moves under all of them at once.
 #include <algorithm>
 
+#include "crease.hpp"
 #include "mat_deformable.hpp"
 
 namespace hapticd {
@@ -50,7 +51,12 @@ hsp_status MatDeformable::meet(const hsp_probe& probe, const hsp_step& step, uin
     met.before = track.inside;
     met.known = track.counted;
     met.placed = !track.met || track.hopped;
-    body_->placeOf(Vector3d(probe.position), track.foot, located.surface, searchOptions().newton.envelope, met.place);
+    const medial::Envelope envelope = searchOptions().newton.envelope;
+    body_->placeOf(Vector3d(probe.position), track.foot, located.surface, envelope, met.place);
+    if (located.surface.share > 0) {
+      body_->placeOf(Vector3d(probe.position), track.rival, located.surface, envelope, *beside_);
+      mixPlaces(*beside_, 0.5 * located.surface.share, met.place);
+    }
   } else if (depth > 0) {  // more probes than one surface answers: that of the body at rest
     push(probe, located.surface, track, contact);
   } else {  // nothing moves here: the surface is at rest
@@ -72,7 +78,7 @@ void MatDeformable::answer(const hsp_probe& probe, const medial::FeltContact& me
   const double deep = std::max(felt.depth, kShallow);
   const medial::BodyForce held = body_->press(p, track.foot, {felt.normal, deep}, 0);
   const double unit = met.force / (met.place.stiffness * deep);
-  const Vector3d force = unit * held.force + met.force * met.slope;
+  const Vector3d force = felt.steep * unit * held.force + met.force * met.slope;
   const double normal = std::max(0.0, force.dot(felt.normal));
   const contact::FrictionLaw law{std::max(friction_static_, friction_dynamic_), friction_dynamic_, held.stiffness,
                                  viscosity_};

@@ -9,25 +9,48 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kPerInterval = 2;       ///< samples to an interval of the skeleton's points, each way
+constexpr double kDense = 0.5;        ///< of the least radius: distance of neighbouring samples
+constexpr int kMostPerInterval = 6;   ///< samples to an interval of the skeleton's points, each way
 constexpr uint32_t kATick = 64;       ///< samples that a tick looks at: some 0.2 us
-constexpr double kApart = 0.5;        ///< of the radius: samples nearer than that to the foot are of its own place
+constexpr double kAside = 0.87;       ///< cosine to the foot's direction: samples within are of its own place
+constexpr double kParting = 0.05;     ///< [rad] directions of two feet that differ by less are one
+constexpr double kParted = 0.15;      ///< [rad] those that differ by more are two
 constexpr double kMayBeNearer = 0.1;  ///< of the radius: a foot between samples is nearer than they are
 
-std::vector<double> between(const std::vector<double>& t) {
+std::vector<double> between(const std::vector<double>& t, int per_interval) {
   std::vector<double> all;
   for (std::size_t i = 0; i + 1 < t.size(); ++i)
-    for (int k = 0; k < kPerInterval; ++k) all.push_back(t[i] + (t[i + 1] - t[i]) * k / kPerInterval);
+    for (int k = 0; k < per_interval; ++k) all.push_back(t[i] + (t[i + 1] - t[i]) * k / per_interval);
   all.push_back(t.back());
   return all;
+}
+
+/// Samples an interval along u (0) or v (1), for their distance to be small beside the radius.
+int perInterval(const medial::Skeleton& skeleton, std::size_t axis) {
+  const auto& [us, vs] = skeleton.parameters();
+  const std::vector<double>& t = axis == 0 ? us : vs;
+  double longest = 0, least = HUGE_VAL;
+  spline::SurfacePoint s;
+  for (const double u : us) {
+    for (const double v : vs) {
+      skeleton.surface().evaluate1(u, v, s);
+      longest = std::max(longest, (axis == 0 ? s.Su : s.Sv).norm());
+      const double radius = skeleton.radius().evaluate(u, v).f;
+      if (radius > 0) least = std::min(least, radius);
+    }
+  }
+  const double interval =
+      longest * (t.back() - t.front()) / static_cast<double>(std::max<std::size_t>(t.size(), 2) - 1);
+  return static_cast<int>(std::clamp(std::ceil(interval / (kDense * least)), 1.0, 1.0 * kMostPerInterval));
 }
 
 }  // namespace
 
 FootScan::FootScan(const medial::Skeleton& skeleton) {
   const auto& [us, vs] = skeleton.parameters();
-  const std::vector<double> u_all = skeleton.curve() ? std::vector<double>{us.front()} : between(us);
-  const std::vector<double> v_all = between(vs);
+  const std::vector<double> u_all =
+      skeleton.curve() ? std::vector<double>{us.front()} : between(us, perInterval(skeleton, 0));
+  const std::vector<double> v_all = between(vs, perInterval(skeleton, 1));
   samples_.reserve(u_all.size() * v_all.size());
   spline::SurfacePoint s;
   for (const double u : u_all) {
@@ -42,18 +65,23 @@ std::optional<std::array<double, 2>> FootScan::rival(const Vector3d& p, const me
                                                      uint32_t& next) const noexcept {
   const auto count = static_cast<uint32_t>(samples_.size());
   const Sample* best = nullptr;
-  const double apart = kApart * foot.radius;
   double deepest = foot.depth - kMayBeNearer * foot.radius;
   for (uint32_t k = std::min(kATick, count); k > 0; --k) {
     next = next + 1 < count ? next + 1 : 0;
     const Sample& sample = samples_[next];
-    const double depth = sample.radius - (p - sample.center).norm();
-    if (!(depth > deepest) || (sample.center - foot.center).squaredNorm() < apart * apart) continue;
+    const Vector3d away = p - sample.center;
+    const double distance = away.norm(), depth = sample.radius - distance;
+    if (!(depth > deepest) || away.dot(foot.normal) > kAside * distance) continue;
     deepest = depth;
     best = &sample;
   }
   if (best == nullptr) return std::nullopt;
   return std::array{best->u, best->v};
+}
+
+double FootScan::apart(const medial::SkeletonFoot& a, const medial::SkeletonFoot& b) noexcept {
+  const double angle = (a.normal - b.normal).norm();
+  return std::clamp((angle - kParting) / (kParted - kParting), 0.0, 1.0);
 }
 
 }  // namespace hapticd

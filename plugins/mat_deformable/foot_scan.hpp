@@ -18,6 +18,8 @@ class FootScan {
   /// @return the parameters of the best that is apart from the foot and may be nearer to p
   std::optional<std::array<double, 2>> rival(const Eigen::Vector3d& p, const medial::SkeletonFoot& foot,
                                              uint32_t& next) const noexcept;
+  /// [rt] 0: two feet are of one place of the skeleton; 1: of two.
+  static double apart(const medial::SkeletonFoot& a, const medial::SkeletonFoot& b) noexcept;
   std::size_t bytes() const noexcept { return samples_.capacity() * sizeof(Sample); }
 
  private:

@@ -18,8 +18,8 @@ using medial::SkeletonFoot;
 
 constexpr double kNewPlace = 0.25;     ///< a probe that moved by this share of a cell is looked for all over the body
 constexpr double kWithinReach = 0.02;  ///< [m] farther bodies wait for the search of the simulation side
-constexpr double kSameSide = 0.99;     ///< cosine of the direction of the foot and the one that is felt
 constexpr double kHullError = 0.005;   ///< of the greatest radius
+constexpr double kForget = 0.3;        ///< of the radius: a rival that is less deep by so much is left alone
 constexpr double kOtherFoot = 0.02;    ///< difference of parameters from which an offered foot is another one
 
 class GridBody final : public SoftBody {
@@ -53,11 +53,7 @@ class GridBody final : public SoftBody {
       const SkeletonFoot other = skeleton.nearest(p, offer[0], offer[1], options.newton);
       if (other.depth > track.foot.depth) track.foot = other;
     }
-    if (!felt_ || !(track.foot.depth > 0)) return;
-    if (const auto rival = scan_->rival(p, track.foot, track.scanned)) {
-      const SkeletonFoot other = skeleton.nearest(p, (*rival)[0], (*rival)[1], options.newton);
-      if (other.converged && other.depth > track.foot.depth) track.foot = other;
-    }
+    if (felt_) followRival(p, options, track);
   }
 
   Felt felt(const Vector3d& p, const Vector3d& moved, Track& track) const noexcept override {
@@ -70,7 +66,7 @@ class GridBody final : public SoftBody {
   }
   void placeOf(const Vector3d& p, const SkeletonFoot& foot, const Felt& felt, medial::Envelope envelope,
                medial::FeltPlace& place) noexcept override {
-    body_.placeOf(p, foot, felt.normal, envelope, felt.normal.dot(foot.normal) > kSameSide, place);
+    body_.placeOf(p, foot, felt.normal, envelope, felt.normal.dot(foot.normal) > kSameDirection, place);
   }
   medial::FeltSurface* feltSurface() noexcept override { return body_.feltSurface(); }
   void yield(std::span<const medial::Press> contacts) noexcept override { body_.deformation().press(contacts); }
@@ -147,6 +143,28 @@ class GridBody final : public SoftBody {
     material.felt = press(kShallowPress);
     material.deep = press(kDeepPress);
     return material;
+  }
+
+  /// In a valley both flanks are followed, so that neither is lost.
+  void followRival(const Vector3d& p, const FindOptions& options, Track& track) const noexcept {
+    const bool known = track.apart > 0;
+    track.apart = 0;
+    if (!(track.foot.depth > 0)) return;
+    if (known && isRival(p, track.rival.u, track.rival.v, options, track)) return;
+    if (const auto found = scan_->rival(p, track.foot, track.scanned))
+      isRival(p, (*found)[0], (*found)[1], options, track);
+  }
+
+  /// Whether the foot from there is another one and nearly as deep. The deeper of both is the foot.
+  bool isRival(const Vector3d& p, double u, double v, const FindOptions& options, Track& track) const noexcept {
+    SkeletonFoot other = body_.skeleton().nearest(p, u, v, options.newton);
+    if (!other.converged || other.depth < track.foot.depth - kForget * track.foot.radius) return false;
+    const double apart = FootScan::apart(track.foot, other);
+    if (!(apart > 0)) return false;
+    if (other.depth > track.foot.depth) std::swap(track.foot, other);
+    track.rival = other;
+    track.apart = apart;
+    return true;
   }
 
   medial::Body body_;

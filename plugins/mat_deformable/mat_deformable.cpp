@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "crease.hpp"
 #include "medial_file.hpp"
 
 namespace hapticd {
@@ -72,6 +73,7 @@ void MatDeformable::openContacts(uint32_t probes) {
   if (body_->feltSurface() == nullptr) return;
   contacts_.reserve(probes);
   met_.reserve(probes);
+  beside_ = std::make_unique<medial::FeltPlace>();
 }
 
 std::size_t MatDeformable::openVolume() {
@@ -129,6 +131,7 @@ void MatDeformable::reset() noexcept HSP_RT {
   for (Track& track : tracks_) {
     track.known = track.offered = track.met = track.counted = false;
     track.side = 0;
+    track.apart = 0;
     track.pushed.setZero();
     track.friction.reset();
   }
@@ -232,15 +235,16 @@ MatDeformable::Located MatDeformable::locate(const hsp_probe& probe, const hsp_s
     track.met = false;
   }
   const Vector3d moved = track.known ? Vector3d(p - track.last) : Vector3d(Vector3d::Zero());
-  const Vector3d center = track.foot.center;
-  const bool followed = track.known;
+  const Vector3d center = track.foot.center, rival = track.rival.center;
+  const bool followed = track.known, two = followed && track.apart > 0;
   body_->find(p, probe.flags, findOptions(step), track);
-  track.hopped = followed && hasHopped(track.foot, center, moved);
+  track.swapped = two && (track.foot.center - rival).squaredNorm() < (track.foot.center - center).squaredNorm();
+  track.hopped = followed && !track.swapped && hasHopped(track.foot, center, moved);
   track.offered = false;
   track.known = true;
   track.last = p;
   const SkeletonFoot& foot = track.foot;
-  const Felt surface = body_->felt(p, moved, track);
+  const Felt surface = feltInCrease(body_->felt(p, moved, track), track, crease_);
   Eigen::Map<Vector3d>(contact.point) = foot.center + foot.radius * surface.normal;
   Eigen::Map<Vector3d>(contact.normal) = surface.normal;
   contact.depth_m = surface.depth;

@@ -172,6 +172,7 @@ class MatDeformable final : public Shape {
     Felt felt;
   };
   std::vector<medial::FeltContact> contacts_;  ///< reserved for all probes
+  std::unique_ptr<medial::FeltPlace> beside_;  ///< of the rival, for the contact that is being met
   std::vector<Met> met_;                       ///< likewise
   std::unique_ptr<Displaced> displaced_;
   std::unique_ptr<Frames> frames_;  ///< written by the step, if display_tolerance asks for it

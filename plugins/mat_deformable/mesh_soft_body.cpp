@@ -16,7 +16,6 @@ using Eigen::Vector3d;
 using medial::MedialMesh;
 using medial::SkeletonFoot;
 
-constexpr double kSameSide = 0.99;   ///< cosine of the direction to the probe and the one that is felt
 constexpr double kHullError = 0.05;  ///< of the greatest radius
 
 class MeshSoftBody final : public SoftBody {
@@ -30,8 +29,12 @@ class MeshSoftBody final : public SoftBody {
   /// Every search is global: the tree makes it as fast as following, and nothing is ever lost. In the middle of a body
   /// whose parts are all as near it ends early, from the foot of the last tick.
   void find(const Vector3d& p, uint32_t, const FindOptions& options, Track& track) const noexcept override {
-    track.foot =
-        body_.foot(p, track.known ? track.foot.element : MedialMesh::kNoStart, options.crease, MedialMesh::kMostVisits);
+    const uint32_t start = track.known ? track.foot.element : MedialMesh::kNoStart;
+    if (!felt_) {
+      track.foot = body_.foot(p, start, options.crease, MedialMesh::kMostVisits);
+    } else {
+      track.apart = body_.feet(p, start, options.crease, track.foot, track.rival);
+    }
   }
   Felt felt(const Vector3d& p, const Vector3d& moved, Track& track) const noexcept override {
     return feltTurning(p, moved, felt_, track);
@@ -42,7 +45,8 @@ class MeshSoftBody final : public SoftBody {
   }
   void placeOf(const Vector3d& p, const SkeletonFoot& foot, const Felt& felt, medial::Envelope,
                medial::FeltPlace& place) noexcept override {
-    body_.placeOf(p, foot, felt.normal, felt.normal.dot(p - foot.center) > kSameSide * (p - foot.center).norm(), place);
+    body_.placeOf(p, foot, felt.normal, felt.normal.dot(p - foot.center) > kSameDirection * (p - foot.center).norm(),
+                  place);
   }
   medial::FeltSurface* feltSurface() noexcept override { return body_.feltSurface(); }
   void yield(std::span<const medial::Press> contacts) noexcept override { body_.deformation().press(contacts); }

@@ -10,9 +10,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kDeepest = 1.0 / 3;    ///< of the radius left under a stroke whose direction is still followed at once
-constexpr double kHop = 0.05;           ///< [rad] turns below this are let pass
-constexpr double kFollowed = 3;         ///< times as fast as over a skeleton without curvature a direction may turn
-constexpr double kLeastArm = 0.05;      ///< of the radius: nearer to the skeleton any turn is let pass
 constexpr double kOpposite = 1e-9;      ///< directions nearer to opposite than this have no plane to turn in
 constexpr double kSideways = 0.5;       ///< a direction less across a sheet than this is on neither side of it
 constexpr double kSettled = 1 - 1e-14;  ///< cosine of directions that are the same
@@ -59,13 +56,6 @@ Felt outside(const Vector3d& p, bool fades, Track& track) noexcept {
   return {foot.normal, foot.depth};
 }
 
-/// Whether the foot went to another part of the surface: no motion so short turns its direction so far.
-bool hops(const Vector3d& wanted, const Vector3d& moved, const Track& track) noexcept {
-  const double least = std::max(track.foot.radius - track.foot.depth, kLeastArm * track.foot.radius);
-  const double angle = std::acos(std::clamp(wanted.dot(track.pushed), -1.0, 1.0));
-  return angle > kHop + (least > 0 ? kFollowed * moved.norm() / least : M_PI);
-}
-
 /// Turns the direction of the track toward `wanted`, for a probe that moved by `way` [m].
 void turn(const Vector3d& wanted, double way, Track& track) noexcept {
   const double arm = armOf(track.foot, track.pushed);
@@ -81,11 +71,13 @@ Felt feltTurning(const Vector3d& p, const Vector3d& moved, bool fades, Track& tr
   Vector3d wanted = foot.normal;
   if (!entered && !foot.rim && wanted.dot(track.pushed) < 0)  // on the other side of a sheet
     wanted -= 2 * wanted.dot(foot.across) * foot.across;
-  if (entered) {
-    track.pushed = wanted;
+  const bool clear = foot.radius - foot.depth > kDeepest * foot.radius && foot.normal.dot(track.pushed) > 0;
+  if (entered || (fades && track.settled && (track.swapped || clear))) {
+    track.pushed = track.swapped ? foot.normal : wanted;
   } else {
     turn(wanted, asideOf(moved, track.pushed), track);
   }
+  track.settled = track.pushed.dot(wanted) > kSettled;
   const double through = -track.pushed.dot(foot.normal);
   if (!(through > 0)) return {track.pushed, foot.depth};
   return {track.pushed, foot.depth + through * std::max(0.0, wayOut(p, track) - foot.depth)};
@@ -106,7 +98,6 @@ Felt feltOnSheet(const Vector3d& p, const Vector3d& moved, bool fades, Track& tr
     if (track.side == 0) track.side = cosine < 0 ? -1 : 1;
     if (track.side * cosine < 0) wanted -= 2 * cosine * foot.across;
   }
-  if (fades && !entered && !rim && track.settled && hops(wanted, moved, track)) track.settled = false;
   if (entered || (!rim && track.settled)) {
     track.pushed = wanted;
     track.settled = !rim;

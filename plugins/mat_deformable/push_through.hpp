@@ -9,14 +9,14 @@ namespace hapticd {
 /// so that a probe that was pushed straight through the middle is still pushed back to where it came from. Depth beyond
 /// the middle is measured along that direction to the sphere of the foot. Across a sheet, the direction does not turn
 /// at all, but at its rim.
-/// @param fades a probe that leaves on the far side loses its force over a radius of way, not in a tick
+/// @param fades a probe that leaves on the far side loses its force over a radius of way, not in a tick; and away
+/// from the middle the direction is that of the foot at once, on whichever flank of a valley it is
 Felt feltTurning(const Eigen::Vector3d& p, const Eigen::Vector3d& moved, bool fades, Track& track) noexcept HSP_RT;
 
 /// [rt] The same on a sheet from a grid. Within it, the direction is that of the foot on the side that the probe came
 /// from; round the rim it turns by a bounded angle for each metre that the probe moves aside, and when it comes back
 /// from there, for each metre that the probe moves. A probe that does not move feels a constant force, wherever it is.
-/// @param fades likewise; in a crease, where the foot hops from one flank to the other, the direction then turns by a
-/// bounded angle too
+/// @param fades likewise
 Felt feltOnSheet(const Eigen::Vector3d& p, const Eigen::Vector3d& moved, bool fades, Track& track) noexcept HSP_RT;
 
 }  // namespace hapticd

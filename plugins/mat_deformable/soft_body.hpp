@@ -35,18 +35,24 @@ struct Track {
   bool settled = false;  ///< within a sheet: `pushed` has turned to the direction of the foot
   contact::Friction friction;
   // On a surface that is felt:
-  bool met = false;      ///< the probe has been at the surface since it came near; else it may have begun inside
-  bool counted = false;  ///< `inside` is that of the last tick
-  uint32_t scanned = 0;  ///< sample of the body that was looked at last
-  bool hopped = false;   ///< the foot went to another part of the surface in this tick
-  double inside = 0;     ///< [m] by how much the probe was inside the present surface
+  bool met = false;            ///< the probe has been at the surface since it came near; else it may have begun inside
+  bool counted = false;        ///< `inside` is that of the last tick
+  medial::SkeletonFoot rival;  ///< another part of the surface that is nearly as deep over the probe, in a valley
+  double apart = 0;            ///< 0: there is none, or it is the foot's own place; 1: it is another
+  bool swapped = false;        ///< the foot is the rival of the last tick
+  uint32_t scanned = 0;        ///< sample of the body that was looked at last
+  bool hopped = false;         ///< the foot went to another part of the surface in this tick
+  double inside = 0;           ///< [m] by how much the probe was inside the present surface
 };
 
 /// The surface as the probe feels it: where it was pushed through the skeleton, still that of the side it came from.
 struct Felt {
   Eigen::Vector3d normal{0, 0, 1};
   double depth = 0;
+  double steep = 1;  ///< length of the depth's gradient: less than 1 where two parts of the surface push together
+  double share = 0;  ///< of the rival, 0 to 1
 };
+inline constexpr double kSameDirection = 0.99;  ///< cosine of the direction of a foot and the one that is felt
 
 /// What a person should know of a body before they touch it.
 struct Description {

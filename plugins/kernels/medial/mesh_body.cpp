@@ -221,6 +221,38 @@ double MeshBody::apart(const MeshFoot& a, const MeshFoot& b) const noexcept {
   return gap < whole ? gap / whole : 1;
 }
 
+SkeletonFoot MeshBody::footOf(const MeshFoot& found) const noexcept {
+  SkeletonFoot foot;
+  foot.element = found.element;
+  foot.u = found.parameter[0];
+  foot.v = found.parameter[1];
+  foot.center = found.center;
+  foot.radius = found.radius;
+  foot.depth = -found.distance;
+  foot.normal = found.normal;
+  foot.across = mesh_.across(found.element);
+  return foot;
+}
+
+double MeshBody::feet(const Vector3d& p, uint32_t start, double crease, SkeletonFoot& foot,
+                      SkeletonFoot& rival) const noexcept {
+  foot = this->foot(p, start, 0, MedialMesh::kMostVisits);
+  if (!(foot.depth > 0) || !(crease > 0) || foot.residual > 0) return 0;
+  MeshFeet feet;
+  mesh_.nearest(p, foot.element, crease, feet, MedialMesh::kMostVisits);
+  double most = 0, two = 0;
+  for (std::size_t i = 1; i < feet.count; ++i) {
+    double away = 1;
+    for (std::size_t k = 0; k < i; ++k) away *= apart(feet.feet[k], feet.feet[i]);
+    const double counts = away * (1 - (feet.feet[i].distance - feet.feet[0].distance) / crease);
+    if (!(counts > most)) continue;
+    most = counts;
+    two = away;
+    rival = footOf(feet.feet[i]);
+  }
+  return two;
+}
+
 SkeletonFoot MeshBody::foot(const Vector3d& p, uint32_t start, double crease, int most_visits) const noexcept {
   MeshFeet feet;
   mesh_.nearest(p, start, 0, feet, most_visits);
@@ -232,15 +264,7 @@ SkeletonFoot MeshBody::foot(const Vector3d& p, uint32_t start, double crease, in
     evaluations += feet.evaluations;
   }
   const MeshFoot& best = feet.feet[0];
-  SkeletonFoot foot;
-  foot.element = best.element;
-  foot.u = best.parameter[0];
-  foot.v = best.parameter[1];
-  foot.center = best.center;
-  foot.radius = best.radius;
-  foot.depth = -best.distance;
-  foot.normal = best.normal;
-  foot.across = mesh_.across(best.element);
+  SkeletonFoot foot = footOf(best);
   foot.evaluations = evaluations;
   foot.residual = doubt;
   foot.converged = std::isfinite(best.distance) && !(doubt > 0);
@@ -249,8 +273,7 @@ SkeletonFoot MeshBody::foot(const Vector3d& p, uint32_t start, double crease, in
   Vector3d sum = best.normal;
   for (std::size_t i = 1; i < feet.count; ++i) {
     const double cosine = feet.feet[i].normal.dot(best.normal);
-    double opposite = std::min(1.0, kOpposite * (1 + cosine));
-    for (std::size_t k = 0; k < i && felt_; ++k) opposite *= apart(feet.feet[k], feet.feet[i]);
+    const double opposite = std::min(1.0, kOpposite * (1 + cosine));
     sum += opposite * (1 - (feet.feet[i].distance - best.distance) / crease) * feet.feet[i].normal;
   }
   foot.normal = sum.normalized();

@@ -78,6 +78,10 @@ class MeshBody {
   /// a branch the force has no jump. A foot of a search that ended at `most_visits` is not converged, and says by how
   /// much another may be nearer.
   SkeletonFoot foot(const Eigen::Vector3d& p, uint32_t start, double crease, int most_visits = INT_MAX) const noexcept;
+  /// [rt] The foot of p with its own normal and, of other parts of the body within `crease` [m] as near, the one that
+  /// counts most. @return 0: there is none; 1: it is another part; between: the feet are just parting
+  double feet(const Eigen::Vector3d& p, uint32_t start, double crease, SkeletonFoot& foot,
+              SkeletonFoot& rival) const noexcept;
   /// [rt] The force on a probe `depth` below the surface along `normal`: spring, and damping against `closing_speed`.
   BodyForce press(const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
                   double closing_speed) const noexcept;
@@ -97,6 +101,7 @@ class MeshBody {
  private:
   std::size_t neighboursOf(const Eigen::Vector3d& surface, const SkeletonFoot& foot, const Eigen::Vector3d& normal,
                            std::array<ShearSpring, 6>& springs) const noexcept;
+  SkeletonFoot footOf(const MeshFoot& found) const noexcept;
   /// 0: both feet are on one place of the body; 1: on two.
   double apart(const MeshFoot& a, const MeshFoot& b) const noexcept;
   double material(const std::vector<double>& values, const SkeletonFoot& foot) const noexcept;

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "crease.hpp"
+
+#include <algorithm>
+
+namespace hapticd {
+namespace {
+
+using medial::FeltPlace;
+using medial::PlaceNode;
+
+constexpr double kTurned = 0.9;    ///< cosine from which on a direction that is still turning is not that of the foot
+constexpr double kNoRival = 0.05;  ///< 1 + cosine of two normals below which they are those of a sheet's two sides
+
+}  // namespace
+
+double rivalShare(const Track& track, double width) noexcept HSP_RT {
+  const double reach = std::min(width, track.foot.depth);  // nothing is added at the surface
+  if (!(track.apart > 0) || !(reach > 0)) return 0;
+  const double beside = 1 - (track.foot.depth - track.rival.depth) / reach;
+  const double opposite = (1 + track.foot.normal.dot(track.rival.normal)) / kNoRival;
+  return std::clamp(beside, 0.0, 1.0) * track.apart * std::clamp(opposite, 0.0, 1.0);
+}
+
+Felt feltInCrease(const Felt& felt, const Track& track, double width) noexcept HSP_RT {
+  const double same = (felt.normal.dot(track.foot.normal) - kTurned) / (kSameDirection - kTurned);
+  const double share = rivalShare(track, width) * std::clamp(same, 0.0, 1.0);
+  if (!(share > 0)) return felt;
+  const Eigen::Vector3d gradient = felt.normal + 0.5 * share * (track.rival.normal - felt.normal);
+  const double length = gradient.norm();
+  if (!(length > 0)) return felt;
+  const double reach = std::min(width, track.foot.depth);
+  return {gradient / length, felt.depth + 0.25 * share * share * reach, length, share};
+}
+
+void mixPlaces(const FeltPlace& other, double share, FeltPlace& place) noexcept HSP_RT {
+  const std::size_t count = place.count;
+  for (std::size_t i = 0; i < count; ++i) {
+    PlaceNode& part = place.nodes[i];
+    part.weight *= 1 - share, part.weight_u *= 1 - share, part.weight_v *= 1 - share;
+  }
+  for (std::size_t i = 0; i < other.count; ++i) {
+    const PlaceNode& part = other.nodes[i];
+    const auto end = place.nodes.begin() + static_cast<std::ptrdiff_t>(count);
+    const auto found = std::find_if(place.nodes.begin(), end, [&](const PlaceNode& n) { return n.node == part.node; });
+    if (found != end) {
+      found->weight += share * part.weight;
+    } else if (place.count < FeltPlace::kMost) {
+      place.nodes[place.count++] = {part.node, share * part.weight, 0, 0};
+    }
+  }
+  place.stiffness += share * (other.stiffness - place.stiffness);
+}
+
+}  // namespace hapticd
