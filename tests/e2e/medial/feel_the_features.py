@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The scenes of config/scenes/soft show what their first lines say, in virtual time.
+
+Usage: feel_the_features.py HAPTICD CONFIG     prints a line a case; exit 1 when one is off.
+"""
+import math
+import os
+import subprocess
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+import soft_runs
+from e2e import check, finish
+
+HAPTICD, SCENES = sys.argv[1], os.path.join(os.path.abspath(sys.argv[2]), "scenes", "soft")
+STIFFNESS = 200  # N/m, of soft-plate.yaml
+
+
+def scene(name):
+    return os.path.join(SCENES, name)
+
+
+def size(row):
+    return math.dist((0, 0, 0), row["force"])
+
+
+def stiffest(rows, start, end):
+    """[N/m] greatest force over depth, from 2 mm on."""
+    return max(soft_runs.along(r) / r["depth"] for r in rows if start < r["t"] < end and r["depth"] > 0.002)
+
+
+def met(rows, start):
+    """[m] depth below the contour at rest at which the surface is met, of the press after `start`."""
+    return next(r["depth"] for r in rows if r["t"] > start and size(r) > 0.02)
+
+
+def relaxation():
+    [rows] = soft_runs.run(HAPTICD, scene("relaxation.yaml"), 6)
+    held = soft_runs.at(rows, 1.95)
+    check("a held press feels the stiffness of the file", abs(soft_runs.along(held) / held["depth"] / STIFFNESS - 1) < 0.05,
+          (soft_runs.along(held), held["depth"]))
+    check("a fast press feels more", stiffest(rows, 0.5, 0.7) > 1.4 * STIFFNESS, stiffest(rows, 0.5, 0.7))
+    soon, late = met(rows, 2.15), met(rows, 4.5)
+    check("soon after, the hand meets the dent", soon > 3 * late and soon > 5e-4, (soon, late))
+
+
+def twoHands():
+    first, second = soft_runs.run(HAPTICD, scene("two-hands.yaml"), 6)
+    felt = lambda rows, t: soft_runs.along(soft_runs.at(rows, t)) / soft_runs.at(rows, t)["depth"]
+    check("alone, a hand feels the stiffness of the file", abs(felt(first, 1.9) / STIFFNESS - 1) < 0.05, felt(first, 1.9))
+    check("beside another it feels less", felt(first, 3.8) < 0.75 * STIFFNESS and felt(second, 3.8) < 0.75 * STIFFNESS,
+          (felt(first, 3.8), felt(second, 3.8)))
+    check("when the first has gone, the second feels all of it", abs(felt(second, 5.8) / STIFFNESS - 1) < 0.05,
+          felt(second, 5.8))
+
+
+def mesh():
+    [rows] = soft_runs.run(HAPTICD, scene("mesh.yaml"), 6)
+    sides = [sum(size(r) > 0.1 and sign * r["tip"][0] > 0.008 for r in rows) for sign in (-1, 1)]
+    check("both fingers are felt", min(sides) > 100, sides)
+    jump = max(math.dist(a["force"], b["force"]) for a, b in zip(rows, rows[1:]))
+    check("no tick changes the force by a tenth of the greatest", jump < 0.1 * max(map(size, rows)), jump)
+
+
+relaxation()
+twoHands()
+mesh()
+for name in ("relaxation.yaml", "two-hands.yaml", "mesh.yaml"):
+    told = subprocess.run([HAPTICD, "check", scene(name)], capture_output=True, text=True, timeout=60)
+    check(f"{name} is checked without a warning", told.returncode == 0 and "warning" not in told.stdout, told.stdout)
+finish()
