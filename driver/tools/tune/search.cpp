@@ -104,11 +104,20 @@ class Search {
     return choice;
   }
 
-  /// Measures a choice once.
+  /// Measures a choice once. The first is the scene's own. Another that a model refuses, such as a method that its kind
+  /// of geometry does not have, is no candidate.
   Result<void> attempt(const Choice& choice) {
     if (!going_ || !seen_.insert(choice).second) return {};
-    auto run = measure(applied(scene_, knobs_, choice), motion_, kPasses, options_.log);
-    if (!run) return Error{run.error()};
+    const bool own = candidates_.empty();
+    const host::Services::Log quiet = [this](int level, const std::string& who, const std::string& text) {
+      if (level != HSP_LOG_ERROR && options_.log) options_.log(level, who, text);
+    };
+    auto run = measure(applied(scene_, knobs_, choice), motion_, kPasses, own ? options_.log : quiet);
+    if (!run && own) return Error{run.error()};
+    if (!run) {
+      refused_.insert(choice);
+      return {};
+    }
     candidates_.push_back({choice, run->cost, compare(*run, reference_), false});
     const double spent = static_cast<double>(monotonicNow() - begun_) * kSecondsPerNanosecond;
     Progress progress{candidates_.size(), std::max(distinct(), candidates_.size()), 0};
@@ -144,7 +153,12 @@ class Search {
     return {};
   }
 
-  size_t distinct() const { return std::set<Choice>(planned_.begin(), planned_.end()).size(); }
+  /// Settings to try, as far as it is known that no model refuses them.
+  size_t distinct() const {
+    std::set<Choice> choices(planned_.begin(), planned_.end());
+    for (const Choice& choice : refused_) choices.erase(choice);
+    return choices.size();
+  }
 
   /// From the best so far, one knob at a time, until no knob helps.
   Result<void> descend() {
@@ -168,7 +182,7 @@ class Search {
   Nanoseconds begun_;
   Run reference_;
   std::vector<Choice> planned_;
-  std::set<Choice> seen_;
+  std::set<Choice> seen_, refused_;
   std::vector<Candidate> candidates_;
   bool going_ = true, out_of_time_ = false;
 };
