@@ -43,11 +43,13 @@ bool bounds(const TopoDS_Edge& edge) {
 }
 
 /// The edges of a wire, each after the one that ends where it starts; as they stand in the file if that misses some.
-std::vector<TopoDS_Edge> inOrder(const TopoDS_Wire& wire, const TopoDS_Face& face) {
+std::vector<TopoDS_Edge> inOrder(const TopoDS_Wire& wire, const TopoDS_Face& face, const brep::Face& range) {
   std::vector<TopoDS_Edge> all, ordered;
   for (TopoDS_Iterator at(wire); at.More(); at.Next())
     if (const TopoDS_Edge edge = TopoDS::Edge(at.Value()); bounds(edge)) all.push_back(edge);
-  for (BRepTools_WireExplorer at(wire, face); at.More() && ordered.size() <= all.size(); at.Next())
+  BRepTools_WireExplorer at;  // with the face's range, which it would find from all loops for each of them
+  at.Init(wire, face, range.lo[0], range.hi[0], range.lo[1], range.hi[1]);
+  for (; at.More() && ordered.size() <= all.size(); at.Next())
     if (bounds(at.Current())) ordered.push_back(at.Current());
   return ordered.size() == all.size() ? ordered : all;
 }
@@ -162,11 +164,11 @@ void BodyBuilder::addCoedge(const TopoDS_Face& face, const TopoDS_Edge& edge) {
   part_.coedges.push_back(record);
 }
 
-void BodyBuilder::addLoop(const TopoDS_Face& face, const TopoDS_Shape& wire) {
+void BodyBuilder::addLoop(const TopoDS_Face& face, const TopoDS_Shape& wire, const brep::Face& range) {
   if (wire.ShapeType() != TopAbs_WIRE) return;
   brep::Loop loop{sizeOf(part_.coedges), 0};
   const bool flat = unfolding_ && part_.surfaces.back().kind == brep::SurfaceKind::kPlane;
-  for (const TopoDS_Edge& edge : inOrder(TopoDS::Wire(wire), face)) {
+  for (const TopoDS_Edge& edge : inOrder(TopoDS::Wire(wire), face, range)) {
     double t0 = 0, t1 = 0;
     const bool pole = BRep_Tool::Degenerated(edge);
     if (pole && flat) continue;  // a plane has no poles
@@ -200,7 +202,7 @@ void BodyBuilder::addFace(const TopoDS_Face& oriented, const brep::Surface* shap
   if (oriented.Orientation() == TopAbs_REVERSED) record.flags |= brep::kReversed;
   if (const auto colour = colours_.find(oriented.TShape().get()); colour != colours_.end())
     record.colour = colour->second;
-  for (TopoDS_Iterator wire(face); wire.More(); wire.Next()) addLoop(face, wire.Value());
+  for (TopoDS_Iterator wire(face); wire.More(); wire.Next()) addLoop(face, wire.Value(), record);
   record.loop_count = sizeOf(part_.loops) - record.first_loop;
   if (unfolding_) {
     record.lo = unfolding_->lo();

@@ -33,7 +33,7 @@ class BodyBuilder {
   void tryFace(const TopoDS_Face& face);
   bool addDisguised(const TopoDS_Face& face);
   void addFace(const TopoDS_Face& face, const brep::Surface* shape);
-  void addLoop(const TopoDS_Face& face, const TopoDS_Shape& wire);
+  void addLoop(const TopoDS_Face& face, const TopoDS_Shape& wire, const brep::Face& range);
   void addCoedge(const TopoDS_Face& face, const TopoDS_Edge& edge);
   std::uint32_t edgeOf(const TopoDS_Edge& edge);
   std::uint32_t vertexOf(const TopoDS_Vertex& vertex);

@@ -14,19 +14,18 @@
 #include <ShapeFix_Shape.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
-#include <TopoDS_Iterator.hxx>
 #include <TopoDS_Solid.hxx>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "cad_import/progress.hpp"
+#include "cad_import/shape_fixes.hpp"
 
 namespace hapticd::cad {
 namespace {
 
 constexpr double kLongest = 10;     ///< [s] of fixing a body, and of one run of sewing
-constexpr int kMostWires = 200;     ///< of a face: the checker's time grows with the square of them
 constexpr double kFirstGap = 1e-6;  ///< [mm] of sewing; then 100 times as much, as long as edges stay free
 constexpr double kWidestGap = 1e-2;
 constexpr double kGapShare = 1e-3;  ///< of the diagonal: sewing never closes wider gaps
@@ -35,16 +34,6 @@ double diagonalOf(const TopoDS_Shape& shape) {
   Bnd_Box box;
   BRepBndLib::Add(shape, box, false);
   return box.IsVoid() || box.IsOpen() ? 0 : std::sqrt(box.SquareExtent());
-}
-
-int mostWires(const TopoDS_Shape& shape) {
-  int most = 0;
-  for (TopExp_Explorer face(shape, TopAbs_FACE); face.More(); face.Next()) {
-    int wires = 0;
-    for (TopoDS_Iterator at(face.Current()); at.More(); at.Next()) ++wires;
-    most = std::max(most, wires);
-  }
-  return most;
 }
 
 void moveColour(const TopoDS_Shape& from, const TopoDS_Shape& to, Colours& colours) {
@@ -57,7 +46,7 @@ void moveColour(const TopoDS_Shape& from, const TopoDS_Shape& to, Colours& colou
 
 TopoDS_Shape fixed(const TopoDS_Shape& shape, const std::string& body, Colours& colours,
                    std::vector<std::string>& steps) {
-  if (mostWires(shape) > kMostWires) {
+  if (mostLoops(shape) > kManyLoops) {
     steps.push_back(body + ": not checked, it has a face with more than 200 loops");
     return shape;
   }

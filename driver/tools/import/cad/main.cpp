@@ -15,6 +15,7 @@
 
 #include "base/regular_file.hpp"
 #include "cad_import/part_builder.hpp"
+#include "cad_import/shape_fixes.hpp"
 #include "kernels/brep/part_file.hpp"
 
 namespace hapticd::cad {
@@ -51,6 +52,7 @@ int fail(int exit_code, const std::string& message) {
 int import(const Options& options) {
   const auto begun = std::chrono::steady_clock::now();
   Report report;
+  limitShapeFixes();
   CadFile file = readCad(options.file);
   brep::Part part = buildPart(file, report);
   part.source.file = std::filesystem::path(options.file).filename().string();
