@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <mutex>
 
-#include "HD/hdDefine.h"
+#include "HD/hdDefines.h"
 
 namespace hapticd::hd {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "HD/hdDefine.h"
+#include "HD/hdDefines.h"
 
 namespace hapticd::hd {
 

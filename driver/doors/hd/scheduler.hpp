@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "HD/hdDefine.h"
+#include "HD/hdDefines.h"
 
 namespace hapticd::hd {
 

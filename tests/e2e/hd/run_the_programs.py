@@ -119,7 +119,7 @@ def plain(daemon):
 def client_force(daemon):
     """[N] that programs push with now."""
     with daemon.connect() as client:
-        row = client.rows("ticks", last=2)[-1]
+        row = client.rows("ticks", last=50)[-1]
         return max(abs(row["arm0_client_f" + c]) for c in "xyz")
 
 

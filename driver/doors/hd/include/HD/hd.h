@@ -2,7 +2,7 @@
 /* hd.h - the HDAPI over hapticd: link -lHD, run with `hapticd client PROGRAM`. */
 #ifndef HAPTICD_HD_H
 #define HAPTICD_HD_H
-#include <HD/hdDefine.h>
+#include <HD/hdDefines.h>
 #include <HD/hdDevice.h>
 #include <HD/hdExport.h>
 #include <HD/hdScheduler.h>

@@ -3,7 +3,7 @@
  * Any thread may call these functions; driver/docs/hdapi.md says what each rule is. */
 #ifndef HAPTICD_HD_DEVICE_H
 #define HAPTICD_HD_DEVICE_H
-#include <HD/hdDefine.h>
+#include <HD/hdDefines.h>
 #include <HD/hdExport.h>
 #ifdef __cplusplus
 extern "C" {

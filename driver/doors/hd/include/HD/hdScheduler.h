@@ -3,7 +3,7 @@
  */
 #ifndef HAPTICD_HD_SCHEDULER_H
 #define HAPTICD_HD_SCHEDULER_H
-#include <HD/hdDefine.h>
+#include <HD/hdDefines.h>
 #include <HD/hdExport.h>
 #ifdef __cplusplus
 extern "C" {

@@ -162,7 +162,7 @@ class hduMatrix {
   HDdouble values_[4][4];
 };
 #else
-#include <HD/hdDefine.h>
+#include <HD/hdDefines.h>
 typedef HDdouble hduMatrix[16];
 #endif
 #endif

@@ -2,7 +2,7 @@
 /* hduVector.h - vectors of three numbers: a class for C++98 and newer, arrays and functions for C. */
 #ifndef HAPTICD_HDU_VECTOR_H
 #define HAPTICD_HDU_VECTOR_H
-#include <HD/hdDefine.h>
+#include <HD/hdDefines.h>
 #include <math.h>
 #if defined(__GNUC__)
 #define HAPTICD_HDU_FUNCTION __attribute__((unused)) static
