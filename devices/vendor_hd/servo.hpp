@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+/// The callback in the vendor's own servo loop.
+#pragma once
+#include <atomic>
+#include <cstdint>
+
+#include "vendor_arm/exchange.hpp"
+#include "vendor_hd/vendor_library.hpp"
+
+namespace hapticd::vendor_hd {
+
+class Servo {
+ public:
+  Servo(const VendorLibrary& vendor, vendor_arm::Exchange& exchange) : vendor_(vendor), exchange_(exchange) {}
+
+  /// [main] Forces on, callback scheduled. False: the vendor's library refuses.
+  bool start(HHD device);
+  void stop();  ///< [main] force off, callback ended
+
+ private:
+  static HDCallbackCode HDCALLBACK callback(void* self);
+  void tick();
+  void look(vendor_arm::Seen& seen);
+  void notice(vendor_arm::Seen& seen);
+
+  const VendorLibrary& vendor_;
+  vendor_arm::Exchange& exchange_;
+  HHD device_ = HD_INVALID_HANDLE;
+  HDSchedulerHandle handle_ = 0;
+  bool scheduled_ = false;
+  std::atomic<bool> end_{false};
+  vendor_arm::Seen last_;  ///< the callback's
+  uint64_t ticks_ = 0;
+};
+
+}  // namespace hapticd::vendor_hd
