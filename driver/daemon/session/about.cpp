@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -38,6 +39,12 @@ std::string utcNow() {
 std::string machine() {
   utsname name{};
   return uname(&name) == 0 ? std::string(name.sysname) + " " + name.release + " " + name.machine : "";
+}
+
+/// What paths in the scene, and of models that are added beside it, are relative to.
+std::string folderOf(const std::filesystem::path& file) {
+  std::error_code unknown;
+  return std::filesystem::absolute(file, unknown).parent_path().string();
 }
 
 Json infoJson(const hdv_info& info) {
@@ -164,6 +171,7 @@ record::About aboutRun(const scene::Scene& scene, const World& world, const std:
                {"machine", machine()},
                {"instructions", takenInstructions(scene.servo)},
                {"started", utcNow()},
+               {"folder", folderOf(scene.file)},
                {"rate_hz", facts.rate},
                {"period_ns", facts.period_ns},
                {"ticks", facts.ticks},

@@ -99,6 +99,39 @@ test('the mouse presses the teapot, bounded as every leader is, and no row is mi
   });
 });
 
+test('what a new user does presses: the tip is dragged onto the teapot, in the view that the page begins with', async () => {
+  await guided('teapot', async (page) => {
+    await press(page, 0.3);
+    await page.screenshot({path: join(pictures, 'first-press.png')});
+    await page.mouse.up();
+  });
+});
+
+test('Space holds wherever the focus is, and presses no button', async () => {
+  await guided('teapot', async (page) => {
+    const held = () => page.evaluate(() => window.hapticdView.held === true);
+    for (const button of ['[data-view=front]', '#fit', '#stop', '#models input[type=number]']) {
+      await page.locator(button).first().focus();
+      await page.keyboard.press('Space');
+      await until(held, kPatience, `a hold with the focus on ${button}`);
+      await page.keyboard.press('Space');
+      await until(async () => !(await held()), kPatience, 'no hold any more');
+    }
+    assert.equal(await page.locator('#stop').textContent(), 'Stop', 'the run was not asked to end');
+  });
+});
+
+test('a list of models that comes before the scene can be drawn is shown', async () => {
+  await guided('teapot', async (page) => {
+    await page.locator('#models article').waitFor({timeout: 1000 * kPatience});
+    assert.ok(await page.locator('#models input[type=number]').count() > 0, 'its parameters may be changed');
+  }, (page) => page.addInitScript(() => {
+    const draw = window.requestAnimationFrame.bind(window); // as where a processor draws and is busy
+    let late = 2000;
+    window.requestAnimationFrame = (use) => { const wait = late; late = 0; return wait > 0 ? setTimeout(() => draw(use), wait) : draw(use); };
+  }));
+});
+
 test('one jump of the mouse into the teapot is felt within 100 ms of the wish', async () => {
   await guided('teapot', async (page, sandbox) => {
     await page.keyboard.press('3');

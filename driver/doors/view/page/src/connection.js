@@ -53,7 +53,7 @@ export class Connection extends EventTarget {
     const answer = await fetch('./', {method: 'HEAD', cache: 'no-store'}).catch(() => null);
     if (answer?.status === 401) this.#tell('refused', 'hapticd-view was started anew: open the address that it prints');
     else if (answer?.ok) this.#tell('refused', 'hapticd-view takes no more pages, 8 at a time: close one of them');
-    else this.#tell('refused', 'hapticd-view has ended. To look again: hapticd view');
+    else this.#tell('refused', 'The run and its view have ended. To begin again: hapticd run SCENE --view');
   }
 
   #text(message) {

@@ -13,6 +13,9 @@ export function short(value, digits = 3) {
   return Number(text) === 0 ? (0).toFixed(decimals) : text;
 }
 
+/** A bound as it is written: 1e-12, 0.001, 10000. */
+export const exact = (value) => (Number.isFinite(value) ? String(Number(value.toPrecision(6))) : '–');
+
 /** Seconds as m:ss.ss. */
 export function clock(t) {
   if (!Number.isFinite(t)) return '–';

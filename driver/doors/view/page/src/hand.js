@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-/** The hand of people who have no arm: the tip is dragged in the plane that faces the viewer, the wheel moves it deeper.
- * What is sent is a wish; the simulated hand's mass and spring, and the shapes, decide what comes of it. */
+/** The hand of people who have no arm: the tip is dragged in the plane that faces the viewer, and onto the models that the
+ * pointer is over; the wheel moves it deeper. What is sent is a wish; the simulated hand's mass and spring, and the shapes, decide what comes of it. */
 import {Raycaster, Vector2, Vector3} from 'three';
 
 const kGrabPixels = 34; // about the tip; a finger is not finer
 const kStep = 0.001, kFineStep = 0.0001; // m a key
 const kWheelStep = 0.0015; // m a notch
+const kPress = 0.004; // m that a hand over a model wishes to be behind its surface
 const kTurn = 0.06; // rad a key
 const kLost = 'The connection is lost: no hand can be led until it is back';
 const kAgainMs = 50; // a wish is told again so often while it is led
@@ -93,13 +94,15 @@ export class Hand {
     return best;
   }
 
-  /** The place in the plane through `through` that faces the viewer, under the pointer. */
+  /** The place under the pointer: in the plane through `through` that faces the viewer, or just behind the surface of the
+   * model that the pointer is over, whichever is deeper. */
   #placeAt(x, y, through) {
-    const {canvas, orbit} = this.view, ray = new Raycaster();
-    ray.setFromCamera(new Vector2(2 * x / canvas.clientWidth - 1, 1 - 2 * y / canvas.clientHeight), orbit.camera);
-    const forward = orbit.forward(), along = ray.ray.direction.dot(forward);
-    const distance = through.clone().sub(ray.ray.origin).dot(forward) / along;
-    return ray.ray.at(distance, new Vector3());
+    const {canvas, orbit, models} = this.view, caster = new Raycaster(), {ray} = caster;
+    caster.setFromCamera(new Vector2(2 * x / canvas.clientWidth - 1, 1 - 2 * y / canvas.clientHeight), orbit.camera);
+    const forward = orbit.forward(), along = ray.direction.dot(forward);
+    const plane = through.clone().sub(ray.origin).dot(forward) / along;
+    const [hit] = caster.intersectObjects([...models.byIndex.values()].map(({mesh}) => mesh), false);
+    return ray.at(hit ? Math.max(plane, hit.distance + kPress) : plane, new Vector3());
   }
 
   #down(e) {
@@ -111,9 +114,9 @@ export class Hand {
     const near = this.#pointers.size === 1 && e.button === 0 && !e.shiftKey ? this.#tipNear(e.offsetX, e.offsetY) : null;
     if (near && this.possible) {
       if (near.arm !== this.arm) this.#release(near.arm);
-      const start = near.place.clone();
-      this.#drag = {kind: 'hand', offset: start.clone().sub(this.#placeAt(e.offsetX, e.offsetY, start))};
-      this.#want(start);
+      const at = this.view.project(near.place);
+      this.#drag = {kind: 'hand', plane: near.place.clone(), dx: at.x - e.offsetX, dy: at.y - e.offsetY};
+      this.#want(near.place.clone());
       return;
     }
     if (near) this.onRefused(this.obstacle);
@@ -132,7 +135,7 @@ export class Hand {
     const {orbit, canvas} = this.view, drag = this.#drag;
     if (!drag) return;
     if (drag.kind === 'hand' && !this.possible) return; // until the connection is back
-    if (drag.kind === 'hand') this.#want(this.#placeAt(e.offsetX, e.offsetY, this.#wish).add(drag.offset));
+    if (drag.kind === 'hand') this.#want(this.#placeAt(e.offsetX + drag.dx, e.offsetY + drag.dy, drag.plane));
     else if (drag.kind === 'turn') orbit.turn(-dx * 0.008, -dy * 0.008);
     else if (drag.kind === 'pan') orbit.pan(dx, dy, canvas.clientHeight);
     else {
@@ -159,7 +162,9 @@ export class Hand {
     this.used = true;
     const notches = Math.max(-3, Math.min(3, e.deltaY / 100));
     if (this.possible && this.#wish && (this.#drag?.kind === 'hand' || e.altKey)) {
-      this.#want(this.#wish.clone().addScaledVector(this.view.orbit.forward(), -notches * kWheelStep));
+      const deeper = this.view.orbit.forward().multiplyScalar(-notches * kWheelStep);
+      if (this.#drag?.kind === 'hand') this.#drag.plane = this.#wish.clone().add(deeper);
+      this.#want(this.#wish.clone().add(deeper));
     } else this.view.orbit.zoom(Math.exp(notches * 0.14));
     this.view.dirty = true;
   }

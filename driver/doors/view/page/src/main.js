@@ -18,6 +18,8 @@ const kNoticeMs = 6000;
 const kHandStiffness = 500; // N/m, where a device file gives none
 const kShareOfLimit = 0.8; // of the arm's greatest force: what is left holds the tip outside
 const kGuided = 7; // of hand.script: a hand that waits for a leader
+const kStopMs = 3000; // a question is taken back after it
+const kTakesSpace = 'input:not([type=number], [type=range]), textarea, select'; // everywhere else it holds
 const kHeldFault = 8; // number of the fault that a person's hold is
 
 /** [N] What the limiter of an arm lets through at most, or null. */
@@ -82,7 +84,7 @@ class Page {
 
   #listen() {
     const on = (type, use) => this.connection.addEventListener(type, (e) => use(e.detail));
-    on('about', (hello) => { this.hello = hello; if (this.view) this.#begin(hello); });
+    on('about', (hello) => { this.hello = hello; this.pendingList = null; if (this.view) this.#begin(hello); });
     on('rows', (message) => this.#rows(message));
     on('vertices', ({model, xyz}) => { this.view?.models.deform(model, xyz); if (this.view) this.view.dirty = true; });
     on('list', (list) => this.#list(list));
@@ -107,7 +109,7 @@ class Page {
     const resting = again && this.ledWhenLost;
     this.ledWhenLost = false;
     $('hint').hidden = !resting && (!control || script?.number !== kGuided);
-    $('hint').textContent = resting ? 'The connection was lost, and the hand rests: drag the tip again' : 'Drag the tip to press with the mouse';
+    $('hint').textContent = resting ? 'The connection was lost, and the hand rests: drag the tip again' : 'Drag the tip onto a model to press it; the wheel moves it deeper';
     if (again) this.notice('The connection is back', true);
   }
 
@@ -134,7 +136,7 @@ class Page {
     this.fitted = again; // nobody wants another camera because of a connection
     this.fitWhenTip = false;
     if (!again) this.hand.used = false;
-    this.panel.folder = (about.scene?.file ?? '').replace(/\/[^/]*$/, '');
+    this.panel.folder = about.folder ?? '';
     $('scene-name').textContent = fileName(about.scene?.file) || hello.name;
     $('scene-mode').textContent = recorded ? `recording ${fileName(hello.name)}` : control ? 'live' : 'live, looking only';
     document.title = `${$('scene-name').textContent} · hapticd`;
@@ -148,8 +150,8 @@ class Page {
       box: this.armModels[i]?.workspace(), center: device.mount?.position ?? [0, 0, 0], radius: Number(device.limits?.workspace) || 0,
     })));
     $('pick').replaceChildren(new Option('none', ''), ...(this.plots?.columns() ?? []).map((c) => new Option(c.unit ? `${c.name} [${c.unit}]` : c.name, c.name)));
-    this.pendingList = null; // of the run before
     this.#drawModels((about.scene?.models ?? about.models ?? []).map((m, i) => ({...m, index: i})));
+    if (this.pendingList) this.#list(this.pendingList); // it came before there was a view
   }
 
   /** Asks for the triangles of models that are new. */
@@ -295,6 +297,19 @@ class Page {
     this.notice(answer.ok ? done?.(answer) : answer.error, answer.ok);
   }
 
+  /** The first click asks, the second ends the run. */
+  #stop() {
+    const button = $('stop'), calm = () => { button.textContent = 'Stop'; };
+    clearTimeout(this.stopTimer);
+    if (button.textContent === 'Stop') {
+      button.textContent = 'End the run?';
+      this.stopTimer = setTimeout(calm, kStopMs);
+      return undefined;
+    }
+    calm();
+    return this.#order({do: 'stop'});
+  }
+
   holdOrClear() {
     if (this.hello?.recorded) return this.timeline.toggle();
     if (!this.hello?.control) return this.notice('This view only looks. To change the run: hapticd view --control');
@@ -306,7 +321,7 @@ class Page {
     $('clear').onclick = () => this.#order({do: 'clear'});
     $('reload').onclick = () => this.#order({do: 'reload'}, (a) => `${a.models} models loaded again`);
     $('dump').onclick = () => this.#order({do: 'dump'}, (a) => `Written: ${a.file}`);
-    $('stop').onclick = () => this.#order({do: 'stop'});
+    $('stop').onclick = () => this.#stop();
     $('theme').onclick = () => this.#theme(document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark', true);
     $('help').onclick = () => $('keys').showModal();
     $('fit').onclick = () => this.view?.fit();
@@ -318,13 +333,15 @@ class Page {
     $('save-picture').onclick = async () => save(await this.view.picture(), 'hapticd.png');
     $('save-report').onclick = () => save(new Blob([JSON.stringify(this.report(), null, 2)], {type: 'application/json'}), 'hapticd-report.json');
     document.addEventListener('keydown', (e) => this.#key(e));
+    // Space holds wherever the focus is: a button is pressed by Enter
+    document.addEventListener('keyup', (e) => { if (e.key === ' ' && e.target.matches('button')) e.preventDefault(); });
   }
 
   #key(e) {
-    if (e.target.matches('input, select, textarea') || document.querySelector('dialog[open]') || e.ctrlKey || e.metaKey || e.altKey) return;
+    if (e.target.matches(e.key === ' ' ? kTakesSpace : 'input, select, textarea') || document.querySelector('dialog[open]') || e.ctrlKey || e.metaKey || e.altKey) return;
     const keys = {' ': () => this.holdOrClear(), f: () => this.view?.fit(), 1: () => this.look('front'), 3: () => this.look('right'), 7: () => this.look('top'), '?': () => $('keys').showModal(), n: () => this.nextArm()};
     const act = keys[e.key.toLowerCase()];
-    if (!act || (e.key === ' ' && e.target.matches('button, a'))) return;
+    if (!act) return;
     e.preventDefault();
     act();
   }

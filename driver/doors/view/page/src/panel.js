@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /** The models and a form of what of them may change: fields come from the plugin's own table, with unit, range and
  * documentation. What a hand may feel suddenly asks for consent. */
-import {element, short} from './format.js';
+import {element, exact, short} from './format.js';
 import {colorOf} from './models.js';
 
 const kOpenModels = 3; // more of them are folded
@@ -105,8 +105,9 @@ export class Panel {
     const set = async (wanted) => {
       wrong.hidden = true;
       if (!(wanted >= parameter.min && wanted <= parameter.max)) {
-        wrong.textContent = `expected ${short(parameter.min)} to ${short(parameter.max)} ${parameter.unit}`;
+        wrong.textContent = `${number.value || 'nothing'} is not allowed, expected ${exact(parameter.min)} to ${exact(parameter.max)} ${parameter.unit}`;
         wrong.hidden = false;
+        this.#refresh(model, parameter, true);
         return;
       }
       const before = Number.isFinite(parameter.value) ? ` from ${short(parameter.value)}` : '';
@@ -119,7 +120,7 @@ export class Panel {
     number.onchange = () => set(number.valueAsNumber);
     slider.oninput = () => { number.value = Number(Number(slider.value).toPrecision(4)); };
     slider.onchange = () => set(number.valueAsNumber);
-    const title = parameter.doc ? `${parameter.doc} ${short(parameter.min)} to ${short(parameter.max)} ${parameter.unit}` : parameter.id;
+    const title = parameter.doc ? `${parameter.doc} ${exact(parameter.min)} to ${exact(parameter.max)} ${parameter.unit}` : parameter.id;
     const field = element('div', {class: parameter.safety ? 'field safety' : 'field', data: {parameter: parameter.id}},
       element('label', {htmlFor: id, title}, parameter.label ?? parameter.id), number, element('span', {class: 'unit'}, parameter.unit));
     if (Number.isFinite(value)) field.append(slider);

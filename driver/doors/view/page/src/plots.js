@@ -56,7 +56,7 @@ class Plot {
     this.limit = limit;
     this.value = element('b', {}, '–');
     this.unit = unit;
-    const bound = limit === null ? '' : element('small', {title: 'Dashed in the plot'}, `limit ${short(limit)}`);
+    const bound = limit === null ? '' : element('small', {title: 'Dashed in the plot'}, `limit ${short(limit)} ${unit}`);
     const mark = element('i');
     mark.style.background = `var(${color})`;
     this.chartBox = element('div', {class: 'chart'});
