@@ -80,6 +80,14 @@ def height(client):
     return door(client.rows("poses", last=4))[0][-1][1]
 
 
+def raised(action, kind, word):
+    try:
+        action()
+    except kind as error:
+        return word in str(error)
+    return False
+
+
 def leads_a_model(daemon):
     with daemon.connect() as client:
         first = client.streams["poses"].written
@@ -92,6 +100,7 @@ def leads_a_model(daemon):
             check("a second leader is refused, and told who leads",
                   refused(lambda: daemon.connect().lead_model("door"), f"process {os.getpid()}"))
             check("a move of a led model is refused", refused(lambda: client.models["door"].move([0, 0, 0]), "is led by"))
+            check("a record of another shape is refused before it is written", raised(lambda: lead.put([0, 0]), ValueError, "3 numbers"))
             check("list tells who leads", client.models["door"].leader == os.getpid())
         position, velocity, _ = door(client.streams["poses"].read(first)[1])
         check("the model follows", position[:, 1].max() > START[1] + 0.049, position[:, 1].max())
@@ -100,6 +109,8 @@ def leads_a_model(daemon):
         check("list tells that nobody leads", client.models["door"].leader is None)
         check("what cannot move cannot be led", refused(lambda: client.lead_model("ball"), "kinematic"))
         check("a name that is none is refused", refused(lambda: client.lead_model("dor"), "door"))
+        for what, names in (("model", client.models), ("stream", client.streams), ("parameter", client.models["ball"].parameters)):
+            check(f"a {what} that is not there is named, and those that are", raised(lambda: names["dor"], KeyError, "one of"))
         check("an end without a lead is refused", refused(lambda: client.ask(do="unlead", model="door"), "not led"))
 
 

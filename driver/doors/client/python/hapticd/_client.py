@@ -12,7 +12,7 @@ import stat
 import time
 from typing import Any, Callable, Iterator, Optional, Sequence
 
-from ._error import HapticdError, Refused
+from ._error import HapticdError, Named, Refused
 from ._lead import ForceLead, PoseLead
 from ._models import Model
 from ._push import ForceThread
@@ -226,7 +226,7 @@ class Client:
     @property
     def models(self) -> dict[str, Model]:
         """The models as they are now, by name."""
-        return {facts["name"]: Model(self, facts) for facts in self.ask(do="list")["models"]}
+        return Named("model", {facts["name"]: Model(self, facts) for facts in self.ask(do="list")["models"]})
 
     def status(self) -> dict[str, Any]:
         """Time, missed ticks, devices with their faults, models that are not felt."""

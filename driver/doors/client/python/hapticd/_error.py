@@ -13,3 +13,14 @@ class Refused(HapticdError):
     def __init__(self, text: str, code: str = "failed") -> None:
         super().__init__(text)
         self.code = code
+
+
+class Named(dict):  # type: ignore[type-arg]
+    """A dictionary that says what there is where a name is not found."""
+
+    def __init__(self, what: str, *parts: object) -> None:
+        super().__init__(*parts)
+        self._what = what
+
+    def __missing__(self, name: object) -> None:
+        raise KeyError(f"there is no {self._what} {name!r}; expected one of: {', '.join(map(str, self)) or 'there are none'}")

@@ -72,7 +72,12 @@ class PoseLead(Lead):
         [m/s] and angular [rad/s] velocity, in the world frame. `when` [s] on the clock of `time.monotonic()` says for
         which moment; without it, for now. Newest wins; nothing here waits."""
         stamp = time.monotonic() if when is None else when
-        self._put(_TARGET.pack(*position, *orientation, *linear, *angular, stamp))
+        try:
+            record = _TARGET.pack(*position, *orientation, *linear, *angular, stamp)
+        except struct.error:
+            raise ValueError(f"expected position, linear and angular of 3 numbers and orientation of 4, got "
+                             f"{list(position)}, {list(linear)}, {list(angular)} and {list(orientation)}") from None
+        self._put(record)
 
     def __enter__(self) -> "PoseLead":
         return self
@@ -85,7 +90,11 @@ class ForceLead(Lead):
             woke_ns: int = 0) -> None:
         """The answer to a tick (the `tick` of the newest state): force [N] and torque [N m] on the hand, world frame.
         `woke_ns` is time.monotonic_ns() when the program learnt of that tick, for the recording."""
-        self._put(_PUSH.pack(tick, *force, *torque, woke_ns, time.monotonic_ns()))
+        try:
+            record = _PUSH.pack(tick, *force, *torque, woke_ns, time.monotonic_ns())
+        except struct.error:
+            raise ValueError(f"expected force and torque of 3 numbers, got {list(force)} and {list(torque)}") from None
+        self._put(record)
 
     def __enter__(self) -> "ForceLead":
         return self

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Optional, Sequence
 
+from ._error import Named
+
 if TYPE_CHECKING:
     from ._client import Client
 
@@ -36,7 +38,11 @@ class Model:
         self.leader: Optional[int] = facts["leader"]  #: process that leads it
         self.position: list[float] = facts["pose"]["position"]  #: m, world frame
         self.orientation: list[float] = facts["pose"]["orientation"]  #: w, x, y, z
-        self.parameters: dict[str, Parameter] = {p["id"]: Parameter(**p) for p in facts.get("live_parameters", [])}
+        self.parameters: dict[str, Parameter] = Named(
+            "live parameter", {p["id"]: Parameter(**p) for p in facts.get("live_parameters", [])})
+
+    def __repr__(self) -> str:
+        return f"<hapticd model {self.name!r} of {self.plugin}>"
 
     def get(self, parameter: str) -> Any:
         """The value of any parameter, also of those that cannot change."""

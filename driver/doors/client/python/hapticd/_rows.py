@@ -9,7 +9,7 @@ import struct
 from dataclasses import dataclass
 from typing import Any, Optional
 
-from ._error import HapticdError
+from ._error import HapticdError, Named
 
 try:
     import numpy
@@ -111,7 +111,7 @@ class BlackBox:
             raise HapticdError(f"{file}: is no black box of a daemon that this package knows")
         self.about: dict[str, Any] = json.loads(bytes(self._memory[about_at:about_at + about_bytes]))
         places = self._rows_of(blocks_at, count)
-        self.streams: dict[str, Stream] = {}
+        self.streams: dict[str, Stream] = Named("stream")
         for number in range(count):
             name, row_bytes, capacity, _, _ = _STREAM.unpack_from(
                 self._memory, _HEADER_AT + _HEADER.size + number * _STREAM.size)
