@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd plugin check FILE.so`: the conformance tests, each in a child process of its own.
 #include <cstdio>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/clock.hpp"
@@ -11,6 +13,7 @@
 #include "cli/command.hpp"
 #include "cli/set_option.hpp"
 #include "conformance/conformance.hpp"
+#include "conformance/conformance_parts.hpp"
 #include "host/child.hpp"
 #include "host/describe.hpp"
 
@@ -61,13 +64,25 @@ std::vector<Recipe> recipesFor(const std::vector<host::ClassInfo>& classes, cons
       problems.push_back(options.file + " is a device module, expected a shape plugin");
       return {};
     }
-    recipes.push_back({options.file, info.name, set.valuesFor(info)});
+    recipes.push_back({options.file, info.name, set.valuesFor(info), {}});
     addModelOfOurs(info, recipes.back());
     if (!set.problems().empty()) continue;  // what was refused is not missing
     for (const std::string& one : missing(info, recipes.back().set)) problems.push_back(one);
   }
   problems.insert(problems.begin(), set.problems().begin(), set.problems().end());
   return recipes;
+}
+
+/// Where it can be touched, looked for once and in a child. A search that crashes finds nothing, and the test that asks
+/// for a contact says how it ended. The error is that of a shape that refuses to be made or activated.
+Result<Touch> lookForContact(const Recipe& recipe, const Options& options) {
+  const auto look = [&] {
+    const Made made(recipe);
+    return made.error.empty() ? "=" + toText(findTouch(recipe)) : made.error;
+  };
+  const auto said = host::runInChild(look, options.limitMs());
+  if (said && said->front() != '=') return Error{*said};
+  return said ? touchFromText(said->substr(1)) : Touch{};
 }
 
 Outcome tryOne(const Recipe& recipe, const ConformanceTest& test, const Options& options) {
@@ -129,6 +144,16 @@ std::vector<Outcome> unusable(const std::string& why) {
   return {{"", slow ? "scan-time-limit" : "descriptor-complete", why, false, false}};
 }
 
+/// A shape that its parameters do not activate fails once, not by every test.
+size_t notActive(const Recipe& recipe, const std::string& why, const Options& options, std::vector<Outcome>& outcomes) {
+  const size_t left = conformanceTests().size();
+  outcomes.push_back({recipe.class_name, "activate", why, false, false, false});
+  if (options.json) return left;
+  print(outcomes.back());
+  std::printf("the other tests were not run: give it parameters that it accepts with --set ID=VALUE\n");
+  return left;
+}
+
 /// All tests of one class, up to the first that hangs: those after it would hang too. @return how many were not run
 size_t testClass(const Recipe& recipe, const Options& options, std::vector<Outcome>& outcomes) {
   const auto& tests = conformanceTests();
@@ -162,12 +187,26 @@ int sum(const std::vector<Outcome>& outcomes, size_t not_run, const Options& opt
   if (options.json)
     std::printf("%s\n", all.dump(2).c_str());
   else
-    std::printf("%zu tests, %zu failed%s\n", outcomes.size(), failed,
+    std::printf("%zu %s, %zu failed%s\n", outcomes.size(), outcomes.size() == 1 ? "test" : "tests", failed,
                 not_run > 0 ? (", " + std::to_string(not_run) + " not run").c_str() : "");
   return failed == 0 ? kWorked : kFailed;
 }
 
+/// A scene in the place of a plugin is a slip that the loader of the system would call an invalid header.
+bool isSharedObject(const std::string& file) {
+  char magic[4] = {};
+  std::ifstream(file, std::ios::binary).read(magic, sizeof magic);
+  return std::string_view(magic, sizeof magic) ==
+         "\x7f"
+         "ELF";
+}
+
 int check(const Options& options) {
+  if (!isSharedObject(options.file))
+    return fail(kBadInput,
+                options.file +
+                    " is not a plugin, expected a shared object (FILE.so); a scene or a device file is checked "
+                    "with: hapticd check FILE");
   std::vector<Outcome> outcomes;
   const auto classes = host::describeInChild(options.file);
   if (!classes) outcomes = unusable(classes.error());
@@ -182,7 +221,10 @@ int check(const Options& options) {
   for (size_t i = 0; i < recipes.size(); ++i) {
     const host::ClassInfo& info = (*classes)[i];
     if (!options.json) std::printf("%s %s (%s)\n", info.name.c_str(), info.version.c_str(), info.id.c_str());
-    not_run += testClass(recipes[i], options, outcomes);
+    auto touch = lookForContact(recipes[i], options);
+    if (touch) recipes[i].touch = *touch;
+    not_run +=
+        touch ? testClass(recipes[i], options, outcomes) : notActive(recipes[i], touch.error(), options, outcomes);
   }
   return sum(outcomes, not_run, options);
 }

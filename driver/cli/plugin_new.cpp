@@ -59,6 +59,25 @@ std::optional<fs::path> templateFolder() {
   return fs::is_directory(source, error) ? std::optional(source) : std::nullopt;
 }
 
+/// Where the headers of the plugin interface are: beside the installed program, or in the checkout it was built from.
+fs::path includeFolder() {
+  std::error_code error;
+  const fs::path source = fs::path(HAPTICD_TEMPLATE_DIR) / "../../driver/include";
+  if (fs::exists(source / "hapticd/shape.hpp", error)) return source.lexically_normal();
+  return "/usr/include";
+}
+
+/// One line of the compiler works with and without an installed hapticd, so it comes first.
+void tellNextSteps(const std::string& folder, const std::string& name) {
+  const char *at = folder.c_str(), *what = name.c_str();
+  std::printf("\nbuild it:  g++ -std=c++20 -O2 -shared -fPIC -I %s %s/%s.cpp -o %s/%s.so\n", includeFolder().c_str(),
+              at, what, at, what);
+  std::printf("test it:   hapticd plugin check %s/%s.so\n", at, what);
+  std::printf("touch it:  hapticd --plugin-path %s run %s/scene.yaml\n", at, at);
+  std::printf("or with CMake, where hapticd is installed:  cmake -S %s -B %s/build && cmake --build %s/build\n", at, at,
+              at);
+}
+
 int makeNew(const Options& options) {
   if (!usable(options.name))
     return fail(kBadInput, "\"" + options.name +
@@ -83,12 +102,7 @@ int makeNew(const Options& options) {
     if (!out) return fail(kFailed, file.string() + " is not writable");
     std::printf("%s\n", file.c_str());
   }
-  std::printf("\nbuild it:  cmake -S %s -B %s/build && cmake --build %s/build\n", target.c_str(), target.c_str(),
-              target.c_str());
-  std::puts(
-      "           if hapticd is not installed: cmake --install BUILD --prefix FOLDER, and add "
-      "-DCMAKE_PREFIX_PATH=FOLDER");
-  std::printf("touch it:  HAPTICD_PLUGIN_PATH=%s/build hapticd run %s/scene.yaml\n", target.c_str(), target.c_str());
+  tellNextSteps(target.string(), options.name);
   return kWorked;
 }
 
@@ -100,8 +114,7 @@ void addPluginNew(CLI::App& app, int& exit_code) {
       "new", "Create a new plugin from the template: source, build file, scene.");
   command->add_option("name", options->name, "name of the plugin: lower-case letters, digits and _")->required();
   command->add_option("--dir", options->folder, "folder to create; default: NAME in the current folder");
-  command->footer(
-      "Example:\n  hapticd plugin new my_shape && cmake -S my_shape -B my_shape/build && cmake --build my_shape/build");
+  command->footer("Example:\n  hapticd plugin new my_shape");
   command->callback([options, &exit_code] { exit_code = makeNew(*options); });
 }
 

@@ -13,7 +13,8 @@ using Eigen::Vector3d;
 const std::vector<ConformanceTest>& conformanceTests() {
   static const std::vector<ConformanceTest> kTests = [] {
     std::vector<ConformanceTest> all = lifeTests();
-    for (const auto& more : {stepTests(), memoryTests()}) all.insert(all.end(), more.begin(), more.end());
+    for (const auto& more : {contactTests(), stepTests(), memoryTests()})
+      all.insert(all.end(), more.begin(), more.end());
     return all;
   }();
   return kTests;

@@ -15,9 +15,10 @@ struct ConformanceTest {
   std::string (*run)(const Recipe& recipe, uint64_t seed);
 };
 
-std::vector<ConformanceTest> lifeTests();    ///< descriptors, parameters, creation and activation
-std::vector<ConformanceTest> stepTests();    ///< what every step owes: time, memory, finite and continuous answers
-std::vector<ConformanceTest> memoryTests();  ///< what an instance remembers, and what it must not
+std::vector<ConformanceTest> lifeTests();     ///< descriptors, parameters, creation and activation
+std::vector<ConformanceTest> stepTests();     ///< what every step owes: time, memory, finite and continuous answers
+std::vector<ConformanceTest> contactTests();  ///< what a shape owes where it is touched
+std::vector<ConformanceTest> memoryTests();   ///< what an instance remembers, and what it must not
 
 /// All of them, in the order in which they run.
 const std::vector<ConformanceTest>& conformanceTests();

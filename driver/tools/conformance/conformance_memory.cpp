@@ -16,6 +16,11 @@ std::vector<Answer> answersOf(Subject& subject, int steps, double phase = 0) {
   for (int i = 0; i < steps; ++i)
     answers.push_back(
         subject.step({onPath(subject, static_cast<double>(i) / kConformanceSteps, phase)}, kConformanceDt));
+  for (const Place& place : subject.places())
+    press(subject, place, [&](const Answer& answer, const PressStep&) {
+      answers.push_back(answer);
+      return "";
+    });
   return answers;
 }
 
@@ -137,6 +142,12 @@ std::string twoInstances(const Recipe& recipe, uint64_t) {
     mixed.push_back(first.subject->step({onPath(*first.subject, part)}, kConformanceDt));
     second.subject->step({onPath(*second.subject, part, 2.1)}, kConformanceDt);
   }
+  for (const Place& place : first.subject->places())
+    press(*first.subject, place, [&](const Answer& answer, const PressStep& step) {
+      mixed.push_back(answer);
+      second.subject->step({step.p}, kConformanceDt);
+      return "";
+    });
   return firstDifference(expected, mixed);
 }
 

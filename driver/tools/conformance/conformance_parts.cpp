@@ -38,6 +38,11 @@ std::string along(Subject& subject, const std::function<std::string(const Answer
     const Answer& answer = subject.step({p}, kConformanceDt);
     if (std::string objection = look(answer, p); !objection.empty()) return objection + " at step " + std::to_string(i);
   }
+  for (const Place& place : subject.places())
+    if (std::string objection =
+            press(subject, place, [&](const Answer& answer, const PressStep& step) { return look(answer, step.p); });
+        !objection.empty())
+      return objection;
   return "";
 }
 

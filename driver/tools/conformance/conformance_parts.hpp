@@ -25,7 +25,8 @@ std::string text(double value);
 /// A smooth closed path through and around the shape, from a corner outside its box and back to it.
 Eigen::Vector3d onPath(const Subject& subject, double part, double phase = 0);
 
-/// Runs along the path and hands every answer to `look`; its first objection ends the run.
+/// Runs along the path, then presses wherever the shape can be touched, and hands every answer to `look`; its first
+/// objection ends the run.
 std::string along(Subject& subject, const std::function<std::string(const Answer&, const Eigen::Vector3d&)>& look,
                   int steps = kConformanceSteps);
 

@@ -50,6 +50,7 @@ Result<std::unique_ptr<Subject>> Subject::make(const Recipe& recipe) {
   if (!entry) return Error{entry.error()};
   std::unique_ptr<Subject> subject(new Subject);
   subject->library_ = *library;
+  subject->places_ = recipe.touch.places;
   subject->services_ = std::make_unique<host::Services>(recipe.class_name, nullptr);
   subject->class_ = host::findClass<hsp_class>(**entry, recipe.class_name);
   if (subject->class_ == nullptr || !host::complete(*subject->class_)) return Error{"lacks a required function"};
@@ -189,6 +190,8 @@ const Answer& Subject::run(const std::vector<hsp_probe>& probes, double dt) {
   for (size_t i = 0; i < probes.size(); ++i)
     std::memcpy(&answer_.contacts[i], &out_[i * out_stride], sizeof(hsp_contact));
   answer_.pose = pose_;
+  answer_.jumped =
+      std::any_of(probes.begin(), probes.end(), [](const hsp_probe& p) { return (p.flags & HSP_IN_JUMP) != 0; });
   ++steps_;
   return answer_;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/result.hpp"
+#include "conformance/conformance_touch.hpp"
 #include "description/scene.hpp"
 #include "hapticd/shape.h"
 #include "host/library.hpp"
@@ -19,6 +20,7 @@ namespace hapticd::conformance {
 struct Recipe {
   std::string file, class_name;
   std::vector<scene::Value> set;  ///< parameters that were checked against the table; the rest keeps its default
+  Touch touch;                    ///< where it can be touched; empty until it was looked for
 
   /// The value of a parameter, or nullptr.
   const scene::Value* find(const char* id) const;
@@ -29,6 +31,7 @@ struct Answer {
   hsp_status status = HSP_OK;
   std::vector<hsp_contact> contacts;
   hsp_pose pose{};
+  bool jumped = false;  ///< the probe came there by a jump: nothing is to be compared with the answer before
 };
 bool sameBits(const Answer& a, const Answer& b);
 bool finite(const Answer& answer);
@@ -57,6 +60,7 @@ class Subject {
 
   const hsp_class& description() const { return *class_; }
   const hsp_report& report() const { return report_; }
+  const std::vector<Place>& places() const { return places_; }  ///< where it can be touched
   hsp_shape* handle() const { return shape_; }
   const void* extension(const char* name) const;
   bool moves() const { return (report_.flags & HSP_R_MOVES) != 0; }
@@ -79,6 +83,7 @@ class Subject {
   hsp_report report_{};
   bool active_ = false;
   double damping_ = 0;
+  std::vector<Place> places_;
   hsp_pose pose_{};
   Answer answer_;
   std::vector<Eigen::Vector3d> last_;

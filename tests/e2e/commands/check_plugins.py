@@ -42,6 +42,24 @@ for shape, test in (("allocating", "no-allocation-in-step"), ("rude", "no-lock-i
                     ("pulling", "force-outward")):
     check(f"{shape} fails by {test}", code == 1 and (shape, test) in failed, (code, sorted(failed), err[-300:]))
 
+# A wrong sign is found wherever the shape can be touched, whatever its size; and each lack by the test that names it.
+code, tests, failed, err = examined(os.path.join(BROKEN, "wrong_signs.so"), "--timeout", "60")
+WRONG = {"ring_right": None, "ball_right": None, "floor_right": None, "ring_steps": "force-from-zero", "ring_no_contact": "contact-flags",
+         "ring_no_traced": "contact-flags", "ring_no_claim": "stiffness-vs-claim", "ring_small_claim": "stiffness-vs-claim",
+         "bad_id": "descriptor-complete", "ring_silent": "contact-found", "ring_never_deep": "contact-found"}
+WRONG.update({shape + "_pulls": "force-outward" for shape in ("ring", "large_ring", "ball", "middle_ball", "large_ball", "far_ball", "floor")})
+WRONG["ring_pulls_inside"] = "force-outward"
+for shape, test in WRONG.items():
+    mine = {t for p, t in failed if p == shape}
+    check(f"{shape}: {test or 'passes'}", {t["plugin"] for t in tests} >= {shape} and (test in mine if test else not mine), mine)
+why = [t["why"] for t in tests if (t["plugin"], t["name"]) == ("ring_pulls", "force-outward")]
+check("the sign is named, with depth and force", all(w in why[0] for w in ("sign", "0.5 N", "depth of 1 mm", "turn the sign")), why)
+for shape in ("ring_right", "ball_right", "floor_right"):
+    skipped = [t["name"] for t in tests if t["plugin"] == shape and t["result"] == "skip"]
+    check(f"{shape}: nothing about contact is skipped", not {"force-outward", "force-continuous", "contact-flags", "stiffness-vs-claim"} & set(skipped), skipped)
+untested = [t["why"] for t in tests if (t["plugin"], t["name"]) == ("ring_silent", "contact-found")]
+check("what was never touched is said to be untested", "NOT TESTED" in untested[0], untested)
+
 # A hang is found once: not by each of 26 tests in turn.
 done = subprocess.run([HAPTICD, "plugin", "check", os.path.join(BROKEN, "hanging.so"), "--timeout", "1.5"], capture_output=True, text=True, timeout=120)
 check("a plugin that hangs fails", done.returncode == 1 and "took longer than 1.5" in done.stdout, done.stdout)
@@ -65,6 +83,9 @@ code, said = refused("--set", "stiffnes=3", "--set", "stiffness=soft", "--set", 
 for words in ('did you mean "stiffness"', "stiffness=soft", "rows=2.5", "law=cubic", "felt=perhaps", "expected 3 numbers", "/no/such/file",
               "expected ID=VALUE"):
     check(f"--set: {words} is refused", code == 2 and words in said, said)
+scene = os.path.join(SOURCE, "config/scenes/teapot.yaml")
+done = subprocess.run([HAPTICD, "plugin", "check", scene], capture_output=True, text=True, timeout=120)
+check("a scene is no plugin", done.returncode == 2 and "hapticd check FILE" in done.stderr and "ELF" not in done.stderr, done.stderr)
 code, said = refused("--set", "stiffness=50000")
 check("a value out of range is bad input", code == 2 and "expected 0 to 5000 N/m" in said and "tests" not in said, said)
 with tempfile.TemporaryDirectory() as folder:
@@ -72,5 +93,8 @@ with tempfile.TemporaryDirectory() as folder:
     open(path, "w").write("heights 1 2 3\n")
     code, tests, failed, err = examined(NEEDY, "--set", "heights=" + path, "--set", "geometry=" + path, "--set", "axis=[0, 1, 0]", "--timeout", "60")
     check("with paths and arrays it passes", code == 1 and not [t for p, t in failed if p == "needy"], (failed, err))
+    code, tests, failed, err = examined(NEEDY, "--set", "heights=" + path, "--set", "geometry=" + path, "--timeout", "60")
+    refusals = [t for t in tests if t["plugin"] == "needy" and "axis is zero" in t["why"]]
+    check("what activate() refuses is told once", code == 1 and [t["name"] for t in refusals] == ["activate"], refusals)
     check("a depth of the wrong sign is found", ("upside_down", "depth-falls-outward") in failed, failed)
 finish()

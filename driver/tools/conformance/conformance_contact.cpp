@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+/// What a shape owes where it is touched: a force that pushes out, flags that agree with it, a claim that is true.
+#include <algorithm>
+#include <cmath>
+
+#include "conformance/conformance_parts.hpp"
+#include "servo/safety/claim.hpp"
+
+namespace hapticd::conformance {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr const char* kField = "skip: it names no surface (HSP_OUT_TRACED): a force without a surface has no sign";
+
+/// The force along the way out, counted at each place by itself.
+std::string atEachPlace(const Recipe& recipe, const std::function<std::string(Subject&, const Place&)>& test) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  if (recipe.touch.places.empty()) return recipe.touch.traced || !recipe.touch.felt ? "skip: no contact" : kField;
+  for (const Place& place : recipe.touch.places)
+    if (std::string wrong = test(*made.subject, place); !wrong.empty()) return wrong;
+  return "";
+}
+
+/// Every test of contact is empty without one, so that its lack is a failure.
+std::string contactFound(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  const Touch touch = recipe.touch.places.empty() ? findTouch(recipe) : recipe.touch;
+  if (!touch.places.empty()) return "";
+  if (touch.traced)
+    return "NOT TESTED: its depth is nowhere above 0, not even 1 mm behind the foot points that it names; expected "
+           "depth_m above 0 inside: look at the sign of depth_m and at point";
+  if (touch.felt) return kField;
+  return "NOT TESTED: it answered neither a foot point (HSP_OUT_TRACED) nor a force, on any side of the origin from 1 "
+         "mm "
+         "to 1 m; expected a contact to test: trace the surface while the probe is outside too, tell where the shape "
+         "is "
+         "by hsp.geometry/1 (bounds), or give parameters with --set that bring it to the origin";
+}
+
+/// The sign that hurts: by the whole press, since a detent may pull for some of it. The foot tells the way out, not the
+/// normal, which may have the wrong sign as well.
+std::string forceOutward(const Recipe& recipe, uint64_t) {
+  return atEachPlace(recipe, [](Subject& subject, const Place& place) {
+    double outward = 0, most = 0, depth = 0;
+    press(subject, place, [&](const Answer& answer, const PressStep&) {
+      const hsp_contact& c = answer.contacts[0];
+      if ((c.flags & HSP_OUT_TRACED) == 0 || !(c.depth_m > 0)) return std::string();
+      const double force = Vector3d(c.force).dot(place.out);
+      outward += force;
+      if (force < most) most = force, depth = c.depth_m;
+      return std::string();
+    });
+    if (outward >= 0) return std::string();
+    const Vector3d& f = place.foot;
+    return "the sign is wrong: pressed at " + text(f.x()) + ", " + text(f.y()) + ", " + text(f.z()) +
+           " m, the forces pull the hand in, with " + text(-most) + " N at a depth of " + text(depth * 1e3) +
+           " mm; expected a force that points out of the shape, as its normal does: turn the sign of force";
+  });
+}
+
+/// "" or what of an answer does not agree with its flags.
+std::string flagsOf(const hsp_contact& c) {
+  const bool traced = (c.flags & HSP_OUT_TRACED) != 0, contact = (c.flags & HSP_OUT_CONTACT) != 0;
+  const bool named = Vector3d(c.normal).norm() > 0 || std::abs(c.depth_m) > 0;
+  if (!traced && named) return "a normal or a depth is given without HSP_OUT_TRACED, so that the host does not read it";
+  if (traced && c.depth_m > 0 && !contact)
+    return "depth_m is above 0 without HSP_OUT_CONTACT: set both flags in contact";
+  if (traced && !(c.depth_m > 0) && contact) return "HSP_OUT_CONTACT is set at a depth of " + text(c.depth_m) + " m";
+  return "";
+}
+
+std::string contactFlags(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  return along(*made.subject, [](const Answer& answer, const Vector3d&) { return flagsOf(answer.contacts[0]); });
+}
+
+/// [N/m] The slopes of a press straight in, at rest; in order of size.
+std::vector<double> slopesOf(Subject& subject, const Place& place) {
+  std::vector<double> slopes;
+  double force = 0, at = 0;
+  bool known = false;
+  press(subject, place, [&](const Answer& answer, const PressStep& step) {
+    if (!step.settled) return std::string();
+    const hsp_contact& c = answer.contacts[0];
+    const double now = Vector3d(c.force).dot(place.out), here = step.p.dot(place.out);
+    if (known && c.depth_m > 0) slopes.push_back((now - force) / (at - here));
+    known = c.depth_m > 0;
+    force = now, at = here;
+    return std::string();
+  });
+  std::sort(slopes.begin(), slopes.end());
+  return slopes;
+}
+
+std::string stiffnessClaim(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  if (made.subject->moves()) return "skip: it moves, and its force with it";
+  const double claimed = made.subject->report().max_stiffness;
+  return atEachPlace(recipe, [claimed](Subject& subject, const Place& place) {
+    constexpr double kRoom = 1.5, kNoise = 10;  // a law may be a little steeper somewhere; [N/m]
+    const std::vector<double> slopes = slopesOf(subject, place);
+    if (slopes.size() < 10) return std::string();
+    const double measured = slopes[slopes.size() * 9 / 10];
+    if (measured <= kRoom * claimed + kNoise) return std::string();
+    const std::string claim = claimed > 0 ? "claims " + text(claimed) + " N/m" : "claims no stiffness";
+    return "it " + claim + ", but its force grows by " + text(measured) +
+           " N/m; expected report.max_stiffness of at least that in activate()";
+  });
+}
+
+/// A force that comes at once where the surface is met buzzes, however small its slope is behind it.
+std::string noStep(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  const hsp_report& report = made.subject->report();
+  if ((report.flags & HSP_R_JUMPS) != 0) return "skip: it claims that its force jumps (HSP_R_JUMPS)";
+  if (made.subject->moves()) return "skip: it moves, and its force with it";
+  const double stiffness = report.max_stiffness > 0 ? report.max_stiffness : servo::Claim::kUnclaimed;
+  return atEachPlace(recipe, [stiffness](Subject& subject, const Place& place) {
+    constexpr double kRoom = 0.1;  // [N] not felt as a step
+    bool known = false, inside = false;
+    Vector3d force = Vector3d::Zero(), at = Vector3d::Zero();
+    return press(subject, place, [&](const Answer& answer, const PressStep& step) {
+      if (!step.settled) return std::string();
+      const hsp_contact& c = answer.contacts[0];
+      const bool entered = known && !inside && c.depth_m > 0;
+      const double jump = (Vector3d(c.force) - force).norm(), way = (step.p - at).norm();
+      known = true, inside = c.depth_m > 0, force = Vector3d(c.force), at = step.p;
+      if (!entered || jump <= servo::Claim::kMargin * stiffness * way + kRoom) return std::string();
+      return "the force jumps by " + text(jump) + " N within " + text(way * 1e6) +
+             " um where the surface is met; expected it to grow from 0 with the depth (a jump on purpose is claimed: "
+             "HSP_R_JUMPS and max_jump)";
+    });
+  });
+}
+
+}  // namespace
+
+std::vector<ConformanceTest> contactTests() {
+  return {
+      {"contact-found", "the shape can be found and touched", &contactFound},
+      {"force-outward", "forces in contact push out of the shape", &forceOutward},
+      {"contact-flags", "HSP_OUT_TRACED and HSP_OUT_CONTACT agree with depth and normal", &contactFlags},
+      {"force-from-zero", "the force grows from zero where the surface is met", &noStep},
+      {"stiffness-vs-claim", "forces are no steeper than claimed", &stiffnessClaim},
+  };
+}
+
+}  // namespace hapticd::conformance

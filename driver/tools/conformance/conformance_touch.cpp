@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "conformance/conformance_touch.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <sstream>
+
+#include "conformance/conformance_parts.hpp"
+
+namespace hapticd::conformance {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr size_t kMostPlaces = 12, kMostOfASize = 6;
+
+/// Where the search starts from: points on a box about the middle.
+struct Around {
+  Vector3d middle, half;
+};
+
+/// The box that the shape names, if it does; then cubes of all sizes about the origin, the likeliest first.
+std::vector<Around> sizes(const Subject& subject) {
+  const auto [low, high] = subject.bounds();
+  std::vector<Around> all{{(low + high) / 2, 0.6 * (high - low).cwiseMax(1e-3)}};
+  for (const double half : {0.05, 0.1, 0.02, 0.2, 0.01, 0.5, 0.005, 1.0, 0.002, 0.001})
+    all.push_back({Vector3d::Zero(), Vector3d::Constant(half)});
+  return all;
+}
+
+/// Faces, corners and edges of a cube, each turned a little: a seed on a plane of symmetry has two nearest points.
+std::vector<Vector3d> directions() {
+  std::vector<Vector3d> all;
+  const Vector3d aside(0.031, 0.017, -0.023);
+  for (int kind = 1; kind <= 3; ++kind)
+    for (int i = 0; i < 27; ++i) {
+      const Vector3d d(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      if (static_cast<int>(d.cwiseAbs().sum()) == kind) all.push_back(d + aside);
+    }
+  return all;
+}
+
+struct Search {
+  Subject& subject;
+  Touch found;
+
+  bool known(const Place& place, double size) const {
+    return std::any_of(found.places.begin(), found.places.end(), [&](const Place& other) {
+      const double apart = (other.foot - place.foot).norm();
+      return apart < 1e-4 || (apart < 0.3 * size && other.out.dot(place.out) > 0.95);
+    });
+  }
+
+  /// True if a press there comes into contact, by the shape's own word or by its force.
+  bool touches(const Place& place) {
+    bool inside = false;
+    press(subject, place, [&](const Answer& answer, const PressStep&) {
+      const hsp_contact& c = answer.contacts[0];
+      inside |= (c.flags & HSP_OUT_TRACED) != 0 && c.depth_m > 0;
+      return std::string(inside ? "enough" : "");
+    });
+    return inside;
+  }
+
+  /// Looks where the surface is from p on. @return true if it can be touched there, and could not be before
+  bool lookFrom(const Vector3d& p, double size) {
+    const Answer& answer = subject.step({p}, kConformanceDt, HSP_IN_JUMP);
+    if (answer.status != HSP_OK && answer.status != HSP_DEGRADED) return false;
+    if (!finite(answer)) return false;
+    const hsp_contact& c = answer.contacts[0];
+    const Vector3d foot(c.point), normal(c.normal), way = c.depth_m > 0 ? foot - p : p - foot;
+    found.felt |= Vector3d(c.force).norm() + Vector3d(c.torque).norm() > 0;
+    if ((c.flags & HSP_OUT_TRACED) == 0) return false;
+    found.traced = true;
+    Place place{foot, way.norm() > 1e-9 ? way.normalized() : normal};
+    if (std::abs(place.out.norm() - 1) > 1e-3 || known(place, size) || !touches(place)) return false;
+    found.places.push_back(place);
+    return true;
+  }
+};
+
+}  // namespace
+
+double pressDepth(const Subject& subject) {
+  constexpr double kDeep = 1e-3;
+  const double size = subject.report().size_m;
+  return size > 0 ? std::min(kDeep, size / 4) : kDeep;
+}
+
+std::vector<PressStep> pressAt(const Place& place, double depth) {
+  constexpr int kIn = 100, kRound = 40, kOut = 50;
+  std::vector<PressStep> steps;
+  for (int i = 0; i <= kIn; ++i) {
+    const Vector3d p = place.foot + place.out * depth * (1 - 2.0 * i / kIn);
+    steps.push_back({p, false});
+    steps.push_back({p, true});
+  }
+  const Vector3d deep = place.foot - place.out * depth, u = place.out.unitOrthogonal(), v = place.out.cross(u);
+  for (int i = 0; i <= kRound; ++i) {
+    const double angle = 2 * M_PI * i / kRound;
+    steps.push_back({deep + 0.5 * depth * ((1 - std::cos(angle)) * u + std::sin(angle) * v), false});
+  }
+  for (int i = 1; i <= kOut; ++i) steps.push_back({place.foot - place.out * depth * (1 - 2.0 * i / kOut), false});
+  return steps;
+}
+
+std::string press(Subject& subject, const Place& place, const PressLook& look) {
+  uint32_t flags = HSP_IN_JUMP;
+  for (const PressStep& step : pressAt(place, pressDepth(subject))) {
+    const Answer& answer = subject.step({step.p}, kConformanceDt, flags);
+    flags = 0;
+    if (std::string objection = look(answer, step); !objection.empty())
+      return objection + " at " + text(step.p.x()) + ", " + text(step.p.y()) + ", " + text(step.p.z()) + " m";
+  }
+  return "";
+}
+
+Touch findTouch(const Recipe& recipe) {
+  const Made made(recipe);
+  if (!made.error.empty()) return {};
+  Search search{*made.subject, {}};
+  const auto from = sizes(*made.subject);
+  const auto sides = directions();
+  for (const Around& around : from) {
+    size_t here = 0;
+    for (const Vector3d& side : sides) {
+      if (here == kMostOfASize || search.found.places.size() == kMostPlaces) break;
+      here += search.lookFrom(around.middle + around.half.cwiseProduct(side), around.half.maxCoeff()) ? 1 : 0;
+    }
+  }
+  std::mt19937_64 random(1);  // a shape that says nothing outside of its contact is met by chance
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (const Around& around : from)
+    for (int i = 0; i < 400 && search.found.places.empty() && !search.found.traced; ++i)
+      search.lookFrom(around.middle + around.half.cwiseProduct(Vector3d(unit(random), unit(random), unit(random))),
+                      around.half.maxCoeff());
+  return search.found;
+}
+
+std::string toText(const Touch& touch) {
+  std::ostringstream out;
+  out.precision(std::numeric_limits<double>::max_digits10);
+  out << touch.traced << ' ' << touch.felt;
+  for (const Place& place : touch.places)
+    for (const Vector3d& v : {place.foot, place.out}) out << ' ' << v.x() << ' ' << v.y() << ' ' << v.z();
+  return out.str();
+}
+
+Touch touchFromText(const std::string& text) {
+  std::istringstream in(text);
+  Touch touch;
+  in >> touch.traced >> touch.felt;
+  for (Place place;
+       in >> place.foot.x() >> place.foot.y() >> place.foot.z() >> place.out.x() >> place.out.y() >> place.out.z();)
+    touch.places.push_back(place);
+  return touch;
+}
+
+}  // namespace hapticd::conformance

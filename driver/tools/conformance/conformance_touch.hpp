@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+/// Where a shape can be touched, found by its own answers: a test that never touched it would say nothing.
+#pragma once
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace hapticd::conformance {
+
+struct Recipe;
+class Subject;
+struct Answer;
+
+/// A point of the surface over which nothing else of the shape lies.
+struct Place {
+  Eigen::Vector3d foot = Eigen::Vector3d::Zero();  ///< [m] model frame
+  Eigen::Vector3d out = Eigen::Vector3d::Zero();   ///< unit vector from the solid to the free side, model frame
+};
+
+/// What a search over several sides and sizes, from 1 mm to 1 m, met.
+struct Touch {
+  std::vector<Place> places;
+  bool traced = false;  ///< the shape named a foot point somewhere
+  bool felt = false;    ///< it gave a force or a torque somewhere
+};
+
+/// Follows the foot points that the shape names, and tries each by pressing there. @throws nothing; a shape that cannot
+/// be made gives an empty answer
+Touch findTouch(const Recipe& recipe);
+
+/// A Touch as text, to hand it from a child process to its parent, and back.
+std::string toText(const Touch& touch);
+Touch touchFromText(const std::string& text);
+
+/// One position of a press.
+struct PressStep {
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< [m]
+  bool settled = false;                         ///< the probe rests and has come straight in: no damping, no friction
+};
+
+/// [m] How deep a press goes, as far as it begins outside: 1 mm, and less for a small shape.
+double pressDepth(const Subject& subject);
+
+/// From outside straight in, once round on a small circle, and out again, without a jump.
+std::vector<PressStep> pressAt(const Place& place, double depth);
+
+using PressLook = std::function<std::string(const Answer&, const PressStep&)>;
+
+/// Presses at one place; the first step is a jump. The first objection of `look` ends it.
+std::string press(Subject& subject, const Place& place, const PressLook& look);
+
+}  // namespace hapticd::conformance
