@@ -60,7 +60,8 @@ constexpr Key kModelKeys[] = {
     any<&ModelText::motion>("motion", "one of static, kinematic, dynamic",
                             "static, kinematic (moved along `path`) or dynamic (moved by its plugin)."),
     any<&ModelText::path>("path", "the path of a file",
-                          "CSV file t,x,y,z,qw,qx,qy,qz of a kinematic model; poses between rows are interpolated."),
+                          "CSV file t,x,y,z,qw,qx,qy,qz of a kinematic model; poses between rows are interpolated. "
+                          "Without one it rests at its pose until a program leads it."),
 };
 
 constexpr Key kAdmittanceKeys[] = {

@@ -92,7 +92,7 @@ class SceneLoader {
     const Node* path = text.path;
     if (path == nullptr && params != nullptr && motion_index >= 0) path = params->find("path");
     model.kinematic = motion != nullptr && motion->isScalar() && motion->scalar == "kinematic";
-    addPath(motion != nullptr ? *motion : *text.node, key, path, model);
+    addPath(key, path, model);
   }
 
   /// `motion:` beside `plugin:` is for the host and, where the plugin has such a parameter, for the plugin too.
@@ -104,14 +104,11 @@ class SceneLoader {
       in_.problem(node, key, "plugin " + info.name + " cannot be dynamic, expected static or kinematic");
   }
 
-  void addPath(const Node& motion, const std::string& key, const Node* path, Model& model) {
+  void addPath(const std::string& key, const Node* path, Model& model) {
     if (path != nullptr && !model.kinematic)
       return in_.problem(*path, key + ".path",
                          "the model does not follow its path, expected motion: kinematic beside it");
-    if (!model.kinematic) return;
-    if (path == nullptr)
-      return in_.problem(motion, key + ".path",
-                         "missing, expected the CSV file (t,x,y,z,qw,qx,qy,qz) that the kinematic model follows");
+    if (!model.kinematic || path == nullptr) return;  // without a path it rests until a program leads it
     if (const auto file = in_.existingFile(*path, key + ".path")) model.path = readKinematicPath(*file, in_.problems());
   }
 

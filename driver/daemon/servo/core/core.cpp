@@ -61,7 +61,10 @@ ModelState Core::stateOf(host::ShapeInstance& shape, const scene::Model& describ
   model.frame = Frame::of(model.pose);
   const bool moves_itself = (shape.report().flags & HSP_R_MOVES) != 0;
   model.kinematic = described.kinematic;
-  if (described.kinematic) model.path = Path(described.path);
+  if (described.kinematic) {
+    const std::vector<scene::PathPoint> rests{{0, described.pose}};
+    model.path = Path(described.path.empty() ? rests : described.path);
+  }
   model.moves = moves_itself || described.kinematic;
   model.always = moves_itself || shape.surfaces() == nullptr;
   const hsp_report& report = shape.report();

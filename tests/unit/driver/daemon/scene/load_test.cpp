@@ -136,6 +136,9 @@ TEST_F(Load, WithoutADeviceNoneIsTakenWhereNoneIsNeeded) {
 TEST_F(Load, MotionAndPathMayStandBesideThePluginOrAmongItsParameters) {
   const std::string head = "device: arm.yaml\nmodels:\n  - name: a\n    plugin: test_shape\n";
   const Scene beside = good(head + "    motion: kinematic\n    path: path.csv\n    parameters: {radius: 0.1}\n");
+  const Scene led = good(head + "    motion: kinematic\n    parameters: {radius: 0.1}\n");
+  EXPECT_TRUE(led.models.at(0).kinematic);
+  EXPECT_TRUE(led.models.at(0).path.empty()) << "it rests until a program leads it";
   const Scene among = good(head + "    parameters: {radius: 0.1, motion: kinematic, path: path.csv}\n");
   for (const Scene& scene : {beside, among}) {
     const Model& model = scene.models.at(0);
