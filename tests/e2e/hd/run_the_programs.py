@@ -123,6 +123,14 @@ def client_force(daemon):
         return max(abs(row["arm0_client_f" + c]) for c in "xyz")
 
 
+def python(daemon):
+    done = subprocess.run([HAPTICD, "client", "--name", daemon.name, sys.executable,
+                           os.path.join(HERE, "ctypes_program.py")], env=daemon.environment, capture_output=True,
+                          text=True, timeout=120)
+    print(done.stdout, end="")
+    check("a program in Python", done.returncode == 0, done)
+
+
 def spring(daemon):
     force, position, pushes, _ = pushes_of(daemon, "forces", "spring", "2")
     check("a spring answers ticks", len(pushes) > 500, len(pushes))
@@ -238,6 +246,7 @@ def command(folder):
 with tempfile.TemporaryDirectory(dir="/dev/shm") as place:
     with Daemon(place, "plain", scene()) as plain_daemon:
         plain(plain_daemon)
+        python(plain_daemon)
         spring(plain_daemon)
         clamp(plain_daemon)
         poll(plain_daemon)
