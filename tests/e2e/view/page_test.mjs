@@ -9,7 +9,7 @@ import {Browser, keepSockets, look, pictures, shown} from './browser.mjs';
 import {hapticd, root, Sandbox, scenes, until} from './program.mjs';
 
 const kHardware = ['sarcos']; // scenes whose device is no simulated one
-const all = readdirSync(join(root, 'config', 'scenes')).map((f) => f.replace('.yaml', '')).filter((s) => !kHardware.includes(s));
+const all = readdirSync(join(root, 'config', 'scenes'), {recursive: true}).filter((f) => f.endsWith('.yaml')).map((f) => f.replace('.yaml', '')).filter((s) => !kHardware.includes(s));
 const kPatience = 120; // s: a machine that is busy is slow, not wrong
 let browser;
 before(async () => { browser = await Browser.open({width: 1000, height: 660}); }); // few pixels: a processor draws them
