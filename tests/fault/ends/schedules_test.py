@@ -27,6 +27,7 @@ BY_PLUGIN = ["exit", "quick_exit", "exit_in_thread", "segv_in_thread", "abort_in
 BY_SIGNAL = ["SIGKILL", "SIGTERM", "SIGINT", "SIGHUP", "SIGSTOP", "SIGUSR1", "SIGTSTP"]
 BY_ARM = {"lost": rig.LOST, "hardware fault": rig.HARDWARE_FAULT, "silent": rig.SILENT, "hangs in read": rig.HANG_IN_READ,
           "hangs in write": rig.HANG_IN_WRITE, "write fails": rig.WRITE_FAILS}
+ENDING = ("SIGTERM", "SIGINT", "SIGHUP", "SIGUSR1")  # a person's, or the system's, wish for an orderly end
 OTHERS = ["garbage on the socket, then SIGTERM", "disk full, then SIGTERM", "slow steps, then SIGTERM", "hold, then SIGKILL"]
 
 
@@ -118,6 +119,8 @@ def play(number):
         if event in ("SIGKILL", "SIGSTOP", "masked_segv", "reset_segv", "plain_exit", "hold, then SIGKILL"):
             run.arm.silent_after(10)  # the guard's part
         wrong = faults_of(event, run)
+        if not wrong and "(it never ended)" in said and event.endswith(ENDING):
+            wrong = "it was asked to end and did not"
         if not wrong and begun and event in ("SIGTERM", "SIGINT", "SIGHUP", "SIGUSR1") and grown(run.arm.entries(), begun + 5_000_000):
             wrong = "the force grew after the event"
         return number, event, wrong, said
@@ -125,6 +128,7 @@ def play(number):
         run.leave()
 
 
+signal.signal(signal.SIGHUP, signal.SIG_DFL)  # under nohup the daemon would ignore it, as it should
 counts = collections.Counter()
 for number, event, wrong, said in ThreadPool(2).imap_unordered(play, range(COUNT)):
     counts[event] += 1
