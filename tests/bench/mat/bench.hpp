@@ -19,6 +19,9 @@ std::string meshTables();
 /// Volume with and without keeping it. Markdown.
 std::string volumeTable();
 
+/// Felt surfaces: moduli beside the continuous tissue, and the stiffest that an arm bears. Markdown.
+std::string feltTables();
+
 /// Median time [s] of `batches` batches of calls `work(i)`, per call.
 template <class Work>
 double medianTime(int batches, int calls, Work&& work) {

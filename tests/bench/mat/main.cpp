@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// bench_mat: what soft bodies cost and how exact they are. Prints the tables, or those that are named (knobs, scenes,
-/// meshes, volume, searches); with --write, writes driver/docs/reports/bench_mat.md.
+/// meshes, felt, volume, searches); with --write, writes driver/docs/reports/bench_mat.md.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,11 +21,10 @@ constexpr const char* kHead =
 
 int main(int argc, char** argv) {
   using Part = std::pair<const char*, std::string (*)()>;
-  constexpr Part kParts[] = {{"knobs", hapticd::bench_mat::knobTables},
-                             {"scenes", hapticd::bench_mat::gardenTable},
-                             {"meshes", hapticd::bench_mat::meshTables},
-                             {"volume", hapticd::bench_mat::volumeTable},
-                             {"searches", hapticd::bench_mat::skeletonTable}};
+  constexpr Part kParts[] = {
+      {"knobs", hapticd::bench_mat::knobTables},   {"scenes", hapticd::bench_mat::gardenTable},
+      {"meshes", hapticd::bench_mat::meshTables},  {"felt", hapticd::bench_mat::feltTables},
+      {"volume", hapticd::bench_mat::volumeTable}, {"searches", hapticd::bench_mat::skeletonTable}};
   const bool write = argc == 2 && std::strcmp(argv[1], "--write") == 0;
   try {
     std::string text = kHead;
