@@ -127,6 +127,9 @@ int client(const Options& options, const std::vector<std::string>& words) {
     return kWorked;
   }
   if (words.empty()) return fail(kBadInput, "no program is named, expected: hapticd client PROGRAM [ARGUMENTS]");
+  if (words.front().front() == '-')
+    return fail(kBadInput,
+                words.front() + ": unknown option, expected --name, --scene or --env, then PROGRAM and its own");
   setenv("LD_LIBRARY_PATH", path.c_str(), 1);
   setenv("HAPTICD_NAME", options.name.c_str(), 1);
   if (!isRunning(options.name)) return runWithDaemon(options, words);
@@ -149,11 +152,7 @@ void addClient(CLI::App& app, int& exit_code) {
       "The program finds hapticd's own libHD.so and the daemon of --name. Where none runs, one is started with the\n"
       "simulated arm, and ends with the program. Options of this command stand before PROGRAM; its exit code is the "
       "program's.\n\nExamples:\n  hapticd client ./my_program --its-own option\n  eval \"$(hapticd client --env)\"");
-  command->callback([command, options, &exit_code] {
-    std::vector<std::string> words = command->remaining();
-    if (!words.empty() && words.front() == "--") words.erase(words.begin());
-    exit_code = client(*options, words);
-  });
+  command->callback([command, options, &exit_code] { exit_code = client(*options, command->remaining()); });
 }
 
 }  // namespace hapticd::cli

@@ -233,6 +233,8 @@ def command(folder):
     check("and ends with the program", not os.path.exists(os.path.join(folder, "own.sock")))
     done = run("sh", "-c", "exit 7")
     check("the exit code is the program's", done.returncode == 7, done)
+    done = run("--nmae", "own", "true")
+    check("a mistyped option is told", done.returncode == 2 and "--nmae: unknown option" in done.stderr, done)
     done = run("--env")
     check("--env prints what a shell needs", "hdapi" in done.stdout and "HAPTICD_NAME='own'" in done.stdout, done)
     done = run()
