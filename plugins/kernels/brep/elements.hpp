@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "kernels/brep/piece_bow.hpp"
 #include "kernels/brep/trim.hpp"
 
 namespace hapticd::brep {
@@ -64,7 +65,8 @@ struct FaceShape {
 struct EdgeShape {
   Eigen::Vector3d o{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0};  ///< line: unit x; circle: unit x and y
   double t0 = 0, t1 = 0;
-  double size = 1;  ///< line: [m] per t; circle: [m] radius
+  double size = 1;                                                  ///< line: [m] per t; circle: [m] radius
+  std::uint32_t guise = std::numeric_limits<std::uint32_t>::max();  ///< of a spline: which of the model's guised edges
 };
 
 /// A piece of a face without a closed-form foot, so flat that Newton goes straight to the foot on it.
@@ -82,6 +84,7 @@ struct CurvePiece {
   double bend = 0;  ///< [1/m] largest curvature
   std::uint32_t edge = 0;
   std::uint32_t ends = 0;  ///< bit 0: t0 is the edge's, bit 1: t1 is
+  PieceBow shape{};
 };
 
 }  // namespace hapticd::brep

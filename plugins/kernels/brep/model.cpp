@@ -47,6 +47,11 @@ class ModelBuilder {
       const Edge& edge = part_.edges[e];
       if (edge.curve != kNone && part_.curves3[edge.curve].kind <= CurveKind::kCircle)
         model_.edges_[e] = edgeShape(part_, edge);
+      if (auto made = unguised(*model_.geometry_, edge)) {
+        made->shape.guise = static_cast<std::uint32_t>(model_.guised_.size());
+        model_.edges_[e] = made->shape;
+        model_.guised_.push_back(std::move(*made));
+      }
     }
   }
 
@@ -94,9 +99,11 @@ class ModelBuilder {
       return;
     }
     const CurveKind kind = part_.curves3[edge.curve].kind;
-    if (kind <= CurveKind::kCircle)
-      return add(kind == CurveKind::kLine ? ElementKind::kLine : ElementKind::kCircle, e,
-                 edgeBox(model_.edge(e), kind == CurveKind::kCircle));
+    const std::uint32_t guise = model_.edge(e).guise;
+    if (kind <= CurveKind::kCircle || guise != kNone) {
+      const bool circle = guise != kNone ? model_.guised(guise).is_circle : kind == CurveKind::kCircle;
+      return add(circle ? ElementKind::kCircle : ElementKind::kLine, e, edgeBox(model_.edge(e), circle));
+    }
     std::vector<BoxedPiece> pieces;
     cutEdge(*model_.geometry_, e, pieces);
     for (const BoxedPiece& made : pieces) {

@@ -10,6 +10,7 @@
 
 #include "kernels/brep/box_tree.hpp"
 #include "kernels/brep/elements.hpp"
+#include "kernels/brep/guised_edges.hpp"
 
 namespace hapticd::brep {
 
@@ -59,6 +60,8 @@ class Model {
   const Geometry& geometry() const noexcept { return *geometry_; }
   const FaceShape& face(std::uint32_t index) const noexcept { return faces_[index]; }
   const EdgeShape& edge(std::uint32_t index) const noexcept { return edges_[index]; }
+  /// [any] Of an EdgeShape whose `guise` is not kNone.
+  const GuisedEdge& guised(std::uint32_t index) const noexcept { return guised_[index]; }
   const Leaf& leaf(std::uint32_t index) const noexcept { return leaves_[index]; }
   const CurvePiece& piece(std::uint32_t index) const noexcept { return pieces_[index]; }
   std::size_t leafCount() const noexcept { return leaves_.size(); }
@@ -99,6 +102,7 @@ class Model {
   std::unique_ptr<Geometry> geometry_;
   std::vector<FaceShape> faces_;
   std::vector<EdgeShape> edges_;
+  std::vector<GuisedEdge> guised_;
   std::vector<Leaf> leaves_;
   std::vector<CurvePiece> pieces_;
   std::vector<CornerNormal> vertex_normals_, point_normals_;

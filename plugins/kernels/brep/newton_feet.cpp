@@ -222,8 +222,10 @@ PieceAnswer pieceFoot(const Geometry& geometry, const CurvePiece& piece, const V
   double d = task.descend(s);
   PieceAnswer answer;
   answer.d2 = take(task, s, d, hit);
-  answer.alone = std::sqrt(s.f) * piece.bend < 1;
-  if (!answer.alone)
+  // Beyond a centre of curvature there may be several feet, or none but the ends.
+  const FeetOfPiece feet = std::sqrt(s.f) * piece.bend < 1 ? FeetOfPiece::kOne : feetSeenFrom(piece.shape, p);
+  answer.alone = feet != FeetOfPiece::kUnknown;
+  if (feet != FeetOfPiece::kOne)
     for (const double share : {0.02, 0.98}) {
       task.at(piece.t0 + share * (piece.t1 - piece.t0), s);
       d = task.descend(s);

@@ -222,7 +222,8 @@ class EdgeCutter {
 
   void add(double t0, double t1, double bend) {
     BoxedPiece made;
-    made.piece = {t0, t1, bend, edge_index_, (t0 <= edge_.t0 ? 1u : 0u) | (t1 >= edge_.t1 ? 2u : 0u)};
+    made.piece = {t0, t1, bend, edge_index_, (t0 <= edge_.t0 ? 1u : 0u) | (t1 >= edge_.t1 ? 2u : 0u), {}};
+    made.piece.shape = bowOf(geometry_, edge_.curve, t0, t1);
     made.box = curve_.kind == CurveKind::kSpline ? netBox(t0, t1) : arcBox(curve_, t0, t1);
     pieces_.push_back(made);
   }

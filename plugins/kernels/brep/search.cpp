@@ -79,6 +79,16 @@ double Nearest::distance() const noexcept {
 
 Search::Search(const Model& model) : model_(model) {}
 
+/// A line or a circle. What the faces beside it know is the parameter of the curve that stands in the file.
+double Search::edgeFoot(Element element, const Vector3d& p, Hit& hit) const noexcept {
+  const EdgeShape& edge = model_.edge(element.index());
+  const double before = hit.d2;
+  const double d2 = element.kind() == ElementKind::kLine ? lineFoot(edge, p, hit) : circleFoot(edge, p, hit);
+  if (edge.guise != kNone && hit.d2 < before)
+    hit.u = parameterAt(model_.geometry(), model_.guised(edge.guise), hit.u, hit.point);
+  return d2;
+}
+
 /// A lower bound of the squared distance to an element; `hit` is replaced where the element is nearer.
 double Search::evaluate(Element element, const Vector3d& p, const Hit* start, Hit& hit, bool& alone) const noexcept {
   const std::uint32_t i = element.index();
@@ -86,9 +96,8 @@ double Search::evaluate(Element element, const Vector3d& p, const Hit* start, Hi
     case ElementKind::kFace:
       return faceFoot(model_.face(i), p, hit);
     case ElementKind::kLine:
-      return lineFoot(model_.edge(i), p, hit);
     case ElementKind::kCircle:
-      return circleFoot(model_.edge(i), p, hit);
+      return edgeFoot(element, p, hit);
     case ElementKind::kLeaf: {
       const Leaf& leaf = model_.leaf(i);
       const Eigen::Array2d uv = start != nullptr ? Eigen::Array2d(start->u, start->v) : 0.5 * (leaf.lo + leaf.hi);

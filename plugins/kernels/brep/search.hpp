@@ -72,6 +72,7 @@ class Search {
   void searchBody(std::uint32_t place, const Eigen::Vector3d& p, Run& run, const Filter& wanted) noexcept;
   void searchPlaces(const Eigen::Vector3d& p, Run& run) noexcept;
   void look(std::uint32_t place, Element element, const Eigen::Vector3d& p, double bound2, Run& run) noexcept;
+  double edgeFoot(Element element, const Eigen::Vector3d& p, Hit& hit) const noexcept;
   double evaluate(Element element, const Eigen::Vector3d& p, const Hit* start, Hit& hit, bool& alone) const noexcept;
   static void finish(Run& run) noexcept;
 
