@@ -116,10 +116,12 @@ class Search {
     if (!run && own) return Error{run.error()};
     if (!run) {
       refused_.insert(choice);
+      out_of_time_ = secondsSpent() >= options_.seconds;
+      going_ = !out_of_time_;
       return {};
     }
     candidates_.push_back({choice, run->cost, compare(*run, reference_), false});
-    const double spent = static_cast<double>(monotonicNow() - begun_) * kSecondsPerNanosecond;
+    const double spent = secondsSpent();
     Progress progress{candidates_.size(), std::max(distinct(), candidates_.size()), 0};
     const double each = spent / static_cast<double>(progress.done);
     const double left = each * static_cast<double>(progress.expected - progress.done);
@@ -152,6 +154,8 @@ class Search {
     widen(candidate.cost, run->cost);
     return {};
   }
+
+  double secondsSpent() const { return static_cast<double>(monotonicNow() - begun_) * kSecondsPerNanosecond; }
 
   /// Settings to try, as far as it is known that no model refuses them.
   size_t distinct() const {
