@@ -3,6 +3,8 @@
 /// by tests/mutation.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "limiter_rig.hpp"
 
 namespace hapticd::servo {
@@ -71,6 +73,44 @@ TEST(Limiter, SaysWhatTheRampsLetFlow) {
   limiter.trip(Fault::kStopped);
   for (int i = 0; i < 10; ++i) applied(limiter, {4, 0, 0});
   EXPECT_NEAR(limiter.allowed(), 0.25, 1e-9);
+}
+
+TEST(Limiter, RampsTheTorqueWithTheForce) {
+  scene::Limits limits = generous();
+  limits.ramp_in = 0.1;
+  Limiter ramped(limits, 8.5);
+  for (int i = 0; i < 49; ++i) applied(ramped, {4, 0, 0}, {0, 0.2, 0});
+  EXPECT_NEAR(applied(ramped, {4, 0, 0}, {0, 0.2, 0}).torque.y(), 0.1, 1e-9);
+  Limiter aged(generous(), 8.5);
+  aged.trustSample(0.25);
+  const Applied out = applied(aged, {4, 0, 0}, {0, 0.2, 0});
+  EXPECT_NEAR(out.force.x(), 1, 1e-12);
+  EXPECT_NEAR(out.torque.y(), 0.05, 1e-12);
+}
+
+TEST(Limiter, OneNumberThatIsNoneIsAFault) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (int which = 0; which < 3; ++which) {
+    Limiter limiter(generous(), 8.5);
+    const Vector3d good(1, 0, 0), bad(1, nan, 0);
+    const Applied out = applied(limiter, which == 0 ? bad : good, which == 1 ? bad : good, which == 2 ? bad : good);
+    EXPECT_EQ(limiter.fault(), Fault::kNotFinite) << which;
+    EXPECT_TRUE(out.force.isZero(0) && out.torque.isZero(0)) << which;
+  }
+}
+
+TEST(Limiter, HoldsAForceThatTheImpulseLimitAllowsForEver) {
+  scene::Limits limits = generous();
+  limits.impulse = 1;  // a constant force ends at five times that
+  Limiter weak(limits, 8.5), strong(limits, 8.5);
+  const auto cuts = [](const Limiter& l) { return l.clips().ticks[static_cast<size_t>(Limit::kImpulse)]; };
+  for (int i = 0; i < 5000; ++i) {
+    EXPECT_EQ(applied(weak, {4, 0, 0}).force.x(), 4);
+    applied(strong, {8, 0, 0});
+  }
+  EXPECT_EQ(cuts(weak), 0u);
+  EXPECT_GT(cuts(strong), 4000u);
+  EXPECT_NEAR(applied(strong, {8, 0, 0}).force.x(), 5, 0.05);
 }
 
 TEST(Limiter, ASpeedAtItsLimitIsNoFault) {
