@@ -105,7 +105,8 @@ void addGlobalOptions(CLI::App& app) {
                  "daemon file; default: $HAPTICD_CONFIG, /etc/hapticd/hapticd.yaml or the installed one");
   app.add_option("--plugin-path", settings().plugin_path,
                  "folders that are searched first for plugins and device modules")
-      ->delimiter(':');
+      ->delimiter(':')
+      ->allow_extra_args(false);  // what follows is the subcommand, or its file
 }
 
 const scene::Daemon& daemonSettings() {

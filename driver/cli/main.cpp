@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
       "Examples:\n  hapticd run config/scenes/teapot.yaml --for 10 --report report.json\n  hapticd check "
       "my-scene.yaml\n  hapticd plugin list\n\nExit codes: 0 success, 1 failure while running, 2 bad input or usage.");
   addGlobalOptions(app);
+  app.fallthrough();  // an option of the program may stand after the subcommand too
   for (const auto add : kCommands) add(app, exit_code);
   if (const std::string word = unknownCommand(app, argc, argv); !word.empty())
     return fail(kBadInput, "there is no subcommand \"" + word + "\", expected one of " +

@@ -3,6 +3,7 @@
 /// `hapticd plugin new NAME` copies it under another name; delete what your shape does not need.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <stdexcept>
 
@@ -50,6 +51,12 @@ struct TemplateBall : hapticd::Shape {
     report.size_m = 2 * radius;
     report.typical_ns = 50;
     report.worst_ns = 2000;
+  }
+
+  /// Triangles, for `run --view` and other drawings; forces do not need them.
+  const void* extension(const char* name) {
+    static constexpr hsp_ext_geometry kGeometry = {sizeof(hsp_ext_geometry), 0, &tessellate, &bounds};
+    return std::strcmp(name, HSP_EXT_GEOMETRY) == 0 ? &kGeometry : nullptr;
   }
 
   void reset() noexcept HSP_RT { std::fill(grips_.begin(), grips_.end(), Grip{}); }
@@ -131,7 +138,37 @@ struct TemplateBall : hapticd::Shape {
     return numbers;
   }
 
+  static TemplateBall& self(hsp_shape* shape) { return *reinterpret_cast<TemplateBall*>(shape); }
+
+  static hsp_status bounds(hsp_shape* shape, double min[3], double max[3]) {
+    for (int i = 0; i < 3; ++i) max[i] = self(shape).radius, min[i] = -max[i];
+    return HSP_OK;
+  }
+
+  /// Rings of corners from pole to pole. The arrays stay valid until the next call.
+  static hsp_status tessellate(hsp_shape* shape, double /*chord_error_m*/, hsp_mesh* mesh) {
+    constexpr uint32_t kRings = 24, kSides = 36;
+    TemplateBall& ball = self(shape);
+    ball.xyz_.clear(), ball.normals_.clear(), ball.indices_.clear();
+    for (uint32_t i = 0; i <= kRings; ++i)
+      for (uint32_t k = 0; k <= kSides; ++k) {
+        const double down = M_PI * i / kRings, round = 2 * M_PI * k / kSides;
+        for (const double n : {std::sin(down) * std::cos(round), std::cos(down), -std::sin(down) * std::sin(round)}) {
+          ball.normals_.push_back(static_cast<float>(n));
+          ball.xyz_.push_back(static_cast<float>(ball.radius * n));
+        }
+        const uint32_t a = i * (kSides + 1) + k, b = a + kSides + 1;  // the corner below
+        if (i < kRings && k < kSides) ball.indices_.insert(ball.indices_.end(), {a, b, a + 1, a + 1, b, b + 1});
+      }
+    mesh->xyz = ball.xyz_.data(), mesh->normals = ball.normals_.data(), mesh->indices = ball.indices_.data();
+    mesh->vertex_count = static_cast<uint32_t>(ball.xyz_.size() / 3);
+    mesh->triangle_count = static_cast<uint32_t>(ball.indices_.size() / 3);
+    return HSP_OK;
+  }
+
   std::vector<Grip> grips_;
+  std::vector<float> xyz_, normals_;  // of the drawing
+  std::vector<uint32_t> indices_;
 };
 
 }  // namespace

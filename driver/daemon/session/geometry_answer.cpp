@@ -31,6 +31,8 @@ bool appendPlaces(std::string& text, const float* xyz, std::size_t count) {
   return true;
 }
 
+constexpr const char* kNoTriangles =
+    "the model has no triangles to draw: its plugin offers none (extension hsp.geometry/1); it is felt all the same";
 constexpr const char* kNotANumber = "a vertex of the model is not a number";
 
 bool allFinite(const float* numbers, std::size_t count) {
@@ -39,7 +41,7 @@ bool allFinite(const float* numbers, std::size_t count) {
 
 /// @param tolerance as asked for; afterwards as it was taken
 Result<hsp_mesh> cut(const host::ShapeInstance& shape, double& tolerance) {
-  if (shape.geometry() == nullptr) return Error{"the model has no triangles to draw"};
+  if (shape.geometry() == nullptr) return Error{kNoTriangles};
   const double size = shape.report().size_m;
   if (!(tolerance > 0) && shape.contour() == nullptr) tolerance = size > 0 ? kChordShare * size : kDefaultChord;
   hsp_mesh mesh{};
@@ -77,7 +79,7 @@ Result<std::string> geometryInMemory(const host::ShapeInstance& shape, double to
   if (!allFinite(mesh->xyz, places)) return Error{kNotANumber};
   const bool normals = mesh->normals != nullptr && allFinite(mesh->normals, places);
   const std::size_t bytes = 4 * (places * (normals ? 2 : 1) + corners);
-  if (bytes == 0) return Error{"the model has no triangles to draw"};
+  if (bytes == 0) return Error{kNoTriangles};
   if (bytes > kMostMemory) return tooMany(*mesh, kMostMemory, tolerance);
   const auto shared = SealedMemory::create("hapticd-geometry", bytes, SealedMemory::Writers::kOne);
   if (!shared) return Error{shared.error()};

@@ -33,8 +33,10 @@ std::string silenceReason(const std::string& model, Trouble trouble, int32_t fai
       return who + "gave a pose whose quaternion is not of unit length; it was silenced";
     case Trouble::kPulls:
       return who +
-             "pulled the probe into a surface that it reports to push only; it was silenced; test it with: hapticd "
-             "plugin check FILE.so";
+             "pulled the probe into its surface: its force has the wrong sign, since it reports to push only "
+             "(HSP_R_PUSHES); it was silenced; test it with: hapticd plugin check FILE.so, which tells place, depth "
+             "and "
+             "force";
   }
   return "";
 }

@@ -2,6 +2,9 @@
 /// A shape plugin in C++: derive from hapticd::Shape, list the parameters, write activate() and touch() (or step()),
 /// and name the class in HAPTICD_SHAPES(...). The C ABI behind it is shape.h; plugins/template shows a whole plugin.
 #pragma once
+#if __cplusplus < 202002L
+#error "hapticd/shape.hpp needs C++20: compile with -std=c++20"
+#endif
 #include <exception>
 #include <new>
 #include <span>
@@ -122,6 +125,11 @@ struct ShapeClass {
       }
       return worst;
     } else {
+      static_assert(
+          requires(T& t) { t.step(*step); },
+          "the shape has neither of: hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) "
+          "noexcept, hsp_status step(const hsp_step&) noexcept; look at its name, arguments and that it is "
+          "public");
       return self(shape).step(*step);
     }
   }

@@ -44,6 +44,7 @@ static void destroy(hsp_shape* sphere) {
 }
 
 static hsp_status set(hsp_shape* sphere, uint32_t param, const hsp_value* value) {
+  if (sphere->active) return HSP_E_STATE;
   if (param > 1 || value->kind != HSP_REAL) return HSP_E_ARG;
   if (!(value->number >= kParams[param].min && value->number <= kParams[param].max)) return HSP_E_ARG;
   *(param == 0 ? &sphere->radius : &sphere->stiffness) = value->number;
@@ -58,6 +59,7 @@ static hsp_status get(hsp_shape* sphere, uint32_t param, hsp_value* value) {
 }
 
 static hsp_status activate(hsp_shape* sphere, const hsp_activation* activation, hsp_report* report) {
+  if (sphere->active) return HSP_E_STATE;
   if (!(activation->rate_hz > 0)) return HSP_E_ARG;
   report->max_stiffness = sphere->stiffness;
   report->size_m = 2 * sphere->radius;
@@ -76,6 +78,7 @@ static void reset(hsp_shape* sphere) {
 }
 
 static void touch(const hsp_shape* sphere, const hsp_probe* in, hsp_contact* out) {
+  if (in->flags & HSP_IN_INVALID) return; /* no good sample: no force */
   const double* p = in->position;
   const double distance = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
   const double inverse = distance > 0 ? 1 / distance : 0;

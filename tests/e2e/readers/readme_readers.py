@@ -23,9 +23,13 @@ def run(*command, environment=None, **more):
     return done.returncode, done.stdout + done.stderr
 
 
+def code_of_floor():
+    return re.search(r"```cpp\n(#include <hapticd/shape.hpp>.*?)```", README, re.S)[1]
+
+
 def own_shape(folder):
     """The floor of the README, compiled with its line, found, checked and felt in its scene."""
-    code = re.search(r"```cpp\n(#include <hapticd/shape.hpp>.*?)```", README, re.S)[1]
+    code = code_of_floor()
     open(os.path.join(folder, "floor.cpp"), "w").write(code)
     line = re.search(r"^    (g\+\+ .* -o my-plugins/floor.so)$", README, re.M)[1].replace("-I driver/include", f"-I {SOURCE}/driver/include")
     os.mkdir(os.path.join(folder, "my-plugins"))
@@ -49,7 +53,27 @@ def own_shape(folder):
     check("with the wrong sign the check says so", code == 1 and "pull the hand in" in said, said)
     code, said = run(HAPTICD, "run", file, "--for", "2", "--virtual-time", "--report", report, environment=environment)
     pulled = json.load(open(report))["models"]["ground"]["force_n"]["max"]
-    check("and the run silences it before it pulls with 2 N", "pulled" in said and pulled < 2, (pulled, said))
+    check("and the run silences it before it pulls with 2 N", "wrong sign" in said and pulled < 2, (pulled, said))
+    line = re.search(r"^    (gcc .* -o my-plugins/c_ball.so -lm)$", README, re.M)[1].replace("my-plugins", os.path.join(folder, "my-plugins"))
+    done = subprocess.run(line.replace("gcc", "cc", 1), shell=True, cwd=SOURCE, capture_output=True, text=True, timeout=200)
+    check("the README's shape in C compiles with its line", done.returncode == 0, done.stderr[-800:])
+    code, said = run(HAPTICD, "plugin", "check", os.path.join(folder, "my-plugins/c_ball.so"), "--timeout", "60")
+    check("and passes the check", code == 0, said)
+    check("and is found", "c_ball" in run(HAPTICD, "plugin", "list", environment=environment)[1])
+    page = open(os.path.join(SOURCE, "driver/docs/man/hapticd-shape.7")).read().split(".SH EXAMPLE\n.nf\n")[1].split("HAPTICD_SHAPES(Floor)")[0]
+    open(os.path.join(folder, "page.cpp"), "w").write(page.replace("\\-", "-") + "HAPTICD_SHAPES(Floor)\n")
+    done = subprocess.run([CXX, "-std=c++20", "-fsyntax-only", "-I", f"{SOURCE}/driver/include", "page.cpp"], cwd=folder, capture_output=True, text=True)
+    check("the manual page's floor compiles, and claims to push only", done.returncode == 0 and "HSP_R_PUSHES" in page, done.stderr[-800:])
+    slip = re.sub(r"hsp_status touch\(", "hsp_status tuoch(", code_of_floor())
+    open(os.path.join(folder, "slip.cpp"), "w").write(slip)
+    done = subprocess.run([CXX, "-std=c++20", "-fsyntax-only", "-I", f"{SOURCE}/driver/include", "slip.cpp"], cwd=folder, capture_output=True, text=True)
+    check("a misspelt touch() is named", "neither of: hsp_status touch" in done.stderr, done.stderr[:800])
+    done = subprocess.run([CXX, "-std=c++17", "-fsyntax-only", "-I", f"{SOURCE}/driver/include", "page.cpp"], cwd=folder, capture_output=True, text=True)
+    check("an old standard is named", "-std=c++20" in done.stderr, done.stderr[:800])
+    code, said = run(HAPTICD, "check", file, "--plugin-path", os.path.join(folder, "my-plugins"))
+    check("--plugin-path may stand after the subcommand", code == 0, said)
+    code, said = run(HAPTICD, "check", "--plugin-path", os.path.join(folder, "my-plugins"), file)
+    check("and before the file", code == 0, said)
 
 
 def other_lines(folder):
