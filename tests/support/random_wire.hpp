@@ -83,9 +83,12 @@ class RandomWire {
   void addNumber(size_t joint) {
     skip(pick(4) == 0 ? pick(9) : 0);
     const size_t kind = pick(5), bits = kind == 0 ? 32 : kind == 1 ? 64 : 2 + pick(63);
-    const std::string type = (kind < 2 ? "f" : kind < 4 ? "i" : "u") + std::to_string(bits);
+    const std::string type = (kind < 2 ? "f" : kind < 4 || bits > 24 ? "i" : "u") + std::to_string(bits);
     Json field = place(bits, order());
-    field.update({{"is", "torque"}, {"joint", joint}, {"type", type}, {"scale", pick(2) == 0 ? 1.0 : 0.25}});
+    const double scale = pick(2) == 0 ? 1.0 : 0.25;
+    field.update({{"is", "torque"}, {"joint", joint}, {"type", type}, {"scale", scale}});
+    // A torque has both signs; with more bits the sum would be rounded.
+    if (type[0] == 'u' && bits <= 24) field["offset"] = -std::ldexp(scale, static_cast<int>(bits) - 1);
     fields_.push_back(field);
   }
 

@@ -2,8 +2,10 @@
 /// A word of a file as one of some named values.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "codec/tree.hpp"
+#include "document/suggestion.hpp"
 
 namespace hapticd::codec {
 
@@ -19,11 +21,14 @@ T choiceOf(const Tree& tree, const Name<T> (&names)[N]) {
   const size_t before = tree.problems();
   const std::string text = tree.text();
   std::string all;
+  std::vector<std::string> known;
   for (const Name<T>& name : names) {
     if (text == name.name) return name.value;
+    known.emplace_back(name.name);
     all += (all.empty() ? "" : ", ") + std::string(name.name);
   }
-  if (tree.exists() && tree.problems() == before) tree.fail("\"" + text + "\", expected one of " + all);
+  if (tree.exists() && tree.problems() == before)
+    tree.fail("\"" + text + "\", expected one of " + all + document::suggestion(text, known));
   return names[0].value;
 }
 

@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "document/suggestion.hpp"
+
 namespace hapticd::codec {
 namespace {
 
@@ -84,7 +86,7 @@ bool Tree::isMapping() const {
 Tree Tree::at(const char* key) const {
   const std::string path = path_ + "." + key;
   if (has(key)) return {&jsonOf(value_)[key], path, data_};
-  if (isMapping()) fail("lacks the key " + std::string(key));
+  if (isMapping()) fail("lacks the key \"" + std::string(key) + "\"");
   return {nullptr, path, data_};
 }
 
@@ -167,7 +169,8 @@ bool Tree::only(std::span<const char* const> keys) const {
     if (std::any_of(keys.begin(), keys.end(), [&, &name = key](const char* known) { return name == known; })) continue;
     std::string all;
     for (const char* name : keys) all += (all.empty() ? "" : ", ") + std::string(name);
-    Tree{&value, path_ + "." + key, data_}.fail("unknown key, expected one of " + all);
+    const std::string meant = document::suggestion(key, {keys.begin(), keys.end()});
+    Tree{&value, path_ + "." + key, data_}.fail("unknown key, expected one of " + all + meant);
     all_known = false;
   }
   return all_known;

@@ -7,6 +7,7 @@
 #include "codec/choice.hpp"
 #include "codec/tree.hpp"
 #include "codec/wire_field.hpp"
+#include "codec/wire_overlap.hpp"
 
 namespace hapticd::codec {
 namespace {
@@ -33,22 +34,28 @@ void requireEach(const Tree& fields, const Report& report, size_t joints, Role r
   for (size_t joint = 0; joint < joints; ++joint) {
     int found = 0;
     for (const Field& field : report.fields) found += field.role == role && field.index == joint ? 1 : 0;
-    if (found != 1)
-      fields.fail(std::to_string(found) + what + " of joint " + std::to_string(joint + 1) + ", expected one");
+    if (found == 1) continue;
+    const std::string which = std::string(what) + " of joint " + std::to_string(joint + 1);
+    fields.fail(found == 0 ? "no " + which + ", expected one field {is: " + what +
+                                 ", joint: " + std::to_string(joint + 1) + "}"
+                           : std::to_string(found) + " fields are the " + which + ", expected one");
   }
 }
 
 /// The fields, and where all of them are known, whether those are there that an arm needs.
-void readFields(const Tree& fields, size_t joints, bool input, Report& report) {
+void readFields(const Tree& fields, size_t joints, bool input, bool sized, Report& report) {
   bool all_known = joints > 0;
+  std::vector<bool> placed;
   for (size_t i = 0; i < fields.count(); ++i) {
     const ReadField read = readField(fields.item(i), report, joints, input);
     all_known = all_known && read.target_known;
     report.fields.push_back(read.field);
+    placed.push_back(read.placed && read.target_known && sized);
   }
+  if (fields.exists()) checkOverlaps(fields, report, placed);
   if (!all_known || !fields.exists()) return;
-  requireEach(fields, report, joints, input ? Role::kPosition : Role::kTorque, input ? " positions" : " torques");
-  if (has(report, Role::kReference)) requireEach(fields, report, joints, Role::kReference, " references");
+  requireEach(fields, report, joints, input ? Role::kPosition : Role::kTorque, input ? "position" : "torque");
+  if (has(report, Role::kReference)) requireEach(fields, report, joints, Role::kReference, "reference");
   if (has(report, Role::kReference) != has(report, Role::kFollow))
     fields.fail("references and \"follow\" belong together, expected both or none");
 }
@@ -60,8 +67,9 @@ Report readReport(const Tree& tree, size_t joints, bool input) {
   if (tree.has("id")) report.id = static_cast<int>(tree.at("id").whole(1, 255));
   const size_t before = tree.problems();
   report.size = static_cast<size_t>(tree.at("size").whole(1, kMaxReportBytes - 1));
-  if (tree.problems() != before) report.size = kMaxReportBytes - 1;  // not each field's fault too
-  readFields(tree.at("fields"), joints, input, report);
+  const bool sized = tree.problems() == before;
+  if (!sized) report.size = kMaxReportBytes - 1;  // not each field's fault too
+  readFields(tree.at("fields"), joints, input, sized, report);
   return report;
 }
 

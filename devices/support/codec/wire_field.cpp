@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "codec/bits.hpp"
 #include "codec/choice.hpp"
+#include "codec/wire_meant.hpp"
+#include "codec/wire_overlap.hpp"
 
 namespace hapticd::codec {
 namespace {
@@ -27,10 +31,6 @@ constexpr const char* kKeys[] = {"is",     "joint",         "button",         "a
                                  "word",   "polynomial",    "initial",        "reflected", "final_xor",
                                  "negated"};
 
-bool perJoint(Role role) {
-  return role == Role::kPosition || role == Role::kVelocity || role == Role::kTorque || role == Role::kReference;
-}
-
 bool isText(Type type) {
   return type == Type::kNibble || type == Type::kNibbles;
 }
@@ -47,7 +47,7 @@ bool readTarget(const Tree& tree, size_t joints, bool input, Field& field) {
   if ((input && only_out) || (!input && only_in))
     is.fail("\"" + is.text() + "\" in an " + (input ? "input" : "output") + " report, expected it in the other one");
   const double most = static_cast<double>(joints > 0 ? joints : kMaxJoints);
-  if (perJoint(field.role)) field.index = static_cast<uint8_t>(tree.at("joint").whole(1, most) - 1);
+  if (ofJoint(field.role)) field.index = static_cast<uint8_t>(tree.at("joint").whole(1, most) - 1);
   if (field.role == Role::kButton) field.index = static_cast<uint8_t>(tree.at("button").whole(1, kMaxButtons) - 1);
   return tree.problems() == before;
 }
@@ -72,9 +72,23 @@ void readType(const Tree& tree, Field& field) {
     field.bits = static_cast<uint8_t>(bits);
   } else if (tree.exists() && tree.problems() == before) {
     tree.fail("\"" + text +
-              "\", expected one of i8, i16, i32, u8, u16, u32 (i or u with any width from 2 to 64 bits: "
-              "u12, i24), f32, f64, nibble, nibbles");
+              "\", expected one of i8, i16, i32, u8, u16, u32 (any width: i2 to i64, u1 to u64), f32, f64, nibble, "
+              "nibbles" +
+              typeMeant(text));
   }
+}
+
+/// The first byte of a field, whose bits must fit into the report from there on.
+double readByte(const Tree& at, const Report& report, unsigned bits) {
+  const double byte = at.whole(0, kMaxReportBytes);
+  const auto first = static_cast<size_t>(byte), last = first + (bits + 7) / 8 - 1;
+  if (last < report.size) return byte;
+  const std::string bytes =
+      first == last ? "byte " + std::to_string(last) : "bytes " + std::to_string(first) + " to " + std::to_string(last);
+  at.fail(std::to_string(first) + ", so it takes the " + bytes + ", but size is " + std::to_string(report.size) +
+          ": the last byte is " + std::to_string(report.size - 1) + "; expected size: " + std::to_string(last + 1) +
+          " or more, or a smaller at");
+  return 0;
 }
 
 void readPlace(const Tree& tree, const Report& report, Field& field) {
@@ -85,8 +99,7 @@ void readPlace(const Tree& tree, const Report& report, Field& field) {
     return tree.at("type").fail("takes " + std::to_string(field.bits / 8) +
                                 " bytes, expected no more than the report's " + std::to_string(report.size));
   const bool at_bit = tree.has("bit_offset");
-  double skip =
-      at_bit && !tree.has("at") ? 0 : 8 * tree.at("at").whole(0, at_bit ? report.size - 1 : std::floor(room / 8));
+  double skip = at_bit && !tree.has("at") ? 0 : 8 * readByte(tree.at("at"), report, at_bit ? 8 : field.bits);
   if (at_bit) skip += tree.at("bit_offset").whole(0, std::max(0.0, room - skip));
   field.at = static_cast<uint16_t>(skip / 8);
   field.bit_skip = static_cast<uint8_t>(static_cast<size_t>(skip) % 8);
@@ -106,9 +119,33 @@ void readNumber(const Tree& tree, const Report& report, Field& field) {
   if (tree.has("inverted")) field.inverted = tree.at("inverted").boolean();
 }
 
+/// A number has one scale and one offset, and a torque has no degrees.
+void refuseDegrees(const Tree& tree, const Field& field) {
+  for (const auto& [key, plain] : {std::pair{"scale_degrees", "scale"}, std::pair{"offset_degrees", "offset"}}) {
+    if (!tree.has(key)) continue;
+    if (field.role == Role::kTorque)
+      tree.at(key).fail("of a torque, expected " + std::string(plain) + " in N m: only angles have degrees");
+    else if (tree.has(plain))
+      tree.at(key).fail("beside " + std::string(plain) + ", expected one of them");
+  }
+}
+
+/// A motor that can push one way only would draw the hand in where it should push it out.
+void requireBothSigns(const Tree& tree, const Field& field) {
+  const auto [least, most] = rangeOf(field.type, field.bits);
+  const double a = least * field.scale + field.offset, b = most * field.scale + field.offset;
+  if (std::min(a, b) < 0 && std::max(a, b) > 0) return;
+  char range[64];
+  std::snprintf(range, sizeof range, "%g to %g N m", std::min(a, b), std::max(a, b));
+  tree.at("type").fail("\"" + tree.at("type").text() + "\" is " + range +
+                       " with this scale and offset, expected both " +
+                       "signs: a signed type such as i16, or an offset that puts zero in the middle");
+}
+
 void readScale(const Tree& tree, Field& field) {
   const double degree = M_PI / 180;
   const size_t before = tree.problems();
+  refuseDegrees(tree, field);
   if (tree.has("scale")) field.scale = tree.at("scale").number(-1e9, 1e9);
   if (tree.has("offset")) field.offset = tree.at("offset").number(-1e9, 1e9);
   if (tree.has("scale_degrees")) field.scale = degree * tree.at("scale_degrees").number(-1e9, 1e9);
@@ -170,7 +207,11 @@ bool readMethod(const Tree& tree, Field& field) {
     if (name == named.name) return check = named.check, true;
     all += std::string(", ") + named.name;
   }
-  if (method.exists() && tree.problems() == before) method.fail("\"" + name + "\", expected one of " + all);
+  if (method.exists() && tree.problems() == before) {
+    const std::string meant = methodMeant(name);
+    method.fail("\"" + name + "\", expected one of " +
+                (meant.empty() ? all : "sum, xor, crc and the names of CRCs, such as crc16-modbus" + meant));
+  }
   return false;
 }
 
@@ -192,7 +233,7 @@ void readMethodDetails(const Tree& tree, Check& check) {
   if (forbid("word", words, "sum and xor")) check.word = static_cast<uint8_t>(tree.at("word").whole(1, 8));
 }
 
-void readChecksum(const Tree& tree, const Report& report, Field& field) {
+void readChecksum(const Tree& tree, const Report& report, bool placed, Field& field) {
   if (readMethod(tree, field)) readMethodDetails(tree, field.check);
   field.check.big_endian = field.big_endian;
   field.from = static_cast<uint16_t>(tree.at("from").whole(0, static_cast<double>(report.size - 1)));
@@ -202,7 +243,7 @@ void readChecksum(const Tree& tree, const Report& report, Field& field) {
   else if (field.bits < field.check.bits)
     tree.at("type").fail("\"" + tree.at("type").text() + "\", expected u" + std::to_string(field.check.bits) + " for " +
                          tree.at("method").text());
-  if (field.at < field.to && field.at + field.bytes() > field.from)
+  if (placed && field.at < field.to && field.at + field.bytes() > field.from)
     tree.at("at").fail("lies inside the bytes that the checksum covers, expected it outside");
 }
 
@@ -217,14 +258,17 @@ ReadField readField(const Tree& tree, const Report& report, size_t joints, bool 
   Field& field = read.field;
   if (!tree.only(kKeys) && !tree.has("is")) return read;
   read.target_known = readTarget(tree, joints, input, field);
+  const size_t before = tree.problems();
   readNumber(tree, report, field);
+  read.placed = tree.problems() == before;
   if (!read.target_known) return read;  // what else it needs depends on what it is
-  if (perJoint(field.role)) readScale(tree, field);
+  if (ofJoint(field.role)) readScale(tree, field);
+  if (field.role == Role::kTorque && !input && tree.problems() == before) requireBothSigns(tree, field);
   if (field.role == Role::kConstant || field.role == Role::kFirmware) readConstant(tree, field);
   if (field.role == Role::kEnable || field.role == Role::kCalibrate || field.role == Role::kFollow)
     field.value = tree.has("value") ? tree.at("value").number(field.least, field.most) : 1;
   if (field.role == Role::kSequence || field.role == Role::kStarts) readSequence(tree, field);
-  if (field.role == Role::kChecksum) readChecksum(tree, report, field);
+  if (field.role == Role::kChecksum) readChecksum(tree, report, read.placed, field);
   return read;
 }
 

@@ -15,6 +15,7 @@ std::span<const char* const> fieldKeys();
 struct ReadField {
   Field field;
   bool target_known = false;
+  bool placed = false;  ///< where it stands and how many bits it has is known
 };
 
 /// [main] Reads and checks one field; what is wrong is noted in the tree.

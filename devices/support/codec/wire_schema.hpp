@@ -36,7 +36,7 @@ inline constexpr const char* kWireSchema[] = {R"json({
       "id": {"type": "integer", "minimum": 1, "maximum": 255}, "size": {"type": "integer", "minimum": 1, "maximum": 1023, "description": "bytes without the report id"},
       "fields": {"type": "array", "items": {"type": "object", "additionalProperties": false, "required": ["is", "type"], "properties": {
         "is": {"enum": ["position", "velocity", "torque", "button", "sequence", "counter", "starts", "fault", "calibrated", "firmware", "constant", "checksum"]},
-        "joint": {"type": "integer", "minimum": 1, "maximum": 16}, "button": {"type": "integer", "minimum": 1, "maximum": 32},
+        "joint": {"type": "integer", "minimum": 1, "maximum": 16}, "button": {"type": "integer", "minimum": 1, "maximum": 32, "description": "counted from 1; limits.enable.button counts from 0"},
         "at": {"type": "integer", "minimum": 0, "maximum": 1022, "description": "first byte, counted after the report id"},
         "bit_offset": {"type": "integer", "minimum": 0, "maximum": 8183, "description": "bits to skip from there: little endian from the lowest, big endian from the highest"},
         "type": {"type": "string", "pattern": "^(u([1-9]|[1-5][0-9]|6[0-4])|i([2-9]|[1-5][0-9]|6[0-4])|f32|f64|nibbles?)$", "description": "u or i and the bits; f32, f64; text of the Falcon"},
@@ -53,7 +53,7 @@ inline constexpr const char* kWireSchema[] = {R"json({
       "id": {"type": "integer", "minimum": 1, "maximum": 255}, "size": {"type": "integer", "minimum": 1, "maximum": 1023, "description": "bytes without the report id"},
       "fields": {"type": "array", "items": {"type": "object", "additionalProperties": false, "required": ["is", "type"], "properties": {
         "is": {"enum": ["torque", "reference", "enable", "follow", "calibrate", "sequence", "counter", "firmware", "constant", "checksum"]},
-        "joint": {"type": "integer", "minimum": 1, "maximum": 16}, "button": {"type": "integer", "minimum": 1, "maximum": 32},
+        "joint": {"type": "integer", "minimum": 1, "maximum": 16}, "button": {"type": "integer", "minimum": 1, "maximum": 32, "description": "counted from 1; limits.enable.button counts from 0"},
         "at": {"type": "integer", "minimum": 0, "maximum": 1022, "description": "first byte, counted after the report id"},
         "bit_offset": {"type": "integer", "minimum": 0, "maximum": 8183, "description": "bits to skip from there: little endian from the lowest, big endian from the highest"},
         "type": {"type": "string", "pattern": "^(u([1-9]|[1-5][0-9]|6[0-4])|i([2-9]|[1-5][0-9]|6[0-4])|f32|f64|nibbles?)$", "description": "u or i and the bits; f32, f64; text of the Falcon"},

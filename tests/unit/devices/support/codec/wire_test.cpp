@@ -48,7 +48,10 @@ TEST(Wire, EveryMistakeIsNamedByItsPath) {
       {"i16", "i1", "wire.input.fields[0].type: \"i1\""},
       {"i16", "f16", "wire.input.fields[0].type: \"f16\""},
       {"i16", "u08", "wire.input.fields[0].type: \"u08\""},
-      {"\"at\":0", "\"at\":1", "wire.input.fields[0].at: 1, expected a number from 0 to 0"},
+      {"\"at\":0", "\"at\":1",
+       "wire.input.fields[0].at: 1, so it takes the bytes 1 to 2, but size is 2: the last byte is 1; expected size: 3 "
+       "or "
+       "more"},
       {"\"at\":0", "\"at\":-1", "wire.input.fields[0].at: -1"},
       {"\"joint\":1", "\"joint\":2", "wire.input.fields[0].joint: 2, expected a number from 1 to 1"},
       {"\"position\"", "\"enable\"", "wire.input.fields[0].is: \"enable\" in an input report"},
@@ -58,8 +61,9 @@ TEST(Wire, EveryMistakeIsNamedByItsPath) {
       {"\"size\":2", "\"size\":100000", "wire.input.size: 100000"},
       {"\"rate\":1000", "\"rate\":\"fast\"", "wire.rate: \"fast\", expected a number"},
       {"\"rate\":1000", "\"rate\":1000,\"endpoints\":{\"in\":1,\"out\":2}", "wire.endpoints.in: 1"},
-      {"\"rate\":1000,", "", "wire: lacks the key rate"},
-      {"{\"is\":\"position\",\"joint\":1,\"at\":0,\"type\":\"i16\",\"scale\":0.1}", "", "0 positions of joint 1"},
+      {"\"rate\":1000,", "", "wire: lacks the key \"rate\""},
+      {"{\"is\":\"position\",\"joint\":1,\"at\":0,\"type\":\"i16\",\"scale\":0.1}", "",
+       "no position of joint 1, expected one field"},
   };
   for (const auto& c : cases)
     EXPECT_NE(complaint(changed(c.from, c.to)).find(c.expected), std::string::npos)
@@ -72,6 +76,105 @@ size_t lines(const std::string& text) {
   return text.empty() ? 0 : 1 + static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
+/// What a report with these fields is told; the output has one torque.
+std::string complaintOf(const std::string& fields, const std::string& torque = R"("type":"i16","scale":0.1)",
+                        const std::string& more = "") {
+  return complaint(R"({"rate":1000,"input":{"size":12,"fields":[)" + fields + R"(]},"output":{"size":8,"fields":[)" +
+                   R"({"is":"torque","joint":1,"at":0,)" + torque + "}" + more + "]}}");
+}
+
+std::string positionAnd(const std::string& more, const std::string& place = R"("at":1,"type":"i24")") {
+  return R"({"is":"position","joint":1,"scale":1,)" + place + "}" + (more.empty() ? "" : ",") + more;
+}
+
+TEST(Wire, NothingStandsOnTheBitsOfAJoint) {
+  EXPECT_EQ(complaintOf(positionAnd("")), "");
+  EXPECT_EQ(
+      complaintOf(positionAnd(R"({"is":"button","button":1,"at":3,"type":"u8"})")),
+      "wire.input.fields[1].at: takes bits of byte 3, which fields[0] (position of joint 1) has already, expected bits "
+      "of its own: correct at, bit_offset or type of one of them");
+  EXPECT_EQ(complaintOf(positionAnd(R"({"is":"button","button":1,"at":4,"type":"u8"})")), "");
+  EXPECT_NE(
+      complaintOf(R"({"is":"counter","at":0,"type":"u16"},)" + positionAnd("")).find("fields[1].at: takes bits of"),
+      std::string::npos);
+  EXPECT_NE(complaintOf(positionAnd(R"({"is":"velocity","joint":1,"at":3,"type":"f32"})")).find("fields[1].at"),
+            std::string::npos);
+  EXPECT_NE(
+      complaintOf(positionAnd(""), R"("type":"i16","scale":0.1)", R"(,{"is":"enable","at":1,"bit":7,"type":"u8"})")
+          .find("wire.output.fields[1].at: takes bits of byte 1"),
+      std::string::npos);
+}
+
+TEST(Wire, NeighboursInOneByteAreNoOverlap) {
+  const std::string twelve = R"("at":1,"type":"i12")", big = R"("at":1,"type":"i12","endian":"big")";
+  const std::string low = R"({"is":"button","button":1,"at":2,"type":"u8","bit":3})",
+                    high = R"({"is":"button","button":1,"at":2,"type":"u8","bit":4})";
+  EXPECT_NE(complaintOf(positionAnd(low, twelve)).find("byte 2"), std::string::npos);
+  EXPECT_EQ(complaintOf(positionAnd(high, twelve)), "");
+  EXPECT_EQ(complaintOf(positionAnd(low, big)), "");  // which has the upper half of byte 2
+  EXPECT_NE(complaintOf(positionAnd(high, big)).find("byte 2"), std::string::npos);
+  EXPECT_EQ(complaintOf(positionAnd(low + "," + high, R"("at":3,"type":"i16")")), "");
+}
+
+TEST(Wire, ATorqueHasBothSigns) {
+  for (const char* good : {R"("type":"i2")", R"("type":"f32","scale":-3)", R"("type":"nibbles","scale":-1e-4)",
+                           R"("type":"u16","scale":0.001,"offset":-32.768)"})
+    EXPECT_EQ(complaintOf(positionAnd(""), good), "") << good;
+  EXPECT_EQ(complaintOf(positionAnd(""), R"("type":"u16","scale":0.001)"),
+            "wire.output.fields[0].type: \"u16\" is 0 to 65.535 N m with this scale and offset, expected both signs: a "
+            "signed "
+            "type such as i16, or an offset that puts zero in the middle");
+  EXPECT_NE(complaintOf(positionAnd(""), R"("type":"i16","scale":0.001,"offset":33)").find("expected both signs"),
+            std::string::npos);
+}
+
+TEST(Wire, ANumberHasOneScaleAndATorqueNoDegrees) {
+  const auto position = [](const std::string& more) {
+    return complaintOf(R"({"is":"position","joint":1,"at":0,"type":"i16",)" + more + "}");
+  };
+  EXPECT_EQ(position(R"("scale_degrees":0.0044,"offset_degrees":3)"), "");
+  EXPECT_EQ(position(R"("scale":7e-5,"scale_degrees":0.0044)"),
+            "wire.input.fields[0].scale_degrees: beside scale, expected one of them");
+  EXPECT_EQ(position(R"("scale":7e-5,"offset":1,"offset_degrees":3)"),
+            "wire.input.fields[0].offset_degrees: beside offset, expected one of them");
+  EXPECT_EQ(complaintOf(positionAnd(""), R"("type":"i16","scale_degrees":0.01)"),
+            "wire.output.fields[0].scale_degrees: of a torque, expected scale in N m: only angles have degrees");
+}
+
+TEST(Wire, AFieldBeyondTheReportIsToldOnceAndWithTheSizeThatItNeeds) {
+  const std::string said =
+      complaintOf(positionAnd(R"({"is":"checksum","at":11,"type":"u16","method":"crc16-modbus","from":0,"to":11})"));
+  EXPECT_EQ(said,
+            "wire.input.fields[1].at: 11, so it takes the bytes 11 to 12, but size is 12: the last byte is 11; "
+            "expected size: "
+            "13 or more, or a smaller at");
+}
+
+TEST(Wire, WhatOthersCallATypeOrAChecksumIsUnderstood) {
+  const auto type = [](const char* text) { return complaint(changed("i16", text)); };
+  EXPECT_NE(type("int24").find("nibbles (did you mean \"i24\"?)"), std::string::npos) << type("int24");
+  EXPECT_NE(type("s24").find("\"i24\"?"), std::string::npos);
+  EXPECT_NE(type("uint8_t").find("\"u8\"?"), std::string::npos);
+  EXPECT_NE(type("float").find("\"f32\"?"), std::string::npos);
+  EXPECT_EQ(type("thing").find("did you mean"), std::string::npos);
+  const auto method = [](const std::string& name) {
+    return complaintOf(
+        positionAnd(R"({"is":"checksum","at":8,"type":"u16","from":0,"to":8,"method":")" + name + "\"}"));
+  };
+  for (const char* name : {"xmodem", "CRC-16/XMODEM", "crc16_xmodem", "crc16-xmoden"})
+    EXPECT_NE(method(name).find("(did you mean \"crc16-xmodem\"?)"), std::string::npos) << method(name);
+  EXPECT_NE(method("crc16-ccitt").find("\"crc16-ccitt-false\"?"), std::string::npos);
+  EXPECT_LT(method("xmodem").size(), 200u);
+  EXPECT_NE(method("md5").find("crc32-bzip2"), std::string::npos);  // nothing is near: all of them
+}
+
+TEST(Wire, AMisspeltWordIsUnderstoodInside) {
+  EXPECT_NE(complaint(changed("\"scale\"", "\"scael\"")).find("(did you mean \"scale\"?)"), std::string::npos);
+  EXPECT_NE(complaint(changed("\"fields\"", "\"field\"")).find("(did you mean \"fields\"?)"), std::string::npos);
+  EXPECT_NE(complaint(changed("\"input\"", "\"inputs\"")).find("(did you mean \"input\"?)"), std::string::npos);
+  EXPECT_NE(complaint(changed("\"position\"", "\"positon\"")).find("(did you mean \"position\"?)"), std::string::npos);
+}
+
 TEST(Wire, AllMistakesAreToldAtOnce) {
   const std::string said = complaint(
       R"({"rat":1000,"watchdog":-1,"framing":{"start":300,"escape":{"mark":125,"codes":[[1]]}},"startup":[{"wait":99}],)"
@@ -79,9 +182,9 @@ TEST(Wire, AllMistakesAreToldAtOnce) {
       R"({"is":"checksum","at":0,"type":"u8","method":"crc16-modbus","from":0,"to":4,"initial":3},{"is":"nothing"}]},)"
       R"("output":{"size":2,"fields":[{"is":"torque","joint":1,"at":1,"type":"i16"},{"is":"enable","at":0,"type":"u4","bit":4}]}})");
   for (const char* expected :
-       {"wire.rat: unknown key", "wire: lacks the key rate", "wire.watchdog: -1", "wire.framing.start: 300",
+       {"wire.rat: unknown key", "wire: lacks the key \"rate\"", "wire.watchdog: -1", "wire.framing.start: 300",
         "wire.framing.escape.codes[0]: expected a byte", "wire.startup[0].wait: 99", "wire.startup[0]: is empty",
-        "wire.endpoints.in: 1", "wire.endpoints: lacks the key out", "wire.input.id: 0",
+        "wire.endpoints.in: 1", "wire.endpoints: lacks the key \"out\"", "wire.input.id: 0",
         "wire.input.fields[0].joint: 4", "wire.input.fields[0].at: 9", "wire.input.fields[0].type: \"i99\"",
         "wire.input.fields[1].type: \"u8\", expected u16", "wire.input.fields[1].at: lies inside",
         "wire.input.fields[1].initial: expected only with", "wire.input.fields[2].is: \"nothing\"",

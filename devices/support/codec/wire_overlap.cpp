@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "codec/wire_overlap.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "codec/bits.hpp"
+
+namespace hapticd::codec {
+namespace {
+
+bool isFlag(Role role) {
+  return role == Role::kButton || role == Role::kFault || role == Role::kCalibrated || role == Role::kEnable ||
+         role == Role::kCalibrate || role == Role::kFollow;
+}
+
+/// "fields[0] (position of joint 1)".
+std::string nameOf(const Tree& fields, const Field& field, size_t i) {
+  std::string name = "fields[" + std::to_string(i) + "] (" + fields.item(i).at("is").text();
+  if (ofJoint(field.role)) name += " of joint " + std::to_string(field.index + 1);
+  return name + ")";
+}
+
+/// The first byte in which both have a bit; the size of the report where there is none.
+size_t firstShared(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
+  size_t byte = 0;
+  while (byte < a.size() && (a[byte] & b[byte]) == 0) ++byte;
+  return byte;
+}
+
+}  // namespace
+
+std::vector<uint8_t> bitsTaken(const Field& field, size_t report_bytes) {
+  std::vector<uint8_t> taken(report_bytes);
+  if (field.at + field.bytes() > report_bytes) return taken;
+  if (field.type == Type::kNibble || field.type == Type::kNibbles) {
+    std::fill_n(taken.begin() + field.at, field.bytes(), uint8_t{0xff});
+    return taken;
+  }
+  const bool one = isFlag(field.role) && field.bit >= 0;
+  const uint64_t code = one ? uint64_t{1} << field.bit : onesOf(field.bits);
+  putBits(code, &taken[field.at], field.bit_skip, field.bits, field.big_endian);
+  return taken;
+}
+
+void checkOverlaps(const Tree& fields, const Report& report, const std::vector<bool>& placed) {
+  std::vector<std::vector<uint8_t>> taken;
+  for (const Field& field : report.fields) taken.push_back(bitsTaken(field, report.size));
+  for (size_t later = 1; later < taken.size(); ++later)
+    for (size_t i = 0; i < later; ++i) {
+      const bool matters = ofJoint(report.fields[i].role) || ofJoint(report.fields[later].role);
+      if (!matters || !placed[i] || !placed[later]) continue;
+      const size_t byte = firstShared(taken[i], taken[later]);
+      if (byte == report.size) continue;
+      const Tree tree = fields.item(later);
+      tree.at(tree.has("at") ? "at" : "bit_offset")
+          .fail("takes bits of byte " + std::to_string(byte) + ", which " + nameOf(fields, report.fields[i], i) +
+                " has already, expected bits of its own: correct at, bit_offset or type of one of them");
+      break;
+    }
+}
+
+}  // namespace hapticd::codec

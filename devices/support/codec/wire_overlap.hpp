@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+/// Fields of a report that stand on each other's bits.
+#pragma once
+#include <vector>
+
+#include "codec/report.hpp"
+#include "codec/tree.hpp"
+
+namespace hapticd::codec {
+
+/// Each joint has a field of such a role.
+constexpr bool ofJoint(Role role) noexcept {
+  return role == Role::kPosition || role == Role::kVelocity || role == Role::kTorque || role == Role::kReference;
+}
+
+/// The bits of a report that a field reads or writes: a byte of them for each of its bytes, without the id. Of a flag
+/// (a button, a fault) it is the one bit that it looks at.
+std::vector<uint8_t> bitsTaken(const Field& field, size_t report_bytes);
+
+/// [main] Notes each field that has a bit of a joint's number, or that is one and has a bit of another field. Bits of
+/// one status byte may stand side by side.
+/// @param placed of each field: its place is known, so that its bits mean something
+void checkOverlaps(const Tree& fields, const Report& report, const std::vector<bool>& placed);
+
+}  // namespace hapticd::codec
