@@ -108,7 +108,8 @@ constexpr Key kSceneKeys[] = {
 
 constexpr std::string_view kEnableModes[] = {"hold", "toggle"};
 constexpr Key kEnableKeys[] = {
-    required(integer<&Enable::button>("button", {0, 31}, nullptr, "Button of the device, from 0.")),
+    required(integer<&Enable::button>("button", {0, 31}, nullptr,
+                                      "Button of the device, counted from 0: the wire format's button: 1 is 0 here.")),
     choice<&Enable::mode>(
         "mode", kEnableModes, "hold",
         "hold: forces only while the button is down (dead-man switch); toggle: each press turns forces on or off."),

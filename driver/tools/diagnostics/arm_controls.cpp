@@ -2,8 +2,11 @@
 #include "diagnostics/arm_controls.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "diagnostics/device_trial.hpp"
+#include "diagnostics/enable_button.hpp"
+#include "diagnostics/wire_of.hpp"
 #include "document/reader.hpp"
 #include "scene/load.hpp"
 #include "session/arm_force.hpp"
@@ -23,15 +26,39 @@ Control bound(const char* hazards, const char* name, double value, const char* u
   return {hazards, name, onIf(value > 0), value > 0 ? numberText(value) + " " + unit : without};
 }
 
-/// What the arm says of itself, once it is open.
-Control capability(const char* hazards, const char* name, bool opened, uint32_t capabilities, uint32_t flag,
-                   const std::string& with, const std::string& without) {
-  if (!opened) return {hazards, name, ControlState::kUnknown, "the arm itself says it; it is not plugged in"};
-  const bool has = (capabilities & flag) != 0;
-  return {hazards, name, onIf(has), has ? with : without};
+/// What the hardware does by itself when commands stop, and for how long a sample is believed: the arm says it once it
+/// is open, its wire format before.
+void addTimes(const host::DeviceInstance& device, bool opened, const std::optional<codec::Wire>& wire,
+              std::vector<Control>& to) {
+  const hdv_info& info = device.info();
+  const bool known = opened || wire;
+  const bool watchdog = opened ? (info.capabilities & HDV_C_WATCHDOG) != 0 : wire && wire->watchdog > 0;
+  to.push_back({"H30", "the hardware's own watchdog", known ? onIf(watchdog) : ControlState::kUnknown,
+                !known ? "the arm itself says it; it is not plugged in"
+                : watchdog
+                    ? "the arm cuts its motors when commands stop"
+                    : "the arm holds the last force when the machine dies: keep a switch within reach; if it cuts "
+                      "its motors by itself, give wire.watchdog"});
+  const double rate = opened ? info.rate_hz : wire ? wire->rate : 0;
+  to.push_back({"H3", "force of an old sample", known ? onIf(rate > 0) : ControlState::kUnknown,
+                !known     ? "the arm itself says its rate"
+                : rate > 0 ? "fades after " + numberText(2000 / rate) + " ms"
+                           : "held for up to 50 ms: give the rate of the arm"});
 }
 
-void addLimits(const scene::Limits& limits, double force, bool simulated, std::vector<Control>& to) {
+/// @param buttons of the arm
+Control enableSwitch(const scene::Enable& enable, uint32_t buttons) {
+  if (!enable.button)
+    return {"H20", "enable switch", ControlState::kOff,
+            "give limits: {enable: {button: 0}}: forces only while that button is held"};
+  const std::string button = enableButtonText(*enable.button);
+  if (static_cast<uint32_t>(*enable.button) >= buttons)
+    return {"H20", "enable switch", ControlState::kOff, button + ", which the arm does not have: `run` refuses it"};
+  return {"H20", "enable switch", ControlState::kOn,
+          button + ", " + (enable.mode == scene::EnableMode::kHold ? "held" : "pressed")};
+}
+
+void addLimits(const scene::Limits& limits, double force, bool simulated, uint32_t buttons, std::vector<Control>& to) {
   to.push_back(bound("H16", "largest force", force, "N", "give limits.force"));
   to.push_back(bound("H18", "growth of the force", limits.slew, "N/s", "give limits.slew"));
   const double velocity = limits.velocity.value_or(simulated ? 0 : 5);
@@ -41,13 +68,10 @@ void addLimits(const scene::Limits& limits, double force, bool simulated, std::v
   to.push_back(bound("H19", "power to the hand", limits.power, "W", "give limits.power"));
   to.push_back(bound("A3", "workspace", limits.workspace, "m", "give limits.workspace"));
   to.push_back({"A1", "heat of the motors", onIf(!limits.motors.empty()),
-                limits.motors.empty() ? "give limits.motors, from their data sheet"
-                                      : std::to_string(limits.motors.size()) + " motors"});
-  const bool button = limits.enable.button.has_value();
-  to.push_back({"H20", "enable switch", onIf(button),
-                button ? "button " + std::to_string(*limits.enable.button) + ", " +
-                             (limits.enable.mode == scene::EnableMode::kHold ? "held" : "pressed")
-                       : "give limits.enable"});
+                limits.motors.empty()
+                    ? "give limits.motors, from their data sheet (driver/docs/devices.md has an example)"
+                    : std::to_string(limits.motors.size()) + " motors"});
+  to.push_back(enableSwitch(limits.enable, buttons));
   const double weight = limits.weight.value_or(force);
   to.push_back({"H23", "bound of the arm's own weight", onIf(limits.weight || force > 0),
                 weight > 0 ? numberText(weight) + " N at the tip" : "it is not carried at all"});
@@ -69,23 +93,14 @@ std::vector<Control> controlsOf(const scene::Device& description, const host::De
       {"H4 H6 H8 H9 H13 H17 H21", "always", ControlState::kOn,
        "numbers are finite, orientations of unit length, forces explained by motion; a fault takes the force away "
        "within 2 ms"}};
-  addLimits(description.limits, force, simulated, controls);
+  addLimits(description.limits, force, simulated, opened ? info.buttons : 32, controls);
   const auto has = [&](const char* name) { return device.description().extension(device.handle(), name) != nullptr; };
   controls.push_back({"H26 H33", "cut by a watchdog thread", onIf(has(HDV_EXT_CUT)),
                       has(HDV_EXT_CUT) ? "the module cuts its motors from any thread" : "the module has no hdv.cut"});
   controls.push_back({"H30 H32", "silenced by another process", onIf(has("hdv.silence/1")),
                       has("hdv.silence/1") ? "a guard switches the motors off once the daemon is gone"
                                            : "the module does not say how: nothing but the arm itself is left"});
-  controls.push_back(capability("H30", "the hardware's own watchdog", opened, info.capabilities, HDV_C_WATCHDOG,
-                                "the arm cuts its motors when commands stop",
-                                "the arm holds the last force when the machine dies: keep a switch within reach"));
-  if (!opened) {
-    controls.push_back({"H3", "force of an old sample", ControlState::kUnknown, "the arm itself says its rate"});
-  } else {
-    controls.push_back({"H3", "force of an old sample", onIf(info.rate_hz > 0),
-                        info.rate_hz > 0 ? "fades after " + numberText(2000 / info.rate_hz) + " ms"
-                                         : "held for up to 50 ms: give the rate of the arm"});
-  }
+  addTimes(device, opened, wireOf(description, device.kinematics().joint_count), controls);
   const bool guarded = description.limits.passivity.value_or(opened && (info.capabilities & HDV_C_UNVERIFIED) != 0);
   controls.push_back({"H22", "passivity controller",
                       opened || description.limits.passivity ? onIf(guarded) : ControlState::kUnknown,

@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "diagnostics/node_path.hpp"
+#include "diagnostics/unit_advice.hpp"
+#include "diagnostics/wire_advice.hpp"
 #include "document/node.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
@@ -19,16 +22,6 @@ namespace hapticd::diagnostics {
 namespace {
 
 using document::Node;
-
-/// A path of keys; nullptr where one is missing.
-const Node* find(const Node& root, std::initializer_list<const char*> keys) {
-  const Node* at = &root;
-  for (const char* key : keys) {
-    at = at->isMap() ? at->find(key) : nullptr;
-    if (at == nullptr) return nullptr;
-  }
-  return at;
-}
 
 /// A device whose force may be larger than its arm can give. Nothing is known of an arm that gives 0.
 void forceBeyondArm(const scene::Device& device, document::Problems& warnings) {
@@ -56,6 +49,19 @@ void countsWithoutScale(const Node& root, const std::string& file, document::Pro
   }
 }
 
+/// An arm of other lengths than the built-in one's, whose weight is taken for that one's: it would be pushed up, or
+/// sag.
+void massesOfAnotherArm(const Node& root, const std::string& file, document::Problems& warnings) {
+  const Node *lengths = find(root, {"parameters", "arm", "lengths"}), *kind = find(root, {"parameters", "arm", "kind"});
+  const bool delta = kind != nullptr && kind->scalar == "delta", chain = kind != nullptr && kind->scalar == "chain";
+  if (lengths == nullptr || chain || find(root, {"parameters", "wire"}) == nullptr) return;
+  if (find(root, {"parameters", "arm", "masses"}) != nullptr) return;
+  document::report(warnings, file, lengths->line, lengths->column, "parameters.arm.masses",
+                   fmt::format("not given, so this arm is carried with the masses of {}; expected its own [kg], or "
+                               "masses: [{}]: its weight is not carried",
+                               delta ? "a Falcon" : "a Premium 1.5", delta ? "0, 0, 0" : "0, 0, 0, 0"));
+}
+
 /// Joints of the arm at rest: in the pose of its calibration, else at zero.
 std::array<double, HDV_MAX_JOINTS> restOf(const Node& root, uint32_t joints) {
   std::array<double, HDV_MAX_JOINTS> q{};
@@ -65,17 +71,16 @@ std::array<double, HDV_MAX_JOINTS> restOf(const Node& root, uint32_t joints) {
   return q;
 }
 
-void restOutsideWorkspace(const Node& root, const scene::Device& device, document::Problems& warnings) {
+void restOutsideWorkspace(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
+                          document::Problems& warnings) {
   const Node* limit = find(root, {"limits", "workspace"});
   const double radius = device.limits.workspace;
   if (radius <= 0 || limit == nullptr) return;
-  const auto arm = host::DeviceInstance::create(device, nullptr);
-  if (!arm) return;
-  const hdv_ext_kinematics& kinematics = (*arm)->kinematics();
+  const hdv_ext_kinematics& kinematics = arm.kinematics();
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();
   std::array<double, 4> turn{};
   const auto q = restOf(root, kinematics.joint_count);
-  if (kinematics.forward((*arm)->handle(), q.data(), tip.data(), turn.data()) < 0 || !tip.allFinite()) return;
+  if (kinematics.forward(arm.handle(), q.data(), tip.data(), turn.data()) < 0 || !tip.allFinite()) return;
   if (tip.norm() <= radius) return;
   document::report(warnings, device.file.string(), limit->line, limit->column, "limits.workspace",
                    fmt::format("{:g} m from the origin of the arm's frame, but at rest its tip is at [{:.3g}, {:.3g}, "
@@ -92,7 +97,12 @@ document::Problems adviseDevice(const std::filesystem::path& file, host::Catalog
   if (!root) return warnings;
   forceBeyondArm(*loaded.device, warnings);
   countsWithoutScale(*root, file.string(), warnings);
-  restOutsideWorkspace(*root, *loaded.device, warnings);
+  massesOfAnotherArm(*root, file.string(), warnings);
+  adviseUnits(*root, file.string(), warnings);
+  if (const auto arm = host::DeviceInstance::create(*loaded.device, nullptr)) {
+    restOutsideWorkspace(*root, *loaded.device, **arm, warnings);
+    adviseWire(*root, *loaded.device, (*arm)->kinematics().joint_count, warnings);
+  }
   document::sortByPlace(warnings);
   return warnings;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnostics/enable_button.hpp"
 #include "document/node.hpp"
 #include "host/device_instance.hpp"
 #include "scene/device_draft.hpp"
@@ -64,6 +65,19 @@ std::vector<std::string> linesOf(const std::string& text) {
   return lines;
 }
 
+/// What a module says of its parameters, each where it stands in the file.
+void placeComplaints(const std::string& error, const Node& parameters, const std::string& file,
+                     const document::Problems& known, document::Problems& problems) {
+  for (const std::string& message : linesOf(error)) {
+    size_t begin = 0;
+    const std::string key = keyIn(message, parameters, begin);
+    const Node* at = walk(&parameters, key);
+    if (follows(key, known)) continue;
+    const std::string what = key.empty() ? message : message.substr(begin + key.size() + 2);
+    document::report(problems, file, at->line, at->column, key.empty() ? "parameters" : "parameters." + key, what);
+  }
+}
+
 }  // namespace
 
 document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& catalog,
@@ -72,18 +86,12 @@ document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& c
   const auto draft = scene::deviceDraft(file, catalog);
   if (!draft) return problems;  // a scene, or its module is not known
   const auto made = host::DeviceInstance::create(*draft, nullptr);
-  const auto root = made ? std::nullopt : document::parseFile(file, problems);
+  document::Problems unread;  // told by who loaded the file
+  const auto root = document::parseFile(file, unread);
   const Node* parameters = root ? root->find("parameters") : nullptr;
   if (parameters == nullptr) return problems;
-  for (const std::string& message : linesOf(made.error())) {
-    size_t begin = 0;
-    const std::string key = keyIn(message, *parameters, begin);
-    const Node* at = walk(parameters, key);
-    if (follows(key, known)) continue;
-    const std::string what = key.empty() ? message : message.substr(begin + key.size() + 2);
-    document::report(problems, file.string(), at->line, at->column, key.empty() ? "parameters" : "parameters." + key,
-                     what);
-  }
+  checkEnableButton(*root, file.string(), problems);
+  if (!made) placeComplaints(made.error(), *parameters, file.string(), known, problems);
   document::sortByPlace(problems);
   return problems;
 }

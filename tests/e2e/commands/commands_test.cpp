@@ -258,8 +258,9 @@ TEST_F(Commands, DeviceControlsSaysWhichControlsOneArmHas) {
   EXPECT_TRUE(has(simulated.text, "8.5 N")) << simulated.text;
   const Outcome real = run("device controls " HAPTICD_SOURCE_DIR "/config/devices/woodenhaptics.yaml", kShipped);
   EXPECT_EQ(real.exit_code, 0) << real.text;
-  for (const char* line : {"not plugged in", "speed between samples          H1 H2                     5 m/s",
-                           "unknown  the hardware's own watchdog"})
+  for (const char* line :
+       {"not plugged in", "speed between samples          H1 H2                     5 m/s",
+        "off      the hardware's own watchdog", "on       force of an old sample", "fades after 2 ms"})
     EXPECT_TRUE(has(real.text, line)) << line << "\n" << real.text;
 }
 

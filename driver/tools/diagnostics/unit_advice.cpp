@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/unit_advice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "diagnostics/node_path.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+using document::Node;
+
+/// All numbers of a list, or of a list of lists.
+std::vector<double> numbersIn(const Node* list) {
+  std::vector<double> numbers;
+  if (list == nullptr) return numbers;
+  if (list->isScalar()) numbers.push_back(document::toNumber(list->scalar).value_or(0));
+  for (const Node& item : list->items)
+    for (const double number : numbersIn(&item)) numbers.push_back(number);
+  return numbers;
+}
+
+double largest(const std::vector<double>& numbers) {
+  double most = 0;
+  for (const double number : numbers) most = std::max(most, std::abs(number));
+  return most;
+}
+
+void beyondATurn(const Node* list, const char* key, const std::string& file, document::Problems& warnings) {
+  const double most = largest(numbersIn(list));
+  if (most <= 2 * M_PI) return;
+  document::report(warnings, file, list->line, list->column, key,
+                   fmt::format("{:g} rad is more than a whole turn; expected rad: {:g} degrees are {:.4g} rad", most,
+                               most, most * M_PI / 180));
+}
+
+void mountFarAway(const Node* position, const std::string& file, document::Problems& warnings) {
+  constexpr double kFar = 5;  // m: farther than anybody reaches
+  const double most = largest(numbersIn(position));
+  if (most <= kFar) return;
+  document::report(warnings, file, position->line, position->column, "mount.position",
+                   fmt::format("{:g} m from the world's origin, where the scenes have their shapes; expected metres: "
+                               "{:g} mm are {:g} m",
+                               most, most, most / 1000));
+}
+
+void quaternionTurnedRound(const Node* orientation, const std::string& file, document::Problems& warnings) {
+  const std::vector<double> q = numbersIn(orientation);
+  if (q.size() != 4 || q[0] != 0 || q[1] != 0 || q[2] != 0) return;
+  document::report(warnings, file, orientation->line, orientation->column, "mount.orientation",
+                   "is w, x, y, z, so this is a half turn about z; expected [1, 0, 0, 0] where no turn was meant");
+}
+
+}  // namespace
+
+void adviseUnits(const Node& root, const std::string& file, document::Problems& warnings) {
+  beyondATurn(find(root, {"parameters", "arm", "limits"}), "parameters.arm.limits", file, warnings);
+  beyondATurn(find(root, {"parameters", "calibration", "pose"}), "parameters.calibration.pose", file, warnings);
+  mountFarAway(find(root, {"mount", "position"}), file, warnings);
+  quaternionTurnedRound(find(root, {"mount", "orientation"}), file, warnings);
+}
+
+}  // namespace hapticd::diagnostics

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+/// The wire format of a device file, for what can be said of an arm before it is there.
+#pragma once
+#include <optional>
+#include <stdexcept>
+
+#include "codec/wire.hpp"
+#include "description/scene.hpp"
+
+namespace hapticd::diagnostics {
+
+/// [main] Nothing for an arm without one, or whose format is wrong, which is told as a problem.
+inline std::optional<codec::Wire> wireOf(const scene::Device& device, size_t joints) {
+  try {
+    for (const scene::Value& value : device.parameters)
+      if (value.id == "wire") return codec::readWire(value.text, joints);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+}  // namespace hapticd::diagnostics
