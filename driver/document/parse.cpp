@@ -4,6 +4,7 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
+#include <cctype>
 #include <sstream>
 #include <unordered_set>
 
@@ -198,6 +199,32 @@ std::vector<Line> blockLines(const std::string& text, int last) {
   return lines;
 }
 
+/// A tab that indents, or a key without a blank after its colon, in one of the lines up to `last`: the parser stumbles
+/// later, over what then is no map.
+std::optional<Problem> wrongBlank(const std::string& text, int last, const std::string& file) {
+  constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+  std::istringstream in(text);
+  int number = 0;
+  for (std::string line; number < last && std::getline(in, line);) {
+    const size_t first = line.find_first_not_of(' ');
+    ++number;
+    if (first == std::string::npos || line[first] == '#') continue;
+    if (line[first] == '\t' && line.find_first_not_of(" \t\r") != std::string::npos)
+      return Problem{{file, number, static_cast<int>(first) + 1}, "", "not YAML: a tab, expected blanks to indent"};
+    const size_t key = line.find_first_not_of("- ", first), end = line.find_first_not_of(kLetters, key);
+    if (key == std::string::npos || end == std::string::npos || end == key || line[end] != ':') continue;
+    if (end + 1 >= line.size() || std::string(" \t\r/:").find(line[end + 1]) != std::string::npos) continue;
+    if (std::isalpha(static_cast<unsigned char>(line[key])) == 0) continue;  // a time: 12:30
+    if (const size_t comment = line.find(" #"); comment != std::string::npos) line.erase(comment);
+    const std::string name = line.substr(key, end - key);
+    return Problem{{file, number, static_cast<int>(end) + 2},
+                   "",
+                   "not YAML: no blank after the colon, expected \"" + name + ": " +
+                       line.substr(end + 1, std::min<size_t>(line.find_last_not_of(" \r") - end, 20)) + "\""};
+  }
+  return std::nullopt;
+}
+
 /// What is wrong with the indentation of one of the lines up to `last`, and where: what a parser says of it comes late,
 /// and in its own words.
 std::optional<Problem> wrongIndent(const std::string& text, int last, const std::string& file) {
@@ -253,7 +280,10 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
   } catch (const Refused& refused) {
     report(problems, placeOf(refused.mark, file), "", refused.what);
   } catch (const YAML::Exception& error) {
-    if (const auto indent = wrongIndent(text, std::max(error.mark.line, 0) + 1, file))
+    const int last = std::max(error.mark.line, 0) + 1;
+    if (const auto blank = wrongBlank(text, last, file))
+      problems.push_back(*blank);
+    else if (const auto indent = wrongIndent(text, last, file))
       problems.push_back(*indent);
     else
       report(problems, placeOf(error.mark, file), "", "not YAML: " + error.msg);
