@@ -10,7 +10,9 @@
 #include <sstream>
 #include <string>
 
+#include "capture/hints.hpp"
 #include "capture/report_table.hpp"
+#include "capture/saturation.hpp"
 #include "cli/command.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "document/csv.hpp"
@@ -80,27 +82,42 @@ int decode(const Options& options) {
   if (const int failed = writeOut(options.out, capture::csvOf(described->wire, described->joints, decoded));
       failed != 0)
     return failed;
-  std::fprintf(stderr, "%s (read as %s)\n", capture::summaryOf(decoded).c_str(),
-               taken->text ? "hexadecimal text" : "raw bytes");
+  std::fprintf(stderr, "read as %s: %s\n%s", taken->text ? "hexadecimal text" : "raw bytes",
+               capture::summaryOf(decoded).c_str(), capture::hintsOf(described->wire, decoded).c_str());
   if (decoded.reports.empty())
     return fail(kFailed, "no report in " + std::to_string(bytes->size()) + " bytes, expected " +
                              std::to_string(described->wire.input.bytes()) + " bytes a report");
   return decoded.good() == decoded.reports.size() && decoded.lost == 0 ? kWorked : kFailed;
 }
 
+/// The first line of a table that says something.
+std::string firstLine(const std::string& text) {
+  std::istringstream in(text);
+  std::string line;
+  while (std::getline(in, line) && (line.empty() || line[0] == '#')) line.clear();
+  return line;
+}
+
+/// "0.1 0.2 0.3" or "0.1;0.2": numbers, but not between commas.
+bool lacksCommas(const std::string& line) {
+  const size_t first = line.find_first_not_of(" \t"), end = line.find_first_of(" ;\t", first);
+  if (end == std::string::npos || line.find(',') != std::string::npos) return false;
+  return document::toNumber(line.substr(first, end - first)).has_value() &&
+         line.find_first_not_of(" ;\t\r", end) != std::string::npos;
+}
+
 /// The names of a table's columns: its first line, or those that an order or a state begins with.
 std::vector<std::string> namesIn(const std::string& text, const std::vector<std::string>& known, size_t joints) {
-  std::istringstream in(text);
-  std::string line, name;
-  while (std::getline(in, line) && (line.empty() || line[0] == '#')) line.clear();
+  std::string name;
   std::vector<std::string> names;
-  std::istringstream fields(line);
+  std::istringstream fields(firstLine(text));
   while (std::getline(fields, name, ',')) {
     name.erase(0, name.find_first_not_of(" \t\r"));
     name.erase(name.find_last_not_of(" \t\r") + 1);
     names.push_back(name);
   }
-  const bool numbers = !names.empty() && document::toNumber(names[0]).has_value();
+  const std::string begin = names.empty() ? "" : names[0];
+  const bool numbers = document::toNumber(begin).has_value() || begin == "nan" || begin == "inf" || begin == "-inf";
   if (numbers || names.empty()) names.assign(known.begin(), known.begin() + static_cast<long>(joints));
   return names;
 }
@@ -110,15 +127,21 @@ int encode(const Options& options) {
   const auto described = describedIn(options.file, exit_code);
   if (!described) return exit_code;
   const auto text = contentOf(options.input);
-  if (!text) return fail(kBadInput, options.input + ": cannot be read, expected a CSV");
+  if (!text)
+    return fail(kBadInput, options.input + ": cannot be read, expected a CSV file; numbers come on standard input: " +
+                               "echo 0.1,0,0 | hapticd device encode " + options.file);
+  if (const std::string line = firstLine(*text); lacksCommas(line))
+    return fail(kBadInput,
+                options.input + ": \"" + line.substr(0, 40) + "\", expected commas between the numbers: 0.1,0,0");
   const auto known = capture::columnsOf(described->wire, described->joints, !options.from_arm);
   const auto names = namesIn(*text, known, described->joints);
   std::string header, all;
   for (const std::string& name : names) header += (header.empty() ? "" : ",") + name;
-  for (const std::string& name : known) all += (all.empty() ? "" : ",") + name;
+  for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
   for (const std::string& name : names)
     if (std::find(known.begin(), known.end(), name) == known.end())
-      return fail(kBadInput, options.input + ": column " + name + " is not in the report, expected some of " + all);
+      return fail(kBadInput, options.input + ": its first line has \"" + name.substr(0, 40) +
+                                 "\", which is no number and no column of the report; expected columns among " + all);
   document::Problems problems;
   const auto table = document::parseCsv(*text, options.input, {{header}}, problems);
   printProblems(problems, stderr);
@@ -128,6 +151,8 @@ int encode(const Options& options) {
     const auto bytes =
         capture::encodeRow(described->wire, !options.from_arm, names, table->row(i), static_cast<uint32_t>(i + 1));
     if (!bytes) return fail(kBadInput, bytes.error());
+    for (const std::string& what : capture::saturated(described->wire, !options.from_arm, names, table->row(i)))
+      std::fprintf(stderr, "warning: %s: line %d: %s\n", options.input.c_str(), table->lines[i], what.c_str());
     if (options.raw)
       out.append(bytes->begin(), bytes->end());
     else
@@ -160,7 +185,7 @@ void addEncode(CLI::App& device, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = device.add_subcommand("encode", "Write numbers as the bytes of an arm's reports.");
   command->add_option("file", options->file, "device file (YAML)")->required();
-  command->add_option("numbers", options->input, "CSV; - for standard input")->capture_default_str();
+  command->add_option("csv", options->input, "CSV file with the numbers; - for standard input")->capture_default_str();
   command->add_flag("--from-arm", options->from_arm, "write what the arm would send, instead of what it is sent");
   command->add_flag("--raw", options->raw, "write the bytes themselves instead of hexadecimal text");
   command->add_option("-o,--out", options->out, "file to write; - for standard output");

@@ -5,6 +5,7 @@
 
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -28,42 +29,6 @@ struct Options {
   bool no_questions = false;
 };
 
-/// Asks for what no option gave; an empty answer keeps what is there.
-class Questions {
- public:
-  explicit Questions(const CLI::App& command) : command_(command) {}
-
-  template <class Value>
-  void ask(const char* option, const char* question, Value& value) {
-    if (command_.count(option) > 0) return;
-    std::cout << question << " [" << value << "]: " << std::flush;
-    std::string answer;
-    if (!std::getline(std::cin, answer) || answer.empty()) return;
-    Value given{};
-    if (CLI::detail::lexical_cast(answer, given))
-      value = given;
-    else
-      std::cout << "  that is no such value; " << value << " stays\n";
-  }
-
- private:
-  const CLI::App& command_;
-};
-
-void askAll(const CLI::App& command, Options& options) {
-  Questions questions(command);
-  questions.ask("--bus", "Bus: hid, bulk (USB)", options.bus);
-  questions.ask("--id", "USB vendor and product, hexadecimal (lsusb prints them)", options.id);
-  questions.ask("--kind", "Mechanism: phantom (two links on a turning base), delta, chain (any serial arm)",
-                options.kind);
-  if (options.kind == "chain") questions.ask("--joints", "Joints", options.joints);
-  questions.ask("--counts", "Encoder counts of one motor turn (four times its lines)", options.counts);
-  questions.ask("--gear", "Motor turns of one joint turn", options.gear);
-  questions.ask("--bits", "Bits of a position in a report", options.bits);
-  questions.ask("--torque", "Largest torque of a joint [N m]", options.torque);
-  questions.ask("--force", "Largest force at the tip, to begin with [N]", options.force);
-}
-
 std::string wrongIn(const Options& o) {
   const bool hid = o.bus == "hid", bulk = o.bus == "bulk";
   if (!hid && !bulk) return "--bus " + o.bus + ": expected hid or bulk";
@@ -77,7 +42,52 @@ std::string wrongIn(const Options& o) {
     return fmt::format("--lengths: {} numbers, expected {} for a {}", o.lengths.size(), lengths, o.kind);
   for (const double value : {o.counts, o.gear, o.torque, o.force})
     if (!(value > 0)) return "--counts, --gear, --torque and --force: expected numbers above 0";
+  if (o.buttons < 0 || o.buttons > 32) return "--buttons " + std::to_string(o.buttons) + ": expected 0 to 32";
+  unsigned vendor = 0, product = 0;
+  int used = 0;
+  if (std::sscanf(o.id.c_str(), "%4x:%4x%n", &vendor, &product, &used) != 2 || static_cast<size_t>(used) != o.id.size())
+    return "--id " + o.id + ": expected vendor:product, hexadecimal, such as 1234:0006";
   return "";
+}
+
+/// Asks for what no option gave; an empty answer keeps what is there.
+class Questions {
+ public:
+  explicit Questions(const CLI::App& command) : command_(command) {}
+
+  /// Asks again until `wrong`, "" or what is wrong with the answers so far, has nothing to say.
+  template <class Value, class Wrong>
+  void ask(const char* option, const char* question, Value& value, const Wrong& wrong) {
+    if (command_.count(option) > 0) return;
+    for (const Value before = value;; value = before) {
+      std::cout << question << " [" << before << "]: " << std::flush;
+      std::string answer;
+      if (!std::getline(std::cin, answer) || answer.empty()) return;
+      const bool read = CLI::detail::lexical_cast(answer, value);
+      const std::string what = read ? wrong() : "\"" + answer + "\" is no number";
+      if (what.empty()) return;
+      std::cout << "  " << what << "\n";
+    }
+  }
+
+ private:
+  const CLI::App& command_;
+};
+
+void askAll(const CLI::App& command, Options& options) {
+  Questions questions(command);
+  const auto wrong = [&options] { return wrongIn(options); };
+  questions.ask("--bus", "Bus: hid, bulk (USB)", options.bus, wrong);
+  questions.ask("--id", "USB vendor and product, hexadecimal (lsusb prints them)", options.id, wrong);
+  questions.ask("--kind", "Mechanism: phantom (two links on a turning base), delta, chain (any serial arm)",
+                options.kind, wrong);
+  if (options.kind == "chain") questions.ask("--joints", "Joints", options.joints, wrong);
+  questions.ask("--counts", "Encoder counts of one motor turn (four times its lines)", options.counts, wrong);
+  questions.ask("--gear", "Motor turns of one joint turn", options.gear, wrong);
+  questions.ask("--bits", "Bits of a position in a report", options.bits, wrong);
+  questions.ask("--buttons", "Buttons", options.buttons, wrong);
+  questions.ask("--torque", "Largest torque of a joint [N m]", options.torque, wrong);
+  questions.ask("--force", "Largest force at the tip, to begin with [N]", options.force, wrong);
 }
 
 std::string listOf(const std::vector<double>& numbers) {
@@ -89,21 +99,29 @@ std::string armOf(const Options& o) {
   if (o.kind == "phantom") {
     std::vector<double> all = o.lengths.empty() ? std::vector<double>{0.2, 0.2} : o.lengths;
     all.insert(all.end(), {0, 0, 0});
-    text += fmt::format("    lengths: {}     # m: upper arm, forearm; then l3, l5, l6 for the weight, see devices.md\n",
-                        listOf(all));
-    text += "    # masses: [0, 0, 0, 0]        # kg: ma, mc, mbe, mdf; without them its weight is not carried\n";
+    text += fmt::format(
+        "    lengths: {}     # m: upper arm, forearm; l3, l5, l6 for the weight alone: driver/docs/devices.md\n",
+        listOf(all));
+    text +=
+        "    masses: [0, 0, 0, 0]          # kg: ma, mc, mbe, mdf; all 0: its weight is not carried; left out: a "
+        "Premium "
+        "1.5's\n";
   } else if (o.kind == "delta") {
     text += o.lengths.empty() ? "    # lengths: [a, b, c, d, e, f, r, s]    # m; left out: the Falcon's\n"
                               : fmt::format("    lengths: {}    # m: a, b, c, d, e, f, r, s\n", listOf(o.lengths));
+    text +=
+        "    masses: [0, 0, 0]             # kg: arm, rod, platform; all 0: its weight is not carried; left out: a "
+        "Falcon's, guessed\n";
   } else {
     text +=
         "    dh:                           # a, alpha, d, theta: m, rad (standard Denavit-Hartenberg), a row a joint\n";
     for (int i = 0; i < o.joints; ++i)
       text += fmt::format("      - [{:g}, 0, 0, 0]\n", o.lengths.empty() ? 0.2 : o.lengths[static_cast<size_t>(i)]);
+    text += "    # masses: [...]               # kg, one a row; left out: its weight is not carried\n";
   }
   text += fmt::format(
       "    # limits: [[-1, 1], ...]      # rad, a row a joint; left out: the mechanism's own\n"
-      "    max_torque: [{:g}]             # N m at the joint: motor's * turns of one joint turn\n",
+      "    max_torque: [{:g}]             # N m at the joint: the motor's, times its turns in one joint turn\n",
       o.torque);
   return text;
 }
@@ -153,13 +171,16 @@ std::string textOf(const Options& o) {
       "# {0}. Written by `hapticd device new`; each number is a guess until you have measured it.\n"
       "hapticd-device: 1\nmodule: usb_{1}\nname: {0}\n"
       "# mount: {{position: [0, 0, 0]}}        # where its frame stands in the world, m\n"
-      "limits: {{force: {2:g}, passivity: true}}   # N: begin low, and raise it when the signs are right\n"
+      "limits: {{force: {2:g}, passivity: true}}   # N: begin low, and raise it when the signs are right\n{8}"
       "parameters:\n  usb: {{id: \"{3}\"}}\n"
       "  # device: {{max_force: 5, max_stiffness: 1000, mass: 0.2}}      # what `check` and `tune` may rely on\n{4}"
       "  calibration:\n    method: pose                  # or none: absolute encoders; device: it finds its zero "
       "itself\n"
-      "    pose: [{5}]{6}# rad in the pose below\n    instructions: \"Hold every joint at its zero.\"\n{7}",
-      o.name, o.bus, o.force, o.id, armOf(o), pose, "               ", wireOf(o));
+      "    pose: [{5}]{6}# rad, while it is held as below\n    instructions: \"Hold every joint at its zero.\"\n{7}",
+      o.name, o.bus, o.force, o.id, armOf(o), pose, "               ", wireOf(o),
+      o.buttons > 0 ? "# in limits: enable: {button: 0}   # forces only while it is held; here buttons count from 0, "
+                      "in wire from 1\n"
+                    : "");
 }
 
 bool usable(const std::string& name) {

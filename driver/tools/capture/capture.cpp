@@ -56,6 +56,25 @@ bool isHeading(const std::string& line) {
   return line.size() > 1 && line[1] == ':' && std::string("DRNIP").find(line[0]) != std::string::npos;
 }
 
+bool isPrintable(char c) {
+  return (c >= ' ' && c <= '~') || c == '\n' || c == '\r' || c == '\t';
+}
+
+/// The beginning of a line, safe for a terminal whatever it is.
+std::string shown(const std::string& line) {
+  constexpr size_t kShown = 40;
+  std::string text = line.substr(0, kShown);
+  std::replace_if(text.begin(), text.end(), [](char c) { return !isPrintable(c) || c == '\t'; }, '.');
+  return text;
+}
+
+/// How to come to such text from what this seems to be.
+std::string otherForm(const std::string& text) {
+  if (!std::all_of(text.begin(), text.end(), isPrintable)) return "; this is no text, leave --hex out";
+  const bool dump = text.rfind("00000000", 0) == 0;  // xxd and hexdump -C begin so
+  return dump ? "; a dump with addresses: give the file itself, or `xxd -p -c SIZE`" : "";
+}
+
 Result<Capture> readText(const std::string& text) {
   Capture capture;
   capture.text = true;
@@ -71,8 +90,8 @@ Result<Capture> readText(const std::string& text) {
     if (!takeEvent(line, transfer.time)) takeTime(line, transfer.time);
     auto bytes = bytesIn(line);
     if (!bytes)
-      return Error{"line " + std::to_string(number) + ": \"" + line.substr(0, 40) +
-                   "\" is not hexadecimal, expected two digits a byte: 01 ff 3c"};
+      return Error{"line " + std::to_string(number) + ": \"" + shown(line) +
+                   "\" is not hexadecimal, expected two digits a byte, a report a line: 01 ff 3c" + otherForm(text)};
     transfer.bytes = std::move(*bytes);
     if (!transfer.bytes.empty()) capture.transfers.push_back(std::move(transfer));
   }
@@ -82,11 +101,13 @@ Result<Capture> readText(const std::string& text) {
 }  // namespace
 
 Result<Capture> readCapture(const std::string& bytes, Form form) {
-  const bool printable = std::all_of(
-      bytes.begin(), bytes.end(), [](char c) { return (c >= ' ' && c <= '~') || c == '\n' || c == '\r' || c == '\t'; });
   if (form == Form::kHex) return readText(bytes);
-  if (form == Form::kGuess && printable)
-    if (auto text = readText(bytes)) return text;
+  if (form == Form::kGuess && std::all_of(bytes.begin(), bytes.end(), isPrintable)) {
+    auto text = readText(bytes);
+    if (text) return text;
+    if (bytes.find_first_of(" \n\t,") != std::string::npos)
+      return Error{text.error() + "; for bytes that only look like text: --raw"};
+  }
   Capture capture;
   if (!bytes.empty()) capture.transfers.push_back({-1, {bytes.begin(), bytes.end()}});
   return capture;

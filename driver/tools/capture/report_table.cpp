@@ -64,6 +64,11 @@ std::string whyWrong(const Field& field, std::span<const uint8_t> body) {
   }
 }
 
+/// "1 report", "3 reports".
+std::string counted(size_t count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 class Reader {
  public:
   explicit Reader(const codec::Wire& wire) : wire_(wire), framer_(wire.framing, wire.input.bytes()) {}
@@ -103,7 +108,11 @@ class Reader {
     }
     if (one.verdict == Verdict::kWrongSize)
       one.wrong = std::to_string(bytes.size()) + " bytes, expected " + std::to_string(wire_.input.bytes());
-    if (wrong != nullptr) one.wrong = whyWrong(*wrong, bytes.subspan(wire_.input.id >= 0 ? 1 : 0));
+    const auto body = bytes.subspan(wrong != nullptr && wire_.input.id >= 0 ? 1 : 0);
+    if (wrong != nullptr) one.wrong = whyWrong(*wrong, body);
+    constexpr size_t kLooked = 64;
+    if (one.verdict != Verdict::kGood && !body.empty() && decoded.bad.size() < kLooked)
+      decoded.bad.push_back({wrong, {body.begin(), body.end()}});
     if (one.verdict == Verdict::kGood && one.state.has_sequence) count(one.state.sequence);
     decoded.reports.push_back(std::move(one));
   }
@@ -253,15 +262,17 @@ std::string csvOf(const codec::Wire& wire, size_t joints, const Decoded& decoded
 std::string summaryOf(const Decoded& decoded) {
   std::map<std::string, size_t> verdicts;
   for (const DecodedReport& one : decoded.reports)
-    if (one.verdict != Verdict::kGood) ++verdicts[wordOf(one.verdict)];
-  std::string text = std::to_string(decoded.reports.size()) + " reports, " + std::to_string(decoded.good()) + " good";
+    if (one.verdict != Verdict::kGood)
+      ++verdicts[one.verdict == Verdict::kWrongSize ? "of a wrong size" : wordOf(one.verdict)];
+  std::string text = counted(decoded.reports.size(), "report") + ", " + std::to_string(decoded.good()) + " good";
   for (const auto& [word, count] : verdicts) text += ", " + std::to_string(count) + " " + word;
-  if (decoded.others > 0) text += "; " + std::to_string(decoded.others) + " with another id";
-  if (decoded.lost > 0) text += "; " + std::to_string(decoded.lost) + " bytes belong to none";
-  if (decoded.repeats > 0) text += "; " + std::to_string(decoded.repeats) + " with the counter of the one before";
-  if (decoded.gaps > 0) text += "; the counter skips " + std::to_string(decoded.gaps) + " times";
-  for (const DecodedReport& one : decoded.reports)
-    if (!one.wrong.empty()) return text + "\nfirst bad one: " + one.wrong;
+  if (decoded.others > 0) text += "; besides " + counted(decoded.others, "report") + " with another id";
+  if (decoded.lost > 0) text += "; besides " + counted(decoded.lost, "byte") + " of no report";
+  if (decoded.repeats > 0) text += "; the counter stands still " + counted(decoded.repeats, "time");
+  if (decoded.gaps > 0) text += "; numbers of the counter are missing " + counted(decoded.gaps, "time");
+  for (size_t i = 0; i < decoded.reports.size(); ++i)
+    if (!decoded.reports[i].wrong.empty())
+      return text + "\nreport " + std::to_string(i + 1) + " is the first bad one: " + decoded.reports[i].wrong;
   return text;
 }
 

@@ -20,12 +20,19 @@ struct DecodedReport {
   std::string wrong;  ///< "" or what made the verdict: "checksum at byte 12 is 0x12, of the bytes 0 to 11 it is 0x34"
 };
 
+/// A report that is none, for a look at what is wrong with all of them.
+struct BadReport {
+  const codec::Field* wrong = nullptr;  ///< of the wire format; nullptr: the report's size
+  std::vector<uint8_t> bytes;           ///< without the id where a field is wrong
+};
+
 struct Decoded {
   std::vector<DecodedReport> reports;
-  size_t lost = 0;     ///< bytes that belong to no report
-  size_t others = 0;   ///< reports with another id: of another kind
-  size_t repeats = 0;  ///< reports with the sequence number of the one before
-  size_t gaps = 0;     ///< places where sequence numbers are missing
+  size_t lost = 0;             ///< bytes that belong to no report
+  size_t others = 0;           ///< reports with another id: of another kind
+  size_t repeats = 0;          ///< reports with the sequence number of the one before
+  size_t gaps = 0;             ///< places where sequence numbers are missing
+  std::vector<BadReport> bad;  ///< the first ones, of a whole size or field
   size_t good() const;
 };
 

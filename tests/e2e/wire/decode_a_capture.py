@@ -7,6 +7,7 @@ import binascii
 import csv
 import io
 import os
+import pty
 import struct
 import subprocess
 import sys
@@ -117,6 +118,42 @@ with tempfile.TemporaryDirectory() as folder:
     code, out, err = run("encode", arm, given=b"torque1,speed\n0.1,3\n")
     check("a column that is not in the report is named", code == 2 and "speed" in err and "torque2" in err, err)
 
+    # What goes wrong with captures and numbers, and what is said of it.
+    code, out, err = run("encode", arm, given=b"0.1,0.7,-5000\n")
+    check("a torque beyond its field is told", code == 0 and "line 1: torque2: 0.7 is beyond what its field can carry, -0.5 to 0.5; sent as 0.5" in err and
+          "torque3: -5000" in err and "torque1" not in err, err)
+    code, out, err = run("encode", arm, given=b"0.1,0.5,-0.5\n")
+    check("and nothing of one that fits", code == 0 and not err, err)
+    code, out, err = run("encode", arm, "--from-arm", given=b"position1\n9999\n")
+    check("a position beyond its field is told", "position1: 9999 is beyond" in err, err)
+    lines = [report(*one).hex(" ") for one in truth]
+    code, out, err = run("decode", arm, given="\n".join(lines[:7] + ["g1" + lines[7][2:]]).encode())
+    check("one wrong letter in a text is its line, not a capture of other bytes", code == 2 and "line 8" in err and "g1" in err and "--raw" in err, err)
+    for name, text in (("xxd", "00000000: bc0a 0000  ....\n"), ("decimal", "188 10 0 0\n"), ("CSV", "1,2,300\n")):
+        code, out, err = run("decode", arm, given=text.encode())
+        check(f"{name} is not taken for raw bytes", code == 2 and "line 1" in err and "not hexadecimal" in err, err)
+    code, out, err = run("decode", arm, "--hex", given=b"\x1b[31m\x07\xff\n")
+    check("bytes do not reach the terminal", code == 2 and "\x1b[31m" not in err and "leave --hex out" in err, repr(err))
+    code, out, err = run("decode", arm, given=("\n".join("01 " + line for line in lines)).encode())
+    check("a report id that the file lacks is guessed", code == 1 and "give wire.input id: 1" in err, err)
+    code, out, err = run("decode", arm, given=" ".join(lines).encode())
+    check("many reports in a line are counted", code == 1 and "720 bytes are 40 reports of 18" in err, err)
+    other = os.path.join(folder, "other.yaml")
+    for wrong in ("method: crc32c", "method: crc32-bzip2", "endian: big, method: crc32"):
+        open(other, "w").write(ARM.replace("method: crc32,", wrong + ","))
+        code, out, err = run("decode", other, given="\n".join(lines).encode())
+        check(f"{wrong}: the right one is found", code == 1 and "is right with method: crc32, endian: little" in err, err)
+    open(other, "w").write(ARM.replace("at: 14, type: u32, method: crc32, from: 0, to: 14", "at: 14, type: u32, method: crc32, from: 1, to: 14"))
+    code, out, err = run("decode", other, given="\n".join(lines).encode())
+    check("where none fits, this is told", code == 1 and "no method that is known by name fits" in err, err)
+    code, out, err = run("decode", arm, given=lines[0].encode())
+    check("one report is one", "1 report, 1 good" in err, err)
+    for text, words in ((b"0.1 -0.1 0.2\n", "expected commas between the numbers"), (b"abc,1,2\n", '"abc"'), (b"nan,0,0\n", '"nan"')):
+        code, out, err = run("encode", arm, given=text)
+        check(f"{text!r} is bad input in its own words", code == 2 and words in err, err)
+    code, out, err = run("encode", arm, "0.1,0.2,0.3")
+    check("numbers in place of a file are understood", code == 2 and "echo 0.1,0,0 | hapticd device encode" in err, err)
+
     code, out, err = run("encode", arm, "--from-arm", given=b"position1,position2,position3,buttons\n0.5,-0.25,1.5,3\n0.1,0.2,0.3,0\n")
     code2, out2, err2 = run("decode", arm, given=out)
     told = rows(out2)
@@ -141,16 +178,35 @@ with tempfile.TemporaryDirectory() as folder:
         arm = os.path.join(folder, kind + ".yaml")
         code, out, err = run("new", kind, "-o", arm, "--kind", kind, "--no-questions", *more)
         done = subprocess.run([HAPTICD, "check", arm], capture_output=True, text=True, timeout=120)
-        check(f"device new writes a {kind} that check accepts", code == 0 and done.returncode == 0, (out, err, done.stdout))
+        check(f"device new writes a {kind} that check accepts", code == 0 and done.returncode == 0 and "warning" not in done.stdout, (out, err, done.stdout))
+        joints = 6 if kind == "chain" else 3
+        poses = os.path.join(folder, "poses.csv")
+        open(poses, "w").write(",".join(f"q{i + 1}" for i in range(joints)) + "\n" + ",".join(["0.3"] * joints) + "\n")
+        code, out, err = run("kinematics", arm, "--joints", poses)
+        held = [float(value) for name, value in (rows(out) or [{}])[0].items() if name.startswith("gravity")]
+        check(f"and no weight that nobody gave is carried by a {kind}", code == 0 and len(held) == joints and not any(held), (held, err))
         joints = 6 if kind == "chain" else 3
         code, out, err = run("encode", arm, "--from-arm", given=(",".join(["0.1"] * joints) + "\n").encode())
         code, out, err = run("decode", arm, given=out)
         check(f"and whose reports of a {kind} can be tried", code == 0 and abs(float(rows(out)[0]["position1"]) - 0.1) < 1e-3, (out, err))
     code, out, err = run("new", "phantom", "-o", arm)
     check("no file is overwritten", code == 2 and "exists already" in err, err)
-    for bad in (["--kind", "scara"], ["--lengths", "1,2,3"], ["--bits", "65"], ["--bus", "can"]):
+    for bad in (["--kind", "scara"], ["--lengths", "1,2,3"], ["--bits", "65"], ["--bus", "can"], ["--id", "hello"]):
         code, out, err = run("new", "bad", "-o", os.path.join(folder, "bad.yaml"), "--no-questions", *bad)
         check(f"{' '.join(bad)} is refused", code == 2 and not os.path.exists(os.path.join(folder, "bad.yaml")), err)
+
+    # At a terminal: a wrong answer is asked for again, at once, and no other answer is lost.
+    asked = os.path.join(folder, "asked.yaml")
+    keyboard, screen = pty.openpty()
+    answers = "HID\nhid\nhello\n16c0:0486\nphantom\nmany\n4000\n-10\n9.5\n99\n24\n2\n\n\n"
+    os.write(keyboard, answers.encode())
+    done = subprocess.run([HAPTICD, "device", "new", "asked", "-o", asked], stdin=screen, capture_output=True, text=True, timeout=120)
+    os.close(keyboard), os.close(screen)
+    text = open(asked).read() if os.path.exists(asked) else ""
+    check("wrong answers are asked for again", done.returncode == 0 and done.stdout.count("Bus: ") == 2 and done.stdout.count("Motor turns") == 2 and
+          "\"many\" is no number" in done.stdout, (done.stdout, done.stderr))
+    check("and the right ones are in the file", "16c0:0486" in text and f"scale: {2 * 3.14159265358979 / 38000:.6g}"[:14] in text and "type: i24" in text and
+          "button: 2" in text, text)
 
     window = os.path.join(folder, "window")
     board = subprocess.Popen([BOARD, window, "--arm", os.path.join(SOURCE, "config/devices/simulated-sarcos.yaml"), "--plugin-path", MODULES,

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "capture/hints.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+#include <vector>
+
+namespace hapticd::capture {
+namespace {
+
+using codec::Checksum;
+using codec::Field;
+
+/// Fewer reports than that agree with some method by chance.
+constexpr size_t kEnough = 3;
+
+std::string hexByte(uint8_t byte) {
+  char text[8];
+  std::snprintf(text, sizeof text, "0x%02x", byte);
+  return text;
+}
+
+/// Every bad report is of one and the same wrong size.
+bool allOfOneSize(const Decoded& decoded) {
+  return !decoded.bad.empty() && decoded.good() == 0 &&
+         std::all_of(decoded.bad.begin(), decoded.bad.end(), [&](const BadReport& bad) {
+           return bad.wrong == nullptr && bad.bytes.size() == decoded.bad.front().bytes.size();
+         });
+}
+
+std::string sizeHint(const codec::Wire& wire, const Decoded& decoded) {
+  if (!allOfOneSize(decoded)) return "";
+  const std::vector<uint8_t>& bytes = decoded.bad.front().bytes;
+  const size_t size = bytes.size(), expected = wire.input.bytes();
+  const bool same = std::all_of(decoded.bad.begin(), decoded.bad.end(),
+                                [&](const BadReport& bad) { return bad.bytes.front() == bytes.front(); });
+  if (size == expected + 1 && same && wire.input.id < 0 && bytes.front() != 0)
+    return "each begins with " + hexByte(bytes.front()) +
+           " and has one byte too many: if this is the report id, give " +
+           "wire.input id: " + std::to_string(bytes.front()) + "; size and offsets do not count it\n";
+  if (size + 1 == expected && wire.input.id >= 0)
+    return "each has one byte too few: if they were captured without the report id, put " +
+           hexByte(static_cast<uint8_t>(wire.input.id)) + " in front of each, or leave wire.input id out\n";
+  if (size > expected && size % expected == 0)
+    return std::to_string(size) + " bytes are " + std::to_string(size / expected) + " reports of " +
+           std::to_string(expected) + ": a line of text is one report, expected one a line\n";
+  return "";
+}
+
+bool fitsAll(const Field& field, const Decoded& decoded) {
+  return std::all_of(decoded.bad.begin(), decoded.bad.end(), [&](const BadReport& bad) {
+    return codec::codeAt(field, bad.bytes) == codec::checksumAt(field, bad.bytes);
+  });
+}
+
+/// The methods, in both byte orders, that agree with the checksum of every bad report.
+std::vector<std::string> fittingMethods(Field field, const Decoded& decoded) {
+  std::vector<std::string> names;
+  std::vector<codec::NamedCrc> all(codec::namedCrcs().begin(), codec::namedCrcs().end());
+  codec::Check plain;
+  plain.bits = field.bits;
+  plain.method = Checksum::kSum, all.push_back({"sum", plain, 0});
+  plain.method = Checksum::kXor, all.push_back({"xor", plain, 0});
+  for (const codec::NamedCrc& one : all)
+    for (const bool big : {false, true}) {
+      if (one.check.bits > field.bits || (big && field.bits <= 8)) continue;
+      field.check = one.check;
+      field.check.big_endian = field.big_endian = big;
+      if (fitsAll(field, decoded)) names.push_back(std::string(one.name) + ", endian: " + (big ? "big" : "little"));
+    }
+  return names;
+}
+
+std::string checksumHint(const Decoded& decoded) {
+  const Field* field = decoded.bad.empty() ? nullptr : decoded.bad.front().wrong;
+  if (field == nullptr || field->role != codec::Role::kChecksum || decoded.good() > 0) return "";
+  std::set<std::string> different;
+  for (const BadReport& bad : decoded.bad) {
+    if (bad.wrong != field) return "";
+    different.insert(hexText(bad.bytes.data(), bad.bytes.size()));
+  }
+  if (different.size() < kEnough) return "";
+  const std::vector<std::string> names = fittingMethods(*field, decoded);
+  if (names.empty())
+    return "no method that is known by name fits them either, from byte " + std::to_string(field->from) + " to " +
+           std::to_string(field->to - 1) + ": see from, to and at of the checksum\n";
+  return "the checksum of each of them is right with method: " + names.front() + "\n";
+}
+
+}  // namespace
+
+std::string hintsOf(const codec::Wire& wire, const Decoded& decoded) {
+  return sizeHint(wire, decoded) + checksumHint(decoded);
+}
+
+}  // namespace hapticd::capture

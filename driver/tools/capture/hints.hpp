@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+/// What the bad reports of a capture have in common, and so what is probably wrong in the device file.
+#pragma once
+#include <string>
+
+#include "capture/report_table.hpp"
+
+namespace hapticd::capture {
+
+/// [main] A sentence a line, "" where there is nothing to say: a report id that the file does not give, several reports
+/// in one line, a checksum of another method.
+std::string hintsOf(const codec::Wire& wire, const Decoded& decoded);
+
+}  // namespace hapticd::capture
