@@ -13,11 +13,12 @@ using Eigen::Vector3d;
 
 constexpr const char* kField = "skip: it names no surface (HSP_OUT_TRACED): a force without a surface has no sign";
 
-/// The force along the way out, counted at each place by itself.
+/// Runs a test at each place where the shape can be touched; the first objection ends it.
 std::string atEachPlace(const Recipe& recipe, const std::function<std::string(Subject&, const Place&)>& test) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (recipe.touch.places.empty()) return recipe.touch.traced || !recipe.touch.felt ? "skip: no contact" : kField;
+  if (recipe.touch.places.empty())
+    return recipe.touch.traced || !recipe.touch.felt ? "skip: no contact was found to test, see contact-found" : kField;
   for (const Place& place : recipe.touch.places)
     if (std::string wrong = test(*made.subject, place); !wrong.empty()) return wrong;
   return "";

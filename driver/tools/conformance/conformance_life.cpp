@@ -37,7 +37,8 @@ std::string descriptorComplete(const Recipe& recipe, uint64_t) {
     if (blank(p.id) || blank(p.doc) || p.unit == nullptr)
       return "parameter " + std::to_string(i) + " lacks id, unit or doc";
     if (!plainId(p.id))
-      return "parameter \"" + std::string(p.id) + "\": expected an id of letters, digits, _ . and - alone: a scene names it";
+      return "parameter \"" + std::string(p.id) +
+             "\": expected an id of letters, digits, _ . and - alone: a scene names it";
     const bool number = p.kind == HSP_REAL || p.kind == HSP_INT;
     if (number && !(p.min <= p.def && p.def <= p.max)) return std::string(p.id) + ": its default is out of its range";
     if (p.kind == HSP_ENUM && !(p.def >= 0 && p.def < p.choice_count))
