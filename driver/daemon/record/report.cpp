@@ -33,6 +33,9 @@ Json modelJson(const ModelReport& model) {
                {"degraded",
                 {{"ticks", model.degraded_ticks}, {"level", model.coarsest}, {"residual_um", model.residual_m * 1e6}}}};
   json.update(contactJson(model.contact));
+  json["feet"] = {{"nearest", model.contact.nearestFeet()},
+                  {"held", model.contact.heldFeet()},
+                  {"degraded", model.contact.degradedFeet()}};
   json["step_ns"] = {{"p50", step.quantile(0.5) * kNs}, {"p99", step.quantile(0.99) * kNs}, {"max", step.max() * kNs}};
   for (const ArmContact& arm : model.arms) json["arms"][arm.device] = contactJson(arm.contact);
   return json;
@@ -63,6 +66,9 @@ std::string modelText(const ModelReport& model, const RunReport& report) {
     text += fmt::format(
         "  degraded  {} ticks, to level {} of 3, so that the tick's budget holds; residual up to {:.3g} um\n",
         model.degraded_ticks, model.coarsest, model.residual_m * 1e6);
+  if (c.heldFeet() + c.degradedFeet() > 0)
+    text += fmt::format("  feet      {} nearest, {} held in contact, {} not proved\n", c.nearestFeet(), c.heldFeet(),
+                        c.degradedFeet());
   const Histogram& step = c.stepUs();
   if (step.total() > 0)
     text += fmt::format("  step      p50 {:.0f} ns   p99 {:.0f} ns   max {:.0f} ns\n", step.quantile(0.5) * 1e3,

@@ -34,6 +34,7 @@ class Report : public testing::Test {
     report.lateness_us.add(3);
     report.models.push_back({"ball", "sphere", {}});
     report.models[0].contact.add(true, 0.002, 1.5, 1e-3, 400);
+    for (int i = 0; i < 6; ++i) report.models[0].contact.addFoot(i < 2, i < 1);
     report.faults = {"the arm is gone"};
     return report;
   }
@@ -52,6 +53,7 @@ TEST_F(Report, HasEveryPromisedKeyInItsUnit) {
   const auto& ball = json.at("models").at("ball");
   EXPECT_EQ(ball.at("plugin"), "sphere");
   EXPECT_EQ(ball.at("contact_ticks"), 1);
+  EXPECT_EQ(ball.at("feet"), nlohmann::json({{"nearest", 4}, {"held", 1}, {"degraded", 1}}));
   EXPECT_DOUBLE_EQ(ball.at("penetration_mm").at("max"), 2);
   EXPECT_DOUBLE_EQ(ball.at("penetration_mm").at("std"), 0);
   EXPECT_DOUBLE_EQ(ball.at("force_n").at("mean"), 1.5);
@@ -82,6 +84,7 @@ TEST_F(Report, HasARowForEachOfTwoArms) {
   EXPECT_EQ(ball.at("arms").at("left").at("contact_ticks"), 0);
   EXPECT_DOUBLE_EQ(ball.at("arms").at("right").at("penetration_mm").at("max"), 2);
   EXPECT_EQ(ball.at("contact_ticks"), 1);
+  EXPECT_EQ(ball.at("feet"), nlohmann::json({{"nearest", 4}, {"held", 1}, {"degraded", 1}}));
   const std::string text = summary(report);
   EXPECT_NE(text.find("(0 ticks) by left"), std::string::npos) << text;
   EXPECT_NE(text.find("(1 ticks) by right"), std::string::npos) << text;
