@@ -148,6 +148,7 @@ void addClient(CLI::App& app, int& exit_code) {
   command->add_option("--scene", options->scene, "scene of the daemon that is started where none runs");
   command->add_flag("--env", options->env, "print the environment that the program needs, for a shell");
   command->prefix_command();
+  command->fallthrough(false);  // the options after PROGRAM are its own
   command->footer(
       "The program finds hapticd's own libHD.so and the daemon of --name. Where none runs, one is started with the\n"
       "simulated arm, and ends with the program. Options of this command stand before PROGRAM; its exit code is the "
