@@ -86,7 +86,7 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
                                            ", traced while within the activation radius"
                                      : "is traced by its plugin in every tick";
     say("  surfaces", surfaces);
-    say("  motion", (report.flags & HSP_R_MOVES) != 0 ? "moved by its plugin: integrated in every tick"
+    say("  motion", (report.flags & HSP_R_MOVES) != 0       ? "moved by its plugin: integrated in every tick"
                     : model.kinematic && model.path.empty() ? std::string("rests until a program leads it")
                     : model.kinematic ? "follows " + std::to_string(model.path.size()) + " points of a path"
                                       : "none: no integrator, its pose is fixed");

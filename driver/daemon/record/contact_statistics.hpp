@@ -40,7 +40,7 @@ class ContactStatistics {
   uint64_t nearestFeet() const noexcept { return nearest_feet_; }    ///< ticks whose foot is the nearest point
   uint64_t heldFeet() const noexcept { return held_feet_; }          ///< of a held contact; another point is nearer
   uint64_t degradedFeet() const noexcept { return degraded_feet_; }  ///< neither proved nor held
-  double meanDepth() const noexcept { return mean_; }  ///< [m]
+  double meanDepth() const noexcept { return mean_; }                ///< [m]
   double stdDepth() const noexcept { return ticks_ > 1 ? std::sqrt(spread_ / static_cast<double>(ticks_ - 1)) : 0; }
   double maxDepth() const noexcept { return max_depth_; }
   double meanForce() const noexcept { return ticks_ > 0 ? force_sum_ / static_cast<double>(ticks_) : 0; }  ///< [N]

@@ -52,6 +52,14 @@ RequestHead headOf(const Request& request) {
 }
 
 class ServerImpl;
+class Socket;
+
+/// Who is connected. Each connection owns a part of it: those that are open at the end outlive the server, since they
+/// end with the io_context that reads for them.
+struct Register {
+  std::set<Socket*> sockets;
+  size_t connections = 0;
+};
 
 /// One WebSocket with its conversation. Messages go out one after the other.
 class Socket final : public Peer, public std::enable_shared_from_this<Socket> {
@@ -66,6 +74,8 @@ class Socket final : public Peer, public std::enable_shared_from_this<Socket> {
   void tick() {
     if (conversation_) conversation_->onTick();
   }
+  /// What the conversation is about goes now.
+  void endConversation() { conversation_.reset(); }
 
  private:
   void onOpen(Subprotocol protocol);
@@ -81,6 +91,7 @@ class Socket final : public Peer, public std::enable_shared_from_this<Socket> {
   };
   websocket::stream<beast::tcp_stream> stream_;
   ServerImpl& server_;
+  std::shared_ptr<Register> register_;
   Request request_;
   beast::flat_buffer buffer_;
   std::deque<Outgoing> waiting_;  ///< the first is on its way
@@ -104,6 +115,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   beast::tcp_stream stream_;
   ServerImpl& server_;
+  std::shared_ptr<Register> register_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::empty_body>> parser_;
   Response response_;
@@ -118,9 +130,13 @@ class ServerImpl final : public Server {
   std::string url() const override {
     return "http://127.0.0.1:" + std::to_string(v4_.local_endpoint().port()) + "/?token=" + doorkeeper_.token();
   }
-  size_t sockets() const override { return sockets_.size(); }
+  ~ServerImpl() override {
+    for (Socket* socket : register_->sockets) socket->endConversation();
+  }
+  size_t sockets() const override { return register_->sockets.size(); }
   void tick() override {
-    for (Socket* socket : std::vector<Socket*>(sockets_.begin(), sockets_.end())) socket->tick();
+    const std::set<Socket*>& sockets = register_->sockets;
+    for (Socket* socket : std::vector<Socket*>(sockets.begin(), sockets.end())) socket->tick();
   }
 
   void start() {
@@ -130,10 +146,8 @@ class ServerImpl final : public Server {
   }
   const Doorkeeper& doorkeeper() const { return doorkeeper_; }
   const Converse& converse() const { return converse_; }
-  bool full() const { return sockets_.size() >= kMostSockets; }
-  void add(Socket* socket) { sockets_.insert(socket); }
-  void remove(Socket* socket) { sockets_.erase(socket); }
-  void connections(int more) { connections_ += static_cast<size_t>(more); }
+  bool full() const { return sockets() >= kMostSockets; }
+  const std::shared_ptr<Register>& connected() const { return register_; }
 
  private:
   /// The same port of ::1, for browsers that turn "localhost" into it. A machine without IPv6 does without.
@@ -150,7 +164,8 @@ class ServerImpl final : public Server {
   void accept(tcp::acceptor& acceptor) {
     acceptor.async_accept([this, &acceptor](ErrorCode error, tcp::socket socket) {
       if (!acceptor.is_open()) return;
-      if (!error && connections_ < kMostConnections) std::make_shared<Connection>(std::move(socket), *this)->read();
+      if (!error && register_->connections < kMostConnections)
+        std::make_shared<Connection>(std::move(socket), *this)->read();
       if (!error) return accept(acceptor);
       // without a free descriptor: not asked again and again
       auto timer = std::make_shared<asio::steady_timer>(acceptor.get_executor(), std::chrono::milliseconds(500));
@@ -161,16 +176,16 @@ class ServerImpl final : public Server {
   tcp::acceptor v4_, v6_;
   Doorkeeper doorkeeper_;
   Converse converse_;
-  std::set<Socket*> sockets_;
-  size_t connections_ = 0;
+  std::shared_ptr<Register> register_ = std::make_shared<Register>();
 };
 
-Connection::Connection(tcp::socket socket, ServerImpl& server) : stream_(std::move(socket)), server_(server) {
-  server_.connections(1);
+Connection::Connection(tcp::socket socket, ServerImpl& server)
+    : stream_(std::move(socket)), server_(server), register_(server.connected()) {
+  ++register_->connections;
 }
 
 Connection::~Connection() {
-  server_.connections(-1);
+  --register_->connections;
 }
 
 void Connection::read() {
@@ -238,14 +253,15 @@ void Connection::send() {
   http::async_write(stream_, *serializer, done);
 }
 
-Socket::Socket(beast::tcp_stream stream, ServerImpl& server) : stream_(std::move(stream)), server_(server) {
-  server_.connections(1);
-  server_.add(this);
+Socket::Socket(beast::tcp_stream stream, ServerImpl& server)
+    : stream_(std::move(stream)), server_(server), register_(server.connected()) {
+  ++register_->connections;
+  register_->sockets.insert(this);
 }
 
 Socket::~Socket() {
-  server_.remove(this);
-  server_.connections(-1);
+  register_->sockets.erase(this);
+  --register_->connections;
 }
 
 void Socket::open(Request request, const Admission& admission) {

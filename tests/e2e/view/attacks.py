@@ -264,7 +264,9 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
         mutated(view)
         check("the view serves on", view.lives())
         check("the token is nowhere but in the printed address", view.token not in " ".join(open(f"/proc/{view.view.pid}/cmdline").read().split("\0")))
+        pages = [view.socket(protocol)[0] for protocol in ("hapticd.1", "foxglove.sdk.v1") * 4]
     finally:
         view.end()
+    check("it ends in order while pages are open", view.view.returncode == 0, view.view.returncode)
     check("what it printed is the address alone", view.view.stdout.read() == "")
 finish()
