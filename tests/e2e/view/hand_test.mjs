@@ -121,6 +121,24 @@ test('Space holds wherever the focus is, and presses no button', async () => {
   });
 });
 
+test('Stop asks first, and takes the question back', async () => {
+  await guided('sphere', async (page) => {
+    await page.evaluate(() => {
+      const view = window.hapticdView;
+      view.asked = [];
+      view.ask = (request) => { view.asked.push(request.do); return Promise.resolve({ok: true}); };
+    });
+    const asked = () => page.evaluate(() => window.hapticdView.asked), words = () => page.locator('#stop').textContent();
+    await page.locator('#stop').click();
+    assert.equal(await words(), 'End the run?');
+    await until(async () => (await words()) === 'Stop', kPatience, 'the question is taken back');
+    assert.deepEqual(await asked(), []);
+    await page.locator('#stop').dblclick();
+    assert.deepEqual(await asked(), ['stop']);
+    assert.equal(await words(), 'Stop');
+  });
+});
+
 test('a list of models that comes before the scene can be drawn is shown', async () => {
   await guided('teapot', async (page) => {
     await page.locator('#models article').waitFor({timeout: 1000 * kPatience});

@@ -299,15 +299,13 @@ class Page {
 
   /** The first click asks, the second ends the run. */
   #stop() {
-    const button = $('stop'), calm = () => { button.textContent = 'Stop'; };
-    clearTimeout(this.stopTimer);
-    if (button.textContent === 'Stop') {
-      button.textContent = 'End the run?';
-      this.stopTimer = setTimeout(calm, kStopMs);
-      return undefined;
-    }
+    const asked = this.stopTimer, calm = () => { this.stopTimer = undefined; $('stop').textContent = 'Stop'; };
+    clearTimeout(asked);
     calm();
-    return this.#order({do: 'stop'});
+    if (asked) return this.#order({do: 'stop'});
+    $('stop').textContent = 'End the run?';
+    this.stopTimer = setTimeout(calm, kStopMs);
+    return undefined;
   }
 
   holdOrClear() {
