@@ -30,20 +30,37 @@ static HDCallbackCode HDCALLBACK servo(void* data) {
   return pick(&state, 3) == 0 ? HD_CALLBACK_CONTINUE : HD_CALLBACK_DONE;
 }
 
-static void call(uint64_t* state) {
-  static const HDenum names[] = {HD_CURRENT_POSITION,
-                                 HD_LAST_FORCE,
-                                 HD_DEVICE_VENDOR,
-                                 HD_MOTOR_TEMPERATURE,
-                                 0x7777,
-                                 HD_FORCE_OUTPUT,
-                                 HD_SOFTWARE_VELOCITY_LIMIT,
-                                 HD_CURRENT_TRANSFORM,
-                                 HD_ONE_FRAME_LIMIT};
-  HDdouble numbers[16] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
-  const HDenum name = names[pick(state, sizeof names / sizeof names[0])];
+static void call_scheduler(uint64_t* state) {
   void* seed = (void*)(uintptr_t)*state;
-  switch (pick(state, 22)) {
+  switch (pick(state, 9)) {
+    case 0:
+    case 1:
+      hdStartScheduler();
+      break;
+    case 2:
+      hdStopScheduler();
+      break;
+    case 3:
+      hdSetSchedulerRate(pick(state, 3000));
+      break;
+    case 4:
+      hdScheduleSynchronous(servo, seed, (HDushort)pick(state, 65536));
+      break;
+    case 5:
+    case 6:
+      hdScheduleAsynchronous(servo, seed, (HDushort)pick(state, 65536));
+      break;
+    case 7:
+      hdUnschedule(pick(state, 100));
+      break;
+    default:
+      hdWaitForCompletion(pick(state, 100), HD_WAIT_CHECK_STATUS);
+      break;
+  }
+}
+
+static void call_device(uint64_t* state) {
+  switch (pick(state, 6)) {
     case 0:
       hdInitDevice(HD_DEFAULT_DEVICE);
       break;
@@ -54,59 +71,49 @@ static void call(uint64_t* state) {
       hdMakeCurrentDevice(pick(state, 3));
       break;
     case 3:
-    case 4:
-      hdStartScheduler();
-      break;
-    case 5:
-      hdStopScheduler();
-      break;
-    case 6:
-      hdSetSchedulerRate(pick(state, 3000));
-      break;
-    case 7:
-      hdScheduleSynchronous(servo, seed, (HDushort)pick(state, 65536));
-      break;
-    case 8:
-    case 9:
-      hdScheduleAsynchronous(servo, seed, (HDushort)pick(state, 65536));
-      break;
-    case 10:
-      hdUnschedule(pick(state, 100));
-      break;
-    case 11:
-      hdWaitForCompletion(pick(state, 100), HD_WAIT_CHECK_STATUS);
-      break;
-    case 12:
-      hdEnable(name);
-      break;
-    case 13:
-      hdDisable(name);
-      break;
-    case 14:
       hdBeginFrame(pick(state, 300));
       break;
-    case 15:
+    case 4:
       hdEndFrame(pick(state, 300));
       break;
-    case 16:
-      hdSetDoublev(name, numbers);
-      break;
-    case 17:
-      hdGetString(name);
-      break;
-    case 18:
+    default:
       hdUpdateCalibration(pick(state, 8));
       break;
-    case 19:
-      hdEnable(HD_FORCE_OUTPUT);
+  }
+}
+
+static void call_values(uint64_t* state) {
+  static const HDenum names[] = {
+      HD_CURRENT_POSITION, HD_LAST_FORCE,        HD_DEVICE_VENDOR,   HD_MOTOR_TEMPERATURE,      0x7777,
+      HD_FORCE_OUTPUT,     HD_CURRENT_TRANSFORM, HD_ONE_FRAME_LIMIT, HD_SOFTWARE_VELOCITY_LIMIT};
+  const HDenum name = names[pick(state, sizeof names / sizeof names[0])];
+  HDdouble numbers[16] = {0};
+  switch (pick(state, 6)) {
+    case 0:
+      hdEnable(name);
       break;
-    case 20:
-      usleep(pick(state, 3000));
+    case 1:
+      hdDisable(name);
+      break;
+    case 2:
+      hdSetDoublev(name, numbers);
+      break;
+    case 3:
+      hdGetString(name);
+      break;
+    case 4:
+      hdEnable(HD_FORCE_OUTPUT);
       break;
     default:
       hdGetDoublev(name, numbers);
       break;
   }
+}
+
+static void call(uint64_t* state) {
+  static void (*const kinds[])(uint64_t*) = {call_scheduler, call_device, call_values};
+  kinds[pick(state, 3)](state);
+  if (pick(state, 20) == 0) usleep(pick(state, 3000));
   while (pick(state, 2) != 0) hdGetError();
 }
 
