@@ -45,6 +45,15 @@ struct Pushed {
   ClientForces forces;
 };
 
+/// The one program at `slot` answers a tick with this force along z and this torque about it.
+void answer(ClientForces& forces, link::PushSlot& slot, uint64_t tick, double force, double torque) {
+  hapticd_push push{};
+  push.tick = tick;
+  push.force[2] = force, push.torque[2] = torque;
+  slot.put(push);
+  forces.collect(tick, 1e-3);
+}
+
 TEST(ClientForces, FadesInAndIsThenWhatTheProgramWants) {
   Pushed p;
   p.begin();
@@ -90,11 +99,7 @@ TEST(ClientForces, TurnsTheHandOnlyAsFarAsTheDeviceFileLets) {
     link::PushSlot slot;
     forces.begin(0, slot);
     for (uint64_t tick = 1000; tick < 1100; ++tick) {
-      hapticd_push push{};
-      push.tick = tick;
-      push.torque[2] = -1e6;
-      slot.put(push);
-      forces.collect(tick, 1e-3);
+      answer(forces, slot, tick, 0, -1e6);
       ASSERT_LE(forces.torque().norm(), most * (1 + 1e-12));
     }
     EXPECT_NEAR(forces.torque().z(), -most, 1e-9);
@@ -150,13 +155,7 @@ TEST(ClientForces, AddUpAndAreBoundedOneByOne) {
   ClientForces of_weak_arm({scene::ClientMode::kAdd, 0, false}, 2.5, kTorque, 1e-3);
   link::PushSlot slot;
   of_weak_arm.begin(0, slot);
-  for (uint64_t tick = 0; tick < 100; ++tick) {
-    hapticd_push push{};
-    push.tick = tick;
-    push.force[2] = -30;
-    slot.put(push);
-    of_weak_arm.collect(tick, 1e-3);
-  }
+  for (uint64_t tick = 0; tick < 100; ++tick) answer(of_weak_arm, slot, tick, -30, 0);
   EXPECT_DOUBLE_EQ(of_weak_arm.force().z(), -2.5);
 }
 
