@@ -178,6 +178,10 @@ HAPTICD_API void hapticd_lead_end(hapticd_lead* lead);
  */
 HAPTICD_API int hapticd_next_state(hapticd_client* client, int device, uint64_t after, int timeout_ms,
                                    hapticd_state* state);
+/* Lets hapticd_next_state look without sleeping from so many microseconds before a tick is due until as long after it,
+ * so that no wake-up delays an answer. It keeps a processor busy for that time. 0, as before the first call: it sleeps.
+ * More than 200 counts as 200. */
+HAPTICD_API void hapticd_listen(hapticd_client* client, unsigned microseconds);
 
 #ifdef __cplusplus
 }

@@ -93,6 +93,20 @@ static void leads(hapticd_client* c, const char* arm, const char* model) {
   hapticd_lead_end(hand);
 }
 
+static void listens(hapticd_client* c) {
+  hapticd_state state = {0};
+  int grew = 1, seen = 0;
+  hapticd_listen(c, 1000000); /* 200 counts */
+  hapticd_next_state(c, 0, UINT64_MAX, 5000, &state);
+  for (uint64_t last = state.tick; seen < 500; last = state.tick, ++seen) {
+    if (hapticd_next_state(c, 0, last, 1000, &state) != 1) break;
+    grew &= state.tick > last;
+  }
+  check("states grow where it listens", grew && seen == 500);
+  check("also then none newer than the future", hapticd_next_state(c, 0, state.tick + 1000000, 10, &state) == 0);
+  hapticd_listen(c, 0);
+}
+
 static void pushes(hapticd_client* c, const char* arm) {
   hapticd_error error;
   hapticd_state state = {0};
@@ -132,6 +146,7 @@ int main(int argc, char** argv) {
   asks(c, argv[2]);
   leads(c, argv[2], argv[3]);
   pushes(c, argv[2]);
+  listens(c);
   hapticd_lead_end(NULL);
   hapticd_lead_model(c, argv[3], NULL); /* ends with its client */
   hapticd_close(c);

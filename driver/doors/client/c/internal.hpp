@@ -3,7 +3,9 @@
 #pragma once
 #include <sys/mman.h>
 
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -60,6 +62,8 @@ class Rows {
   static Result<Rows> open(const std::string& file);
   const std::string& about() const { return about_; }
   const std::vector<std::string>& devices() const { return devices_; }
+  /// ns from one tick to the next.
+  int64_t period() const { return period_; }
   std::vector<Stream>& streams() { return streams_; }
   static uint64_t written(const Stream& stream);
   static long read(const Stream& stream, uint64_t& row, void* rows, size_t most);
@@ -71,6 +75,7 @@ class Rows {
   std::string about_;
   std::vector<Stream> streams_;
   std::vector<std::string> devices_;
+  int64_t period_ = 0;
 };
 
 /// What a request got.
@@ -98,6 +103,7 @@ struct hapticd_client {
   std::mutex asking, mapping;
   hapticd::client::Mapping bell, states;
   std::list<hapticd_lead*> leads;
+  std::atomic<int64_t> listen_ns = 0;  ///< before and after a tick is due, without sleeping
 };
 
 struct hapticd_lead {

@@ -79,6 +79,7 @@ Result<void> Rows::readStreams() {
 Result<void> Rows::readAbout() {
   const auto json = nlohmann::json::parse(about_);
   for (const auto& device : json.at("devices")) devices_.push_back(device.at("name"));
+  period_ = static_cast<int64_t>(1e9 / json.at("rate_hz").get<double>());
   for (Stream& stream : streams_) {
     for (const auto& column : json.at("columns").at(stream.name)) {
       hapticd_column known{};

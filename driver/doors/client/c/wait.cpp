@@ -13,12 +13,21 @@
 
 namespace {
 
-constexpr long kMsPerSecond = 1000, kNsPerMs = 1'000'000;
+constexpr long kMsPerSecond = 1000, kNsPerMs = 1'000'000, kNsPerSecond = kMsPerSecond * kNsPerMs;
 
-long nowMs() {
+int64_t nowNs() {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * kMsPerSecond + now.tv_nsec / kNsPerMs;
+  return int64_t{now.tv_sec} * kNsPerSecond + now.tv_nsec;
+}
+
+long nowMs() {
+  return static_cast<long>(nowNs() / kNsPerMs);
+}
+
+void sleepUntil(int64_t ns) {
+  const timespec when{ns / kNsPerSecond, ns % kNsPerSecond};
+  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &when, nullptr);
 }
 
 /// Sleeps until the word is another than `seen`, or it is woken for nothing, at most so long.
@@ -29,11 +38,10 @@ void sleepOn(uint32_t& word, uint32_t& waiting, uint32_t seen, long ms) {
   syscall(SYS_futex, &word, FUTEX_WAIT, seen, &limit, nullptr, 0);
 }
 
-/// Asks until `there` says so. @return it did
+/// Asks until `there` says so, or nowMs() is `end`. @return it did
 template <class There>
-bool waitFor(uint32_t& word, uint32_t& waiting, int timeout_ms, There&& there) {
+bool waitFor(uint32_t& word, uint32_t& waiting, long end, There&& there) {
   constexpr long kLongest = 100;  // a wake-up may be lost to somebody who plays with the bell
-  const long end = nowMs() + timeout_ms;
   for (;;) {
     const uint32_t seen = std::atomic_ref<uint32_t>(word).load();
     if (there()) return true;
@@ -59,14 +67,27 @@ bool newest(std::byte* at, hapticd_state& state) {
   return false;
 }
 
+/// Looks without sleeping while the tick behind `state` is due. @return there is one after `after`
+bool listen(std::byte* at, int64_t period, int64_t before, uint64_t after, hapticd_state& state) {
+  const int64_t due = static_cast<int64_t>(state.time_ns) + period, now = nowNs();
+  // In virtual time, or after a pause of the daemon, nobody knows when it is due.
+  if (due + before < now || due - now > 2 * period) return false;
+  sleepUntil(due - before);
+  while (nowNs() < due + before)
+    if (newest(at, state) && state.tick > after) return true;
+  return false;
+}
+
 }  // namespace
 
 int hapticd_wait(hapticd_client* client, uint64_t tick, int timeout_ms) try {
   const int ticks = hapticd_stream(client, "ticks");
   hapticd_bell* bell = bellOf(client);
   if (bell == nullptr || ticks < 0) return -1;
-  return waitFor(bell->rows, bell->rows_waiting, timeout_ms, [&] { return hapticd_written(client, ticks) > tick; }) ? 1
-                                                                                                                    : 0;
+  return waitFor(bell->rows, bell->rows_waiting, nowMs() + timeout_ms,
+                 [&] { return hapticd_written(client, ticks) > tick; })
+             ? 1
+             : 0;
 } catch (const std::exception&) {
   return -1;
 }
@@ -79,10 +100,19 @@ int hapticd_next_state(hapticd_client* client, int device, uint64_t after, int t
   std::byte* at = client->states.at(sizeof *page + size_t{page->stride} * static_cast<uint32_t>(device),
                                     sizeof(hapticd::link::StateSlot));
   if (at == nullptr) return -1;
-  return waitFor(bell->state, bell->state_waiting, timeout_ms,
-                 [&] { return newest(at, *state) && (after == UINT64_MAX || state->tick > after); })
-             ? 1
-             : 0;
+  const auto there = [&] { return newest(at, *state) && (after == UINT64_MAX || state->tick > after); };
+  const int64_t before = client->listen_ns.load(std::memory_order_relaxed), period = client->rows.period();
+  const long end = nowMs() + timeout_ms;
+  if (there()) return 1;
+  if (before > 0 && after != UINT64_MAX && timeout_ms * kNsPerMs > 2 * period &&
+      listen(at, period, before, after, *state))
+    return 1;
+  return waitFor(bell->state, bell->state_waiting, end, there) ? 1 : 0;
 } catch (const std::exception&) {
   return -1;
+}
+
+void hapticd_listen(hapticd_client* client, unsigned microseconds) {
+  constexpr unsigned kMost = 200;
+  client->listen_ns.store(std::min(microseconds, kMost) * int64_t{1000}, std::memory_order_relaxed);
 }

@@ -3,7 +3,7 @@
  *
  *     cc spring.c -o spring $(pkg-config --cflags --libs hapticd-client)
  *     hapticd run SCENE        with `clients: add` in the scene
- *     ./spring [NAME [SECONDS [N/m]]]
+ *     ./spring [NAME [SECONDS [N/m [LISTEN]]]]     LISTEN: microseconds, see hapticd_listen
  */
 #include <hapticd/client.h>
 #include <sched.h>
@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
   if (sched_setscheduler(0, SCHED_FIFO, &priority) != 0)
     fprintf(stderr, "warning: no real-time priority: answers may come late, and late ones ramp out\n");
 
+  hapticd_listen(client, argc > 4 ? (unsigned)atoi(argv[4]) : 0);
   state = first;
   while (state.t < first.t + seconds && hapticd_next_state(client, 0, state.tick, 1000, &state) == 1) {
     hapticd_push push = {.tick = state.tick, .woke_ns = now_ns()};
