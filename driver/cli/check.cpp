@@ -9,6 +9,7 @@
 #include "cli/command.hpp"
 #include "diagnostics/device_advice.hpp"
 #include "diagnostics/device_trial.hpp"
+#include "diagnostics/hand_start.hpp"
 #include "diagnostics/model_trial.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
@@ -32,13 +33,17 @@ int printSchema(const std::string& format) {
   return kWorked;
 }
 
+/// The scene with the arm that `run` takes where it names none.
+scene::Scene withArm(scene::Scene scene) {
+  if (const auto file = host::shippedFile(scene::kDefaultDevice); scene.devices.empty() && file)
+    if (auto loaded = scene::loadDevice(*file, catalog()); loaded.device) scene.devices.push_back(*loaded.device);
+  return scene;
+}
+
 /// What cannot be stable. Only simulated arms are opened: `check` touches no hardware; `run` warns of it as well.
 document::Problems unstable(const scene::Scene& scene, const std::vector<double>& stiffness) {
   document::Problems warnings = tune::fastPaths(scene);
-  std::vector<scene::Device> devices = scene.devices;
-  if (const auto file = host::shippedFile(scene::kDefaultDevice); devices.empty() && file)  // as `run` will
-    if (auto loaded = scene::loadDevice(*file, catalog()); loaded.device) devices.push_back(*loaded.device);
-  for (const scene::Device& device : devices) {
+  for (const scene::Device& device : scene.devices) {
     if (device.module != "simulated") continue;
     auto arm = host::DeviceInstance::create(device, nullptr);
     if (!arm || !(*arm)->open()) continue;
@@ -81,8 +86,11 @@ Verdict checkOne(const std::string& file, const Options& options) {
   verdict.warnings = trial.warnings;
   if (!scene && found.empty()) verdict.warnings = adviseDevice(file, catalog());
   if (!scene || !found.empty()) return verdict;
-  document::Problems more = unstable(*scene, trial.stiffness);
-  for (const document::Problem& far : farModels(*scene)) more.push_back(far);
+  const scene::Scene full = withArm(*scene);
+  document::Problems more = unstable(full, trial.stiffness);
+  for (const document::Problem& far : farModels(full)) more.push_back(far);
+  if (!options.files_only)
+    for (const document::Problem& inside : startsInside(full)) more.push_back(inside);
   verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());
   return verdict;
 }

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "base/clock.hpp"
@@ -44,6 +45,7 @@ int calibrate(const Options& options) {
   const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
   printProblems(loaded.problems, stderr);
   if (!loaded.device) return kBadInput;
+  std::optional<SetupErrors> once(std::in_place);
   auto device = host::DeviceInstance::create(*loaded.device, logToTerminal);
   if (!device) return fail(kFailed, device.error());
   const hdv_ext_calibration* calibration = (*device)->calibration();
@@ -52,6 +54,7 @@ int calibrate(const Options& options) {
     return kWorked;
   }
   if (auto opened = (*device)->open(); !opened) return fail(kFailed, opened.error());
+  once.reset();  // from now on each is told when it comes
   hdv_start how{};
   how.struct_size = sizeof how;
   how.rate_hz = (*device)->info().rate_hz;

@@ -9,17 +9,45 @@
 namespace hapticd::cli {
 namespace {
 
+/// What each group of hazards of hazards.md is, in a few words.
+struct Against {
+  const char *hazards, *words;
+};
+constexpr Against kAgainst[] = {{"H4 H6 H8 H9 H13 H17 H21", "wrong numbers, faults"},
+                                {"H16", "too much force"},
+                                {"H18", "a blow"},
+                                {"H1 H2", "false positions or times"},
+                                {"H19", "a push too long or strong"},
+                                {"A3", "running into the stops"},
+                                {"A1", "a burnt winding"},
+                                {"H20", "a force nobody expects"},
+                                {"H23", "a weight that pushes"},
+                                {"H26 H33", "a daemon that stands still"},
+                                {"H30 H32", "a daemon that is gone"},
+                                {"H30", "a machine that stops"},
+                                {"H3", "an arm that falls silent"},
+                                {"H22", "a contact that buzzes"},
+                                {"H5", "an arm without its zero"}};
+
+/// The codes where there are no words.
+std::string wordsOf(const std::string& hazards) {
+  for (const Against& against : kAgainst)
+    if (hazards == against.hazards) return against.words;
+  return hazards;
+}
+
 int controls(const std::string& file) {
   document::Problems problems;
   const auto found = diagnostics::controlsOfFile(file, catalog(), problems);
   printProblems(problems, stderr);
   if (!found) return kBadInput;
-  std::printf("%s: %s\n\n%-8s %-30s %-25s %s\n", found->arm.c_str(),
-              found->opened ? "plugged in" : "not plugged in; by its file and module alone", "", "control", "hazards",
+  std::printf("%s: %s\n\n%-8s %-30s %-26s %s\n", found->arm.c_str(),
+              found->opened ? "plugged in" : "not plugged in; by its file and module alone", "", "control", "against",
               "");
   for (const diagnostics::Control& c : found->controls)
-    std::printf("%-8s %-30s %-25s %s\n", nameOf(c.state), c.name.c_str(), c.hazards.c_str(), c.text.c_str());
-  std::printf("\nThe hazards, and the test that shows each control: driver/docs/hazards.md\n");
+    std::printf("%-8s %-30s %-26s %s (%s)\n", nameOf(c.state), c.name.c_str(), wordsOf(c.hazards).c_str(),
+                c.text.c_str(), c.hazards.c_str());
+  std::printf("\nThe hazards by their numbers, and the test that shows each control: driver/docs/hazards.md\n");
   return kWorked;
 }
 

@@ -15,6 +15,7 @@
 
 #include "cli/command.hpp"
 #include "diagnostics/device_trial.hpp"
+#include "document/node.hpp"
 
 namespace hapticd::cli {
 namespace {
@@ -50,6 +51,21 @@ std::string wrongIn(const Options& o) {
   return "";
 }
 
+std::string lengthsQuestion(const std::string& kind) {
+  if (kind == "phantom") return "Lengths of upper arm and forearm [m], separated by commas [0.2, 0.2]";
+  if (kind == "delta") return "Lengths a, b, c, d, e, f, r, s [m], separated by commas [those of a Falcon]";
+  return "Lengths of the links [m], one for each joint, separated by commas [0.2 each]";
+}
+
+bool readLengths(const std::string& text, std::vector<double>& lengths) {
+  for (const std::string& word : CLI::detail::split(text, ',')) {
+    const auto number = document::toNumber(CLI::detail::trim_copy(word));
+    if (!number || !std::isfinite(*number)) return false;
+    lengths.push_back(*number);
+  }
+  return true;
+}
+
 /// Asks for what no option gave; an empty answer keeps what is there.
 class Questions {
  public:
@@ -70,6 +86,21 @@ class Questions {
     }
   }
 
+  /// A list, such as 0.21, 0.17; no answer leaves the template's.
+  template <class Wrong>
+  void askLengths(Options& options, const Wrong& wrong) {
+    if (command_.count("--lengths") > 0) return;
+    for (;; options.lengths.clear()) {
+      std::cout << lengthsQuestion(options.kind) << ": " << std::flush;
+      std::string answer;
+      if (!std::getline(std::cin, answer) || answer.empty()) return;
+      const std::string what =
+          readLengths(answer, options.lengths) ? wrong() : "\"" + answer + "\" is no list of numbers";
+      if (what.empty()) return;
+      std::cout << "  " << what << "\n";
+    }
+  }
+
  private:
   const CLI::App& command_;
 };
@@ -82,6 +113,7 @@ void askAll(const CLI::App& command, Options& options) {
   questions.ask("--kind", "Mechanism: phantom (two links on a turning base), delta, chain (any serial arm)",
                 options.kind, wrong);
   if (options.kind == "chain") questions.ask("--joints", "Joints", options.joints, wrong);
+  questions.askLengths(options, wrong);
   questions.ask("--counts", "Encoder counts of one motor turn (four times its lines)", options.counts, wrong);
   questions.ask("--gear", "Motor turns of one joint turn", options.gear, wrong);
   questions.ask("--bits", "Bits of a position in a report", options.bits, wrong);

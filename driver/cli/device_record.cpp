@@ -3,6 +3,7 @@
 #include <atomic>
 #include <csignal>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "capture/capture.hpp"
@@ -42,6 +43,7 @@ int record(const Options& options) {
   const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
   printProblems(loaded.problems, stderr);
   if (!loaded.device) return kBadInput;
+  std::optional<SetupErrors> once(std::in_place);
   auto device = host::DeviceInstance::create(*loaded.device, logToTerminal);
   if (!device) return fail(kFailed, device.error());
   const auto* extension =
@@ -50,6 +52,7 @@ int record(const Options& options) {
     return fail(kBadInput, options.file + ": its module " + loaded.device->module +
                                " has no bytes to record, expected a device file of usb_hid, usb_bulk or vme");
   if (auto opened = (*device)->open(); !opened) return fail(kFailed, opened.error());
+  once.reset();  // from now on each is told when it comes
   Log log;
   log.out = options.out == "-" ? stdout : std::fopen(options.out.c_str(), "w");
   if (log.out == nullptr) return fail(kBadInput, options.out + ": cannot be written");

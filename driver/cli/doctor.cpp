@@ -39,8 +39,18 @@ Finding checkArm(const std::string& file) {
   if (!found)
     return {file, Verdict::kFail, problems.empty() ? "cannot be used" : problems.front().text(),
             "the arm cannot be opened", "hapticd check " + file};
+  if (found->simulated) return {found->arm, Verdict::kOk, "a simulated arm has no motors", "", ""};
+  if (found->watchdog)
+    return {found->arm, Verdict::kOk,
+            "its hardware switches the motors off when commands stop" +
+                std::string(found->opened ? "" : ", as its file says (wire.watchdog)"),
+            "", ""};
   if (found->silenced_after_us)
-    return {found->arm, Verdict::kOk, "its motors are switched off when the daemon is gone or stands still", "", ""};
+    return {found->arm, Verdict::kWarn,
+            "a guard process switches its motors off when the daemon is gone or stands still; nothing does when the "
+            "machine itself stops",
+            "when the kernel hangs, the power fails or its cable is pulled, it may hold the last force",
+            "give wire.watchdog if its hardware has one; else keep a switch of its power within reach"};
   return {found->arm, Verdict::kWarn,
           std::string("nothing is known that switches its motors off when the daemon is gone") +
               (found->opened ? "" : "; the arm is not plugged in, so it could not be asked"),

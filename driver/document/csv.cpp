@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "document/meant.hpp"
 #include "document/node.hpp"
 #include "document/reader.hpp"
 
@@ -23,6 +24,16 @@ std::optional<double> numberIn(std::string_view text) {
   if (text == "nan" || text == "-nan") return std::nan("");
   if (text == "inf" || text == "-inf") return text.front() == '-' ? -HUGE_VAL : HUGE_VAL;
   return toNumber(text);
+}
+
+/// A text without quotes around it.
+std::string_view unquoted(std::string_view text) {
+  const bool quoted = text.size() > 2 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front();
+  return quoted ? text.substr(1, text.size() - 2) : text;
+}
+
+std::string countText(size_t columns) {
+  return std::to_string(columns) + (columns == 1 ? " column" : " columns");
 }
 
 /// The fields of a line, and where each begins.
@@ -68,6 +79,14 @@ class Parser {
     for (const std::string& header : rules_.headers) text += (text.empty() ? "" : " or ") + header;
     return text;
   }
+  /// How columns are separated here, for a line that has other signs between them.
+  static std::string separators(const std::vector<Field>& fields, size_t columns) {
+    if (fields.size() >= columns) return "";
+    bool others = fields.size() == 1 && fields[0].text.find(' ') != std::string_view::npos;
+    for (const Field& field : fields) others = others || field.text.find_first_of(";\t") != std::string_view::npos;
+    if (others) return "; columns are separated by commas, and decimals have a point";
+    return "";
+  }
   void problem(size_t offset, const std::string& column, const std::string& what) {
     ++wrong_;
     report(problems_, file_, line_, static_cast<int>(offset) + 1, column, what);
@@ -85,9 +104,11 @@ class Parser {
       table_.columns = columns;
       return !numbers;
     }
+    const std::string meant = separators(fields, static_cast<size_t>(-1));
     problem(0, "",
-            numbers ? std::to_string(fields.size()) + " columns, expected " + expected()
-                    : "the header is \"" + names.substr(0, 60) + "\", expected " + expected());
+            (numbers ? countText(fields.size()) + ", expected " + expected()
+                     : "the header is \"" + names.substr(0, 60) + "\", expected " + expected()) +
+                meant);
     wrong_ = kShownProblems;  // no row can be judged
     return true;
   }
@@ -96,7 +117,10 @@ class Parser {
 
   void row(const std::vector<Field>& fields) {
     if (fields.size() != table_.columns)
-      return problem(0, "", std::to_string(fields.size()) + " columns, expected " + std::to_string(table_.columns));
+      return problem(0, "",
+                     countText(fields.size()) + ", expected " + std::to_string(table_.columns) +
+                         separators(fields, table_.columns) +
+                         (fields.size() > table_.columns ? "; a half is 0.5, with a point" : ""));
     for (size_t i = 0; i < fields.size(); ++i)
       if (!take(fields[i], i)) return table_.values.resize(table_.lines.size() * table_.columns);
     const double* now = table_.values.data() + table_.lines.size() * table_.columns;
@@ -116,7 +140,8 @@ class Parser {
       problem(field.offset, nameOf(column),
               "\"" + std::string(field.text.substr(0, 40)) + "\" is not valid, expected a " +
                   (finite ? "finite number" : "number") +
-                  (value && std::isfinite(*value) ? " of at most " + numberText(rules_.largest) : ""));
+                  (value ? (std::isfinite(*value) ? " of at most " + numberText(rules_.largest) : "")
+                         : numberMeant(unquoted(field.text))));
     else
       table_.values.push_back(*value);
     return good;

@@ -4,12 +4,12 @@
 #include <yaml-cpp/parser.h>
 
 #include <algorithm>
-#include <cctype>
 #include <sstream>
 #include <unordered_set>
 
 #include "base/regular_file.hpp"
 #include "document/node.hpp"
+#include "document/slip.hpp"
 
 namespace hapticd::document {
 namespace {
@@ -36,6 +36,7 @@ class Builder final : public YAML::EventHandler {
     Node node = make(mark, Node::Kind::kScalar);
     node.scalar = value;
     node.quoted = tag != "?" && tag != "";  // "!" is the parser's mark of a quoted or block scalar
+    if (node.quoted) last_quoted_ = mark;
     if (!node.quoted && (value == "~" || value == "null" || value == "Null" || value == "NULL"))
       node.kind = Node::Kind::kNull;
     add(std::move(node), mark, anchor);
@@ -60,6 +61,8 @@ class Builder final : public YAML::EventHandler {
   void OnMapEnd() override { closeLast(); }
 
   std::optional<Node> take() { return std::move(root_); }
+  /// Where the last quoted text began.
+  const YAML::Mark& lastQuoted() const { return last_quoted_; }
 
  private:
   struct Open {
@@ -137,6 +140,7 @@ class Builder final : public YAML::EventHandler {
   std::vector<Open> open_;
   std::vector<std::pair<YAML::anchor_t, Node>> anchors_;
   std::optional<Node> root_;
+  YAML::Mark last_quoted_ = YAML::Mark::null_mark();
   size_t nodes_ = 0, most_nodes_;
 };
 
@@ -169,88 +173,6 @@ Place placeOf(const YAML::Mark& mark, const std::string& file) {
   return {file, std::max(mark.line, 0) + 1, std::max(mark.column, 0) + 1};
 }
 
-/// A line of block style: how far it is indented, and where what it holds begins ("- - a" holds at 4).
-struct Line {
-  int number = 0, indent = 0, inner = 0;
-  bool opens = false;  ///< a deeper line may follow
-};
-
-/// The lines up to `last` that hold something. Flow style and block texts have no indentation to be wrong.
-std::vector<Line> blockLines(const std::string& text, int last) {
-  std::vector<Line> lines;
-  std::istringstream in(text);
-  int number = 0, brackets = 0;
-  for (std::string line; number < last && std::getline(in, line);) {
-    ++number;
-    const bool inside = brackets > 0;
-    if (const size_t comment = line.find(" #"); comment != std::string::npos) line.erase(comment);
-    for (const char c : line) brackets += c == '[' || c == '{' ? 1 : c == ']' || c == '}' ? -1 : 0;
-    line.erase(line.find_last_not_of(" \r") + 1);
-    const size_t first = line.find_first_not_of(' ');
-    if (inside || first == std::string::npos || line[first] == '#' || line[first] == '\t') continue;
-    Line one{number, static_cast<int>(first), static_cast<int>(first), false};
-    size_t at = first;
-    while (at + 1 < line.size() && line[at] == '-' && line[at + 1] == ' ') at = line.find_first_not_of(' ', at + 1);
-    one.inner = static_cast<int>(at);
-    const char end = line.back();
-    one.opens = end == ':' || end == '-' || end == '|' || end == '>' || brackets > 0;
-    lines.push_back(one);
-  }
-  return lines;
-}
-
-/// A tab that indents, or a key without a blank after its colon, in one of the lines up to `last`: the parser stumbles
-/// later, over what then is no map.
-std::optional<Problem> wrongBlank(const std::string& text, int last, const std::string& file) {
-  constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-  std::istringstream in(text);
-  int number = 0;
-  for (std::string line; number < last && std::getline(in, line);) {
-    const size_t first = line.find_first_not_of(' ');
-    ++number;
-    if (first == std::string::npos || line[first] == '#') continue;
-    if (line[first] == '\t' && line.find_first_not_of(" \t\r") != std::string::npos)
-      return Problem{{file, number, static_cast<int>(first) + 1}, "", "not YAML: a tab, expected blanks to indent"};
-    const size_t key = line.find_first_not_of("- ", first), end = line.find_first_not_of(kLetters, key);
-    if (key == std::string::npos || end == std::string::npos || end == key || line[end] != ':') continue;
-    if (end + 1 >= line.size() || std::string(" \t\r/:").find(line[end + 1]) != std::string::npos) continue;
-    if (std::isalpha(static_cast<unsigned char>(line[key])) == 0) continue;  // a time: 12:30
-    if (const size_t comment = line.find(" #"); comment != std::string::npos) line.erase(comment);
-    const std::string name = line.substr(key, end - key);
-    return Problem{{file, number, static_cast<int>(end) + 2},
-                   "",
-                   "not YAML: no blank after the colon, expected \"" + name + ": " +
-                       line.substr(end + 1, std::min<size_t>(line.find_last_not_of(" \r") - end, 20)) + "\""};
-  }
-  return std::nullopt;
-}
-
-/// What is wrong with the indentation of one of the lines up to `last`, and where: what a parser says of it comes late,
-/// and in its own words.
-std::optional<Problem> wrongIndent(const std::string& text, int last, const std::string& file) {
-  const auto wrong = [&](const Line& line, const std::string& expected) {
-    return Problem{{file, line.number, line.indent + 1},
-                   "",
-                   "not YAML: indented by " + std::to_string(line.indent) + ", expected " + expected};
-  };
-  std::vector<int> open;
-  bool may_go_deeper = true;
-  for (const Line& line : blockLines(text, last)) {
-    const bool deeper = open.empty() || line.indent > open.back();
-    if (deeper && !may_go_deeper)
-      return wrong(line, std::to_string(open.back()) +
-                             " as the line before it, which opens nothing (a line that does ends with a colon)");
-    std::string all;
-    for (const int indent : open) all += (all.empty() ? "" : " or ") + std::to_string(indent);
-    while (open.size() > 1 && open.back() > line.indent) open.pop_back();
-    if (!deeper && open.back() != line.indent) return wrong(line, all + " as a line above it");
-    if (deeper) open.push_back(line.indent);
-    if (line.inner > line.indent) open.push_back(line.inner);
-    may_go_deeper = line.opens;
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 std::optional<Node> parseText(const std::string& text, const std::string& file, Problems& problems) {
@@ -269,6 +191,10 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
       return std::nullopt;
     }
     std::optional<Node> root = builder.take();
+    if (const auto open = openQuote(text, placeOf(builder.lastQuoted(), file))) {  // the parser takes the end for it
+      problems.push_back(*open);
+      return std::nullopt;
+    }
     Problems ignored;
     Builder second(file, maxNodes(text.size()), ignored);
     if (parser.HandleNextDocument(second)) {
@@ -280,13 +206,7 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
   } catch (const Refused& refused) {
     report(problems, placeOf(refused.mark, file), "", refused.what);
   } catch (const YAML::Exception& error) {
-    const int last = std::max(error.mark.line, 0) + 1;
-    if (const auto blank = wrongBlank(text, last, file))
-      problems.push_back(*blank);
-    else if (const auto indent = wrongIndent(text, last, file))
-      problems.push_back(*indent);
-    else
-      report(problems, placeOf(error.mark, file), "", "not YAML: " + error.msg);
+    problems.push_back(slipIn(text, placeOf(error.mark, file), error.msg));
   } catch (const std::exception& error) {
     report(problems, file, 1, 1, "", std::string("not YAML: ") + error.what());
   }

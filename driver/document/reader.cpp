@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/regular_file.hpp"
+#include "document/meant.hpp"
 #include "document/suggestion.hpp"
 #include "document/table.hpp"
 
@@ -30,6 +31,7 @@ std::string numberText(double value) {
 std::string expectedOf(const Range& range) {
   const std::string unit = range.unit[0] != '\0' ? std::string(" ") + range.unit : "";
   const bool low = range.min > -1e300, high = range.max < 1e300;
+  if (range.min == range.max) return numberText(range.min) + unit;
   if (low && high) return numberText(range.min) + " to " + numberText(range.max) + unit;
   if (low) return numberText(range.min) + unit + " or more";
   if (high) return numberText(range.max) + unit + " or less";
@@ -50,7 +52,9 @@ bool normalise(Eigen::Quaterniond& q) {
 std::optional<double> Reader::number(const Node& node, const std::string& key, const Range& range) {
   const std::optional<double> value = node.isScalar() && !node.quoted ? toNumber(node.scalar) : std::nullopt;
   if (!value) {
-    problem(node, key, describe(node) + " is not a number, expected " + expectedOf(range));
+    problem(node, key,
+            describe(node) + " is not a number, expected " + expectedOf(range) +
+                (node.isScalar() ? numberMeant(node.scalar, range.unit) : ""));
   } else if (!std::isfinite(*value)) {
     problem(node, key, node.scalar + " is not finite, expected " + expectedOf(range));
   } else if (*value < range.min || *value > range.max) {
@@ -125,7 +129,7 @@ std::optional<std::filesystem::path> Reader::existingFile(const Node& node, cons
     problem(node, key,
             "there is no file " + full.string() + ", expected the path of a file" +
                 (written.is_absolute() ? "" : ", relative to the file that names it") +
-                suggestion(full.filename().string(), neighbours));
+                suggestion(full.filename().string(), neighbours) + pathMeant(node.scalar));
   }
   return std::nullopt;
 }
@@ -134,7 +138,7 @@ std::optional<Eigen::Vector3d> Reader::vector3(const Node& node, const std::stri
   if (!node.isSequence() || node.items.size() != 3) {
     problem(node, key,
             (node.isSequence() ? "a list of " + std::to_string(node.items.size()) : describe(node)) +
-                ", expected a list of 3 numbers, " + expectedOf(range));
+                ", expected a list of 3 numbers, " + expectedOf(range) + listMeant(node, 3));
     return std::nullopt;
   }
   Eigen::Vector3d v;
@@ -177,20 +181,23 @@ std::optional<Eigen::Quaterniond> Reader::quaternion(const Node& node, const std
 
 void Reader::object(const Node& node, const std::string& key, const Table& table, void* object) {
   if (!node.isMap()) {
-    problem(node, key, describe(node) + ", expected a mapping with " + listed(table.names()));
+    problem(node, key, describe(node) + ", expected a mapping with " + listed(table.names()) + mappingMeant(node));
     return;
   }
+  const std::string* empty = nullptr;  // a key without a value, above the unknown ones
   for (const Entry& entry : node.entries) {
     const std::string path = joined(key, entry.key.scalar);
     if (const Key* known = table.find(entry.key.scalar)) {
-      if (entry.value.isNull())
+      empty = entry.value.isNull() ? &entry.key.scalar : nullptr;
+      if (empty != nullptr)
         problem(entry.key, path, std::string("no value given, expected ") + known->expected());
       else
         known->store(*this, entry.value, path, *known, object);
     } else {
-      problem(
-          entry.key, path,
-          "unknown key, expected one of " + listed(table.names(), 20) + suggestion(entry.key.scalar, table.names()));
+      problem(entry.key, path,
+              "unknown key, expected one of " + listed(table.names(), 20) +
+                  suggestion(entry.key.scalar, table.names()) +
+                  (empty != nullptr ? "; indent it further than " + *empty + ", if it belongs there" : ""));
     }
   }
   for (const Key& wanted : table.keys)

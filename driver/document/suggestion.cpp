@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "document/meant.hpp"
+
 namespace hapticd::document {
 namespace {
 
@@ -36,7 +38,8 @@ size_t editDistance(std::string_view a, std::string_view b) {
 
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
-  size_t best_distance = std::max<size_t>(2, word.size() / 3) + 1;  // a third of the letters may be wrong
+  // A third of the letters may be wrong, and two of five; of a shorter word one, as "poke" is no "none".
+  size_t best_distance = std::max<size_t>(word.size() < 5 ? 1 : 2, word.size() / 3) + 1;
   for (const std::string& candidate : candidates) {
     const size_t distance = editDistance(word, candidate);
     if (distance >= best_distance || distance >= candidate.size()) continue;
@@ -47,6 +50,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 }
 
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
+  if (const std::string slip = keyMeant(word); !slip.empty()) return slip;
   const std::string meant = nearest(word, candidates);
   return meant.empty() ? "" : " (did you mean \"" + meant + "\"?)";
 }

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "document/meant.hpp"
 #include "document/suggestion.hpp"
 
 namespace hapticd::codec {
@@ -115,7 +116,10 @@ double Tree::number(double least, double most) const {
     if (end != text.c_str() && *end == '\0') value = parsed;
   }
   if (value >= least && value <= most) return value;
-  fail(shown(json) + ", expected a number from " + shortText(least) + " to " + shortText(most));
+  const std::string range =
+      least == most ? shortText(least) : "a number from " + shortText(least) + " to " + shortText(most);
+  const bool text = json.is_string() && std::isnan(value);
+  fail(shown(json) + ", expected " + range + (text ? document::numberMeant(json.get_ref<const std::string&>()) : ""));
   return allowed;
 }
 

@@ -19,7 +19,8 @@ template <class... Member>
 void assign(const std::vector<double>& from, const char* id, Member&... members) {
   if (from.empty()) return;
   if (from.size() != sizeof...(members))
-    throw std::invalid_argument(std::string(id) + ": " + std::to_string(from.size()) + " numbers, expected " +
+    throw std::invalid_argument(std::string(id) + ": " + std::to_string(from.size()) +
+                                (from.size() == 1 ? " number" : " numbers") + ", expected " +
                                 std::to_string(sizeof...(members)) + " for this kind of arm");
   size_t i = 0;
   ((members = from[i++]), ...);
@@ -57,8 +58,10 @@ std::unique_ptr<kinematics::Arm> delta(const MechanismParameters& p) {
 
 void needRows(const std::vector<double>& list, size_t columns, size_t rows, const char* id, const char* why) {
   if (list.empty() || list.size() == columns * rows) return;
-  throw std::invalid_argument(std::string(id) + ": " + std::to_string(list.size() / columns) + " rows, expected " +
-                              std::to_string(rows) + ", " + why);
+  const size_t given = list.size() / columns;
+  const std::string noun = columns > 1 ? "row" : "number";
+  throw std::invalid_argument(std::string(id) + ": " + std::to_string(given) + " " + noun + (given == 1 ? "" : "s") +
+                              ", expected " + std::to_string(rows) + ": " + why);
 }
 
 std::unique_ptr<kinematics::Arm> chain(const MechanismParameters& p) {
@@ -66,10 +69,10 @@ std::unique_ptr<kinematics::Arm> chain(const MechanismParameters& p) {
   g.base = baseOf(p);
   g.tool.position = Vector3d(p.tool_position[0], p.tool_position[1], p.tool_position[2]);
   const size_t count = p.dh.size() / 4, all = count + static_cast<size_t>(p.others);
-  if (count == 0) throw std::invalid_argument("arm.dh is empty, expected a row a, alpha, d, theta a joint");
-  needRows(p.limits, 2, all, "arm.limits", "one a row of arm.dh and one each of arm.others");
-  needRows(p.masses, 1, count, "arm.masses", "one a row of arm.dh");
-  needRows(p.centers, 3, count, "arm.centers", "one a row of arm.dh");
+  if (count == 0) throw std::invalid_argument("arm.dh: empty, expected a row [a, alpha, d, theta] for each joint");
+  needRows(p.limits, 2, all, "arm.limits", "one for each row of arm.dh and of arm.others");
+  needRows(p.masses, 1, count, "arm.masses", "one for each row of arm.dh");
+  needRows(p.centers, 3, count, "arm.centers", "one for each row of arm.dh");
   for (size_t i = 0; i < count; ++i) {
     kinematics::ChainLink link;
     link.a = p.dh[4 * i], link.alpha = p.dh[4 * i + 1], link.d = p.dh[4 * i + 2], link.theta = p.dh[4 * i + 3];
@@ -107,7 +110,7 @@ std::unique_ptr<kinematics::Arm> makeMechanism(const MechanismParameters& p) {
   auto arm = mechanism(p);
   if (p.limits.empty() || static_cast<Kind>(p.kind) == Kind::kChain) return arm;
   const auto rows = static_cast<Eigen::Index>(p.limits.size() / 2);
-  needRows(p.limits, 2, static_cast<size_t>(arm->jointCount()), "arm.limits", "one a joint");
+  needRows(p.limits, 2, static_cast<size_t>(arm->jointCount()), "arm.limits", "one for each joint");
   kinematics::JointLimits limits{kinematics::JointVector(rows), kinematics::JointVector(rows)};
   for (Eigen::Index i = 0; i < rows; ++i) {
     limits.min[i] = p.limits[static_cast<size_t>(2 * i)];

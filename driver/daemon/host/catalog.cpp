@@ -160,8 +160,11 @@ std::string Catalog::notFound(Kind kind, const std::string& name, const std::str
   if (reason.empty())
     for (const CatalogFile* file : files(kind))
       if (!file->error.empty()) text += "\n  not usable: " + file->error;
-  return text + "\n  searched:" + textOf(dirs(kind)) +
-         "\n  fix: name an existing one, or add its folder to HAPTICD_PLUGIN_PATH";
+  text +=
+      "\n  searched:" + textOf(dirs(kind)) + "\n  fix: name an existing one, or add its folder to HAPTICD_PLUGIN_PATH";
+  if (name.find('/') == name.npos && !name.ends_with(".so")) return text;
+  return text + "; a file is named by its class, such as " + fs::path(name).stem().string() +
+         ", and its folder by --plugin-path";
 }
 
 }  // namespace hapticd::host

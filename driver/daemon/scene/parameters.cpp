@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scene/parameters.hpp"
 
+#include "document/meant.hpp"
 #include "document/suggestion.hpp"
 #include "hapticd/abi.h"
 
@@ -38,9 +39,12 @@ void ParameterReader::overrideFrom(Reader& in) {
 void ParameterReader::read(const Node& node, const std::string& key, const std::string& prefix,
                            const std::string& skip) {
   if (!node.isMap())
-    return in_->problem(node, key, describe(node) + ", expected a mapping with " + document::listed(info_.paramIds()));
+    return in_->problem(node, key,
+                        describe(node) + ", expected a mapping with " + document::listed(info_.paramIds()) +
+                            document::mappingMeant(node));
   for (const Entry& entry : node.entries) {
     if (!skip.empty() && entry.key.scalar == skip) continue;
+    if (node.find(entry.key.scalar) != &entry.value) continue;  // given twice: told when the file was parsed
     const std::string id = joined(prefix, entry.key.scalar), path = joined(key, entry.key.scalar);
     const int index = info_.indexOf(id);
     if (index >= 0 && entry.value.isNull())

@@ -127,7 +127,10 @@ std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog
   ArmControls found{loaded.device->name, static_cast<bool>((*device)->open()), {}, false};
   found.controls = controlsOf(*loaded.device, **device, found.opened);
   const uint32_t capabilities = found.opened ? (*device)->info().capabilities : 0;
-  found.silenced_after_us = (*device)->silenceable() || (capabilities & (HDV_C_WATCHDOG | HDV_C_SIMULATED)) != 0;
+  const auto wire = wireOf(*loaded.device, (*device)->kinematics().joint_count);
+  found.simulated = (capabilities & HDV_C_SIMULATED) != 0;
+  found.watchdog = (capabilities & HDV_C_WATCHDOG) != 0 || (!found.opened && wire && wire->watchdog > 0);
+  found.silenced_after_us = (*device)->silenceable() || found.watchdog || found.simulated;
   return found;
 }
 

@@ -32,6 +32,8 @@ struct ArmControls {
   bool opened = false;  ///< it is plugged in; otherwise what it alone can say is unknown
   std::vector<Control> controls;
   bool silenced_after_us = false;  ///< something switches its motors off when the daemon has gone
+  bool simulated = false;          ///< it has no motors
+  bool watchdog = false;           ///< its own hardware does so when commands stop, as far as is known
 };
 
 /// [main] Loads the file, and opens the arm if it is there; moves nothing. Nothing: `problems` say why.

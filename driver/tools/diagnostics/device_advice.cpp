@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnostics/limit_advice.hpp"
 #include "diagnostics/node_path.hpp"
 #include "diagnostics/unit_advice.hpp"
 #include "diagnostics/wire_advice.hpp"
@@ -22,17 +23,6 @@ namespace hapticd::diagnostics {
 namespace {
 
 using document::Node;
-
-/// A device whose force may be larger than its arm can give. Nothing is known of an arm that gives 0.
-void forceBeyondArm(const scene::Device& device, document::Problems& warnings) {
-  for (const scene::Value& value : device.parameters) {
-    const bool force = value.id == "device.max_force" || value.id == "max_force";
-    if (force && value.number > 0 && device.limits.force > value.number)
-      document::report(warnings, value.place, "limits.force",
-                       document::numberText(device.limits.force) + " N is more than the arm's " + value.id + " of " +
-                           document::numberText(value.number) + " N, expected no more");
-  }
-}
 
 /// Encoders count: without a scale each count would be a whole radian.
 void countsWithoutScale(const Node& root, const std::string& file, document::Problems& warnings) {
@@ -62,15 +52,6 @@ void massesOfAnotherArm(const Node& root, const std::string& file, document::Pro
                                delta ? "a Falcon" : "a Premium 1.5", delta ? "0, 0, 0" : "0, 0, 0, 0"));
 }
 
-/// Joints of the arm at rest: in the pose of its calibration, else at zero.
-std::array<double, HDV_MAX_JOINTS> restOf(const Node& root, uint32_t joints) {
-  std::array<double, HDV_MAX_JOINTS> q{};
-  const Node* pose = find(root, {"parameters", "calibration", "pose"});
-  if (pose == nullptr || !pose->isSequence() || pose->items.size() != joints) return q;
-  for (size_t i = 0; i < joints && i < q.size(); ++i) q[i] = document::toNumber(pose->items[i].scalar).value_or(0);
-  return q;
-}
-
 void restOutsideWorkspace(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                           document::Problems& warnings) {
   const Node* limit = find(root, {"limits", "workspace"});
@@ -79,7 +60,7 @@ void restOutsideWorkspace(const Node& root, const scene::Device& device, const h
   const hdv_ext_kinematics& kinematics = arm.kinematics();
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();
   std::array<double, 4> turn{};
-  const auto q = restOf(root, kinematics.joint_count);
+  const auto q = restJoints(root, kinematics.joint_count);
   if (kinematics.forward(arm.handle(), q.data(), tip.data(), turn.data()) < 0 || !tip.allFinite()) return;
   if (tip.norm() <= radius) return;
   document::report(warnings, device.file.string(), limit->line, limit->column, "limits.workspace",
@@ -95,11 +76,11 @@ document::Problems adviseDevice(const std::filesystem::path& file, host::Catalog
   const scene::LoadedDevice loaded = scene::loadDevice(file, catalog);
   const auto root = loaded.device ? document::parseFile(file, known) : std::nullopt;
   if (!root) return warnings;
-  forceBeyondArm(*loaded.device, warnings);
   countsWithoutScale(*root, file.string(), warnings);
   massesOfAnotherArm(*root, file.string(), warnings);
   adviseUnits(*root, file.string(), warnings);
   if (const auto arm = host::DeviceInstance::create(*loaded.device, nullptr)) {
+    adviseLimits(*root, *loaded.device, **arm, warnings);
     restOutsideWorkspace(*root, *loaded.device, **arm, warnings);
     adviseWire(*root, *loaded.device, (*arm)->kinematics().joint_count, warnings);
   }

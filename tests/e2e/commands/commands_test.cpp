@@ -259,7 +259,7 @@ TEST_F(Commands, DeviceControlsSaysWhichControlsOneArmHas) {
   const Outcome real = run("device controls " HAPTICD_SOURCE_DIR "/config/devices/woodenhaptics.yaml", kShipped);
   EXPECT_EQ(real.exit_code, 0) << real.text;
   for (const char* line :
-       {"not plugged in", "speed between samples          H1 H2                     5 m/s",
+       {"not plugged in", "speed between samples          false positions or times   5 m/s (H1 H2)",
         "off      the hardware's own watchdog", "on       force of an old sample", "fades after 2 ms"})
     EXPECT_TRUE(has(real.text, line)) << line << "\n" << real.text;
 }

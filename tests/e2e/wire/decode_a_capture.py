@@ -198,15 +198,25 @@ with tempfile.TemporaryDirectory() as folder:
     # At a terminal: a wrong answer is asked for again, at once, and no other answer is lost.
     asked = os.path.join(folder, "asked.yaml")
     keyboard, screen = pty.openpty()
-    answers = "HID\nhid\nhello\n16c0:0486\nphantom\nmany\n4000\n-10\n9.5\n99\n24\n2\n\n\n"
+    answers = "HID\nhid\nhello\n16c0:0486\nphantom\n0.21;0.17\n0.2\n0.21, 0.17\nmany\n4000\n-10\n9.5\n99\n24\n2\n\n\n"
     os.write(keyboard, answers.encode())
     done = subprocess.run([HAPTICD, "device", "new", "asked", "-o", asked], stdin=screen, capture_output=True, text=True, timeout=120)
     os.close(keyboard), os.close(screen)
     text = open(asked).read() if os.path.exists(asked) else ""
     check("wrong answers are asked for again", done.returncode == 0 and done.stdout.count("Bus: ") == 2 and done.stdout.count("Motor turns") == 2 and
-          "\"many\" is no number" in done.stdout, (done.stdout, done.stderr))
+          "\"many\" is no number" in done.stdout and done.stdout.count("Lengths of upper arm") == 3, (done.stdout, done.stderr))
     check("and the right ones are in the file", "16c0:0486" in text and f"scale: {2 * 3.14159265358979 / 38000:.6g}"[:14] in text and "type: i24" in text and
-          "button: 2" in text, text)
+          "button: 2" in text and "lengths: [0.21, 0.17, 0, 0, 0]" in text, text)
+    for command in ("calibrate", "record"):
+        code, out, err = run(command, asked)
+        check(f"{command} of an arm that is not there says so once", code == 1 and err.count("fix:") == 1 and err.count("error:") == 1,
+              (code, err))
+    done = subprocess.run([HAPTICD, "doctor", asked, "--seconds", "0"], capture_output=True, text=True, timeout=120)
+    check("doctor says what is left when the machine stops", "nothing does when the machine itself stops" in done.stdout or
+          "nothing is known that switches its motors off" in done.stdout, done.stdout)
+    open(asked, "w").write(text.replace("# watchdog: 0.02", "watchdog: 0.02"))
+    done = subprocess.run([HAPTICD, "doctor", asked, "--seconds", "0"], capture_output=True, text=True, timeout=120)
+    check("and that a watchdog does it", "its hardware switches the motors off when commands stop, as its file says" in done.stdout, done.stdout)
 
     window = os.path.join(folder, "window")
     board = subprocess.Popen([BOARD, window, "--arm", os.path.join(SOURCE, "config/devices/simulated-sarcos.yaml"), "--plugin-path", MODULES,

@@ -48,6 +48,19 @@ TEST(Csv, NamesLineColumnAndWhatWasExpected) {
             "p.csv:1:1: no rows, expected a header t,x,y,z or t,x,y,z,qw,qx,qy,qz and at least one row");
 }
 
+TEST(Csv, SaysHowToWriteWhatASpreadsheetWrites) {
+  EXPECT_EQ(firstProblem("t,x,y,z\n0,\"1\",2,3\n"),
+            "p.csv:2:3: x: \"\"1\"\" is not valid, expected a finite number; write 1, without quotes or a tag");
+  EXPECT_EQ(firstProblem("t,x,y,z\n0;0,5;1;2\n"),
+            "p.csv:2:1: 2 columns, expected 4; columns are separated by commas, and decimals have a point");
+  EXPECT_EQ(firstProblem("t,x,y,z\n0,0,5,1,2\n"), "p.csv:2:1: 5 columns, expected 4; a half is 0.5, with a point");
+  EXPECT_EQ(firstProblem("t,x,y,z\n0 1 2 3\n"),
+            "p.csv:2:1: 1 column, expected 4; columns are separated by commas, and decimals have a point");
+  EXPECT_EQ(firstProblem("t;x;y;z\n"),
+            "p.csv:1:1: the header is \"t;x;y;z\", expected t,x,y,z or t,x,y,z,qw,qx,qy,qz; columns are separated by "
+            "commas, and decimals have a point");
+}
+
 TEST(Csv, LetsNumbersBeNotFiniteWhereTheRulesSaySo) {
   const CsvRules probe{{"t,x,y,z"}, false, true};
   Problems problems;

@@ -163,6 +163,7 @@ class Page {
     await Promise.all(fresh.map(async (model) => {
       const answer = await this.ask({do: 'geometry', model: model.name});
       if (begun !== this.now) return;
+      this.panel.notDrawn(model.name, answer.mesh ? '' : answer.error);
       if (!answer.mesh) return this.notice(`${model.name} is not drawn: ${answer.error}`);
       const pose = this.now.poses.get(model.index) ?? model.pose ?? scene.find((s) => s.name === model.name)?.pose;
       return this.view.models.add(model.index, {...model, pose}, answer.mesh);

@@ -29,6 +29,7 @@ export class Panel {
     this.ask = ask;
     this.control = false;
     this.models = [];
+    this.undrawn = new Map(); // name -> why a model is felt but not seen
     this.folder = ''; // of the scene
     this.signature = '';
     $('add-form').addEventListener('submit', (event) => {
@@ -72,6 +73,20 @@ export class Panel {
     }
   }
 
+  /** Tells beside a model, for as long as it is there, why nothing of it is seen. @param why '' where it is drawn */
+  notDrawn(name, why) {
+    if ((this.undrawn.get(name) ?? '') === why) return;
+    this.undrawn.set(name, why);
+    this.#showUndrawn(document.querySelector(`[data-model="${CSS.escape(name)}"]`));
+  }
+
+  #showUndrawn(article) {
+    const why = this.undrawn.get(article?.dataset.model) ?? '', words = article?.querySelector('.undrawn');
+    if (!words) return;
+    words.hidden = why === '';
+    words.textContent = `Not drawn: ${why}`;
+  }
+
   async #do(request) {
     const answer = await this.ask(request);
     if (!answer.ok) this.onRefused?.(answer.error);
@@ -94,7 +109,10 @@ export class Panel {
     const body = this.models.length > kOpenModels && fields.length > 0
       ? [element('details', {}, element('summary', {}, `${fields.length} parameters`), ...fields)] : fields;
     const silenced = element('p', {class: 'wrong silenced', hidden: true, role: 'status'});
-    return element('article', {class: 'model', data: {model: model.name}}, head, silenced, ...body);
+    const undrawn = element('p', {class: 'quiet undrawn', hidden: true});
+    const article = element('article', {class: 'model', data: {model: model.name}}, head, silenced, undrawn, ...body);
+    this.#showUndrawn(article);
+    return article;
   }
 
   #field(model, parameter) {

@@ -53,7 +53,7 @@ TEST(Wire, EveryMistakeIsNamedByItsPath) {
        "or "
        "more"},
       {"\"at\":0", "\"at\":-1", "wire.input.fields[0].at: -1"},
-      {"\"joint\":1", "\"joint\":2", "wire.input.fields[0].joint: 2, expected a number from 1 to 1"},
+      {"\"joint\":1", "\"joint\":2", "wire.input.fields[0].joint: 2, expected 1"},
       {"\"position\"", "\"enable\"", "wire.input.fields[0].is: \"enable\" in an input report"},
       {"\"scale\":0.1", "\"scale\":0", "wire.input.fields[0].scale: 0, expected the SI value"},
       {"\"scale\":0.1", "\"scala\":1", "wire.input.fields[0].scala: unknown key"},

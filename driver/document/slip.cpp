@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#include "document/slip.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+#include <vector>
+
+#include "document/yaml_scan.hpp"
+
+namespace hapticd::document {
+namespace {
+
+/// A line of block style: how far it is indented, and where what it holds begins ("- - a" holds at 4).
+struct Line {
+  int number = 0, indent = 0, inner = 0;
+  bool opens = false;  ///< a deeper line may follow
+};
+
+/// The lines up to `last` that hold something. Flow style and block texts have no indentation to be wrong.
+std::vector<Line> blockLines(const std::string& text, int last) {
+  std::vector<Line> lines;
+  std::istringstream in(text);
+  int number = 0, brackets = 0;
+  for (std::string line; number < last && std::getline(in, line);) {
+    ++number;
+    const bool inside = brackets > 0;
+    if (const size_t comment = line.find(" #"); comment != std::string::npos) line.erase(comment);
+    for (const char c : line) brackets += c == '[' || c == '{' ? 1 : c == ']' || c == '}' ? -1 : 0;
+    line.erase(line.find_last_not_of(" \r") + 1);
+    const size_t first = line.find_first_not_of(' ');
+    if (inside || first == std::string::npos || line[first] == '#' || line[first] == '\t') continue;
+    Line one{number, static_cast<int>(first), static_cast<int>(first), false};
+    size_t at = first;
+    while (at + 1 < line.size() && line[at] == '-' && line[at + 1] == ' ') at = line.find_first_not_of(' ', at + 1);
+    one.inner = static_cast<int>(at);
+    const char end = line.back();
+    one.opens = end == ':' || end == '-' || end == '|' || end == '>' || brackets > 0;
+    lines.push_back(one);
+  }
+  return lines;
+}
+
+/// "-name: ball": the dash of a list, glued to its first key.
+std::optional<Problem> gluedDash(const std::string& line, size_t first, int number, const std::string& file) {
+  const size_t colon = line.find(": ", first);
+  if (line[first] != '-' || first + 1 >= line.size() ||
+      std::isalpha(static_cast<unsigned char>(line[first + 1])) == 0 || colon == std::string::npos)
+    return std::nullopt;
+  return Problem{{file, number, static_cast<int>(first) + 2},
+                 "",
+                 "not YAML: no blank after the dash, expected \"- " + line.substr(first + 1, colon - first) + " ...\""};
+}
+
+/// A tab that indents, or a key without a blank after its colon, in one of the lines up to `last`: the parser stumbles
+/// later, over what then is no map.
+std::optional<Problem> wrongBlank(const std::string& text, int last, const std::string& file) {
+  constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+  std::istringstream in(text);
+  int number = 0;
+  for (std::string line; number < last && std::getline(in, line);) {
+    const size_t first = line.find_first_not_of(' ');
+    ++number;
+    if (first == std::string::npos || line[first] == '#') continue;
+    if (line[first] == '\t' && line.find_first_not_of(" \t\r") != std::string::npos)
+      return Problem{{file, number, static_cast<int>(first) + 1}, "", "not YAML: a tab, expected blanks to indent"};
+    if (line.compare(first, 2, "//") == 0)
+      return Problem{{file, number, static_cast<int>(first) + 1}, "", "not YAML: //, expected # before a comment"};
+    if (auto dash = gluedDash(line, first, number, file)) return dash;
+    const size_t key = line.find_first_not_of("- ", first), end = line.find_first_not_of(kLetters, key);
+    if (key == std::string::npos || end == std::string::npos || end == key || line[end] != ':') continue;
+    if (end + 1 >= line.size() || std::string(" \t\r/:").find(line[end + 1]) != std::string::npos) continue;
+    if (std::isalpha(static_cast<unsigned char>(line[key])) == 0) continue;  // a time: 12:30
+    if (const size_t comment = line.find(" #"); comment != std::string::npos) line.erase(comment);
+    const std::string name = line.substr(key, end - key);
+    return Problem{{file, number, static_cast<int>(end) + 2},
+                   "",
+                   "not YAML: no blank after the colon, expected \"" + name + ": " +
+                       line.substr(end + 1, std::min<size_t>(line.find_last_not_of(" \r") - end, 20)) + "\""};
+  }
+  return std::nullopt;
+}
+
+/// What is wrong with the indentation of one of the lines up to `last`, and where: what a parser says of it comes late,
+/// and in its own words.
+std::optional<Problem> wrongIndent(const std::string& text, int last, const std::string& file) {
+  const auto wrong = [&](const Line& line, const std::string& expected) {
+    return Problem{{file, line.number, line.indent + 1},
+                   "",
+                   "not YAML: indented by " + std::to_string(line.indent) + ", expected " + expected};
+  };
+  std::vector<int> open;
+  bool may_go_deeper = true;
+  for (const Line& line : blockLines(text, last)) {
+    const bool deeper = open.empty() || line.indent > open.back();
+    if (deeper && !may_go_deeper)
+      return wrong(line, std::to_string(open.back()) +
+                             ": the line before it opens nothing (to do so it would end with a colon)");
+    std::string all;
+    for (const int indent : open) all += (all.empty() ? "" : " or ") + std::to_string(indent);
+    while (open.size() > 1 && open.back() > line.indent) open.pop_back();
+    if (!deeper && open.back() != line.indent) return wrong(line, all + ", as the lines above it are");
+    if (deeper) open.push_back(line.indent);
+    if (line.inner > line.indent) open.push_back(line.inner);
+    may_go_deeper = line.opens;
+  }
+  return std::nullopt;
+}
+
+Problem at(const Mark& mark, const std::string& file, const std::string& what) {
+  return {{file, mark.line, mark.column}, "", "not YAML: " + what};
+}
+
+std::string closing(char open) {
+  return open == '[' ? "]" : "}";
+}
+
+/// A quote or a bracket that is open at the end, closed by another, or closed too late.
+std::optional<Problem> wrongPair(const std::string& text, const std::string& file) {
+  const Scan scan = scanYaml(text);
+  const auto quoted = [](char what) { return std::string("the ") + what; };
+  if (scan.quote) return at(*scan.quote, file, quoted(scan.quote->what) + " that begins here is never closed");
+  if (scan.wrong_close && scan.wrong_open)
+    return at(*scan.wrong_close, file,
+              quoted(scan.wrong_close->what) + " comes while the " + scan.wrong_open->what + " of line " +
+                  std::to_string(scan.wrong_open->line) + ", column " + std::to_string(scan.wrong_open->column) +
+                  " is open, expected " + closing(scan.wrong_open->what) + " before it");
+  if (scan.wrong_close)
+    return at(*scan.wrong_close, file, quoted(scan.wrong_close->what) + " closes nothing, expected one fewer");
+  if (scan.long_quote)
+    return at(*scan.long_quote, file,
+              quoted(scan.long_quote->what) + " that begins here is closed only in line " +
+                  std::to_string(scan.long_quote_ends) + ", expected another one in line " +
+                  std::to_string(scan.long_quote->line));
+  if (!scan.open.empty())
+    return at(scan.open.front(), file,
+              quoted(scan.open.front().what) + " that begins here is never closed, expected " +
+                  closing(scan.open.front().what));
+  return std::nullopt;
+}
+
+/// The character at a place.
+char charAt(const std::string& text, const Place& place) {
+  size_t start = 0;
+  for (int line = 1; line < place.line && start != std::string::npos; ++line) {
+    start = text.find('\n', start);
+    if (start != std::string::npos) ++start;
+  }
+  const size_t offset = start == std::string::npos ? text.size() : start + static_cast<size_t>(place.column) - 1;
+  return offset < text.size() ? text[offset] : '\0';
+}
+
+/// The parser's words in plain ones.
+std::string plainWords(const std::string& text, const Place& place, const std::string& words) {
+  const char here = charAt(text, place);
+  const auto begins = [&words](const char* with) { return words.rfind(with, 0) == 0; };
+  if (begins("unknown token") && here > ' ')
+    return std::string("a text cannot begin with ") + here + ", expected it in quotes";
+  if (begins("the referenced anchor"))
+    return "a text that begins with * stands for one marked with & before, and there is none; expected it in quotes";
+  if (begins("unknown escape character"))
+    return "a \\ within \"...\" begins a code, and " + words.substr(words.find_last_of(' ') + 1) +
+           " is none; expected / in a path, or '...' around the text";
+  if (begins("illegal map value"))
+    return "a second colon in this line, expected quotes around a text that holds one, or a line of its own";
+  if (begins("illegal flow end")) return "this closing bracket closes nothing, expected it after the one that opens it";
+  if (begins("end of map flow") || begins("end of sequence flow"))
+    return "no comma between this and what stands before it, expected {key: value, key: value} or [1, 2]";
+  if (begins("end of map not found") || begins("end of sequence not found"))
+    return "this does not go on with the lines before it, expected key: value, or - for a list, indented as they are";
+  return words;
+}
+
+}  // namespace
+
+std::optional<Problem> openQuote(const std::string& text, const Place& last_quoted) {
+  const std::optional<Mark> open = scanYaml(text).quote;
+  if (!open || open->line != last_quoted.line || open->column != last_quoted.column) return std::nullopt;
+  return at(*open, last_quoted.file,
+            std::string("the ") + open->what + " that begins here is never closed, expected another one");
+}
+
+Problem slipIn(const std::string& text, const Place& place, const std::string& words) {
+  if (auto blank = wrongBlank(text, place.line, place.file)) return *std::move(blank);
+  if (auto pair = wrongPair(text, place.file)) return *std::move(pair);
+  if (auto indent = wrongIndent(text, place.line, place.file)) return *std::move(indent);
+  return {place, "", "not YAML: " + plainWords(text, place, words)};
+}
+
+}  // namespace hapticd::document

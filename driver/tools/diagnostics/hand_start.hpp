@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+/// Where the tip of each arm is when a run begins: not within a model, or the hand is pushed at once.
+#pragma once
+#include "description/scene.hpp"
+#include "document/problem.hpp"
+
+namespace hapticd::diagnostics {
+
+/// [main] Warns of each model that the tip of an arm is in at the first tick, with the depth. Simulated hands stand
+/// where their script begins, other arms in the pose of their calibration. The models are set up in a child process.
+/// @param scene with the devices that a run would take
+document::Problems startsInside(const scene::Scene& scene);
+
+}  // namespace hapticd::diagnostics

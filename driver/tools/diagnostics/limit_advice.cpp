@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/limit_advice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diagnostics/motor_reach.hpp"
+#include "diagnostics/node_path.hpp"
+#include "document/reader.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+using document::Node;
+
+const scene::Value* valueOf(const scene::Device& device, std::initializer_list<const char*> ids) {
+  for (const scene::Value& value : device.parameters)
+    for (const char* id : ids)
+      if (value.id == id) return &value;
+  return nullptr;
+}
+
+/// [N m] of each joint's motor; empty: not known.
+std::vector<double> motorsOf(const scene::Device& device, size_t joints) {
+  const scene::Value* value = valueOf(device, {"arm.max_torque"});
+  std::vector<double> torque = value == nullptr ? std::vector<double>() : value->numbers;
+  if (torque.size() == 1) torque.assign(joints, torque[0]);
+  const bool all = torque.size() == joints && std::all_of(torque.begin(), torque.end(), [](double t) { return t > 0; });
+  return all ? torque : std::vector<double>();
+}
+
+/// A device whose force may be larger than its arm can give. Nothing is known of an arm that gives 0.
+void forceBeyondArm(const scene::Device& device, document::Problems& warnings) {
+  const scene::Value* most = valueOf(device, {"device.max_force", "max_force"});
+  if (most == nullptr || most->number <= 0 || device.limits.force <= most->number) return;
+  document::report(warnings, most->place, "limits.force",
+                   document::numberText(device.limits.force) + " N is more than the arm's " + most->id + " of " +
+                       document::numberText(most->number) + " N, expected no more");
+}
+
+/// Rows of the Jacobian at rest, from `first` on; nothing if the arm cannot tell.
+std::optional<Eigen::Matrix3Xd> jacobianAtRest(const Node& root, const host::DeviceInstance& arm, Eigen::Index first) {
+  const hdv_ext_kinematics& kinematics = arm.kinematics();
+  const auto q = restJoints(root, kinematics.joint_count);
+  Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor> all(6, kinematics.joint_count);
+  if (kinematics.jacobian(arm.handle(), q.data(), all.data()) < 0) return std::nullopt;
+  return all.middleRows<3>(first);
+}
+
+/// A force that the motors cannot make at rest in any direction: it was meant in other units, or its limit does
+/// nothing.
+void beyondMotors(const Node* at, const char* key, double given, double reach, const char* unit,
+                  const std::string& file, document::Problems& warnings) {
+  constexpr double kBeyond = 1.5;  // elsewhere in its workspace an arm may give somewhat more
+  if (at == nullptr || given <= kBeyond * reach) return;
+  document::report(warnings, file, at->line, at->column, key,
+                   fmt::format("{:g} {} is beyond the motors: with arm.max_torque they give at most {:.3g} {} at rest; "
+                               "expected a limit below that, or the torques at the joints (motor times gear)",
+                               given, unit, reach, unit));
+}
+
+}  // namespace
+
+std::array<double, HDV_MAX_JOINTS> restJoints(const Node& root, uint32_t joints) {
+  std::array<double, HDV_MAX_JOINTS> q{};
+  const Node* pose = find(root, {"parameters", "calibration", "pose"});
+  if (pose == nullptr || !pose->isSequence() || pose->items.size() != joints) return q;
+  for (size_t i = 0; i < joints && i < q.size(); ++i) q[i] = document::toNumber(pose->items[i].scalar).value_or(0);
+  return q;
+}
+
+void adviseLimits(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
+                  document::Problems& warnings) {
+  forceBeyondArm(device, warnings);
+  const std::string file = device.file.string();
+  const std::vector<double> motors = motorsOf(device, arm.kinematics().joint_count);
+  const auto linear = jacobianAtRest(root, arm, 0), angular = jacobianAtRest(root, arm, 3);
+  if (motors.empty() || !linear || !angular) return;
+  if (const auto reach = farthestReach(*linear, motors)) {
+    beyondMotors(find(root, {"limits", "force"}), "limits.force", device.limits.force, *reach, "N", file, warnings);
+    const scene::Value* claimed = valueOf(device, {"device.max_force"});
+    beyondMotors(find(root, {"parameters", "device", "max_force"}), "parameters.device.max_force",
+                 claimed == nullptr ? 0 : claimed->number, *reach, "N", file, warnings);
+  }
+  // A direction that no motor turns is carried by the joints: the motors together are a bound of all others.
+  const double together = std::accumulate(motors.begin(), motors.end(), 0.0);
+  beyondMotors(find(root, {"limits", "torque"}), "limits.torque", device.limits.torque,
+               farthestReach(*angular, motors).value_or(together), "N m", file, warnings);
+}
+
+}  // namespace hapticd::diagnostics

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+/// Limits of a device file against what its arm and its motors can give.
+#pragma once
+#include <array>
+
+#include "description/scene.hpp"
+#include "document/node.hpp"
+#include "host/device_instance.hpp"
+
+namespace hapticd::diagnostics {
+
+/// [main] Joints of the arm at rest [rad]: in the pose of its calibration, else at zero.
+std::array<double, HDV_MAX_JOINTS> restJoints(const document::Node& root, uint32_t joints);
+
+/// [main] Warns of `limits.force` and `device.max_force` beyond what arm.max_torque gives at rest in the arm's
+/// strongest direction, of `limits.force` beyond `device.max_force`, and of `limits.torque` beyond the motors.
+void adviseLimits(const document::Node& root, const scene::Device& device, const host::DeviceInstance& arm,
+                  document::Problems& warnings);
+
+}  // namespace hapticd::diagnostics
