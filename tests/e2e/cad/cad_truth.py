@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """CAD files through `hapticd import` and `hapticd trace`, against closed forms of their distances.
 
-Usage: cad_truth.py HAPTICD MAKE_PARTS     prints a line a case; exit 1 when one is off.
+Usage: cad_truth.py HAPTICD MAKE_PARTS     prints one line per case; exit 1 when one is off.
 Every case imports a file, traces random points outside and in fresh contact, and compares depth, foot and normal.
 """
 import csv

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The examples of the Python package against a running daemon, as a user runs them.
 
-Usage: run_the_examples.py HAPTICD SOURCE     prints a line a case; exit 1 when one is off.
+Usage: run_the_examples.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
 """
 import os
 import re

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The C library, what it shares with Python, and the force loops of the examples against a running daemon.
 
-Usage: use_the_library.py HAPTICD SOURCE EVERYTHING SPRING LEAD_MODEL     prints a line a case; exit 1 when one is off.
+Usage: use_the_library.py HAPTICD SOURCE EVERYTHING SPRING LEAD_MODEL     prints one line per case; exit 1 when one is off.
 """
 import os
 import re

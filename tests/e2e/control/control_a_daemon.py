@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`hapticd top` and every `hapticd ctl` command on a running daemon, malformed requests, and a killed reader.
 
-Usage: control_a_daemon.py HAPTICD SCENES     prints a line a case; exit 1 when one is off.
+Usage: control_a_daemon.py HAPTICD SCENES     prints one line per case; exit 1 when one is off.
 """
 import json
 import os

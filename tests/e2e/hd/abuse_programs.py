@@ -2,7 +2,7 @@
 """Programs of the HDAPI are killed, stopped and continued at any moment, or call everything in any order: the daemon goes
 on, no program hangs, no force and no place of theirs stays.
 
-Usage: abuse_programs.py HAPTICD SOURCE PROGRAMS [HOW_MANY [SEED]]     prints a line a case; exit 1 when one is off.
+Usage: abuse_programs.py HAPTICD SOURCE PROGRAMS [HOW_MANY [SEED]]     prints one line per case; exit 1 when one is off.
 """
 import os
 import random

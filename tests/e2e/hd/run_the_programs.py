@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Programs of the HDAPI, run by `hapticd client` on the simulated arm of a daemon; what they pushed is in its rows.
 
-Usage: run_the_programs.py HAPTICD SOURCE PROGRAMS     prints a line a case; exit 1 when one is off.
+Usage: run_the_programs.py HAPTICD SOURCE PROGRAMS     prints one line per case; exit 1 when one is off.
 PROGRAMS is the folder of the built hd_... programs.
 """
 import os

@@ -2,7 +2,7 @@
 """Programs lead a model and the simulated hand of a running daemon, die, lie and write nonsense; what they did is told
 as events, recorded, and replays to the last bit.
 
-Usage: lead_a_daemon.py HAPTICD SOURCE     prints a line a case; exit 1 when one is off.
+Usage: lead_a_daemon.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
 """
 import fcntl
 import json

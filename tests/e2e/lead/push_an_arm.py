@@ -2,7 +2,7 @@
 """Programs push on the arm of a running daemon, fall silent, die, lie and write nonsense. What they did stays within its
 bounds, is told, recorded, and replays to the last bit.
 
-Usage: push_an_arm.py HAPTICD SOURCE     prints a line a case; exit 1 when one is off.
+Usage: push_an_arm.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
 """
 import fcntl
 import math

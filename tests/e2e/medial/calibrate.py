@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A soft body takes its stiffness from presses of another solid: `hapticd import --calibrate`.
 
-Usage: calibrate.py HAPTICD CONFIG     prints a line a case; exit 1 when one is off.
+Usage: calibrate.py HAPTICD CONFIG     prints one line per case; exit 1 when one is off.
 """
 import csv
 import math

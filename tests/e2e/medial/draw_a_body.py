@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A soft body of a running daemon is drawn as it is pressed: `hapticd ctl geometry`, once and followed.
 
-Usage: draw_a_body.py HAPTICD CONFIG     prints a line a case; exit 1 when one is off.
+Usage: draw_a_body.py HAPTICD CONFIG     prints one line per case; exit 1 when one is off.
 """
 import json
 import os

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """The scenes of config/scenes/soft show what their first lines say, in virtual time.
 
-Usage: feel_the_features.py HAPTICD CONFIG     prints a line a case; exit 1 when one is off.
+Usage: feel_the_features.py HAPTICD CONFIG     prints one line per case; exit 1 when one is off.
 """
 import math
 import os

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The lump of the palpation scene is felt and found, by pressing 4 mm deep here and there: `hapticd trace`.
 
-Usage: feel_the_lump.py HAPTICD CONFIG     prints a line a case; exit 1 when one is off.
+Usage: feel_the_lump.py HAPTICD CONFIG     prints one line per case; exit 1 when one is off.
 """
 import csv
 import math

@@ -2,7 +2,7 @@
 """Known shapes are recovered from their triangles: torus, capsule, ellipsoid, cube, branching body, box; what cannot be
 reached or is of odd size is warned of; bad input is refused.
 
-Usage: import_medial.py HAPTICD CONFIG     prints a line a case; exit 1 when one is off.
+Usage: import_medial.py HAPTICD CONFIG     prints one line per case; exit 1 when one is off.
 """
 import math
 import os

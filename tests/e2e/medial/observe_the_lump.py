@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What is rendered carries the lump: an observer finds its place and size in the recorded forces of a stroking hand.
 
-Usage: observe_the_lump.py HAPTICD CONFIG     prints a line a case; exit 1 when one is off.
+Usage: observe_the_lump.py HAPTICD CONFIG     prints one line per case; exit 1 when one is off.
 
 A simulated hand strokes the palpation scene in rows 10 mm apart, in virtual time; its tip is what the arm's encoders
 say (30 um a count). The observer knows the force, the depth below the surface that it sees at rest, and nothing of the

@@ -2,7 +2,7 @@
 """servo.pace: device. The samples of an arm drive the loop, at its rate; a run of it replays bit for bit; the force is what
 the clock would give.
 
-Usage: paced_by_an_arm.py HAPTICD CONFIG     prints a line a case; exit 1 when one is off.
+Usage: paced_by_an_arm.py HAPTICD CONFIG     prints one line per case; exit 1 when one is off.
 """
 import json
 import os

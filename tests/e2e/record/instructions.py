@@ -2,7 +2,7 @@
 """The same bits everywhere: a recording names the processor instructions that its shapes used; a replay takes the same where it
 can, and says where it cannot.
 
-Usage: instructions.py HAPTICD SOURCE     prints a line a case; exit 1 when one is off.
+Usage: instructions.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
 """
 import json
 import os

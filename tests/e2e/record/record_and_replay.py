@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A replay is exact, a changed stiffness is found, and a kill leaves a file that can be replayed and drawn.
 
-Usage: record_and_replay.py HAPTICD SCENES     prints a line a case; exit 1 when one is off.
+Usage: record_and_replay.py HAPTICD SCENES     prints one line per case; exit 1 when one is off.
 """
 import os
 import subprocess

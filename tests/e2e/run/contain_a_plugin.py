@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A plugin that crashes the daemon, the quarantine that follows, and what the service manager is told meanwhile.
 
-Usage: contain_a_plugin.py HAPTICD SOURCE_DIR TEST_SHAPES.so UNIT_FILE     prints a line a check; exit 1 when one fails.
+Usage: contain_a_plugin.py HAPTICD SOURCE_DIR TEST_SHAPES.so UNIT_FILE     prints one line per check; exit 1 when one fails.
 """
 import json
 import os

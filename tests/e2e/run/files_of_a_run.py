@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The files that a run writes, and what it says where it may not.
 
-Usage: files_of_a_run.py HAPTICD SOURCE_DIR     prints a line a check; exit 1 when one fails.
+Usage: files_of_a_run.py HAPTICD SOURCE_DIR     prints one line per check; exit 1 when one fails.
 """
 import json
 import os

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The log tells of a silenced model while the run goes on, in words and as JSON, and refuses a file that it cannot write.
 
-Usage: log_of_a_run.py HAPTICD SOURCE_DIR TEST_SHAPES.so     prints a line a check; exit 1 when one fails.
+Usage: log_of_a_run.py HAPTICD SOURCE_DIR TEST_SHAPES.so     prints one line per check; exit 1 when one fails.
 """
 import json
 import os

@@ -2,7 +2,7 @@
 """A running daemon is changed in every way that ctl knows: the servo thread faults no page, allocates and locks nothing,
 and a plugin that crashes while it is looked at is an answer and not an end.
 
-Usage: quiet_changes.py HAPTICD SOURCE_DIR CRASHING.so WITNESS.so     prints a line a check; exit 1 when one fails.
+Usage: quiet_changes.py HAPTICD SOURCE_DIR CRASHING.so WITNESS.so     prints one line per check; exit 1 when one fails.
 """
 import json
 import os

@@ -2,7 +2,7 @@
 """Every shipped scene in real time: the servo thread allocates nothing, locks nothing, faults no page and asks the kernel
 for nothing but sleep. Planted violations must be seen.
 
-Usage: quiet_ticks.py HAPTICD SOURCE_DIR WITNESS.so TEST_SHAPES.so     prints a line a check; exit 1 when one fails.
+Usage: quiet_ticks.py HAPTICD SOURCE_DIR WITNESS.so TEST_SHAPES.so     prints one line per check; exit 1 when one fails.
 """
 import concurrent.futures
 import glob

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`hapticd run` as a user and a service manager meet it: what it maps, how it stops, what it refuses.
 
-Usage: run_as_a_user.py HAPTICD SOURCE_DIR       prints a line a check; exit 1 when one fails.
+Usage: run_as_a_user.py HAPTICD SOURCE_DIR       prints one line per check; exit 1 when one fails.
 """
 import json
 import os

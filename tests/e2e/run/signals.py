@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Signals that end a program end a run in order, at any moment of its start too.
 
-Usage: signals.py HAPTICD SOURCE_DIR     prints a line a check; exit 1 when one fails.
+Usage: signals.py HAPTICD SOURCE_DIR     prints one line per check; exit 1 when one fails.
 """
 import json
 import os

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`hapticd trace` against thin walls: a contact pushes back to the side that it was entered from.
 
-Usage: thin_walls.py HAPTICD     prints a line a case; exit 1 when one is off.
+Usage: thin_walls.py HAPTICD     prints one line per case; exit 1 when one is off.
 """
 import csv
 import json

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`hapticd trace` against closed forms: spheres, a plane and a box, standing, turned, and moving on a path.
 
-Usage: trace_truth.py HAPTICD TEST_PLUGINS     prints a line a case; exit 1 when one is off.
+Usage: trace_truth.py HAPTICD TEST_PLUGINS     prints one line per case; exit 1 when one is off.
 Each case writes a scene, a model and a probe path, runs the program as a user would, and compares every row.
 """
 import csv

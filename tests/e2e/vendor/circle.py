@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The module `vendor_hd` on the HDAPI library that we have, our own: a daemon drives the simulated arm of another one.
 
-Usage: circle.py HAPTICD SOURCE LIBHD     prints a line a case; exit 1 when one is off.
+Usage: circle.py HAPTICD SOURCE LIBHD     prints one line per case; exit 1 when one is off.
 """
 import os
 import signal

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The module `vendor_dhd` on a library of the test's own that has the functions of DHD.
 
-Usage: dhd.py HAPTICD SOURCE LIBDHD     prints a line a case; exit 1 when one is off.
+Usage: dhd.py HAPTICD SOURCE LIBDHD     prints one line per case; exit 1 when one is off.
 """
 import os
 import subprocess

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A view that is attacked over its port: wrong tokens, origins and hosts, what is too long, too slow, malformed or never read.
 
-Usage: attacks.py HAPTICD SCENES     prints a line a case; exit 1 when one is off.
+Usage: attacks.py HAPTICD SCENES     prints one line per case; exit 1 when one is off.
 The codes are those of driver/docs/view.md. Nothing here may end the view, let its memory grow, or reach the daemon.
 """
 import base64

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The soft bodies of a recording have the shape that they had: what `hapticd view --file` draws meets the recorded contacts.
 
-Usage: draw_a_recording.py HAPTICD CONFIG     prints a line a case; exit 1 when one is off.
+Usage: draw_a_recording.py HAPTICD CONFIG     prints one line per case; exit 1 when one is off.
 """
 import csv
 import glob

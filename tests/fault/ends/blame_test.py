@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Who ended the process is named, wherever it was called, and nobody else; what is no answer harms nobody.
 
-Usage: blame_test.py HAPTICD RIG.so ENDING_SHAPES.so SOURCE_DIR     prints a line a check; exit 1 when one fails.
+Usage: blame_test.py HAPTICD RIG.so ENDING_SHAPES.so SOURCE_DIR     prints one line per check; exit 1 when one fails.
 """
 import os
 import signal

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """However the process ends, the arm `rig` is left without a force, and who ended it is named.
 
-Usage: ends_test.py HAPTICD RIG.so ENDING_SHAPES.so     prints a line a check; exit 1 when one fails.
+Usage: ends_test.py HAPTICD RIG.so ENDING_SHAPES.so     prints one line per check; exit 1 when one fails.
 """
 import os
 import signal

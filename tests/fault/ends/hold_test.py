@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """`hold` and `stop` wait behind no other work, and SIGTERM ends a run that a plugin keeps.
 
-Usage: hold_test.py HAPTICD RIG.so ENDING_SHAPES.so     prints a line a check; exit 1 when one fails.
+Usage: hold_test.py HAPTICD RIG.so ENDING_SHAPES.so     prints one line per check; exit 1 when one fails.
 """
 import os
 import sys
