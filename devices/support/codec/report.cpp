@@ -103,16 +103,16 @@ void putBit(const Field& field, bool on, uint8_t* bytes) noexcept {
 
 /// Yes or no, as a bit or as the field's value.
 void putFlag(const Field& field, bool on, uint8_t* bytes) noexcept {
-  return field.bit >= 0 ? putBit(field, on, bytes) : putNumber(field, on ? field.value : 0, bytes);
+  return field.bit >= 0 ? putBit(field, on, bytes) : putNumber(field, on != field.inverted ? field.value : 0, bytes);
 }
 
 uint64_t sumOf(const Field& field, const uint8_t* bytes) noexcept {
   return checksumOf(field.check, {bytes + field.from, static_cast<size_t>(field.to - field.from)});
 }
 
-/// A bit of a field, or whether its number is something else than zero.
+/// A bit of a field, or whether its number is something else than zero; the other way round where it is inverted.
 bool isSet(const Field& field, const Raw& raw) noexcept {
-  return field.bit < 0 ? raw.number != 0 : ((raw.code >> field.bit & 1) != 0) != field.inverted;
+  return (field.bit < 0 ? raw.number != 0 : (raw.code >> field.bit & 1) != 0) != field.inverted;
 }
 
 bool isValue(const Field& field, const Raw& raw) noexcept {
@@ -186,7 +186,9 @@ void putSequence(const Field& field, uint32_t sequence, uint8_t* bytes) noexcept
 
 /// As the arm would write it.
 void put(const Field& field, const State& state, uint8_t* bytes) noexcept {
-  const auto flag = [&](bool on) { field.bit >= 0 ? putBit(field, on, bytes) : putNumber(field, on ? 1 : 0, bytes); };
+  const auto flag = [&](bool on) {
+    field.bit >= 0 ? putBit(field, on, bytes) : putNumber(field, on != field.inverted ? 1 : 0, bytes);
+  };
   switch (field.role) {
     case Role::kPosition:
       return putNumber(field, clampRaw(field, state.position[field.index]), bytes);

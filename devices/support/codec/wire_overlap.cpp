@@ -14,6 +14,17 @@ bool isFlag(Role role) {
          role == Role::kCalibrate || role == Role::kFollow;
 }
 
+/// A number that changes by itself: a switch on its bits would go on and off with it.
+bool isNumber(Role role) {
+  return ofJoint(role) || role == Role::kSequence || role == Role::kStarts || role == Role::kChecksum;
+}
+
+/// Bits that two fields may not share. Flags may share a status byte, and constants may stand on anything that they
+/// describe.
+bool exclusive(Role a, Role b) {
+  return ofJoint(a) || ofJoint(b) || (isFlag(a) && isNumber(b)) || (isNumber(a) && isFlag(b));
+}
+
 /// "fields[0] (position of joint 1)".
 std::string nameOf(const Tree& fields, const Field& field, size_t i) {
   std::string name = "fields[" + std::to_string(i) + "] (" + fields.item(i).at("is").text();
@@ -48,7 +59,7 @@ void checkOverlaps(const Tree& fields, const Report& report, const std::vector<b
   for (const Field& field : report.fields) taken.push_back(bitsTaken(field, report.size));
   for (size_t later = 1; later < taken.size(); ++later)
     for (size_t i = 0; i < later; ++i) {
-      const bool matters = ofJoint(report.fields[i].role) || ofJoint(report.fields[later].role);
+      const bool matters = exclusive(report.fields[i].role, report.fields[later].role);
       if (!matters || !placed[i] || !placed[later]) continue;
       const size_t byte = firstShared(taken[i], taken[later]);
       if (byte == report.size) continue;

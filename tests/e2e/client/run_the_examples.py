@@ -34,6 +34,41 @@ def example(name, *arguments):
     return done.returncode, done.stdout, done.stderr
 
 
+ALONE = """
+import os, sys
+sys.modules["numpy"] = None  # as where it is not installed
+from hapticd._lead import ForceLead, PoseLead
+from hapticd._rows import Column, Stream
+stream = Stream(None, 0, "ticks", 12, 8, 0, [Column("t", "f8", 0, "s", ""), Column("n", "u4", 8, "", "")])
+rows = stream._parsed(bytearray(__import__("struct").pack("<dIdI", 0.5, 7, 0.25, 8)), 2)
+assert rows["t"] == [0.5, 0.25] and rows[1]["n"] == 8 and rows[1][0] == 0.25 and rows[-1:][0]["t"] == 0.25, rows
+try:
+    rows["tt"]
+    raise SystemExit("no such column was accepted")
+except KeyError as error:
+    assert "expected one of: t, n" in str(error), error
+def lead(kind):
+    fd = os.memfd_create("lead")
+    os.truncate(fd, 4096)
+    return kind(fd, 4096, lambda: None)
+nan = float("nan")
+for use, words in ((lambda: lead(ForceLead).put(1, [nan, 0, 0]), "not finite"), (lambda: lead(ForceLead).put(1, [0, 0]), "3 numbers"),
+                   (lambda: lead(PoseLead).put([nan, 0, 0]), "not finite"), (lambda: lead(PoseLead).put([0, 0, 0], [90, 0, 1, 0]), "unit quaternion")):
+    try:
+        use()
+        raise SystemExit(words + ": accepted")
+    except ValueError as error:
+        assert words in str(error), error
+lead(ForceLead).put(1, [0.1, 0, 0])
+lead(PoseLead).put([0.1, 0, 0])
+"""
+
+
+def alone():
+    done = subprocess.run([sys.executable, "-c", ALONE], env=dict(os.environ, PYTHONPATH=CLIENT), capture_output=True, text=True, timeout=120)
+    check("without numpy rows have names, and what the daemon would refuse raises", done.returncode == 0, done.stderr)
+
+
 def examples(folder):
     code, out, err = example("move_door.py", "door", "--seconds", "1")
     check("move_door.py", code == 0 and "the door stands at" in out, (out, err))
@@ -64,6 +99,7 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
         if os.path.exists(os.path.join(folder, "lib.sock")):
             break
         time.sleep(0.05)
+    alone()
     examples(folder)
     daemon.terminate()
     check("the run ends in order", daemon.wait(timeout=30) == 0)

@@ -114,8 +114,10 @@ void Limiter::limit(Vector3d& force, Vector3d& torque, const Vector3d& position,
   torque *= near * heat_factor_;
   if (pushes && near < 1) count(Limit::kWorkspace);
   if (pushes && heat_factor_ < 1) count(Limit::kHeat);
-  if (max_force_ > 0 && cap(force, max_force_)) count(Limit::kForce);
-  if (limits_.torque > 0 && cap(torque, limits_.torque)) count(Limit::kTorque);
+  // What is asked for may be many times the limit, as of a tip that begins inside a model: the limit ramps as well.
+  const double share = ramp_ * fresh_;
+  if (max_force_ > 0 && cap(force, max_force_ * share)) count(Limit::kForce);
+  if (limits_.torque > 0 && cap(torque, limits_.torque * share)) count(Limit::kTorque);
   if (limits_.impulse > 0) limitImpulse(force, dt);
   const double window = std::max(dt, kSlewWindow);
   if (limits_.slew > 0 && limitSlew(force, slow_force_, limits_.slew * window)) count(Limit::kSlew);

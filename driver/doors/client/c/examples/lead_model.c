@@ -2,7 +2,7 @@
 /* lead_model.c - moves a kinematic model up and down, and tells the force that the hand feels meanwhile.
  *
  *     cc lead_model.c -o lead_model $(pkg-config --cflags --libs hapticd-client) -lm
- *     hapticd run SCENE        with a model that has `motion: kinematic` and a path
+ *     hapticd run SCENE        with a model that has `motion: kinematic`
  *     ./lead_model MODEL [NAME [SECONDS]]
  */
 #include <hapticd/client.h>

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Moves a kinematic model up and down, 60 times a second, as a game engine would.
 
-    hapticd run SCENE        with a model that has `motion: kinematic` and a path
+    hapticd run SCENE        with a model that has `motion: kinematic`
     ./move_door.py door
 
 The model follows with at most 1 m/s and 20 m/s^2; between two records it goes on with the velocity that came along.

@@ -2,6 +2,7 @@
 """Leads: memory that this program writes and the servo looks at once a tick."""
 from __future__ import annotations
 
+import math
 import mmap
 import os
 import struct
@@ -11,6 +12,14 @@ from typing import Any, Callable, Optional, Sequence
 _TARGET = struct.Struct("<14d")
 _PUSH = struct.Struct("<Q6dQQ")
 _COUNT = struct.Struct("<Q")
+
+
+_UNIT = 1e-3  # of a quaternion's length, as the daemon has it
+
+
+def _finite(what: str, *numbers: float) -> None:
+    if not all(math.isfinite(number) for number in numbers):
+        raise ValueError(f"{what} is not finite: {list(numbers)}; the daemon would refuse it")
 
 
 class _Slot:
@@ -77,6 +86,10 @@ class PoseLead(Lead):
         except struct.error:
             raise ValueError(f"expected position, linear and angular of 3 numbers and orientation of 4, got "
                              f"{list(position)}, {list(linear)}, {list(angular)} and {list(orientation)}") from None
+        _finite("the target", *position, *orientation, *linear, *angular)
+        if abs(math.hypot(*orientation) - 1) > _UNIT:
+            raise ValueError(f"the orientation {list(orientation)} has length {math.hypot(*orientation):g}, expected a "
+                             f"unit quaternion w, x, y, z")
         self._put(record)
 
     def __enter__(self) -> "PoseLead":
@@ -94,6 +107,7 @@ class ForceLead(Lead):
             record = _PUSH.pack(tick, *force, *torque, woke_ns, time.monotonic_ns())
         except struct.error:
             raise ValueError(f"expected force and torque of 3 numbers, got {list(force)} and {list(torque)}") from None
+        _finite("the force or torque", *force, *torque)
         self._put(record)
 
     def __enter__(self) -> "ForceLead":

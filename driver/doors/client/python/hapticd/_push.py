@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import threading
 import time
+import warnings
 from typing import TYPE_CHECKING, Callable, Optional, Sequence
 
 from ._lead import ForceLead
@@ -13,6 +14,7 @@ from ._state import Bell, State, StatePage
 if TYPE_CHECKING:
     from ._client import Client
 
+_TOO_OLD = 20_000_000  # ns: an answer so long after its tick is ignored
 _PATIENCE = 0.1  # s between two looks at whether anything is alive
 
 Force = Sequence[float]
@@ -20,7 +22,8 @@ Force = Sequence[float]
 
 class ForceThread:
     """Calls `callback(state)` in a thread once a tick; what it gives back, three numbers in N (or six with the torque in
-    N m), pushes on the hand. An exception in the callback ends the push and is raised by `end()`."""
+    N m), pushes on the hand; None answers nothing. An exception in the callback ends the push and is raised by
+    `end()`, which warns where no tick was answered, or answers came too late to count."""
 
     def __init__(self, client: "Client", device: str, callback: Callable[[State], Optional[Force]], priority: int) -> None:
         self._lead: ForceLead = client.lead_force(device)
@@ -30,6 +33,8 @@ class ForceThread:
         self._callback, self._priority = callback, priority
         self._stop = threading.Event()
         self.answers = 0  #: ticks that were answered
+        self.unanswered = 0  #: ticks to which the callback gave back None
+        self.late = 0  #: answers that came more than 20 ms after their tick, which count for nothing
         self.real_time = False  #: the thread has the priority that was asked for
         self.error: Optional[BaseException] = None  #: that ended it
         self._thread = threading.Thread(target=self._run, name="hapticd-push", daemon=True)
@@ -59,9 +64,12 @@ class ForceThread:
                 continue
             last = state.tick
             force = self._callback(state)
-            if force is not None:
-                self._lead.put(state.tick, force[:3], force[3:6] if len(force) >= 6 else (0.0, 0.0, 0.0), woke)
-                self.answers += 1
+            if force is None:
+                self.unanswered += 1
+                continue
+            self._lead.put(state.tick, force[:3], force[3:6] if len(force) >= 6 else (0.0, 0.0, 0.0), woke)
+            self.answers += 1
+            self.late += time.monotonic_ns() - woke > _TOO_OLD
 
     def end(self) -> None:
         """Ends the push: the force ramps out. Raises what the callback raised."""
@@ -71,6 +79,12 @@ class ForceThread:
         self._lead.end()
         if self.error is not None:
             raise self.error
+        if self.answers == 0 and self.unanswered > 0:
+            warnings.warn(f"the callback gave back None for all {self.unanswered} ticks, so nothing was pushed: is a "
+                          "return missing?", stacklevel=2)
+        if self.late > 0:
+            warnings.warn(f"{self.late} of {self.answers} answers came more than 20 ms after their tick and were "
+                          "ignored: the callback takes too long", stacklevel=2)
 
     def __enter__(self) -> "ForceThread":
         return self

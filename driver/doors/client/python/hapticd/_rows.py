@@ -13,7 +13,7 @@ from ._error import HapticdError, Named
 
 try:
     import numpy
-except ImportError:  # rows are lists of tuples then
+except ImportError:  # rows are those below then
     numpy = None  # type: ignore[assignment]
 
 _HEADER_AT = 512  # see recording.md, "Layout for other writers and readers"
@@ -36,6 +36,22 @@ class Column:
     doc: str
 
 
+class Row(tuple):
+    """A row without numpy: a tuple whose numbers have names too, `row["t"]`."""
+
+    places: dict[str, int] = {}
+
+    def __getitem__(self, key: Any) -> Any:
+        return tuple.__getitem__(self, self.places[key] if isinstance(key, str) else key)
+
+
+class Rows(list):
+    """Rows without numpy: a list of them, whose columns have names, `rows["t"]`."""
+
+    def __getitem__(self, key: Any) -> Any:
+        return [row[key] for row in self] if isinstance(key, str) else list.__getitem__(self, key)
+
+
 class Stream:
     """The rows of one stream. Rows are numbered from 0; the newest `capacity` are kept."""
 
@@ -45,6 +61,7 @@ class Stream:
         self.columns = columns
         self._memory, self._rows_at = memory, rows_at
         self._count_at = _HEADER_AT + _HEADER.size + number * _STREAM.size + 24
+        self._row = type("Row", (Row,), {"places": Named("column", {c.name: i for i, c in enumerate(columns)})})
         self.dtype = None
         if numpy is not None:
             self.dtype = numpy.dtype({"names": [c.name for c in columns], "formats": ["<" + c.type for c in columns],
@@ -86,8 +103,8 @@ class Stream:
     def _parsed(self, data: bytearray, count: int) -> Any:
         if numpy is not None:
             return numpy.frombuffer(data, self.dtype, count)
-        return [tuple(struct.unpack_from("<" + _CODES[c.type], data, row * self.row_bytes + c.offset)[0]
-                      for c in self.columns) for row in range(count)]
+        return Rows(self._row(struct.unpack_from("<" + _CODES[c.type], data, row * self.row_bytes + c.offset)[0]
+                              for c in self.columns) for row in range(count))
 
 
 class BlackBox:

@@ -40,6 +40,48 @@ TEST(Wire, AGoodDescriptionIsTaken) {
   EXPECT_EQ(complaint(changed(R"("at":0)", R"("at":"0x0")")), "");  // YAML scalars come as text
 }
 
+TEST(Wire, InvertedTurnsAFlagRoundWithAndWithoutABit) {
+  const auto flags = [](const std::string& more) {
+    return R"({"rate":1000,"input":{"size":4,"fields":[{"is":"position","joint":1,"at":0,"type":"i16","scale":0.1},)"
+           R"({"is":"button","button":1,"at":2,"bit_offset":3,"type":"u1")" +
+           more + R"(},{"is":"fault","at":3,"type":"u1")" + more +
+           R"(}]},"output":{"size":3,"fields":[{"is":"torque","joint":1,"at":0,"type":"i16","scale":0.1},)"
+           R"({"is":"enable","at":2,"bit_offset":5,"type":"u1")" +
+           more + "}]}}";
+  };
+  for (const char* bit : {"", ",\"bit\":0"})
+    for (const bool inverted : {false, true}) {
+      const Wire wire = readWire(flags(std::string(bit) + (inverted ? ",\"inverted\":true" : "")), 1);
+      for (int raw = 0; raw < 2; ++raw) {
+        const std::vector<uint8_t> bytes{0, 0, static_cast<uint8_t>(raw << 3), static_cast<uint8_t>(raw)};
+        State state;
+        ASSERT_EQ(decode(wire.input, bytes, state), Verdict::kGood);
+        EXPECT_EQ(state.buttons, (raw != 0) != inverted ? 1u : 0u) << bit << inverted << raw;
+        EXPECT_EQ(state.fault, (raw != 0) != inverted) << bit << inverted << raw;
+        std::vector<uint8_t> again(4);
+        encode(wire.input, state, again);
+        EXPECT_EQ(again, bytes) << bit << inverted;
+        Order order;
+        order.enable = raw != 0;
+        std::vector<uint8_t> out(3);
+        encode(wire.output, order, out);
+        EXPECT_EQ(out[2], (raw != 0) != inverted ? 1 << 5 : 0) << bit << inverted << raw;
+      }
+    }
+}
+
+TEST(Wire, ASwitchIsNoPartOfACounter) {
+  const std::string with =
+      R"({"rate":1000,"input":{"size":4,"fields":[{"is":"position","joint":1,"at":0,"type":"i16"},)"
+      R"({"is":"counter","at":2,"type":"u8"},{"is":"button","button":1,"at":PLACE,"type":"u8"}]},)"
+      R"("output":{"size":2,"fields":[{"is":"torque","joint":1,"at":0,"type":"i16","scale":0.1}]}})";
+  const auto at = [&](const char* place) { return std::string(with).replace(with.find("PLACE"), 5, place); };
+  EXPECT_EQ(complaint(at("3")), "");
+  EXPECT_NE(complaint(at("2")).find("fields[2].at: takes bits of byte 2, which fields[1] (counter) has already"),
+            std::string::npos)
+      << complaint(at("2"));
+}
+
 TEST(Wire, EveryMistakeIsNamedByItsPath) {
   const struct {
     const char *from, *to, *expected;

@@ -27,6 +27,23 @@ TEST(Limiter, RampsInFromZero) {
   EXPECT_NEAR(last, 4, 1e-9);
 }
 
+TEST(Limiter, RampsItsLimitsToo) {
+  scene::Limits limits;
+  limits.slew = 0;
+  limits.torque = 0.5;
+  limits.ramp_in = 0.25;
+  Limiter limiter(limits, 8.5);
+  double share = 0;
+  for (int i = 1; i <= 300; ++i) {  // a tip 30 m inside a model asks for 24 kN from the first tick on
+    Vector3d force(24000, 0, 0), torque(0, 1000, 0);
+    limiter.apply(force, torque, Vector3d::Zero(), 1e-3);
+    share = std::min(1.0, i / 250.0);
+    EXPECT_NEAR(force.x(), 8.5 * share, 1e-9) << i;
+    EXPECT_NEAR(torque.y(), 0.5 * share, 1e-9) << i;
+  }
+  EXPECT_EQ(share, 1);
+}
+
 TEST(Limiter, KeepsTheDirectionWhenItCutsTheForce) {
   Limiter limiter(generous(), 8.5);
   const Vector3d force = limited(limiter, {30, 40, 0});
