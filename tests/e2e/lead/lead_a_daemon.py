@@ -10,6 +10,7 @@ import math
 import os
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import tempfile
@@ -166,11 +167,16 @@ def hostile(daemon):
         until(lambda: abs(height(client) - START[1]) < 1e-3)
         first = client.streams["poses"].written
         nan = float("nan")
-        for bad in ([nan, 0, 0], [1e300, 0, 0], [0, math.inf, 0], [0, 11, 0]):
-            lead.put(bad)
+
+        def nonsense(position, orientation=(1, 0, 0, 0)):  # put() would refuse it
+            lead._put(struct.pack("<14d", *position, *orientation, *[0] * 6, time.monotonic()))
             time.sleep(0.02)
-        lead.put([0, 0, 0], orientation=[2, 0, 0, 0])
-        time.sleep(0.02)
+
+        check("put() refuses nonsense itself", raised(lambda: lead.put([nan, 0, 0]), ValueError, "not finite") and
+              raised(lambda: lead.put([0, 0, 0], orientation=[2, 0, 0, 0]), ValueError, "unit quaternion"))
+        for bad in ([nan, 0, 0], [1e300, 0, 0], [0, math.inf, 0], [0, 11, 0]):
+            nonsense(bad)
+        nonsense([0, 0, 0], (2, 0, 0, 0))
         lead.put([0, 0, 0], when=time.monotonic() + 100)
         time.sleep(0.02)
         os.pwrite(fd, (1).to_bytes(8, "little"), 0)
