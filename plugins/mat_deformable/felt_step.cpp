@@ -16,7 +16,6 @@ constexpr double kShallow = 1e-6;    ///< [m] the direction of the force is that
 }  // namespace
 
 hsp_status MatDeformable::stepFelt(const hsp_step& step) noexcept HSP_RT {
-  contacts_.clear();
   met_.clear();
   stored_ = 0;
   hsp_status worst = HSP_OK;
@@ -25,7 +24,7 @@ hsp_status MatDeformable::stepFelt(const hsp_step& step) noexcept HSP_RT {
                                    *HSP_AT(hsp_contact, step.out, step.out_stride, i));
     if (status < 0 || (status > 0 && worst == HSP_OK)) worst = worst < 0 ? worst : status;
   }
-  body_->feltSurface()->advance(elapsed(step), contacts_);
+  body_->feltSurface()->advance(elapsed(step), {contacts_.data(), met_.size()});
   for (std::size_t k = 0; k < met_.size(); ++k) {
     const uint32_t i = met_[k].probe;
     answer(*HSP_AT(const hsp_probe, step.in, step.in_stride, i), contacts_[k], met_[k].felt, tracks_[i],
@@ -44,9 +43,9 @@ hsp_status MatDeformable::meet(const hsp_probe& probe, const hsp_step& step, uin
   Track& track = tracks_[index];
   const double depth = located.surface.depth;
   const bool near = depth > 0 || (body_->nodes().awake() > 0 && depth > -kSwingsOut);
-  if (near && contacts_.size() < medial::kMaxContacts) {
-    medial::FeltContact& met = contacts_.emplace_back();  // reserved: one a probe
-    met_.push_back({index, located.surface});
+  if (near && met_.size() < contacts_.size()) {
+    medial::FeltContact& met = contacts_[met_.size()];
+    met_.push_back({index, located.surface});  // reserved: one a probe
     met.depth = depth;
     met.before = track.inside;
     met.known = track.counted;

@@ -70,9 +70,11 @@ std::optional<std::array<double, 2>> FootScan::rival(const Vector3d& p, const me
     next = next + 1 < count ? next + 1 : 0;
     const Sample& sample = samples_[next];
     const Vector3d away = p - sample.center;
-    const double distance = away.norm(), depth = sample.radius - distance;
-    if (!(depth > deepest) || away.dot(foot.normal) > kAside * distance) continue;
-    deepest = depth;
+    const double reach = sample.radius - deepest, distance2 = away.squaredNorm();
+    if (!(reach > 0) || !(distance2 < reach * reach)) continue;  // most: no root is taken
+    const double distance = std::sqrt(distance2);
+    if (away.dot(foot.normal) > kAside * distance) continue;
+    deepest = sample.radius - distance;
     best = &sample;
   }
   if (best == nullptr) return std::nullopt;

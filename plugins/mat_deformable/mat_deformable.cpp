@@ -71,7 +71,7 @@ void MatDeformable::openContacts(uint32_t probes) {
   contacts_.clear();
   met_.clear();
   if (body_->feltSurface() == nullptr) return;
-  contacts_.reserve(probes);
+  contacts_.resize(std::min<std::size_t>(probes, medial::kMaxContacts));
   met_.reserve(probes);
   beside_ = std::make_unique<medial::FeltPlace>();
 }
@@ -171,7 +171,7 @@ hsp_status MatDeformable::step(const hsp_step& step) noexcept HSP_RT {
 
 double MatDeformable::energy() const noexcept HSP_RT {
   const medial::FeltSurface* const surface = body_->feltSurface();
-  return stored_ + (surface != nullptr ? surface->energy(contacts_) : body_->nodes().energy());
+  return stored_ + (surface != nullptr ? surface->energy({contacts_.data(), met_.size()}) : body_->nodes().energy());
 }
 
 /// Leaves displacements for drawing 60 times a second while the body moves, and once when it has come to rest.

@@ -171,7 +171,7 @@ class MatDeformable final : public Shape {
     uint32_t probe = 0;
     Felt felt;
   };
-  std::vector<medial::FeltContact> contacts_;  ///< reserved for all probes
+  std::vector<medial::FeltContact> contacts_;  ///< as many as one surface answers; `met_` says how many are in use
   std::unique_ptr<medial::FeltPlace> beside_;  ///< of the rival, for the contact that is being met
   std::vector<Met> met_;                       ///< likewise
   std::unique_ptr<Displaced> displaced_;

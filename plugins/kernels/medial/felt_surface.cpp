@@ -14,9 +14,10 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-constexpr double kAsleep = 1e-7;  ///< [m] amplitude below which no one sees or feels a node move
-constexpr double kSteepest = 1;   ///< slope of a dent: on the inside of a bend the foot runs as fast as it likes
-constexpr double kNearby = 1e-6;  ///< [m] a probe so near to a surface touches it
+constexpr double kAsleep = 1e-7;        ///< [m] amplitude below which no one sees or feels a node move
+constexpr double kSteepest = 1;         ///< slope of a dent: on the inside of a bend the foot runs as fast as it likes
+constexpr uint32_t kLooksForSleep = 8;  ///< ticks between two looks for nodes that have come to rest
+constexpr double kNearby = 1e-6;        ///< [m] a probe so near to a surface touches it
 /// The step of an undamped node is a rotation: rounding may turn it into a growing spiral, by at most a few units in
 /// the last place a tick. So much is taken off.
 constexpr double kRoundingLoss = 4e-15;
@@ -288,7 +289,7 @@ void FeltSurface::advance(double dt, std::span<FeltContact> contacts) noexcept {
     for (FeltContact& contact : contacts) contact.inside = contact.depth - shift(contact.place);
   }
   keepAwake(contacts);
-  const bool changed = letSleep();
+  const bool changed = tick_ % kLooksForSleep == 0 && letSleep();
   for (FeltContact& contact : contacts) {
     if (changed && contact.inside <= -kNearby) contact.inside = contact.depth - shift(contact.place);
     contact.force = contact.place.contact * std::max(0.0, contact.inside);

@@ -10,6 +10,9 @@ namespace hapticd::bench_mat {
 
 /// The paper's table of six scenes, and more bodies than it had. Markdown.
 std::string gardenTable();
+/// Ticks of its last scene, 35 bodies: one is touched, or all have been and still move. Prints the median time; what it
+/// costs whatever else the machine does is counted by tests/bench/mat/instructions.
+void strokeGarden(const char* dynamics, bool awake, int ticks);
 /// Searches on ten skeletons against brute force. Markdown.
 std::string skeletonTable();
 /// Accuracy against speed, a table a knob. Markdown.

@@ -17,6 +17,8 @@ namespace {
 using Eigen::Vector3d;
 namespace fs = std::filesystem;
 
+constexpr std::size_t kThirtyFive = 5;  ///< row with so many bodies
+
 struct Kind {
   int rows, columns, count;
 };
@@ -168,11 +170,29 @@ std::string line(const Row& row, const fs::path& folder) {
       wide(row, "felt", folder));
 }
 
+fs::path newFolder() {
+  fs::path folder = fs::temp_directory_path() / fmt::format("hapticd-bench-mat-{}", ::getpid());
+  fs::create_directories(folder);
+  return folder;
+}
+
 }  // namespace
 
+void strokeGarden(const char* dynamics, bool awake, int ticks) {
+  const fs::path folder = newFolder();
+  const Row row = rows()[kThirtyFive];
+  double unused = 0;
+  const auto world = build(row, {awake ? "2" : "0.10", dynamics}, folder, unused);
+  Hand hand(*world);
+  stroke(hand, sideOf(row), 500);
+  if (awake) wakeAll(hand, sideOf(row), 35);
+  const double median = stroke(hand, sideOf(row), ticks);
+  fs::remove_all(folder);
+  fmt::print("{} {}: {} ticks, median {:.2f} us\n", dynamics, awake ? "awake" : "one", ticks, median);
+}
+
 std::string gardenTable() {
-  const fs::path folder = fs::temp_directory_path() / fmt::format("hapticd-bench-mat-{}", ::getpid());
-  fs::create_directories(folder);
+  const fs::path folder = newFolder();
   std::string text =
       "## The paper's scenes\n\nCorso et al. ran on a Pentium III of 700 MHz; their haptic time is the rate and the "
       "share of run time of their Table 1. Times are medians of a whole servo tick [us], the probe stroking one body "

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// bench_mat: what soft bodies cost and how exact they are. Prints the tables, or those that are named (knobs, scenes,
-/// meshes, felt, volume, searches); with --write, writes driver/docs/reports/bench_mat.md.
+/// meshes, felt, volume, searches); with --write, writes driver/docs/reports/bench_mat.md. `bench_mat ticks
+/// seen|felt|off one|awake COUNT` runs ticks of 35 bodies.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <fstream>
@@ -25,6 +27,10 @@ int main(int argc, char** argv) {
       {"knobs", hapticd::bench_mat::knobTables},   {"scenes", hapticd::bench_mat::gardenTable},
       {"meshes", hapticd::bench_mat::meshTables},  {"felt", hapticd::bench_mat::feltTables},
       {"volume", hapticd::bench_mat::volumeTable}, {"searches", hapticd::bench_mat::skeletonTable}};
+  if (argc == 5 && std::strcmp(argv[1], "ticks") == 0) {
+    hapticd::bench_mat::strokeGarden(argv[2], std::strcmp(argv[3], "awake") == 0, std::atoi(argv[4]));
+    return 0;
+  }
   const bool write = argc == 2 && std::strcmp(argv[1], "--write") == 0;
   try {
     std::string text = kHead;
