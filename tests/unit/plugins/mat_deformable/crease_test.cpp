@@ -81,7 +81,8 @@ std::array<double, 2> wander(Plugin& body, const Vector3d& home, double speed, u
   double worked = 0, least = 0, most = 0;
   body.search(p);
   body.touch(p);
-  for (int i = 0; i < 20'000; ++i) {
+  const int count = motions(20'000);
+  for (int i = 0; i < count; ++i) {
     for (int k = 0; k < 3; ++k) velocity[k] += .1 * speed * normal(engine);
     velocity -= .02 * velocity + 20 * speed * (p - (home - Vector3d(0, 0, .003)));
     const Vector3d next = p + 1e-3 * velocity;

@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -106,6 +108,12 @@ class Plugin {
 
 inline Vector3d forceOf(const hsp_contact& contact) {
   return Vector3d(contact.force);
+}
+
+/// Random motions a case: HAPTICD_MOTIONS in the environment, or so many.
+inline int motions(int usual) {
+  const char* asked = std::getenv("HAPTICD_MOTIONS");
+  return asked != nullptr ? std::max(1, std::atoi(asked)) : usual;
 }
 
 /// A file that is gone when the test is over.
