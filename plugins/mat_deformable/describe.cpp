@@ -11,6 +11,8 @@ namespace {
 constexpr double kLarge = 1.5;           ///< [m] no arm reaches round a longer body
 constexpr double kNoticed = 1.1;         ///< felt over told stiffness from which a hint is due
 constexpr std::size_t kMostLines = 200;  ///< nobody reads more
+constexpr double kHalfMillisecond =
+    0.5e-3;  ///< [s] half a tick at 1 kHz: the damping that a spring needs whose force is held
 constexpr double kSameStiffness = 1e-3;  ///< relative difference of places that are told together
 
 /// Places of one stiffness, in the order of the file.
@@ -34,12 +36,16 @@ std::vector<Group> grouped(std::vector<FeltMaterial> all) {
   return groups;
 }
 
-std::string line(const Group& group) {
+/// `contact`: contact spring over the stiffness of a surface that is felt; 0: it is not.
+std::string line(const Group& group, double contact) {
   const FeltMaterial& one = group.first;
-  char text[256];
+  char text[320], spring[112] = "";
+  if (contact > 0)
+    std::snprintf(spring, sizeof spring, "; contact spring %.4g N/m, passive on an arm that damps %.3g N s/m",
+                  contact * one.told, kHalfMillisecond * contact * one.told);
   const int length = std::snprintf(text, sizeof text,
-                                   "felt %.4g N/m 1 mm deep, %.4g N/m 5 mm deep; the file says %.4g N/m: ", one.felt,
-                                   one.deep, one.told);
+                                   "felt %.4g N/m 1 mm deep, %.4g N/m 5 mm deep; the file says %.4g N/m%s: ", one.felt,
+                                   one.deep, one.told, spring);
   const auto left = sizeof text - static_cast<std::size_t>(length);
   const Eigen::Array3d mm = 0.01 * (1e5 * one.place.array()).round() + 0.0;  // no -0
   if (group.count == 1)
@@ -73,17 +79,19 @@ void MatDeformable::describe(const MedialFile& file) const {
 void MatDeformable::describeMaterial(const MedialFile& file) const {
   double most = 1;
   std::size_t lines = 0;
+  const medial::FeltSurface* const surface = body_->feltSurface();
+  const double ratio = surface != nullptr ? surface->contactRatio() : 0;
   for (const Group& group : grouped(body_->feltMaterial())) {
-    if (++lines <= kMostLines) say(HSP_LOG_DEBUG, line(group));
+    if (++lines <= kMostLines) say(HSP_LOG_DEBUG, line(group, ratio));
     if (group.first.told > 0) most = std::max(most, group.first.deep / group.first.told);
   }
-  if (const medial::FeltSurface* const surface = body_->feltSurface(); surface != nullptr) {
-    const double contact = body_->greatestStiffness() * surface->contactRatio();
+  if (surface != nullptr) {
+    const double contact = body_->greatestStiffness() * ratio;
     char text[192];
     std::snprintf(text, sizeof text,
                   "contact spring of the stiffest place %.4g N/m: passive by itself on an arm that damps %.3g N s/m at "
                   "1 kHz (K / 2 / rate); else limits.passivity guards it",
-                  contact, 0.5e-3 * contact);
+                  contact, kHalfMillisecond * contact);
     say(HSP_LOG_DEBUG, text);
   }
   if (file.grid && file.revision >= 2 && shear_offset_ != kUsualShearOffset)
