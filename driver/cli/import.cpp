@@ -27,7 +27,7 @@ struct Options {
   Placement placement;
   bool medial = false;
   MedialImport body;
-  std::string answers;  ///< to calibrate a soft body with
+  std::string answers, dents;  ///< to calibrate a soft body with
   double smooth_angle = 0;
   CadImport cad;
   bool json = false;
@@ -82,7 +82,7 @@ int importModel(const Options& options) {
     return done ? kWorked : fail(kFailed, done.error());
   }
   if (!options.answers.empty()) {
-    const auto done = calibrate({options.file, options.answers, options.out}, catalog());
+    const auto done = calibrate({options.file, options.answers, options.dents, options.out}, catalog());
     return done ? kWorked : fail(kBadInput, done.error());
   }
   if (isMeshFile(options.file))
@@ -141,11 +141,17 @@ void addMedialOptions(CLI::App& command, Options& options) {
   command.add_option("--mass", body.mass, "mass of a vertex [kg], written to a .yaml file")
       ->check(within(0.0, 1e6))
       ->needs(medial);
+  CLI::Option* calibrate =
+      command
+          .add_option("--calibrate", options.answers,
+                      "fit the stiffness of a soft body (a model file with points or vertices) to presses: CSV "
+                      "x,y,z,depth,force [m, N], measured or computed, of small strain")
+          ->excludes(medial);
   command
-      .add_option("--calibrate", options.answers,
-                  "fit the stiffness of a soft body (a model file with points or vertices) to presses: CSV "
-                  "x,y,z,depth,force [m, N], measured or computed, of small strain")
-      ->excludes(medial);
+      .add_option("--dents", options.dents,
+                  "with --calibrate, fit its shear_reach too: CSV x,y,z,x2,y2,z2,dent, of a press at the first place "
+                  "the share of its depth by which the second goes down")
+      ->needs(calibrate);
 }
 
 }  // namespace

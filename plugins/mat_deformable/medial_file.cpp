@@ -62,13 +62,16 @@ class Reader {
 
  private:
   void readGrid(const Json& medial, const Path& at, medial::BodyData& data) {
-    checkKeys(medial, at, {"points", "radius", "stiffness", "damping", "mass", "young", "poisson", "thickness"});
+    checkKeys(medial, at,
+              {"points", "radius", "stiffness", "damping", "mass", "young", "poisson", "thickness", "shear_reach"});
     if (!readPoints(medial, below(at, "points"), data.grid)) return;
     data.grid.radius = grid(medial, at, "radius", data.grid, true);
     const auto read = [&](const char* key, bool required) { return grid(medial, at, key, data.grid, required); };
     data.stiffness = stiffnessOf(medial, at, read);
     data.damping = grid(medial, at, "damping", data.grid, false);
     data.mass = grid(medial, at, "mass", data.grid, false);
+    if (medial.contains("shear_reach"))
+      data.shear_reach = value(medial["shear_reach"], below(at, "shear_reach"), "radius");
   }
 
   void readMesh(const Json& medial, const Path& at, medial::MeshBodyData& data) {

@@ -10,11 +10,13 @@ namespace hapticd::importing {
 namespace fs = std::filesystem;
 
 Result<std::unique_ptr<host::ShapeInstance>> activated(const char* plugin, const fs::path& geometry,
-                                                       host::Catalog& catalog) {
+                                                       host::Catalog& catalog, const std::string& more,
+                                                       uint32_t probes) {
   std::string quoted;
   for (const char c : fs::absolute(geometry).string()) quoted += c == '\'' ? std::string("''") : std::string(1, c);
-  const std::string text = fmt::format(
-      "hapticd: 1\nmodels:\n  - name: body\n    plugin: {}\n    parameters: {{geometry: '{}'}}\n", plugin, quoted);
+  const std::string text =
+      fmt::format("hapticd: 1\nmodels:\n  - name: body\n    plugin: {}\n    parameters: {{geometry: '{}'{}}}\n", plugin,
+                  quoted, more);
   std::optional<scene::Scene> scene;
   const document::Problems problems = scene::checkText(text, fs::current_path() / "import.yaml", catalog, &scene);
   if (!scene || scene->models.empty())
@@ -27,7 +29,7 @@ Result<std::unique_ptr<host::ShapeInstance>> activated(const char* plugin, const
   if (!shape) return Error{shape.error()};
   hsp_activation activation{};
   activation.struct_size = sizeof activation;
-  activation.max_probes = 1;
+  activation.max_probes = probes;
   activation.rate_hz = 1000;
   activation.max_probe_speed = 1;
   activation.pose.orientation[0] = 1;

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "base/result.hpp"
 #include "host/catalog.hpp"
@@ -11,9 +12,11 @@
 
 namespace hapticd::importing {
 
-/// [main] An active model of `plugin` with this geometry, whose first surface is traced.
+/// [main] An active model of `plugin` with this geometry for so many probes. `more`: further parameters, each after a
+/// comma, as in a scene file.
 Result<std::unique_ptr<host::ShapeInstance>> activated(const char* plugin, const std::filesystem::path& geometry,
-                                                       host::Catalog& catalog);
+                                                       host::Catalog& catalog, const std::string& more = "",
+                                                       uint32_t probes = 1);
 
 /// [main] What a resting probe meets that was placed at `p` [m], in the model's frame.
 Result<hsp_contact> touched(host::ShapeInstance& body, const Eigen::Vector3d& p);

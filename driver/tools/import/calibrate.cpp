@@ -12,6 +12,7 @@
 #include "document/csv.hpp"
 #include "document/node.hpp"
 #include "import/active_model.hpp"
+#include "import/dents.hpp"
 
 namespace hapticd::importing {
 namespace {
@@ -19,11 +20,13 @@ namespace {
 using document::Node;
 using Eigen::Vector3d;
 
-constexpr int kRounds = 300;       ///< of the fit
-constexpr double kFitted = 1e-4;   ///< relative error that ends it
-constexpr double kGood = 0.05;     ///< relative error beyond which a place is told of
-constexpr double kReach = 0.7;     ///< of the distance of neighbouring points: how far a place counts
-constexpr double kStiffest = 1e6;  ///< [N/m] that a body may have
+constexpr int kRounds = 300;          ///< of the fit
+constexpr double kFitted = 1e-4;      ///< relative error that ends it
+constexpr double kGood = 0.05;        ///< relative error beyond which a place is told of
+constexpr double kReach = 0.7;        ///< of the distance of neighbouring points: how far a place counts
+constexpr double kFarthestReach = 2;  ///< of that distance: the largest shear reach that is tried
+constexpr double kNoReach = 0.05;     ///< likewise: as good as none
+constexpr double kStiffest = 1e6;     ///< [N/m] that a body may have
 constexpr std::size_t kMostBytes = std::size_t{1} << 26;
 
 struct Answer {
@@ -36,6 +39,13 @@ struct Body {
   Node root;
   std::vector<Vector3d> points;
   std::size_t columns = 0;  ///< of a grid; 0: vertices
+};
+
+/// What is fitted.
+struct Fitted {
+  std::vector<double> stiffness;  ///< [N/m] one a point
+  double reach = -1;              ///< [m] of the shear; < 0: as the body's file has it
+  bool still = false;             ///< for measuring: without mass and damping
 };
 
 Error first(const document::Problems& problems, const std::string& file) {
@@ -106,7 +116,7 @@ std::string stiffnessText(const Body& body, const std::vector<double>& stiffness
   return text + "\n";
 }
 
-std::string written(const Body& body, const std::vector<double>& stiffness, const Calibration& options) {
+std::string written(const Body& body, const Fitted& fitted, const Calibration& options) {
   std::string text =
       fmt::format("# {} with the stiffness of {}, by hapticd import --calibrate\nformat: hapticd-model/2\n",
                   options.body, options.answers);
@@ -117,6 +127,7 @@ std::string written(const Body& body, const std::vector<double>& stiffness, cons
   for (const document::Entry& entry : body.root.find("medial")->entries) {
     const std::string& key = entry.key.scalar;
     if (key == "stiffness" || key == "young" || key == "poisson" || key == "thickness") continue;
+    if ((fitted.reach >= 0 && key == "shear_reach") || (fitted.still && (key == "mass" || key == "damping"))) continue;
     text += fmt::format("  {}:", key);
     if (entry.value.isSequence() && !entry.value.items.empty()) {
       text += "\n";
@@ -125,20 +136,26 @@ std::string written(const Body& body, const std::vector<double>& stiffness, cons
       text += fmt::format(" {}\n", document::toJson(entry.value));
     }
   }
-  return text + stiffnessText(body, stiffness);
+  if (fitted.reach >= 0) text += fmt::format("  shear_reach: {:.4g}\n", fitted.reach);
+  return text + stiffnessText(body, fitted.stiffness);
 }
 
-/// Share of each answer in each point: that of the nearest answer is the largest.
-Eigen::MatrixXd sharesOf(const Body& body, const std::vector<Answer>& answers) {
-  const auto count = static_cast<Eigen::Index>(body.points.size()), places = static_cast<Eigen::Index>(answers.size());
-  double spacing = 0;  // mean distance to the nearest other point
+/// [m] Mean distance of a point to the nearest other one.
+double spacingOf(const Body& body) {
+  double spacing = 0;
   for (const Vector3d& a : body.points) {
     double least = HUGE_VAL;
     for (const Vector3d& b : body.points)
       if (&a != &b) least = std::min(least, (a - b).norm());
     if (std::isfinite(least)) spacing += least / static_cast<double>(body.points.size());
   }
-  const double width = std::pow(kReach * spacing, 2);
+  return spacing;
+}
+
+/// Share of each answer in each point: that of the nearest answer is the largest.
+Eigen::MatrixXd sharesOf(const Body& body, const std::vector<Answer>& answers) {
+  const auto count = static_cast<Eigen::Index>(body.points.size()), places = static_cast<Eigen::Index>(answers.size());
+  const double width = std::pow(kReach * spacingOf(body), 2);
   Eigen::MatrixXd shares(count, places);
   for (Eigen::Index i = 0; i < count; ++i) {
     for (Eigen::Index j = 0; j < places; ++j)
@@ -193,6 +210,63 @@ void tell(const std::vector<Answer>& answers, const std::vector<double>& forces,
               100 * std::sqrt(squares));
 }
 
+/// Makes `fitted.stiffness` right. @returns the forces [N] of the body at the answers
+Result<std::vector<double>> fitStiffness(const Body& body, const std::vector<Answer>& answers,
+                                         const Calibration& options, host::Catalog& catalog, Fitted& fitted) {
+  const Eigen::MatrixXd shares = sharesOf(body, answers);
+  std::vector<double>& stiffness = fitted.stiffness;
+  std::vector<double> forces;
+  stiffness.assign(body.points.size(), answers.front().force / answers.front().depth);
+  for (int round = 0; round < kRounds; ++round) {
+    if (const auto done = save(options.out, written(body, fitted, options)); !done) return Error{done.error()};
+    auto felt = feltForces(options, answers, catalog);
+    if (!felt) return Error{felt.error()};
+    forces = std::move(*felt);
+    Eigen::VectorXd missing(static_cast<Eigen::Index>(forces.size()));
+    for (std::size_t j = 0; j < forces.size(); ++j) {
+      if (!(forces[j] > 0)) return Error{fmt::format("nothing is felt at place {} of {}", j + 1, options.answers)};
+      missing[static_cast<Eigen::Index>(j)] = std::log(answers[j].force / forces[j]);
+    }
+    if (missing.cwiseAbs().maxCoeff() < kFitted) break;
+    const Eigen::VectorXd change = shares * missing;
+    for (std::size_t i = 0; i < stiffness.size(); ++i)
+      stiffness[i] = std::min(kStiffest, stiffness[i] * std::exp(change[static_cast<Eigen::Index>(i)]));
+  }
+  return forces;
+}
+
+/// Makes `fitted.reach` right, and tells how well the dents are met.
+Result<void> fitShear(const Body& body, const std::vector<Dent>& dents, const Calibration& options,
+                      host::Catalog& catalog, Fitted& fitted) {
+  if (body.columns == 0)
+    return Error{options.body +
+                 ": has vertices, expected a grid of points: the dents of a mesh are those of its rings"};
+  Fitted tried{fitted.stiffness, 0, true};
+  const auto write = [&](double reach) {
+    tried.reach = reach;
+    return save(options.out, written(body, tried, options));
+  };
+  const double spacing = spacingOf(body);
+  const auto fit = fitReach(options.out, kFarthestReach * spacing, dents, write, catalog);
+  if (!fit) return Error{fit.error()};
+  fitted.reach = fit->reach;
+  double worst = 0, squares = 0, wider = 0;
+  for (std::size_t i = 0; i < dents.size(); ++i) {
+    const double error = fit->shares[i] - dents[i].share;
+    worst = std::max(worst, std::fabs(error));
+    squares += error * error / static_cast<double>(dents.size());
+    wider += error / static_cast<double>(dents.size());
+  }
+  if (worst > kGood && wider > 0 && fit->reach < kNoReach * spacing)
+    std::fprintf(stderr,
+                 "warning: the dent of the body is wider than that of the answers; points closer together than %.3g m "
+                 "make it narrower\n",
+                 spacing);
+  std::printf("%s: shear_reach %.4g m, dent at %zu places within %.3f of the depth, rms %.3f\n", options.out.c_str(),
+              fitted.reach, dents.size(), worst, std::sqrt(squares));
+  return save(options.out, written(body, fitted, options));
+}
+
 }  // namespace
 
 Result<void> calibrate(const Calibration& options, host::Catalog& catalog) {
@@ -201,25 +275,17 @@ Result<void> calibrate(const Calibration& options, host::Catalog& catalog) {
   if (!answers) return Error{answers.error()};
   const auto body = readBody(options.body);
   if (!body) return Error{body.error()};
-  const Eigen::MatrixXd shares = sharesOf(*body, *answers);
-  std::vector<double> stiffness(body->points.size(), answers->front().force / answers->front().depth), forces;
-  for (int round = 0; round < kRounds; ++round) {
-    if (const auto done = save(options.out, written(*body, stiffness, options)); !done) return Error{done.error()};
-    auto felt = feltForces(options, *answers, catalog);
-    if (!felt) return Error{felt.error()};
-    forces = std::move(*felt);
-    Eigen::VectorXd missing(static_cast<Eigen::Index>(forces.size()));
-    for (std::size_t j = 0; j < forces.size(); ++j) {
-      if (!(forces[j] > 0)) return Error{fmt::format("nothing is felt at place {} of {}", j + 1, options.answers)};
-      missing[static_cast<Eigen::Index>(j)] = std::log((*answers)[j].force / forces[j]);
-    }
-    if (missing.cwiseAbs().maxCoeff() < kFitted) break;
-    const Eigen::VectorXd change = shares * missing;
-    for (std::size_t i = 0; i < stiffness.size(); ++i)
-      stiffness[i] = std::min(kStiffest, stiffness[i] * std::exp(change[static_cast<Eigen::Index>(i)]));
+  std::vector<Dent> dents;
+  if (!options.dents.empty()) {
+    auto read = readDents(options.dents);
+    if (!read) return Error{read.error()};
+    dents = std::move(*read);
   }
-  tell(*answers, forces, options);
-  return {};
+  Fitted fitted;
+  const auto forces = fitStiffness(*body, *answers, options, catalog, fitted);
+  if (!forces) return Error{forces.error()};
+  tell(*answers, *forces, options);
+  return dents.empty() ? Result<void>{} : fitShear(*body, dents, options, catalog, fitted);
 }
 
 }  // namespace hapticd::importing

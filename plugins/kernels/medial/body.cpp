@@ -41,7 +41,8 @@ Body::Body(const BodyData& data, const BodyOptions& options)
   stiffness_ = fieldOf(skeleton_, data.stiffness, data.grid, "stiffness");
   damping_ = fieldOf(skeleton_, orZeros(data.damping, data.grid.points.size()), data.grid, "damping");
   const std::vector<Oscillator> material = materialOf(data);
-  deformation_.emplace(skeleton_, material, options.deformation);
+  options_.deformation.shear_reach = data.shear_reach;
+  deformation_.emplace(skeleton_, material, options_.deformation);
   if (options.felt.on)
     felt_.emplace(*deformation_, tissueOf(material), deformation_->compliance(), options.felt.contact_ratio,
                   options.felt.tick);

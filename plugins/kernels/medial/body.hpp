@@ -19,6 +19,7 @@ struct BodyData {
   std::vector<double> stiffness;  ///< [N/m] one a point
   std::vector<double> damping;    ///< [N s/m] one a point; empty: none
   std::vector<double> mass;       ///< [kg] one a point; empty: none, so that control points creep
+  double shear_reach = 0;         ///< [m] along the skeleton; makes the dent of a felt body wider than its points alone
 };
 
 /// How a surface with dynamics of its own is felt.

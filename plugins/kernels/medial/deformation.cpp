@@ -58,6 +58,71 @@ struct Basis {
   }
 };
 
+constexpr std::size_t kWidest = 11;  ///< control points of one direction in a place: 11 x 11 fit a FeltPlace
+static_assert(kWidest * kWidest <= FeltPlace::kMost);
+
+/// Shares of control points in a place and their derivatives.
+struct Shares {
+  std::array<double, kWidest> value{}, slope{};
+  int first = 0, count = 0;
+
+  void add(const Basis& basis, double part, bool follows) noexcept {
+    const int from = basis.first - first;
+    for (int i = 0; i < basis.count && static_cast<std::size_t>(from + i) < kWidest; ++i) {
+      const auto to = static_cast<std::size_t>(from + i), k = static_cast<std::size_t>(i);
+      value[to] += part * basis.value[k];
+      if (follows) slope[to] += part * basis.slope[k];
+    }
+    count = std::min(std::max(count, from + basis.count), static_cast<int>(kWidest));
+  }
+};
+
+/// Those of a place at t that takes the places `reach` before and behind it along. At the rim they are the rim.
+Shares sharesOf(const ControlGrid& grid, std::size_t axis, double t, double reach) noexcept {
+  Shares shares;
+  const Basis here(grid, axis, t);
+  if (!(reach > 0)) {
+    shares.first = here.first;
+    shares.add(here, 1, true);
+    return shares;
+  }
+  const double low = grid.knots[axis].front(), high = grid.knots[axis].back();
+  const Basis before(grid, axis, std::max(low, t - reach)), behind(grid, axis, std::min(high, t + reach));
+  shares.first = before.first;
+  shares.add(before, 0.25, t - reach > low);
+  shares.add(here, 0.5, true);
+  shares.add(behind, 0.25, t + reach < high);
+  return shares;
+}
+
+/// The reach [m] as a difference of parameters, the same all over the body so that derivatives are those of the shares;
+/// at most so far that no place has more than kWidest control points.
+double parameterReach(const Skeleton& skeleton, std::size_t axis, double reach) {
+  if (!(reach > 0) || (axis == 0 && skeleton.curve())) return 0;
+  const auto& [us, vs] = skeleton.parameters();
+  double metres = 0;  // a unit of the parameter, on average
+  spline::SurfacePoint s;
+  for (const double u : us) {
+    for (const double v : vs) {
+      skeleton.surface().evaluate1(u, v, s);
+      metres += (axis == 0 ? s.Su : s.Sv).norm() / static_cast<double>(us.size() * vs.size());
+    }
+  }
+  const ControlGrid& grid = skeleton.control();
+  const std::vector<double>& knots = grid.knots[axis];
+  const auto widest = [&](double r) {
+    int most = 0;
+    for (const double knot : knots) {
+      const double first = std::clamp(knot - 2 * r, knots.front(), knots.back());
+      most = std::max(most, Basis(grid, axis, knot).first + grid.degree[axis] + 1 - Basis(grid, axis, first).first);
+    }
+    return most;
+  };
+  double r = metres > 0 ? reach / metres : 0;
+  while (r > 0 && widest(r) > static_cast<int>(kWidest)) r *= 0.95;
+  return r;
+}
+
 /// Of one direction: the least change from equal ones that makes the sum 1 at places all along it, by multiplying each
 /// by the mean of what is missing where it acts.
 std::vector<double> complianceAlong(const ControlGrid& grid, std::size_t axis) {
@@ -92,7 +157,9 @@ std::vector<double> complianceAlong(const ControlGrid& grid, std::size_t axis) {
 
 Deformation::Deformation(const Skeleton& skeleton, const std::vector<Oscillator>& material,
                          const DeformationOptions& options)
-    : Nodes(total(skeleton.control()), material, options), skeleton_(&skeleton) {}
+    : Nodes(total(skeleton.control()), material, options),
+      skeleton_(&skeleton),
+      reach_{parameterReach(skeleton, 0, options.shear_reach), parameterReach(skeleton, 1, options.shear_reach)} {}
 
 Deformation::Reach Deformation::reachOf(double u, double v) const noexcept {
   const ControlGrid& grid = skeleton_->control();
@@ -125,7 +192,7 @@ void Deformation::press(std::span<const Press> contacts) noexcept {
 
 void Deformation::nodesAt(double u, double v, FeltPlace& place) const noexcept {
   const ControlGrid& grid = skeleton_->control();
-  const Basis along_u(grid, 0, u), along_v(grid, 1, v);
+  const Shares along_u = sharesOf(grid, 0, u, reach_[0]), along_v = sharesOf(grid, 1, v, reach_[1]);
   place.count = 0;
   for (int i = 0; i < along_u.count; ++i) {
     for (int j = 0; j < along_v.count; ++j) {

@@ -32,7 +32,9 @@ class Deformation : public Nodes {
   void press(std::span<const Press> contacts) noexcept;
   /// [rt] Displacement of the skeleton (x, y, z) and change of the radius at one point [m].
   Eigen::Vector4d at(double u, double v) const noexcept;
-  /// [rt] The control points that shape the contour at (u, v), with their derivatives.
+  /// [rt] The control points that shape the contour at (u, v), with their derivatives. With a shear reach L the place
+  /// goes down by half its own displacement and a quarter each of those L before and behind it, along u and along v: a
+  /// press takes the surface beside it along, and is pushed back by it. The energy stays that of the nodes.
   void nodesAt(double u, double v, FeltPlace& place) const noexcept;
   /// [main] One a control point, so that the sum of weight^2 * compliance is nearly 1 everywhere.
   std::vector<double> compliance() const;
@@ -51,6 +53,7 @@ class Deformation : public Nodes {
   Reach reachOf(double u, double v) const noexcept;
 
   const Skeleton* skeleton_;
+  std::array<double, 2> reach_{0, 0};  ///< shear_reach as a difference of u and of v
 };
 
 }  // namespace hapticd::medial

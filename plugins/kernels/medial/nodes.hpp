@@ -17,6 +17,7 @@ struct DeformationOptions {
   std::array<int, 2> influence{4, 4};  ///< of a grid: control points that a contact moves, p' x q'
   int rings = 2;                       ///< of a mesh: neighbours of neighbours ... that a contact moves
   bool dynamics = true;                ///< false: nodes return at once
+  double shear_reach = 0;              ///< [m] of a grid that is felt: places so far beside a contact go along with it
 };
 
 /// A node and its share in a point of the skeleton.

@@ -45,32 +45,40 @@ class Solid:
     def where(self, holds):
         return [i + 1 for i, place in enumerate(self.nodes) if holds(*place)]
 
-    def solve(self, folder, fixed, presses, told):
+    def material(self, young, rubber):
+        """Lines of a linear material, or of neo-Hookean rubber with the same constants at small strain."""
+        if not rubber:
+            return f"*ELASTIC\n{young},{self.poisson}\n"
+        shear, bulk = young / 2 / (1 + self.poisson), young / 3 / (1 - 2 * self.poisson)
+        return f"*HYPERELASTIC,NEO HOOKE\n{shear / 2:.10g},{2 / bulk:.10g}\n"
+
+    def solve(self, folder, fixed, presses, told, rubber=False):
         """Displacements (r, z) [m] of the nodes `told` for each of `presses`, a list of (node, force along z [N]) or of
-        (node, displacement along z [m], True); and the total force along z [N] on nodes that were displaced."""
+        (node, displacement along z [m], True); and the total force along z [N] on nodes that were displaced. `rubber`:
+        large strain, each press going on from the one before."""
         path = os.path.join(folder, self.name)
         listed = lambda nodes: "".join(f"{n}\n" for n in nodes)
         moved = sorted({p[0] for press in presses for p in press if len(p) > 2})
         with open(path + ".inp", "w", encoding="ascii") as out:
             out.write("*NODE,NSET=ALL\n" + "".join(f"{i + 1},{r:.10g},{z:.10g},0\n" for i, (r, z) in enumerate(self.nodes)))
             for k, young in enumerate(sorted({e for _, e in self.elements})):
-                out.write(f"*ELEMENT,TYPE=CAX8R,ELSET=E{k}\n" + "".join(
+                out.write(f"*ELEMENT,TYPE={'CAX8' if rubber else 'CAX8R'},ELSET=E{k}\n" + "".join(
                     f"{n + 1}," + ",".join(map(str, corners)) + "\n"
                     for n, (corners, e) in enumerate(self.elements) if e == young))
-                out.write(f"*MATERIAL,NAME=M{k}\n*ELASTIC\n{young},{self.poisson}\n*SOLID SECTION,ELSET=E{k},MATERIAL=M{k}\n")
+                out.write(f"*MATERIAL,NAME=M{k}\n{self.material(young, rubber)}*SOLID SECTION,ELSET=E{k},MATERIAL=M{k}\n")
             out.write("*NSET,NSET=TOLD\n" + listed(told) + "*NSET,NSET=FIXED\n" + listed(fixed))
             out.write("*NSET,NSET=AXIS\n" + listed(self.where(lambda r, z: abs(r) < 1e-9)))
             out.write(("*NSET,NSET=MOVED\n" + listed(moved)) if moved else "")
             out.write("*BOUNDARY\nFIXED,1,2\nAXIS,1\n")
             for press in presses:
-                out.write("*STEP\n*STATIC\n")
+                out.write("*STEP,NLGEOM,INC=1000\n*STATIC\n0.5,1.,1e-4\n" if rubber else "*STEP\n*STATIC\n")
                 forces = [p for p in press if len(p) == 2]
                 if forces:
                     out.write("*CLOAD,OP=NEW\n" + "".join(f"{n},2,{f / WHOLE:.10g}\n" for n, f in forces))
                 if moved:
                     out.write("*BOUNDARY\n" + "".join(f"{p[0]},2,2,{p[1]:.10g}\n" for p in press if len(p) > 2))
-                    out.write("*NODE PRINT,NSET=MOVED,TOTALS=ONLY\nRF\n")
-                out.write("*NODE PRINT,NSET=TOLD\nU\n*END STEP\n")
+                    out.write("*NODE PRINT,NSET=MOVED,TOTALS=ONLY,FREQUENCY=1000\nRF\n")
+                out.write("*NODE PRINT,NSET=TOLD,FREQUENCY=1000\nU\n*END STEP\n")
         begun = time.monotonic()
         done = subprocess.run(["ccx", "-i", self.name], cwd=folder, capture_output=True, text=True, timeout=600, check=False)
         self.seconds = time.monotonic() - begun
@@ -96,11 +104,14 @@ class Solid:
 TIP = 5e-3  # [m] radius of the flat tip and of the round one
 
 
-def layer(thickness=0.02, young=1e4, poisson=0.45, lump=None):
-    """A layer on something rigid; `lump`: (height of its centre, radius, Young's modulus)."""
+def layer(thickness=0.02, young=1e4, poisson=0.45, lump=None, coarse=0):
+    """A layer on something rigid; `lump`: (height of its centre, radius, Young's modulus). `coarse`: elements under the tip."""
     inside = lambda r, z: lump is not None and math.hypot(r, z - lump[0]) < lump[1]
     columns = graded([0, 0.8 * TIP, TIP, 1.2 * TIP, 2 * TIP, 0.08], [5, 5, 5, 5, 12])
     rows = graded([0, thickness - 2.5 * TIP, thickness - 0.5 * TIP, thickness - 0.1 * TIP, thickness], [5, 12, 4, 4])
+    if coarse:  # no small elements at the edge of the tip: they fold when it goes deep
+        columns = graded([0, TIP, 2 * TIP, 0.08], [coarse, coarse, 8])
+        rows = graded([0, thickness - 2 * TIP, thickness], [3, coarse + 2])
     solid = Solid("layer" if lump is None else "lump", columns, rows, lambda x, y: (x, y),
                   lambda r, z: lump[2] if inside(r, z) else young, poisson)
     return solid, solid.where(lambda r, z: z < 1e-9), solid.where(lambda r, z: abs(z - thickness) < 1e-9)
@@ -127,3 +138,12 @@ def flat(solid, fixed, surface, folder, depth=1e-4):
     yields, totals = solid.solve(folder, fixed, [[(n, -depth, True) for n in under]], surface)
     dent = sorted((solid.nodes[n - 1][0], -u[1] / depth) for n, u in zip(surface, yields[0]))
     return -totals[0] / depth, dent
+
+
+def far(solid, fixed, surface, folder, depths):
+    """Force [N] of a flat frictionless tip that goes deep into rubber, and the dents as in flat(), at each depth."""
+    under = [n for n in surface if solid.nodes[n - 1][0] <= TIP + 1e-9]
+    yields, totals = solid.solve(folder, fixed, [[(n, -depth, True) for n in under] for depth in depths], surface, rubber=True)
+    dents = [sorted((solid.nodes[n - 1][0] + u[0], -u[1] / depth) for n, u in zip(surface, at))
+             for at, depth in zip(yields, depths)]
+    return [-total for total in totals], dents

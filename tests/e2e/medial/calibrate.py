@@ -6,6 +6,7 @@ Usage: calibrate.py HAPTICD CONFIG     prints one line per case; exit 1 when one
 import csv
 import math
 import os
+import re
 import sys
 import tempfile
 
@@ -15,6 +16,7 @@ from e2e import check, finish, program
 HAPTICD, CONFIG = sys.argv[1], os.path.abspath(sys.argv[2])
 hapticd = program(HAPTICD, together=True)
 WIDTH, HEIGHT, RADIUS, COUNT = 0.08, 0.06, 0.01, 9
+REACH = 0.006  # [m] of the shear of a stand-in whose dents are those of the points and of this; the contact spring takes a third of a press
 
 
 def solid(x, y):
@@ -74,6 +76,26 @@ with tempfile.TemporaryDirectory() as work:
     with open(out, encoding="utf-8") as file:
         lines = file.read()
     check("what it does not fit it keeps", "name: " in lines and "  mass: 0.01" in lines and "hapticd-model/2" in lines, lines[:400])
+    dents = os.path.join(work, "dents.csv")
+    with open(dents, "w", encoding="utf-8") as file:
+        file.write("x,y,z,x2,y2,z2,dent\n")
+        for spacing, across in ((WIDTH / (COUNT - 1), (1, 0)), (HEIGHT / (COUNT - 1), (0, 1))):
+            for r in (0.008, 0.012, 0.016):
+                share = 2 / 3 * math.exp(-0.5 * r * r / (2 * spacing ** 2 / 3 + REACH ** 2))
+                file.write(f"0,0,0.013,{r * across[0]},{r * across[1]},0.013,{share}\n")
+    code, text = hapticd("import", "--calibrate", told, "--dents", dents, given, out)
+    found = re.search(r"shear_reach ([\d.e-]+) m, dent at 6 places within ([\d.]+)", text)
+    check("its shear is fitted to dents", code == 0 and found and abs(float(found[1]) / REACH - 1) < 0.2 and
+          float(found[2]) < 0.15, text)
+    off = [felt(work, out, x, y) / solid(x, y) - 1 for x, y in ((0, 0), (0.01, -0.01))]
+    check("and leaves the stiffness", max(map(abs, off)) < 0.05, off)
+    with open(out, encoding="utf-8") as file:
+        lines = file.read()
+    check("the file has it, and its mass still", "shear_reach: " in lines and "  mass: 0.01" in lines, lines[:400])
+    with open(dents, "w", encoding="utf-8") as file:
+        file.write("x,y,z,x2,y2,z2,dent\n0,0,0,0,0,0,1.5\n")
+    code, text = hapticd("import", "--calibrate", told, "--dents", dents, given, out)
+    check("a dent deeper than the press is refused", code == 2 and "between -1 and 1" in text, (code, text))
     for wrong, why in (("x,y,z,depth,force\n0,0,0,0,1\n", "above 0"), ("x,y\n1,2\n", "x,y,z,depth,force")):
         with open(told, "w", encoding="utf-8") as file:
             file.write(wrong)
