@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+/// Random walks over real parts: no foot that is told to be the nearest is farther than any other point of the part.
+/// HAPTICD_PART_TICKS=1e8 makes the long run; it counts the ticks of all parts together.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "kernels/brep/part_file.hpp"
+#include "kernels/brep/search.hpp"
+#include "sample_solids.hpp"
+
+namespace hapticd::brep {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kRounding = 1e-12;  ///< [m] and as a part of distances
+
+std::int64_t ticksOfAll() {
+  const char* asked = std::getenv("HAPTICD_PART_TICKS");
+  return asked != nullptr ? static_cast<std::int64_t>(std::atof(asked)) : 240'000;
+}
+
+Part readShipped(const std::string& name) {
+  std::ifstream in(HAPTICD_SOURCE_DIR "/config/models/" + name, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  return readPart(std::as_bytes(std::span(bytes)), name);
+}
+
+/// Points that lie on the surface: none of them may be nearer than a foot that is told to be the nearest.
+class Witnesses {
+ public:
+  explicit Witnesses(const Model& model) {
+    const Part& part = model.part();
+    for (const Placement& place : model.placements()) {
+      const Body& body = part.bodies[place.body];
+      for (std::uint32_t f = 0; f < body.face_count; ++f) addFace(model, place, body.first_face + f);
+      for (std::uint32_t e = 0; e < body.edge_count; ++e) addEdge(model, place, body.first_edge + e);
+    }
+  }
+
+  std::size_t count() const { return x_.size(); }
+
+  /// [m] to the nearest of them.
+  double distance(const Vector3d& p) const {
+    double best = 1e300;
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      const double dx = x_[i] - p.x(), dy = y_[i] - p.y(), dz = z_[i] - p.z();
+      best = std::min(best, dx * dx + dy * dy + dz * dz);
+    }
+    return std::sqrt(best);
+  }
+
+ private:
+  void add(const Placement& place, const Vector3d& at) {
+    const Vector3d p = place.rotation * at + place.position;
+    x_.push_back(p.x()), y_.push_back(p.y()), z_.push_back(p.z());
+  }
+  void addFace(const Model& model, const Placement& place, std::uint32_t index) {
+    constexpr int kSide = 8;
+    const Face& face = model.part().faces[index];
+    spline::SurfacePoint at;
+    for (int k = 0; k < kSide * kSide; ++k) {
+      const double u = face.lo[0] + (face.hi[0] - face.lo[0]) * (k / kSide + 0.5) / kSide;
+      const double v = face.lo[1] + (face.hi[1] - face.lo[1]) * (k % kSide + 0.5) / kSide;
+      if (!model.face(index).trim.inside(u, v)) continue;
+      model.geometry().surface(face.surface, u, v, at);
+      add(place, at.S);
+    }
+  }
+  void addEdge(const Model& model, const Placement& place, std::uint32_t index) {
+    constexpr int kPoints = 16;
+    const Edge& edge = model.part().edges[index];
+    if (edge.curve == kNone) return;
+    spline::CurvePoint at;
+    for (int k = 0; k <= kPoints; ++k) {
+      model.geometry().curve(edge.curve, edge.t0 + (edge.t1 - edge.t0) * k / kPoints, at);
+      add(place, at.C);
+    }
+  }
+
+  std::vector<double> x_, y_, z_;
+};
+
+struct Tally {
+  std::int64_t ticks = 0, proved = 0, wrong = 0;
+};
+
+/// Walks at several speeds about the part and through it. A foot is wrong where a point of the surface is nearer, where
+/// a search from nothing finds a nearer one, or where the distance changed by more than the way.
+class Walk {
+ public:
+  Walk(const Model& model, unsigned seed)
+      : model_(model), witnesses_(model), walking_(model), cold_(model), random_(seed) {}
+
+  Tally run(std::int64_t ticks) {
+    for (std::int64_t i = 0; i < ticks; ++i) {
+      if (i % 5000 == 0) begin(i / 5000);
+      move();
+      look(i);
+    }
+    return tally_;
+  }
+
+ private:
+  void begin(std::int64_t number) {
+    std::uniform_real_distribution<double> share(-0.25, 1.25);
+    const Eigen::AlignedBox3d& box = model_.bounds();
+    p_ = box.min() + Vector3d(share(random_), share(random_), share(random_)).cwiseProduct(box.sizes());
+    step_ = std::array{1e-6, 1e-4, 3e-4, 1e-3, 1e-2}[static_cast<std::size_t>(number % 5)];
+    way_ = Vector3d(normal_(random_), normal_(random_), normal_(random_)) * step_;
+    if (number % 7 == 0) walking_.reset();
+    before_ = -1;
+  }
+  /// Turns slowly, and comes back when it has gone away.
+  void move() {
+    way_ = 0.98 * way_ + 0.14 * step_ * Vector3d(normal_(random_), normal_(random_), normal_(random_));
+    const Eigen::AlignedBox3d& box = model_.bounds();
+    const double size = box.diagonal().norm();
+    if (box.exteriorDistance(p_) > 0.5 * size) way_ += 0.1 * step_ * (box.center() - p_).normalized();
+    moved_ = way_.norm();
+    p_ += way_;
+  }
+  void look(std::int64_t i) {
+    const Nearest& found = walking_.nearest(p_);
+    ++tally_.ticks;
+    if (!found.found() || !found.proved) {
+      before_ = -1;
+      return;
+    }
+    ++tally_.proved;
+    const double distance = found.distance(), slack = kRounding * (1 + distance);
+    bool wrong = before_ >= 0 && std::abs(distance - before_) > moved_ + slack;
+    before_ = distance;
+    if (i % 8 == 0) {
+      cold_.reset();
+      wrong = wrong || cold_.nearest(p_).distance() < distance - slack;
+    }
+    if (i % 16 == 0) wrong = wrong || witnesses_.distance(p_) < distance - slack;
+    tally_.wrong += wrong;
+    if (wrong && tally_.wrong <= 3)
+      ADD_FAILURE() << "at " << p_.transpose() << ": " << distance << ", a witness at " << witnesses_.distance(p_);
+  }
+
+  const Model& model_;
+  Witnesses witnesses_;
+  Search walking_, cold_;
+  std::mt19937 random_;
+  std::normal_distribution<double> normal_;
+  Tally tally_;
+  Vector3d p_{0, 0, 0}, way_{0, 0, 0};
+  double step_ = 0, moved_ = 0, before_ = -1;
+};
+
+TEST(CertifiedWalks, NoFootThatIsToldToBeTheNearestIsFarther) {
+  std::vector<std::pair<std::string, Part>> parts;
+  parts.emplace_back("as1", readShipped("as1.hpart"));
+  parts.emplace_back("dm1", readShipped("dm1.hpart"));
+  parts.emplace_back("bracket", samples::bracket());
+  parts.emplace_back("capped cylinder", samples::cappedCylinder(10, 20));
+  parts.emplace_back("cone", samples::cone(10, 20));
+  parts.emplace_back("torus", samples::torus(20, 5));
+  parts.emplace_back("sphere", samples::sphere(10));
+  parts.emplace_back("plate of 30 holes", samples::plate(6, 5, 0.6, 1.6, 5));
+  const std::int64_t each = std::max<std::int64_t>(1, ticksOfAll() / static_cast<std::int64_t>(parts.size()));
+  Tally all;
+  unsigned seed = 19;
+  for (auto& [name, part] : parts) {
+    SCOPED_TRACE(name);
+    const Model model(std::move(part));
+    const Tally tally = Walk(model, ++seed).run(each);
+    std::printf("%-18s %lld ticks, %lld certified, %lld wrong\n", name.c_str(), static_cast<long long>(tally.ticks),
+                static_cast<long long>(tally.proved), static_cast<long long>(tally.wrong));
+    std::fflush(stdout);
+    EXPECT_EQ(tally.wrong, 0);
+    EXPECT_GT(tally.proved, 0.9 * static_cast<double>(tally.ticks));
+    all.ticks += tally.ticks, all.proved += tally.proved, all.wrong += tally.wrong;
+  }
+  std::printf("in all %lld ticks, %lld certified, %lld wrong\n", static_cast<long long>(all.ticks),
+              static_cast<long long>(all.proved), static_cast<long long>(all.wrong));
+}
+
+}  // namespace
+}  // namespace hapticd::brep
