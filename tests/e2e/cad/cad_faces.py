@@ -1,0 +1,45 @@
+#!/usr/bin/env python3
+"""Trims and feet of imported files against Open CASCADE's, face by face.
+
+Usage: cad_faces.py HAPTICD MAKE_PARTS COMPARE_FACES [COUNT] [FILE...]     prints a line a file; exit 1 when one is off.
+COUNT random points of each kind a file (default 300; 100000 is what the page of reports has). FILEs are compared beside
+those that MAKE_PARTS writes: of one body, in the file's own frame.
+"""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish, program
+
+HAPTICD, MAKE_PARTS, COMPARE = sys.argv[1:4]
+COUNT = sys.argv[4] if len(sys.argv) > 4 else "300"
+run = program(HAPTICD, timeout=800)
+folder = tempfile.mkdtemp(prefix="hapticd-faces-")
+GIVEN = ["box.step", "cylinder.step", "sphere.step", "cone.step", "torus.step", "three_quarters.step", "bracket.step", "spline_hole.step"]
+
+
+def compare(file, most):
+    part = os.path.join(folder, os.path.basename(file).replace(".", "_") + ".hpart")
+    code, out, err = run("import", file, "-o", part, "--json")
+    name = os.path.basename(file)
+    if not check(f"{name} is imported", code == 0, out + err):
+        return
+    tolerance = json.loads(run("part", "info", part, "--json")[1])["tolerance_m"] * 1e3
+    done = subprocess.run([COMPARE, file, part, COUNT], capture_output=True, text=True)
+    if not check(f"{name} is compared", done.returncode == 0, done.stderr):
+        return
+    told = json.loads(done.stdout)
+    good = told["trim_wrong"] == 0 and told["farther_mm"] <= max(most, tolerance) and told["proved"] >= 0.98 * told["feet"]
+    check(f"{name}: {told['trim_wrong']} of {told['trims']} trims wrong ({told['beside']} beside an edge, {told['unmatched']} faces have other "
+          f"parameters), {told['feet']} feet {told['farther_mm']} mm farther than theirs at most, {told['nearer_mm']} mm nearer", good, told)
+
+
+subprocess.run([MAKE_PARTS, folder], check=True, timeout=300)
+for name in GIVEN:
+    compare(os.path.join(folder, name), 1e-6)
+for file in sys.argv[5:]:
+    compare(file, 1e-6)
+finish()
