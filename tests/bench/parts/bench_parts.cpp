@@ -2,6 +2,7 @@
 /// Nearest points of parts: time, work and memory, on walks over the surface and on cold queries; for meshes beside
 /// other libraries in the same run.
 ///   bench_parts FILE.hpart...     without a file: parts made here, and bumpy balls of 100,000 and 1,000,000 triangles
+///   bench_parts FILE.hpart --occt FILE.step ...     the part beside Open CASCADE on the file that it was imported from
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -12,6 +13,7 @@
 
 #include "kernels/brep/part_file.hpp"
 #include "kernels/brep/tracer.hpp"
+#include "occt.hpp"
 #include "peers.hpp"
 #include "unit/plugins/kernels/brep/sample_solids.hpp"
 
@@ -164,7 +166,36 @@ void measurePeers(const Model& model, const std::vector<Vector3d>& path, const s
   }
 }
 
-void measure(Part part, const char* name) {
+/// Both in turn at each point, so that a busy machine is the same for both.
+void measureBeside(const Model& model, OcctPart& theirs, const char* what, const std::vector<Vector3d>& path,
+                   bool tracked) {
+  brep::Search search(model);
+  Times our_times, their_times;
+  double distance = std::numeric_limits<double>::infinity(), nearer = 0, farther = 0, ours_sum = 0, theirs_sum = 0;
+  Vector3d last = path[0];
+  for (const Vector3d& p : path) {
+    const double bound = tracked ? distance + (p - last).norm() + 1e-9 : std::numeric_limits<double>::infinity();
+    if (!tracked) search.reset();
+    const auto begin = Clock::now();
+    const double ours = search.nearest(p).distance();
+    const auto middle = Clock::now();
+    distance = theirs.distance(p, bound);
+    const auto end = Clock::now();
+    our_times.ns.push_back(nanoseconds(middle - begin));
+    their_times.ns.push_back(nanoseconds(end - middle));
+    ours_sum += our_times.ns.back(), theirs_sum += their_times.ns.back();
+    nearer = std::max(nearer, distance - ours), farther = std::max(farther, ours - distance);
+    last = p;
+  }
+  our_times.print((std::string(what) + ", ours").c_str());
+  their_times.print((std::string(what) + ", Open CASCADE").c_str());
+  const auto middle = static_cast<std::ptrdiff_t>(path.size() / 2);
+  std::printf("      ratio of medians %.0f, of means %.0f; ours farther by at most %.2g m, nearer by at most %.2g m\n",
+              their_times.ns[static_cast<std::size_t>(middle)] / our_times.ns[static_cast<std::size_t>(middle)],
+              theirs_sum / ours_sum, farther, nearer);
+}
+
+void measure(Part part, const char* name, const char* source = nullptr) {
   const std::size_t faces = part.faces.size() + part.triangles.size();
   const auto begin = Clock::now();
   const Model model(std::move(part));
@@ -186,6 +217,12 @@ void measure(Part part, const char* name) {
     p = model.bounds().min() +
         Vector3d(share(random), share(random), share(random)).cwiseProduct(model.bounds().sizes());
   measureWalks(model, "cold queries", cold);
+  if (const auto theirs = source != nullptr ? readOcctPart(source) : nullptr) {
+    measureBeside(model, *theirs, "tracked, 0.3 m/s", std::vector(middle.begin(), middle.begin() + 5000), true);
+    measureBeside(model, *theirs, "cold", std::vector(cold.begin(), cold.begin() + 2000), false);
+  } else if (source != nullptr) {
+    std::printf("  built without Open CASCADE: %s is not compared\n", source);
+  }
   if (model.part().faces.empty()) measurePeers(model, std::vector(middle.begin(), middle.begin() + 10000), cold);
 }
 
@@ -209,6 +246,8 @@ int main(int count, char** files) {
     brep::Part part = brep::readPart(std::as_bytes(std::span(bytes)), files[i]);
     std::printf("%s: %zu bytes, read in %.1f ms\n", files[i], bytes.size(),
                 bench::nanoseconds(bench::Clock::now() - begin) * 1e-6);
-    bench::measure(std::move(part), files[i]);
+    const bool beside = i + 2 < count && std::string(files[i + 1]) == "--occt";
+    bench::measure(std::move(part), files[i], beside ? files[i + 2] : nullptr);
+    if (beside) i += 2;
   }
 }
