@@ -44,6 +44,29 @@ void laws() {
   check("points are rows: the first matrix is felt first", order);
 }
 
+void planes_and_boxes() {
+  bool on = true, foot = true, side = true, box_holds = true;
+  hduBoundBox3Dd box;
+  check("a new box is empty", box.isEmpty() && !box.contains(hduVector3Dd(0, 0, 0)));
+  for (int i = 0; i < 1000; ++i) {
+    const hduVector3Dd a = vector(), b = vector(), c = vector(), p = vector();
+    const hduPlaned plane(a, b, c);
+    const hduVector3Dd at = plane.projectPoint(p);
+    on = on && fabs(plane.perpDistance(a)) < 1e-9 && fabs(plane.perpDistance(c)) < 1e-9;
+    foot = foot && fabs(plane.perpDistance(at)) < 1e-9 && fabs(p.distance(at) - fabs(plane.perpDistance(p))) < 1e-9;
+    side = side && hduPlaned(-plane.normal(), a).perpDistance(p) * plane.perpDistance(p) <= 0;
+    box.Union(a);
+    box_holds = box_holds && box.contains(a);
+  }
+  check("a plane goes through its points", on);
+  check("the foot of a point lies in the plane, as far away as it says", foot);
+  check("the normal tells the sides apart", side);
+  check("a box holds what was added", box_holds && box.lo()[0] < box.hi()[0] && box.hi()[2] <= 1);
+  const hduPlaned floor_of_5(hduVector3Dd(0, 2, 0), -10.0);
+  check("a plane is normal . p + d = 0", fabs(floor_of_5.perpDistance(hduVector3Dd(3, 6, 1)) - 1) < 1e-12);
+  check("a plane of no normal is none", hduPlaned().perpDistance(hduVector3Dd(1, 1, 1)) == 0);
+}
+
 void half_turn() {
   const hduMatrix m = hduMatrix::createRotation(hduVector3Dd(0, 0, 2), 3.14159265358979323846 / 2);
   check("by the right hand: x turns to y about z", near(hduVector3Dd(1, 0, 0) * m, hduVector3Dd(0, 1, 0)));
@@ -85,6 +108,7 @@ void errors() {
 
 int main() {
   laws();
+  planes_and_boxes();
   half_turn();
   as_programs_write();
   errors();

@@ -2,9 +2,11 @@
 /* hdu.h - all that HDU has. */
 #ifndef HAPTICD_HDU_H
 #define HAPTICD_HDU_H
+#include <HDU/hduBoundBox.h>
 #include <HDU/hduError.h>
 #include <HDU/hduMath.h>
 #include <HDU/hduMatrix.h>
+#include <HDU/hduPlane.h>
 #include <HDU/hduQuaternion.h>
 #include <HDU/hduVector.h>
 #endif
