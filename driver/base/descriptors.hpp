@@ -2,8 +2,6 @@
 /// Open files that are handed to another process over a Unix socket (SCM_RIGHTS): the receiver may use what the sender
 /// was allowed to open, without a right of its own to the name.
 #pragma once
-#include <sys/types.h>
-
 #include <cstddef>
 #include <span>
 #include <string_view>
@@ -38,11 +36,11 @@ constexpr size_t kMostDescriptors = 250;  ///< in one message; the kernel takes 
 
 /// [any] Sends bytes and, with the first of them, descriptors; they stay open here. Waits as the socket does.
 /// @return bytes that were sent, which on a stream may be fewer; -1 with errno
-ssize_t sendWith(int socket, std::string_view bytes, std::span<const int> descriptors) noexcept;
+std::ptrdiff_t sendWith(int socket, std::string_view bytes, std::span<const int> descriptors) noexcept;
 
 /// [any] Receives bytes and appends the descriptors that came with them, closed on exec.
 /// @return bytes, 0: the other end has closed; -1 with errno, EMSGSIZE: there were more descriptors than one message
 /// may bring, and all of them were closed
-ssize_t receiveWith(int socket, std::span<char> to, std::vector<Descriptor>& descriptors);
+std::ptrdiff_t receiveWith(int socket, std::span<char> to, std::vector<Descriptor>& descriptors);
 
 }  // namespace hapticd

@@ -2,17 +2,15 @@
 /// Everything that the daemon asks of the operating system for real time. The only place that calls pthread_*,
 /// mlockall, getrusage and their kind; pthread calls return their error and never set errno.
 #pragma once
-#include <pthread.h>
-#include <signal.h>
-#include <time.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <system_error>
-#include <thread>
+
+#include "base/thread_usage.hpp"
 
 namespace hapticd::os {
 
@@ -22,21 +20,20 @@ constexpr int kServoPriority = 80;                ///< below the kernel's own mi
 /// A thread with an explicit stack, named for `ps` and `top`. Joins in its destructor.
 class Thread {
  public:
-  Thread() = default;
-  ~Thread() { join(); }
+  Thread();
+  ~Thread();
   Thread(const Thread&) = delete;
   Thread& operator=(const Thread&) = delete;
 
   /// [main] Starts `body`. @param name at most 15 characters
   std::error_code start(const std::string& name, std::function<void()> body);
   void join();
-  bool running() const { return started_; }
+  bool running() const { return handle_ != nullptr; }
 
  private:
-  static void* enter(void* self);
-  pthread_t handle_{};
+  struct Handle;  // the operating system's own
+  std::unique_ptr<Handle> handle_;
   std::function<void()> body_;
-  bool started_ = false;
 };
 
 /// Undoes lockMemory.
@@ -70,9 +67,6 @@ class DmaLatencyHold {
   int fd_;
 };
 
-/// Page faults (minor and major) of the calling thread so far.
-long pageFaultsOfThread() noexcept;
-
 /// Resident memory of the process [bytes].
 size_t residentBytes();
 
@@ -82,24 +76,8 @@ std::string realTimeRights();
 /// True inside a virtual machine, where spinning buys nothing against pauses of the host.
 bool inVirtualMachine();
 
-/// CPU clock of the calling thread, for other threads to read.
-clockid_t cpuClockOfThread();
-/// [any] CPU time [ns] that the thread of a clock has used; async-signal-safe.
-uint64_t cpuTime(clockid_t clock) noexcept;
 /// [any] Number of the calling thread; async-signal-safe.
 int threadId() noexcept;
-
-/// [any] The thread lost its processor since it last asked: what it did took time of others. A system call.
-bool wasPreempted() noexcept;
-
-/// [rt] Wakes at most `most` threads, of any process, that wait for a word of shared memory to change; never waits.
-/// @return how many were woken
-int wakeWaiting(uint32_t* word, int most) noexcept;
-
-/// Installs a handler for SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTRAP and SIGSYS, and for every other
-/// signal that ends a process and that nobody handles or ignores: SIGUSR1 and 2, timers, SIGIO, real-time signals and
-/// their kind. nullptr: the system's own again.
-void onFatalSignals(void (*handler)(int, siginfo_t*, void*));
 
 /// Installs a handler for SIGTSTP (Ctrl-Z), and ignores SIGTTIN and SIGTTOU: a process in the background must not be
 /// stopped because it prints.
@@ -108,7 +86,8 @@ void onSuspendSignal(void (*handler)(int));
 /// [any] Stops the whole process until it is continued.
 void suspendProcess();
 
-/// Gives the calling thread a stack of its own for such handlers, so that they run even when its own is full.
+/// Gives the calling thread a stack of its own for handlers of fatal signals, so that they run even when its own is
+/// full.
 void prepareSignalStack();
 
 /// A real-time thread that runs this long without sleeping gets SIGXCPU, and twice as long SIGKILL: a machine must not

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// Files that somebody names. None that is read can wait: a pipe without a writer would hold the thread for ever.
 #pragma once
-#include <sys/types.h>
-
+#include <cstddef>
+#include <filesystem>
 #include <string>
 
 #include "base/result.hpp"
@@ -10,7 +10,7 @@
 namespace hapticd {
 
 /// [any] "is a pipe, expected a file" and the like for what else a name may stand for; "" for a regular file.
-std::string notAFile(mode_t mode);
+std::string notAFile(std::filesystem::file_type type);
 
 /// [main] Opens a regular file for reading. The error is meant to follow the file's name.
 Result<int> openRegular(const std::string& file);

@@ -14,7 +14,7 @@
 #include "diagnostics/explain_cost.hpp"
 #include "document/reader.hpp"
 #include "servo/loop/lockstep.hpp"
-#include "session/world.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::cli {
 

@@ -59,34 +59,44 @@ std::string misplaced(const Options& options, bool cad) {
   return "";
 }
 
+int importCadFile(const Options& options) {
+  CadImport how = options.cad;
+  how.file = options.file;
+  how.out = options.out;
+  how.json = options.json;
+  return importCad(how);
+}
+
+int importSoftBody(const Options& options) {
+  MedialImport body = options.body;
+  body.file = options.file;
+  body.out = options.out;
+  body.scale = options.placement.scale;
+  const auto mesh = readSurface(body, catalog());
+  if (!mesh) return fail(kBadInput, mesh.error());
+  const auto done = importMedial(body, *mesh, catalog());
+  return done ? kWorked : fail(kFailed, done.error());
+}
+
+int importPatches(const Options& options);
+
 int importModel(const Options& options) {
   const bool from_cad = isCadFile(options.file) && !options.medial;
   if (const std::string wrong = misplaced(options, from_cad); !wrong.empty())
     return fail(kBadInput, options.file + ": " + wrong);
-  if (from_cad) {
-    CadImport how = options.cad;
-    how.file = options.file;
-    how.out = options.out;
-    how.json = options.json;
-    return importCad(how);
-  }
+  if (from_cad) return importCadFile(options);
   if (const std::string way = otherWay(options.file); !way.empty()) return fail(kBadInput, way);
-  if (options.medial) {
-    MedialImport body = options.body;
-    body.file = options.file;
-    body.out = options.out;
-    body.scale = options.placement.scale;
-    const auto mesh = readSurface(body, catalog());
-    if (!mesh) return fail(kBadInput, mesh.error());
-    const auto done = importMedial(body, *mesh, catalog());
-    return done ? kWorked : fail(kFailed, done.error());
-  }
+  if (options.medial) return importSoftBody(options);
   if (!options.answers.empty()) {
     const auto done = calibrate({options.file, options.answers, options.dents, options.out}, catalog());
     return done ? kWorked : fail(kBadInput, done.error());
   }
   if (isMeshFile(options.file))
     return importMesh({options.file, options.out, options.placement.scale, options.smooth_angle, options.json});
+  return importPatches(options);
+}
+
+int importPatches(const Options& options) {
   document::Problems problems;
   const auto text = document::readFile(options.file, document::kMaxFileBytes, problems);
   printProblems(problems, stderr);
@@ -144,14 +154,30 @@ void addMedialOptions(CLI::App& command, Options& options) {
   CLI::Option* calibrate =
       command
           .add_option("--calibrate", options.answers,
-                      "fit the stiffness of a soft body (a model file with points or vertices) to presses: CSV "
-                      "x,y,z,depth,force [m, N], measured or computed, of small strain")
+                      "fit the stiffness of a soft body (a model file with points or vertices) to measured or computed "
+                      "presses of small strain: CSV x,y,z,depth,force [m, N]")
           ->excludes(medial);
   command
       .add_option("--dents", options.dents,
-                  "with --calibrate, fit its shear_reach too: CSV x,y,z,x2,y2,z2,dent, of a press at the first place "
-                  "the share of its depth by which the second goes down")
+                  "with --calibrate, fit its shear_reach too: CSV x,y,z,x2,y2,z2,dent; in a press at the first place, "
+                  "the second goes down by this share of the depth")
       ->needs(calibrate);
+}
+
+void addPlacementOptions(CLI::App& command, Options& options) {
+  Placement& placement = options.placement;
+  CLI::Option* scale =
+      command.add_option("--scale", placement.scale, "metres per unit of the file")->check(within(1e-9, 1e9));
+  command.add_option("--fit", placement.fit, "scale so that the largest extent is this many metres")
+      ->check(within(1e-6, 1e3))
+      ->excludes(scale);
+  command.add_flag("--center", placement.center, "move the centre of the bounding box to the origin");
+  command.add_option("--up", options.up, "axis that points up in the file; it becomes y, which points up in the world")
+      ->check(CLI::IsMember({"x", "y", "z"}));
+  command
+      .add_option("--outward", options.outward,
+                  "which side is outside: auto (by enclosed volume), normal (Su x Sv) or reversed")
+      ->check(CLI::IsMember({"auto", "normal", "reversed"}));
 }
 
 }  // namespace
@@ -163,39 +189,29 @@ void addImport(CLI::App& app, int& exit_code) {
       "Convert CAD files and triangle meshes into parts, Bezier patches (.bpt) into a model file, or a closed surface "
       "into a soft body.");
   command
-      ->add_option(
-          "file", options->file,
-          "patches (.bpt): a count, then for each two degrees and its points; # is a comment. Triangles: .obj, .stl "
-          "or .ply. CAD: .step, .stp, .iges, .igs, .brep. With --medial: .obj, .stl, or a model file with surfaces")
+      ->add_option("file", options->file,
+                   "Bezier patches (.bpt), triangles (.obj, .stl, .ply) or CAD (.step, .stp, .iges, .igs, .brep). With "
+                   "--medial: "
+                   ".obj, .stl, or a model file with surfaces")
       ->required();
   command->add_option(
       "-o,--out,out", options->out,
-      "model file: .yaml or .json; - for standard output. Of triangles and CAD: a part, .hpart. With --medial: "
-      ".ma or .yaml");
-  CLI::Option* scale =
-      command->add_option("--scale", options->placement.scale, "metres per unit of the file")->check(within(1e-9, 1e9));
-  command->add_option("--fit", options->placement.fit, "scale so that the largest extent is this many metres")
-      ->check(within(1e-6, 1e3))
-      ->excludes(scale);
-  command->add_flag("--center", options->placement.center, "move the centre of the bounding box to the origin");
-  command->add_option("--up", options->up, "axis of the file that points up; in the world it is y")
-      ->check(CLI::IsMember({"x", "y", "z"}));
-  command
-      ->add_option("--outward", options->outward,
-                   "which side is outside: auto (by enclosed volume), normal (Su x Sv) or reversed")
-      ->check(CLI::IsMember({"auto", "normal", "reversed"}));
+      "file to write. From patches: a model file, .yaml or .json, or - for standard output. From triangles and CAD: a "
+      "part, .hpart. With --medial: .ma or .yaml");
+  addPlacementOptions(*command, *options);
   command
       ->add_option("--smooth-angle", options->smooth_angle,
                    "triangles: interpolate normals over edges that bend by less than this [degrees]; default: 0")
       ->check(within(0.0, 180.0));
   command->add_flag("--json", options->json, "triangles and CAD: write the report as JSON");
-  command->add_flag("--check", options->cad.check, "CAD: write nothing, say what would be lost");
+  command->add_flag("--check", options->cad.check, "CAD: write nothing; print what would be lost");
   command->add_option("--time", options->cad.time_s, "CAD: longest time [s]; default: 600")->check(within(1.0, 1e6));
   command->add_option("--memory", options->cad.memory_mb, "CAD: most memory [MB]; default: 4096")
       ->check(within(64.0, 1e7));
   addMedialOptions(*command, *options);
   command->footer(
-      "Comment lines are copied, so that credit and licence are kept.\n\nExample:\n  hapticd import "
+      "A .bpt file holds the number of patches, then for each its two degrees and its points; # begins a comment.\n"
+      "Comments are copied to the model file, so that credit and licence are kept.\n\nExamples:\n  hapticd import "
       "config/models/teapot.bpt --up z --fit 0.13 --center -o teapot.yaml\n  hapticd import bracket.stl --scale 0.001 "
       "-o bracket.hpart\n  hapticd import engine.step -o engine.hpart\n  hapticd import --medial hand.stl --scale "
       "0.001 --tolerance 0.001 hand.ma");

@@ -16,7 +16,7 @@
 #include "session/about.hpp"
 #include "session/geometry_answer.hpp"
 #include "session/model_rerun.hpp"
-#include "session/world.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::cli {
 

@@ -13,7 +13,7 @@
 #include "document/node.hpp"
 #include "document/suggestion.hpp"
 #include "record/recording.hpp"
-#include "session/instructions.hpp"
+#include "world/instructions.hpp"
 
 namespace hapticd::cli {
 
@@ -79,7 +79,7 @@ void warnOfChanges(const servo::RecordedRun& run) {
       std::fprintf(stderr, "warning: %s has changed since the recording\n", file.path.c_str());
 }
 
-/// The same instructions as then, where this machine has them.
+/// The instructions that the recorded run used, where this machine has them.
 void takeInstructions(servo::RecordedRun& run) {
   if (run.instructions.empty()) return;
   if (run.instructions == "portable") run.scene.servo.instructions = scene::Instructions::kPortable;

@@ -14,7 +14,7 @@
 #include "servo/loop/lockstep.hpp"
 #include "servo/velocity/probe_velocity.hpp"
 #include "session/silence_reason.hpp"
-#include "session/world.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::cli {
 
@@ -40,7 +40,7 @@ Result<std::vector<uint32_t>> chosenModels(const scene::Scene& scene, const std:
   return chosen;
 }
 
-/// Runs the core over the path, a tick a row.
+/// Runs the core over the path, one tick per row.
 Result<void> traceRows(const scene::Scene& scene, servo::World& world, const std::vector<PathRow>& rows,
                        TraceWriter& writer) {
   std::optional<servo::ProbeVelocity> velocity;

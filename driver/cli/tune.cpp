@@ -14,9 +14,9 @@
 #include "cli/command.hpp"
 #include "cli/probe_path.hpp"
 #include "record/recording.hpp"
-#include "session/world.hpp"
 #include "tune/page.hpp"
 #include "tune/write_scene.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::cli {
 namespace {

@@ -2,6 +2,7 @@
 # hapticd_add_plugin(NAME SOURCE... [LIBRARIES LIB...])   a shape plugin:  lib/hapticd/plugins/NAME.so
 # hapticd_add_device(NAME SOURCE... [LIBRARIES LIB...])   a device module: lib/hapticd/devices/NAME.so
 # Used inside the tree and, through find_package(hapticd), outside it.
+# hapticd_link_modules(PROGRAM NAME...)   plugins and modules of this tree inside a program, for platforms without dlopen()
 
 function(_hapticd_name_module name)
   set_target_properties(${name} PROPERTIES PREFIX "" C_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden
@@ -46,4 +47,58 @@ endfunction()
 
 function(hapticd_add_device name)
   _hapticd_add_module(${name} devices ${ARGN})
+endfunction()
+
+# Links plugins and device modules of this tree into a program, which holds no file to load then. Several fit into one
+# program because each gets an entry of its own name, hsp_entry_NAME or hdv_entry_NAME, by a definition: the ABI stays.
+# Only the file with the entry is compiled once more. The program calls hapticd::host::takeBuiltIns() and links the rooms
+# it needs; host/platform_none.cpp and base/thread_usage_none.cpp replace what would call the operating system.
+function(hapticd_link_modules program)
+  set(declarations "")
+  set(items "")
+  foreach(name IN LISTS ARGN)
+    get_target_property(folder ${name}_objects SOURCE_DIR)
+    get_target_property(sources ${name}_objects SOURCES)
+    set(entry_file "")
+    foreach(source IN LISTS sources)
+      file(STRINGS ${folder}/${source} found REGEX "^HAPTICD_(SHAPES|DEVICES)[(]" LIMIT_COUNT 1)
+      if(found)
+        set(entry_file ${source})
+        string(REGEX MATCH "SHAPES" is_shape "${found}")
+      endif()
+    endforeach()
+    if(NOT entry_file)
+      message(FATAL_ERROR "hapticd_link_modules: no source of ${name} has HAPTICD_SHAPES or HAPTICD_DEVICES")
+    endif()
+    add_library(${program}_${name} OBJECT ${folder}/${entry_file})
+    target_compile_definitions(${program}_${name} PRIVATE hsp_plugin_entry=hsp_entry_${name} hdv_module_entry=hdv_entry_${name})
+    target_link_libraries(${program}_${name} PRIVATE hapticd_options ${name}_objects)
+    get_target_property(libraries ${name}_objects INTERFACE_LINK_LIBRARIES)
+    target_link_libraries(${program} PRIVATE ${libraries})
+    target_sources(${program} PRIVATE $<TARGET_OBJECTS:${program}_${name}>
+                   $<FILTER:$<TARGET_OBJECTS:${name}_objects>,EXCLUDE,/${entry_file}[.]o>)
+    if(is_shape)
+      string(APPEND declarations "extern const hsp_entry hsp_entry_${name};\n")
+      string(APPEND items "    {\"${name}\", &hsp_entry_${name}, nullptr},\n")
+    else()
+      string(APPEND declarations "extern const hdv_entry hdv_entry_${name};\n")
+      string(APPEND items "    {\"${name}\", nullptr, &hdv_entry_${name}},\n")
+    endif()
+  endforeach()
+  set(list ${CMAKE_CURRENT_BINARY_DIR}/${program}_built_ins.cpp)
+  file(CONFIGURE OUTPUT ${list} @ONLY CONTENT "// Made by hapticd_link_modules().
+#include \"host/built_in.hpp\"
+
+extern \"C\" {
+@declarations@}
+
+void hapticd::host::takeBuiltIns() {
+  static const BuiltIn kAll[] = {
+@items@  };
+  setBuiltIns(kAll);
+}
+")
+  target_sources(${program} PRIVATE ${list} ${PROJECT_SOURCE_DIR}/driver/daemon/host/platform_none.cpp
+                 ${PROJECT_SOURCE_DIR}/driver/base/thread_usage_none.cpp)
+  target_link_libraries(${program} PRIVATE hapticd_host)
 endfunction()

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "document/reader.hpp"
 
-#include <sys/stat.h>
-
 #include <charconv>
 #include <cmath>
 
@@ -117,9 +115,8 @@ std::optional<std::filesystem::path> Reader::existingFile(const Node& node, cons
   std::error_code error;
   const fs::path written(node.scalar);
   const fs::path full = fs::absolute(file_.parent_path() / written, error).lexically_normal();
-  struct stat info{};
-  if (stat(full.c_str(), &info) == 0) {
-    const std::string other = notAFile(info.st_mode);
+  if (const fs::file_status status = fs::status(full, error); fs::exists(status)) {
+    const std::string other = notAFile(status.type());
     if (other.empty()) return full;
     problem(node, key, full.string() + " " + other);
   } else {

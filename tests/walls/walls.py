@@ -29,6 +29,7 @@ WALLS = [
     ("driver/daemon/servo/loop/loop.cpp", "servo/arm/arm.hpp", ["session/telemetry.hpp", "record/recording.hpp", "status/page.hpp", "watch/watchdog.hpp"]),
     ("driver/daemon/watch/watchdog.cpp", "watch/watched.hpp", ["servo/loop/loop.hpp", "session/runner.hpp"]),
     ("driver/daemon/control/server.cpp", "base/os.hpp", ["session/request_handler.hpp", "servo/core/core.hpp"]),
+    ("driver/daemon/world/world.cpp", "servo/core/core.hpp", ["session/runner.hpp", "record/recording.hpp", "scene/load.hpp"]),
     ("driver/daemon/session/runner.cpp", "servo/loop/loop.hpp", ["cli/command.hpp", "tune/knob.hpp", "kernels/trace/model.hpp"]),
 ]
 

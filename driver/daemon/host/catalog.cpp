@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "host/catalog.hpp"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <sstream>
 
 #include "document/suggestion.hpp"
+#include "host/built_in.hpp"
 #include "host/library.hpp"
 
 namespace hapticd::host {
@@ -31,13 +30,6 @@ std::vector<fs::path> sharedObjects(const fs::path& dir) {
     if (entry->path().extension() == ".so") found.push_back(entry->path());
   std::sort(found.begin(), found.end());
   return found;
-}
-
-std::optional<FileStamp> stampOf(const fs::path& file) {
-  struct stat about{};
-  if (stat(file.c_str(), &about) != 0) return std::nullopt;
-  return FileStamp{static_cast<int64_t>(about.st_dev), static_cast<int64_t>(about.st_ino), about.st_size,
-                   about.st_mtim.tv_sec, about.st_mtim.tv_nsec};
 }
 
 /// A name from a file must not walk out of the directories that are searched.
@@ -119,6 +111,7 @@ void Catalog::refresh() {
 
 std::vector<const CatalogFile*> Catalog::files(Kind kind) {
   std::vector<const CatalogFile*> all;
+  for (const fs::path& path : builtIns(kind)) all.push_back(&describeOnce(path));
   for (const fs::path& dir : dirs(kind))
     for (const fs::path& file : sharedObjects(dir)) all.push_back(&describeOnce(file));
   return all;
@@ -137,6 +130,8 @@ Result<const ClassInfo*> Catalog::find(Kind kind, const std::string& name) {
   if (known != nullptr) return known;
   std::string reason;
   std::error_code error;
+  for (const fs::path& path : builtIns(kind))
+    if (const ClassInfo* info = classIn(describeOnce(path), kind, name)) return known = info;
   if (plainName(name)) {
     for (const fs::path& dir : dirs(kind)) {
       const fs::path file = dir / (name + ".so");

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// Finds shape plugins and device modules and knows what they say of themselves. Files are described in child processes
-/// and only when asked for: a scene that names one plugin makes this process load no other.
+/// Finds shape plugins and device modules and knows what they say of themselves. Built-in ones come first. Files are
+/// described in child processes and only when asked for: a scene that names one plugin makes this process load no
+/// other.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -14,6 +14,7 @@
 #include "base/result.hpp"
 #include "description/class_info.hpp"
 #include "host/describe.hpp"
+#include "host/file_stamp.hpp"
 
 namespace hapticd::host {
 
@@ -29,10 +30,7 @@ struct SearchPath {
   void prepend(const std::vector<std::filesystem::path>& dirs);
 };
 
-/// What changes when a file is written or replaced: device, inode, size, time of the last change in s and ns.
-using FileStamp = std::array<int64_t, 5>;
-
-/// A file that looks like a plugin or module and what came of describing it.
+/// A file that looks like a plugin or module: its description, or the reason why there is none.
 struct CatalogFile {
   std::filesystem::path path;
   std::optional<FileStamp> stamp;  ///< of the file that was described; nothing: the library that is loaded was

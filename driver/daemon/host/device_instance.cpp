@@ -14,14 +14,14 @@ const Extension* extensionOf(const hdv_class& device_class, hdv_device* device, 
   return found != nullptr && found->struct_size >= sizeof(Extension) ? found : nullptr;
 }
 
-/// Links that can be drawn: of some number, each beginning at an earlier one.
-bool drawable(const hdv_ext_links* links) {
+/// Links that can be drawn: of some number, each beginning at an earlier one. nullptr: these cannot.
+const hdv_ext_links* drawable(const hdv_ext_links* links) {
   if (links == nullptr || links->link_count == 0 || links->link_count > HDV_MAX_LINKS || links->parent == nullptr ||
       links->frames == nullptr)
-    return false;
+    return nullptr;
   for (uint32_t i = 0; i < links->link_count; ++i)
-    if (links->parent[i] < -1 || links->parent[i] >= static_cast<int32_t>(i)) return false;
-  return true;
+    if (links->parent[i] < -1 || links->parent[i] >= static_cast<int32_t>(i)) return nullptr;
+  return links;
 }
 
 /// What open() said about the hardware is used as limits: nothing in it may be nonsense.
@@ -81,8 +81,7 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
   instance->services_.forgetError();
   instance->kinematics_ = extensionOf<hdv_ext_kinematics>(*found, instance->device_, HDV_EXT_KINEMATICS);
   instance->calibration_ = extensionOf<hdv_ext_calibration>(*found, instance->device_, HDV_EXT_CALIBRATION);
-  const auto* links = extensionOf<hdv_ext_links>(*found, instance->device_, HDV_EXT_LINKS);
-  instance->links_ = drawable(links) ? links : nullptr;
+  instance->links_ = drawable(extensionOf<hdv_ext_links>(*found, instance->device_, HDV_EXT_LINKS));
   instance->cut_ = extensionOf<hdv_ext_cut>(*found, instance->device_, HDV_EXT_CUT);
   instance->hand_ = extensionOf<hdv_ext_hand>(*found, instance->device_, HDV_EXT_HAND);
   instance->pace_ = extensionOf<hdv_ext_pace>(*found, instance->device_, HDV_EXT_PACE);

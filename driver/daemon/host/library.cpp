@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "host/library.hpp"
 
-#include <dlfcn.h>
-#include <link.h>
-
 #include <map>
 #include <mutex>
 #include <string>
 
-#include "base/blame.hpp"
+#include "host/built_in.hpp"
+#include "host/loader.hpp"
 
 namespace hapticd::host {
 namespace {
@@ -26,37 +24,20 @@ Registry& registry() {
   return instance;
 }
 
-std::string loaderReason() {
-  const char* reason = dlerror();
-  return reason != nullptr ? reason : "no reason given by the loader";
-}
-
-/// Keeps where the code of a library lies, so that a crash in a thread of its own finds its name.
-void keepCodeOf(void* handle) {
-  link_map* loaded = nullptr;
-  if (dlinfo(handle, RTLD_DI_LINKMAP, &loaded) != 0 || loaded == nullptr) return;
-  const auto keep = [](dl_phdr_info* info, size_t, void* wanted) {
-    if (info->dlpi_addr != static_cast<link_map*>(wanted)->l_addr) return 0;
-    for (int i = 0; i < info->dlpi_phnum; ++i) {
-      const ElfW(Phdr) & part = info->dlpi_phdr[i];
-      if (part.p_type != PT_LOAD || (part.p_flags & PF_X) == 0) continue;
-      const auto* begin = reinterpret_cast<const char*>(info->dlpi_addr + part.p_vaddr);
-      keepCode(begin, begin + part.p_memsz);
-    }
-    return 1;
-  };
-  dl_iterate_phdr(keep, loaded);
+/// The entry of a built-in plugin or module, which has one of the two kinds.
+Result<const void*> linked(const void* entry) {
+  if (entry == nullptr) return Error{"what is built in under this name is of the other kind"};
+  return entry;
 }
 
 /// Magic and version of an entry; hsp_entry and hdv_entry have the same members.
 template <class Entry>
-Result<const Entry*> checkedEntry(void* handle, const std::filesystem::path& file, const char* symbol, uint32_t magic,
-                                  const char* what) {
-  dlerror();
-  const auto* entry = static_cast<const Entry*>(dlsym(handle, symbol));
-  if (entry == nullptr)
+Result<const Entry*> checkedEntry(const Result<const void*>& symbol_at, const std::filesystem::path& file,
+                                  const char* symbol, uint32_t magic, const char* what) {
+  if (!symbol_at)
     return Error{file.string() + " is not a " + what + ": it does not export " + symbol +
-                 "\n  the loader says: " + loaderReason()};
+                 "\n  the loader says: " + symbol_at.error()};
+  const auto* entry = static_cast<const Entry*>(*symbol_at);
   if (entry->magic != magic)
     return Error{file.string() + " is not a " + what + ": the data at " + symbol +
                  " does not begin with the expected mark"};
@@ -73,6 +54,7 @@ Result<const Entry*> checkedEntry(void* handle, const std::filesystem::path& fil
 }  // namespace
 
 Result<std::shared_ptr<Library>> Library::open(const std::filesystem::path& file) {
+  if (findBuiltIn(file) != nullptr) return std::shared_ptr<Library>(new Library(file, nullptr));
   std::error_code error;
   const std::filesystem::path real = std::filesystem::canonical(file, error);
   if (error) return Error{"cannot load " + file.string() + ": " + error.message()};
@@ -82,15 +64,15 @@ Result<std::shared_ptr<Library>> Library::open(const std::filesystem::path& file
   std::weak_ptr<Library>& slot = all.loaded[real];
   if (std::shared_ptr<Library> loaded = slot.lock()) return loaded;
 
-  void* handle = dlopen(real.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (handle == nullptr) return Error{"cannot load " + real.string() + "\n  the loader says: " + loaderReason()};
-  keepCodeOf(handle);
-  std::shared_ptr<Library> loaded(new Library(real, handle));
+  const auto handle = loadFile(real);
+  if (!handle) return Error{"cannot load " + real.string() + "\n  the loader says: " + handle.error()};
+  std::shared_ptr<Library> loaded(new Library(real, *handle));
   slot = loaded;
   return loaded;
 }
 
 std::shared_ptr<Library> Library::loaded(const std::filesystem::path& file) {
+  if (findBuiltIn(file) != nullptr) return std::shared_ptr<Library>(new Library(file, nullptr));
   std::error_code error;
   const std::filesystem::path real = std::filesystem::canonical(file, error);
   Registry& all = registry();
@@ -100,11 +82,17 @@ std::shared_ptr<Library> Library::loaded(const std::filesystem::path& file) {
 }
 
 Result<const hsp_entry*> Library::shapes() const {
-  return checkedEntry<hsp_entry>(handle_, file_, "hsp_plugin_entry", HSP_MAGIC, "shape plugin");
+  constexpr const char* kSymbol = "hsp_plugin_entry";
+  const BuiltIn* built_in = findBuiltIn(file_);
+  const auto at = built_in != nullptr ? linked(built_in->shapes) : symbolOf(handle_, kSymbol);
+  return checkedEntry<hsp_entry>(at, file_, kSymbol, HSP_MAGIC, "shape plugin");
 }
 
 Result<const hdv_entry*> Library::devices() const {
-  return checkedEntry<hdv_entry>(handle_, file_, "hdv_module_entry", HDV_MAGIC, "device module");
+  constexpr const char* kSymbol = "hdv_module_entry";
+  const BuiltIn* built_in = findBuiltIn(file_);
+  const auto at = built_in != nullptr ? linked(built_in->devices) : symbolOf(handle_, kSymbol);
+  return checkedEntry<hdv_entry>(at, file_, kSymbol, HDV_MAGIC, "device module");
 }
 
 }  // namespace hapticd::host

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdint>
 #include <cstring>
 #include <new>
 
@@ -12,7 +13,7 @@ namespace {
 
 constexpr size_t kCacheLine = 64;          ///< blocks of two instances never share one
 constexpr size_t kLargestAlign = 1 << 21;  ///< a huge page
-constexpr size_t kLargestBlock = size_t{1} << 40;
+constexpr size_t kLargestBlock = std::min<uint64_t>(uint64_t{1} << 40, SIZE_MAX / 2);
 constexpr size_t kLongestMessage = 4096;  ///< a plugin that loses its terminator does not flood the log
 
 thread_local bool t_servo_thread = false;

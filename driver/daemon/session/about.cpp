@@ -18,7 +18,7 @@
 #include "record/scene_json.hpp"
 #include "session/event_finder.hpp"
 #include "session/former_defaults.hpp"
-#include "session/instructions.hpp"
+#include "world/instructions.hpp"
 
 namespace hapticd::servo {
 

@@ -9,7 +9,7 @@
 #include "base/result.hpp"
 #include "record/layout.hpp"
 #include "servo/arm/arm.hpp"
-#include "session/world.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::servo {
 

@@ -204,6 +204,19 @@ RowLayout eventColumns() {
   return layout;
 }
 
+/// An arm in the rows of ticks: the columns depend on what it measures.
+void addArm(RowLayout& layout, const std::string& arm, const hdv_info& info, bool pushed) {
+  while (layout.rowBytes() % 8 != 0) layout.add(arm + "reserved", ColumnType::kWord, "", "0");
+  armColumns(layout, arm);
+  jointColumns(layout, arm + "q", info.joint_count, "rad or m", "joint position");
+  if ((info.capabilities & HDV_C_VELOCITY) != 0)
+    jointColumns(layout, arm + "dq", info.joint_count, "rad/s or m/s", "joint velocity, measured");
+  if ((info.capabilities & HDV_C_TORQUE) != 0)
+    jointColumns(layout, arm + "measured", info.joint_count, "N m or N", "joint torque, measured");
+  jointColumns(layout, arm + "command", info.joint_count, "N m or N", "joint torque, as commanded");
+  if (pushed) clientColumns(layout, arm);
+}
+
 }  // namespace
 
 std::vector<StreamSpec> flightStreams(const scene::Scene& scene, const std::vector<std::unique_ptr<Arm>>& arms,
@@ -233,19 +246,7 @@ std::vector<StreamSpec> flightStreams(const scene::Scene& scene, const std::vect
   streams[kMotors] = {"motors", motorColumns(), std::max(kNone, motors * static_cast<uint64_t>(11 * seconds))};
   RowLayout& layout = streams[kTicks].layout;
   tickColumns(layout);
-  for (size_t i = 0; i < arms.size(); ++i) {
-    const std::string arm = "arm" + std::to_string(i) + "_";
-    const hdv_info& info = arms[i]->info();
-    while (layout.rowBytes() % 8 != 0) layout.add(arm + "reserved", ColumnType::kWord, "", "0");
-    armColumns(layout, arm);
-    jointColumns(layout, arm + "q", info.joint_count, "rad or m", "joint position");
-    if ((info.capabilities & HDV_C_VELOCITY) != 0)
-      jointColumns(layout, arm + "dq", info.joint_count, "rad/s or m/s", "joint velocity, measured");
-    if ((info.capabilities & HDV_C_TORQUE) != 0)
-      jointColumns(layout, arm + "measured", info.joint_count, "N m or N", "joint torque, measured");
-    jointColumns(layout, arm + "command", info.joint_count, "N m or N", "joint torque, as commanded");
-    if (pushed) clientColumns(layout, arm);
-  }
+  for (size_t i = 0; i < arms.size(); ++i) addArm(layout, "arm" + std::to_string(i) + "_", arms[i]->info(), pushed);
   return streams;
 }
 

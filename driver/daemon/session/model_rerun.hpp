@@ -9,7 +9,7 @@
 
 #include "base/result.hpp"
 #include "record/recording.hpp"
-#include "session/world.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::servo {
 
@@ -18,11 +18,11 @@ class ModelRerun {
   static constexpr double kMemory = 2;  ///< [s] A body touched longer ago than this has come to rest.
 
   /// [main] @param recording, world outlive it; the world has one model, and a probe for each arm of the recording.
-  /// Error: the rows tell no tips
+  /// The error: the rows hold no tip positions
   static Result<std::unique_ptr<ModelRerun>> prepare(const record::Recording& recording, World& world);
 
-  /// [main] Brings the model to the time t [s] of the recording. Onward from the last call where that is nearer than
-  /// kMemory, otherwise from rest, kMemory before. Takes as long as so many ticks of the model.
+  /// [main] Brings the model to the time t [s] of the recording. It steps on from the last call if that is less than
+  /// kMemory away, otherwise from rest at t - kMemory. The call costs as much as these ticks of the model.
   void goTo(double t);
 
  private:

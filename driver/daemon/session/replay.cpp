@@ -7,7 +7,7 @@
 #include <map>
 
 #include "base/not_real_time.hpp"
-#include "session/arm_force.hpp"
+#include "world/arm_force.hpp"
 
 namespace hapticd::servo {
 
@@ -18,7 +18,7 @@ using record::RecordedStream;
 
 constexpr double kKeptSeconds = 0.1;  ///< of the replay's own black box: rows are compared as they come
 
-/// Times of then are not times of now.
+/// Measured times are not compared: they differ from run to run.
 bool measured(const std::string& column) {
   return column == "lateness_us" || column == "compute_us" || column == "step_us";
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Runs a recording again: the same loop, arms, limits and models, fed with the samples, activation records, orders and
-/// times of then, and compares everything it gives to the last bit.
+/// Runs a recording again: the same loop, arms, limits and models, fed with the recorded samples, activation
+/// records, orders and times. Every result is compared to the last bit.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -13,7 +13,7 @@
 #include "servo/loop/loop.hpp"
 #include "session/about.hpp"
 #include "session/telemetry.hpp"
-#include "session/world.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::servo {
 

@@ -15,7 +15,7 @@
 #include "record/dump_folder.hpp"
 #include "session/foreign_files.hpp"
 #include "session/geometry_answer.hpp"
-#include "watch/quarantine.hpp"
+#include "session/patience.hpp"
 
 namespace hapticd::servo {
 
@@ -24,20 +24,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using control::Request;
 
-constexpr Nanoseconds kPause = 1'000'000;
-constexpr Nanoseconds kPatience = 2'000'000'000;  ///< for the servo to obey
-
 std::string text(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-/// True once `done` is, false after a while.
-template <class Done>
-bool waitUntil(Done&& done) {
-  RealClock clock(0);
-  for (const Nanoseconds end = clock.now() + kPatience; clock.now() < end; clock.waitUntil(clock.now() + kPause))
-    if (done()) return true;
-  return done();
 }
 
 /// The parameter of a class by its id; nullptr if there is none.
@@ -47,13 +35,6 @@ const hsp_param* parameterOf(const hsp_class& plugin, const std::string& id, uin
     if (id == param->id) return param;
   }
   return nullptr;
-}
-
-bool sameDevices(const scene::Scene& a, const scene::Scene& b) {
-  if (a.devices.size() != b.devices.size()) return false;
-  for (size_t i = 0; i < a.devices.size(); ++i)
-    if (a.devices[i].module != b.devices[i].module || a.devices[i].file != b.devices[i].file) return false;
-  return true;
 }
 
 }  // namespace
@@ -126,31 +107,6 @@ Result<std::string> RequestHandler::obey(const control::Peer& peer, const Reques
     return good;
   };
   switch (request.kind) {
-    case Request::Kind::kStatus:
-    case Request::Kind::kList:
-    case Request::Kind::kSnapshot:
-    case Request::Kind::kEvents:
-    case Request::Kind::kSubscribe:
-    case Request::Kind::kGet:
-    case Request::Kind::kGeometry:
-    case Request::Kind::kVertices:
-      return tell(peer, request);
-    case Request::Kind::kEnable:
-      return plain(able(request.model, true));
-    case Request::Kind::kDisable:
-      return plain(able(request.model, false));
-    case Request::Kind::kMove:
-      return move(request);
-    case Request::Kind::kSet:
-      return plain(set(request));
-    case Request::Kind::kAdd:
-      return add(peer, request);
-    case Request::Kind::kRemove: {
-      const auto place = placeOf(request.model);
-      return plain(place ? release(*place) : Result<void>(Error{place.error()}));
-    }
-    case Request::Kind::kReload:
-      return reload(peer, request.file.empty() ? scene_file_ : request.file);
     case Request::Kind::kHold:
       return hold(request.device, code_);
     case Request::Kind::kClear:
@@ -171,8 +127,35 @@ Result<std::string> RequestHandler::obey(const control::Peer& peer, const Reques
     case Request::Kind::kStop:
       runner_.stop();
       return good;
+    default:
+      return obeyForModels(peer, request);
   }
-  return Error{"unknown request"};
+}
+
+Result<std::string> RequestHandler::obeyForModels(const control::Peer& peer, const Request& request) {
+  Result<void> done;
+  switch (request.kind) {
+    case Request::Kind::kMove:
+      return move(request);
+    case Request::Kind::kAdd:
+      return add(peer, request);
+    case Request::Kind::kReload:
+      return reload(peer, request.file.empty() ? scene_file_ : request.file);
+    case Request::Kind::kEnable:
+    case Request::Kind::kDisable:
+      done = able(request.model, request.kind == Request::Kind::kEnable);
+      break;
+    case Request::Kind::kSet:
+      done = set(request);
+      break;
+    case Request::Kind::kRemove:
+      done = remove(request.model);
+      break;
+    default:
+      return tell(peer, request);
+  }
+  if (!done) return Error{done.error()};
+  return text({{"ok", true}});
 }
 
 Result<uint32_t> RequestHandler::placeOf(const std::string& model) const {
@@ -282,116 +265,6 @@ Result<void> RequestHandler::clear(const control::Peer& peer, const std::string&
     if (auto given = give(order); !given) return given;
   }
   return found ? Result<void>() : refuse("unknown", "there is no device \"" + device.substr(0, 100) + "\"");
-}
-
-/// What is wrong with a scene quotes it, so a program of another user hears of that only if it may read the files too.
-Result<scene::Scene> RequestHandler::loadFor(const control::Peer& peer, const std::string& file) {
-  const bool foreign = isForeign(peer) && file != scene_file_;
-  if (foreign)
-    if (auto open = readableByAll({file}); !open) return refuse("forbidden", open.error());
-  auto scene = load_(file);
-  if (!foreign) return scene;
-  if (!scene) return refuse("failed", file + ": cannot be used\n  fix: hapticd check tells why");
-  std::vector<std::string> files = filesOf(scene->models);
-  files.push_back(file);
-  if (auto open = readableByAll(files); !open) return refuse("forbidden", open.error());
-  return scene;
-}
-
-Result<std::string> RequestHandler::add(const control::Peer& peer, const Request& request) {
-  auto scene = loadFor(peer, request.file);
-  if (!scene) return Error{scene.error()};
-  std::vector<scene::Model> models;
-  for (const scene::Model& model : scene->models)
-    if (request.model.empty() || model.name == request.model) models.push_back(model);
-  if (models.empty()) return Error{request.file + ": has no model" + (request.model.empty() ? "" : " of that name")};
-  for (const scene::Model& model : models)
-    if (placeOf(model.name)) return refuse("busy", "a model named \"" + model.name + "\" exists already");
-  if (auto done = adopt(models); !done) return Error{done.error()};
-  return text({{"ok", true}, {"models", models.size()}});
-}
-
-/// A plugin that ended a run is kept out of this one too.
-Result<void> RequestHandler::refuseQuarantined(const std::vector<scene::Model>& models) const {
-  if (runner_.stateDir().empty()) return {};
-  for (const watch::QuarantinedPlugin& entry : watch::quarantined(runner_.stateDir()))
-    for (const scene::Model& model : models)
-      if (model.plugin == entry.plugin)
-        return refuse("quarantined", "model \"" + model.name + "\": plugin '" + entry.plugin +
-                                         "' ended an earlier run by " + entry.reason +
-                                         "\n  fix: repair it, then: hapticd plugin clear " + entry.plugin);
-  return {};
-}
-
-/// All of them or none: everything that can fail is done before the first is given to the servo.
-Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
-  code_ = "failed";  // that no model of these names was found is as it should be
-  std::vector<uint32_t> empty;
-  for (uint32_t i = 0; i < places_.size(); ++i)
-    if (!places_[i].taken && runner_.world().shapes()[i] == nullptr) empty.push_back(i);
-  if (empty.size() < models.size())
-    return refuse("too_many", fmt::format("{} more models can be added, not {}", empty.size(), models.size()));
-  if (auto trusted = refuseQuarantined(models); !trusted) return trusted;
-  std::vector<std::unique_ptr<host::ShapeInstance>> shapes;
-  for (const scene::Model& model : models) {
-    auto shape = runner_.world().prepare(model, log_);
-    if (!shape) return Error{shape.error()};
-    shapes.push_back(std::move(*shape));
-  }
-  for (size_t i = 0; i < models.size(); ++i) {
-    const uint32_t place = empty[i];
-    prepared_.push_back(std::make_unique<ModelState>(Core::stateOf(*shapes[i], models[i])));
-    runner_.nameModel(place, models[i].name, models[i].plugin);
-    Order order;
-    order.kind = Order::Kind::kAdopt;
-    order.target = place;
-    order.model = prepared_.back().get();
-    const auto given = give(order);
-    places_[place] = {models[i], true, true};
-    runner_.world().keep(place, std::move(shapes[i]), models[i]);  // also where it was late: it may obey yet
-    if (!given) return given;
-    prepared_.pop_back();
-  }
-  return {};
-}
-
-Result<void> RequestHandler::release(uint32_t place) {
-  if (auto ended = leads_.endOfModel(place); !ended) return ended;
-  runner_.world().forget(place);
-  places_[place].taken = false;
-  Order order;
-  order.kind = Order::Kind::kRelease;
-  order.target = place;
-  if (auto given = give(order); !given) return given;
-  waitUntil([&] {
-    sweep();
-    return runner_.world().shapes()[place] == nullptr;
-  });
-  return {};
-}
-
-Result<std::string> RequestHandler::reload(const control::Peer& peer, const std::string& file) {
-  auto scene = loadFor(peer, file);
-  if (!scene) return Error{scene.error()};
-  if (!sameDevices(*scene, runner_.scene()))
-    return Error{file +
-                 ": names other devices than the running ones\n  fix: stop the daemon and start it with this scene"};
-  std::vector<uint32_t> old;
-  for (uint32_t i = 0; i < places_.size(); ++i)
-    if (places_[i].taken) old.push_back(i);
-  if (auto done = adopt(scene->models); !done) return Error{file + ": nothing was changed: " + done.error()};
-  for (const uint32_t place : old)
-    if (auto done = release(place); !done) return Error{done.error()};
-  scene_file_ = file;
-  return text({{"ok", true}, {"models", scene->models.size()}});
-}
-
-void RequestHandler::sweep() {
-  uint32_t place = 0;
-  while (runner_.world().core().takeReleased(place)) {
-    runner_.world().destroy(place);
-    runner_.nameModel(place, "", "");
-  }
 }
 
 Result<std::string> RequestHandler::dump(const std::string& why) {

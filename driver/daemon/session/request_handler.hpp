@@ -48,6 +48,7 @@ class RequestHandler {
     return Error{std::move(why)};
   }
   Result<std::string> obey(const control::Peer& peer, const control::Request& request);
+  Result<std::string> obeyForModels(const control::Peer& peer, const control::Request& request);
   /// Requests that ask and change nothing.
   Result<std::string> tell(const control::Peer& peer, const control::Request& request);
   Session session() const { return {runner_, places_, leads_, scene_file_}; }
@@ -76,6 +77,7 @@ class RequestHandler {
   Result<std::string> add(const control::Peer& peer, const control::Request& request);
   Result<void> refuseQuarantined(const std::vector<scene::Model>& models) const;
   Result<void> adopt(const std::vector<scene::Model>& models);
+  Result<void> remove(const std::string& model);
   Result<void> release(uint32_t place);
   Result<std::string> reload(const control::Peer& peer, const std::string& file);
   void sweep();

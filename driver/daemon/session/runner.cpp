@@ -10,13 +10,14 @@
 #include "log/log.hpp"
 #include "servo/loop/paced_clock.hpp"
 #include "session/about.hpp"
-#include "session/arm_force.hpp"
+#include "session/recorded_clock.hpp"
 #include "session/silence_reason.hpp"
 #include "session/watched_servo.hpp"
 #include "sim/proximity_thread.hpp"
 #include "watch/crash.hpp"
 #include "watch/notify.hpp"
 #include "watch/watchdog.hpp"
+#include "world/arm_force.hpp"
 
 namespace hapticd::servo {
 
@@ -53,23 +54,6 @@ Nanoseconds spinFor(const scene::Servo& servo) {
   const double us = servo.spin_us.value_or(os::inVirtualMachine() ? 0 : kBareMetalSpinUs);
   return static_cast<Nanoseconds>(us * 1e3);
 }
-
-/// Virtual time that waits for the recording: it runs hundreds of times faster than the disk was asked to follow.
-class RecordedClock final : public Clock {
- public:
-  explicit RecordedClock(const record::Recorder& recorder) : recorder_(recorder) {}
-  Nanoseconds now() noexcept HSP_RT override { return clock_.now(); }
-  Nanoseconds waitUntil(Nanoseconds deadline) noexcept HSP_RT override {
-    constexpr Nanoseconds kPause = 1'000'000;
-    while (recorder_.behind()) pause_.waitUntil(pause_.now() + kPause);
-    return clock_.waitUntil(deadline);
-  }
-
- private:
-  const record::Recorder& recorder_;
-  VirtualClock clock_;
-  RealClock pause_{0};
-};
 
 std::string readyMessage(const Loop& loop) {
   return "READY=1\nSTATUS=the servo ticks; " + std::to_string(loop.lateDryCycles()) + " of " +
@@ -252,10 +236,7 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   os::Thread servo;
   const auto code = servo.start("hapticd-servo", [this, &ready, &refused, anyhow, locked] {
     const Working servo_works(Worker::kServo);
-    host::Services::markServoThread();
     refused = enterRealTime();
-    os::prepareSignalStack();
-    os::prefaultStack();
     const bool runs = anyhow || (locked && refused.empty());
     ready = true;
     if (guard_ && runs) guard_->arm(true);
@@ -348,6 +329,9 @@ void Runner::lockMemory() {
 }
 
 std::vector<std::string> Runner::enterRealTime() const {
+  host::Services::markServoThread();
+  os::prepareSignalStack();
+  os::prefaultStack();
   std::vector<std::string> refused;
   if (options_.cpu)
     if (const auto code = os::pinTo(*options_.cpu))

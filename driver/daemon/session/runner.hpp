@@ -16,9 +16,9 @@
 #include "servo/loop/loop.hpp"
 #include "session/event_log.hpp"
 #include "session/telemetry.hpp"
-#include "session/world.hpp"
 #include "watch/guard_process.hpp"
 #include "watch/watched.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::sim {
 class ProximityThread;

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <iterator>
 
+#include "base/fatal_signals_posix.hpp"
 #include "base/os.hpp"
 #include "watch/quarantine.hpp"
 

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
-/* abi.h - what the two ABIs of hapticd, shape.h and device.h, share: status codes, parameter tables, host services.
- *
- * Units are SI everywhere: m, s, N, N*m, rad, kg.
- * Thread tags:  [main] never the servo thread; calls on one instance never overlap;
- *               [sim]  the proximity thread (or another process): const, may run while [rt] steps;
- *               [rt]   the servo thread: no allocation, lock, file, system call, exception, unbounded loop;
- *               [any]  every thread, concurrently.      State tags:  [inactive]  [active].
- * Growth rules inside one HSP_ABI_MAJOR: tables and structs only grow at the end; whoever allocates a struct sets
- * struct_size; a reader touches a field only if struct_size covers it (HSP_HAS); arrays of structs are walked with
- * the stride their writer gives (HSP_AT); new families of calls are extensions found by "name/revision".
- * Strings are UTF-8. A pointer handed over is valid until the call returns unless its comment says otherwise. */
+/* abi.h - what shape.h and device.h share: status codes, parameter tables, host services. SI units; UTF-8 strings.
+ * Threads: [main] never the servo thread, calls on one instance never overlap; [sim] the proximity thread or another
+ * process: const, may run while [rt] steps; [rt] the servo thread: no allocation, lock, file, system call, exception or
+ * unbounded loop; [any] every thread, concurrently. States: [inactive] [active]. A pointer is valid until the call
+ * returns unless a comment says more. Within one HSP_ABI_MAJOR structs grow at their ends alone: struct_size says
+ * what a reader may touch (HSP_HAS), arrays have their writer's stride (HSP_AT), new calls are extensions by name. */
 #ifndef HAPTICD_ABI_H
 #define HAPTICD_ABI_H
+#if __SIZEOF_POINTER__ == 8
+#define HSP_LAYOUT_IS(N) == (N) /* sizes below are those of 64-bit platforms; smaller pointers make smaller structs */
+#else
+#define HSP_LAYOUT_IS(N) <= (N)
+#endif
 #include <stddef.h>
 #include <stdint.h>
 #ifdef __cplusplus
@@ -97,13 +97,13 @@ typedef struct hsp_host {
   void (*request_restart)(const struct hsp_host*);                                  /* [any] */
   const void* (*extension)(const struct hsp_host*, const char* name);               /* [main] NULL if absent */
 } hsp_host;
-
 #ifdef __cplusplus
+#define HSP_STATIC_ASSERT static_assert
 }
-#define HSP_LAYOUT(T, N) static_assert(sizeof(T) == (N), "ABI layout of " #T)
 #else
-#define HSP_LAYOUT(T, N) _Static_assert(sizeof(T) == (N), "ABI layout of " #T)
+#define HSP_STATIC_ASSERT _Static_assert
 #endif
+#define HSP_LAYOUT(T, N) HSP_STATIC_ASSERT(sizeof(T) HSP_LAYOUT_IS(N), "ABI layout of " #T)
 HSP_LAYOUT(hsp_param, 96);
 HSP_LAYOUT(hsp_value, 32);
 HSP_LAYOUT(hsp_change, 16);

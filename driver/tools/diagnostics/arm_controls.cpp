@@ -9,7 +9,7 @@
 #include "diagnostics/wire_of.hpp"
 #include "document/reader.hpp"
 #include "scene/load.hpp"
-#include "session/arm_force.hpp"
+#include "world/arm_force.hpp"
 
 namespace hapticd::diagnostics {
 
@@ -111,7 +111,7 @@ std::vector<Control> controlsOf(const scene::Device& description, const host::De
   return controls;
 }
 
-/// An arm that is not there is no error here: what it alone can say is unknown then.
+/// An arm that is not plugged in is not an error here: the facts that only the arm can give stay unknown.
 static void logNothing(int, const std::string&, const std::string&) {}
 
 std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog& catalog,

@@ -15,8 +15,8 @@
 #include "host/library.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "servo/velocity/probe_velocity.hpp"
-#include "session/world.hpp"
 #include "tune/motion.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::diagnostics {
 namespace {

@@ -13,7 +13,7 @@
 #include "host/device_instance.hpp"
 #include "host/wire.hpp"
 #include "servo/loop/lockstep.hpp"
-#include "session/world.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::diagnostics {
 namespace {

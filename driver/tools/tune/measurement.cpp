@@ -9,7 +9,7 @@
 #include "base/clock.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "servo/velocity/probe_velocity.hpp"
-#include "session/world.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::tune {
 namespace {

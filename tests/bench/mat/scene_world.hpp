@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "servo/loop/lockstep.hpp"
-#include "session/world.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::bench_mat {
 

@@ -11,8 +11,8 @@
 #include "scene/load.hpp"
 #include "servo/arm/arm.hpp"
 #include "servo/loop/lockstep.hpp"
-#include "session/world.hpp"
 #include "traced_shape/model_file.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::table1 {
 namespace {

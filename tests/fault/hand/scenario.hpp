@@ -12,9 +12,9 @@
 
 #include "rig_page.hpp"
 #include "servo/loop/loop.hpp"
-#include "session/arm_force.hpp"
 #include "session/telemetry.hpp"
-#include "session/world.hpp"
+#include "world/arm_force.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::servo {
 

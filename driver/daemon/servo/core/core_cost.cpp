@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/clock.hpp"
-#include "base/os.hpp"
+#include "base/thread_usage.hpp"
 #include "servo/core/core.hpp"
 
 namespace hapticd::servo {
@@ -25,7 +25,7 @@ bool Core::mayRest(const ModelState& model, uint32_t index, double dt) const noe
 
 Core::Begun Core::beginCost() const noexcept HSP_RT {
   if (!settings_.measure) return {};
-  return {monotonicNow(), cpu_timed_ ? os::cpuTime(CLOCK_THREAD_CPUTIME_ID) : 0};
+  return {monotonicNow(), cpu_timed_ ? os::cpuTimeOfThread() : 0};
 }
 
 void Core::takeCost(ModelState& model, const Begun& begun) noexcept HSP_RT {
@@ -37,7 +37,7 @@ void Core::takeCost(ModelState& model, const Begun& begun) noexcept HSP_RT {
     for (const hsp_contact& out : outputs_) evaluations += out.iterations;
     model.step_ns = static_cast<uint64_t>(settings_.evaluation_ns * static_cast<double>(evaluations));
   } else if (model.cpu_timed) {
-    model.step_ns = std::min(model.step_ns, os::cpuTime(CLOCK_THREAD_CPUTIME_ID) - begun.cpu);
+    model.step_ns = std::min(model.step_ns, os::cpuTimeOfThread() - begun.cpu);
   }
   // a spent budget stays at 1: the next shape may still answer, but must be quick
   if (budget_left_ns_ > 0) budget_left_ns_ = budget_left_ns_ > model.step_ns ? budget_left_ns_ - model.step_ns : 1;

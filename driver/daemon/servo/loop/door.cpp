@@ -5,7 +5,7 @@
 #include <new>
 
 #include "base/not_real_time.hpp"
-#include "base/os.hpp"
+#include "base/thread_usage.hpp"
 #include "link/lead.hpp"
 
 namespace hapticd::servo {

@@ -7,14 +7,14 @@
 
 #include "base/allocation_count.hpp"
 #include "base/not_real_time.hpp"
-#include "base/os.hpp"
+#include "base/thread_usage.hpp"
 
 namespace hapticd::servo {
 
 namespace {
 
 constexpr uint64_t kWarmUpTicks = 200;  ///< first touches of code and tables; faults and allocations count after them
-constexpr double kLateFault = 0.1;      ///< [s] without a tick: a hand must not be held by a force of then
+constexpr double kLateFault = 0.1;      ///< [s] without a tick: a stale force must not hold a hand
 
 bool isToArm(const Order& order) noexcept HSP_RT {
   switch (order.kind) {
@@ -84,11 +84,9 @@ void Loop::runDry() noexcept HSP_RT {
 void Loop::run() noexcept {
   runDry();
   Nanoseconds start = clock_.now(), deadline = start, last = start;
-  const long faults_before = os::pageFaultsOfThread();
   first_tick_ = monotonicNow();
   cpu_clock_ = os::cpuClockOfThread();
-  long faults_warm = faults_before;
-  uint64_t allocations_warm = allocationsOfThread();
+  countFromHere();
   for (uint64_t n = 0, done = 0;; ++n) {
     if (stop_ || (settings_.ticks != 0 && done + ramp_ticks_ >= settings_.ticks)) rampOut();
     const Nanoseconds woke = clock_.waitUntil(deadline);
@@ -109,26 +107,34 @@ void Loop::run() noexcept {
     tick({n, deadline, t, dt});
     const Nanoseconds ended = monotonicNow();
     log_.tick(t, dt, woke - due, {ended - begun - search_time_ - listen_time_, read_time_}, core_, arms_);
-    door_.written(n);
     last = deadline;
     deadline += settings_.period_ns;
-    tick_count_.store(n + 1, std::memory_order_relaxed);
-    beat();
-    silent_.store(allSilent(), std::memory_order_release);
-    next_tick_.store(ended + longestRest(), std::memory_order_relaxed);
-    tick_begun_.store(0, std::memory_order_relaxed);
-    if (n == kWarmUpTicks) {
-      search_allocations_ = 0;
-      faults_warm = os::pageFaultsOfThread();
-      allocations_warm = allocationsOfThread();
-    }
+    publishTick(n, ended);
+    if (n == kWarmUpTicks) countFromHere();
     done = (last - start) / settings_.period_ns + 1;
     if ((settings_.ticks != 0 && done >= settings_.ticks) || (stop_ && allSilent())) break;
   }
   next_tick_.store(0, std::memory_order_relaxed);
-  log_.finish(tick_count_, clock_.now() - start, os::pageFaultsOfThread() - faults_warm,
-              allocationsOfThread() - allocations_warm - search_allocations_);
+  log_.finish(tick_count_, clock_.now() - start, os::pageFaultsOfThread() - faults_warm_,
+              allocationsOfThread() - allocations_warm_ - search_allocations_);
   finished_.store(true, std::memory_order_release);
+}
+
+/// What other threads and processes may know of a tick once its row is written.
+void Loop::publishTick(uint64_t number, Nanoseconds ended) noexcept HSP_RT {
+  door_.written(number);
+  tick_count_.store(number + 1, std::memory_order_relaxed);
+  beat();
+  silent_.store(allSilent(), std::memory_order_release);
+  next_tick_.store(ended + longestRest(), std::memory_order_relaxed);
+  tick_begun_.store(0, std::memory_order_relaxed);
+}
+
+/// Page faults and allocations of the first ticks are no fault of the later ones.
+void Loop::countFromHere() noexcept {
+  search_allocations_ = 0;
+  faults_warm_ = os::pageFaultsOfThread();
+  allocations_warm_ = allocationsOfThread();
 }
 
 /// Between two ticks: samples that drive the loop are waited for for a while, see PacedClock.
@@ -202,8 +208,8 @@ void Loop::obey(const Order& order, Arm& arm) noexcept HSP_RT {
   }
 }
 
-/// After a tick: what came of times that were measured in it.
-void Loop::noteDeeds() noexcept HSP_RT {
+/// After a tick: logs decisions that depended on measured times, for replay.
+void Loop::logTimedDecisions() noexcept HSP_RT {
   Order order;
   order.kind = Order::Kind::kOverran;
   for (const uint32_t index : core_.live()) {
@@ -269,7 +275,7 @@ void Loop::tick(const TickTime& tick) noexcept HSP_RT {
   core_.tick(tick.t, tick.dt, probes_);
   if (settings_.answer_time > 0) listen(tick);
   for (uint32_t i = 0; i < arms_.size(); ++i) write(i, tick);
-  noteDeeds();
+  logTimedDecisions();
   wants_search_.store(core_.wantsSearch(), std::memory_order_relaxed);
 }
 

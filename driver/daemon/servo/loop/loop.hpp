@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/clock.hpp"
-#include "base/os.hpp"
+#include "base/thread_usage.hpp"
 #include "servo/arm/arm.hpp"
 #include "servo/loop/door.hpp"
 #include "servo/loop/lockstep.hpp"
@@ -89,11 +89,13 @@ class Loop {
   void listen(const TickTime& tick) noexcept HSP_RT;
   void write(uint32_t index, const TickTime& tick) noexcept HSP_RT;
   void runDry() noexcept HSP_RT;
+  void publishTick(uint64_t number, Nanoseconds ended) noexcept HSP_RT;
+  void countFromHere() noexcept;
   void beat() noexcept HSP_RT;
   void obey(double t) noexcept HSP_RT;
   void obey(const Order& order, Arm& arm) noexcept HSP_RT;
   void obeyHolds() noexcept HSP_RT;
-  void noteDeeds() noexcept HSP_RT;
+  void logTimedDecisions() noexcept HSP_RT;
   void shedLoad() noexcept HSP_RT;
   void search(double t) noexcept;
   void trip(Fault fault, double measured = 0) noexcept HSP_RT;
@@ -119,14 +121,15 @@ class Loop {
   Nanoseconds search_time_ = 0;
   Nanoseconds read_time_ = 0;    ///< of this tick
   Nanoseconds listen_time_ = 0;  ///< of this tick, spent on programs that had not answered yet
-  uint64_t search_allocations_ = 0;
+  uint64_t search_allocations_ = 0, allocations_warm_ = 0;
+  long faults_warm_ = 0;
   SpscRing<Order> orders_{256};
   std::atomic<uint64_t> orders_done_{0};
   std::atomic<uint64_t> hold_{0};
   std::atomic<bool> stop_{false}, wants_search_{true}, finished_{false}, silent_{false};
   std::atomic<uint64_t> tick_count_{0}, late_dry_cycles_{0};
   std::atomic<Nanoseconds> first_tick_{0}, tick_begun_{0}, next_tick_{0}, stop_asked_{0};
-  std::atomic<clockid_t> cpu_clock_{CLOCK_MONOTONIC};
+  std::atomic<os::CpuClock> cpu_clock_{os::kNoCpuClock};
 };
 
 }  // namespace hapticd::servo

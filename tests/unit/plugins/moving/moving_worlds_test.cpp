@@ -11,7 +11,7 @@
 #include "scene/load.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "servo/velocity/probe_velocity.hpp"
-#include "session/world.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::test {
 namespace {

@@ -11,7 +11,7 @@
 #include "census.hpp"
 #include "scene/load.hpp"
 #include "servo/loop/loop.hpp"
-#include "session/world.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::servo {
 namespace {

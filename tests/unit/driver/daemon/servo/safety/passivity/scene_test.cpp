@@ -10,7 +10,7 @@
 #include "scene/load.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "servo/safety/passivity/controller.hpp"
-#include "session/world.hpp"
+#include "world/world.hpp"
 
 namespace hapticd::servo {
 namespace {

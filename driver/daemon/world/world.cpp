@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "session/world.hpp"
+#include "world/world.hpp"
 
 #include <algorithm>
 
 #include "servo/velocity/probe_velocity.hpp"
-#include "session/instructions.hpp"
+#include "world/instructions.hpp"
 
 namespace hapticd::servo {
 

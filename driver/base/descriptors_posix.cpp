@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "base/descriptors.hpp"
-
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+
+#include "base/descriptors.hpp"
 
 namespace hapticd {
 
@@ -46,7 +46,7 @@ Descriptor::~Descriptor() {
   if (fd_ >= 0) close(fd_);
 }
 
-ssize_t sendWith(int socket, std::string_view bytes, std::span<const int> descriptors) noexcept {
+std::ptrdiff_t sendWith(int socket, std::string_view bytes, std::span<const int> descriptors) noexcept {
   if (descriptors.size() > kMostDescriptors || bytes.empty()) {
     errno = EMSGSIZE;
     return -1;
@@ -65,7 +65,7 @@ ssize_t sendWith(int socket, std::string_view bytes, std::span<const int> descri
     if (const ssize_t sent = sendmsg(socket, &message.header, MSG_NOSIGNAL); sent >= 0 || errno != EINTR) return sent;
 }
 
-ssize_t receiveWith(int socket, std::span<char> to, std::vector<Descriptor>& descriptors) {
+std::ptrdiff_t receiveWith(int socket, std::span<char> to, std::vector<Descriptor>& descriptors) {
   Message message(to.data(), to.size());
   message.header.msg_control = message.control;
   message.header.msg_controllen = sizeof message.control;

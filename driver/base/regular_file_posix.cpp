@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "base/regular_file.hpp"
-
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,12 +7,22 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/regular_file.hpp"
+
 namespace hapticd {
 
 namespace {
 
 Error cannotBeRead(int code) {
   return Error{code == ENOENT ? "there is no such file" : std::string("cannot be read: ") + std::strerror(code)};
+}
+
+std::filesystem::file_type typeOf(mode_t mode) {
+  using std::filesystem::file_type;
+  if (S_ISREG(mode)) return file_type::regular;
+  if (S_ISDIR(mode)) return file_type::directory;
+  if (S_ISFIFO(mode)) return file_type::fifo;
+  return S_ISSOCK(mode) ? file_type::socket : file_type::unknown;
 }
 
 /// 0, or what failed.
@@ -34,12 +42,13 @@ int writeTo(const std::string& file, const std::string& text) {
 
 }  // namespace
 
-std::string notAFile(mode_t mode) {
-  if (S_ISREG(mode)) return "";
-  const char* what = S_ISDIR(mode)    ? "is a folder"
-                     : S_ISFIFO(mode) ? "is a pipe"
-                     : S_ISSOCK(mode) ? "is a socket"
-                                      : "is a device";
+std::string notAFile(std::filesystem::file_type type) {
+  using std::filesystem::file_type;
+  if (type == file_type::regular) return "";
+  const char* what = type == file_type::directory ? "is a folder"
+                     : type == file_type::fifo    ? "is a pipe"
+                     : type == file_type::socket  ? "is a socket"
+                                                  : "is a device";
   return std::string(what) + ", expected a file";
 }
 
@@ -47,10 +56,10 @@ Result<int> openRegular(const std::string& file) {
   struct stat info{};
   if (stat(file.c_str(), &info) != 0) return cannotBeRead(errno);
   // known before it is opened: opening a device may already move something, and a socket has no better message
-  if (std::string other = notAFile(info.st_mode); !other.empty()) return Error{std::move(other)};
+  if (std::string other = notAFile(typeOf(info.st_mode)); !other.empty()) return Error{std::move(other)};
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (fd < 0) return cannotBeRead(errno);
-  std::string other = fstat(fd, &info) == 0 ? notAFile(info.st_mode) : "cannot be read";
+  std::string other = fstat(fd, &info) == 0 ? notAFile(typeOf(info.st_mode)) : "cannot be read";
   if (other.empty()) return fd;
   close(fd);
   return Error{std::move(other)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "session/arm_force.hpp"
+#include "world/arm_force.hpp"
 
 #include <algorithm>
 #include <string_view>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "base/clock.hpp"
-
 #include <cerrno>
 #include <ctime>
+
+#include "base/clock.hpp"
 
 namespace hapticd {
 

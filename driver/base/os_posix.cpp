@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "base/os.hpp"
-
 #include <fcntl.h>
-#include <linux/futex.h>
 #include <malloc.h>
+#include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -19,6 +17,9 @@
 #include <memory>
 #include <sstream>
 #include <vector>
+
+#include "base/fatal_signals_posix.hpp"
+#include "base/os.hpp"
 
 namespace hapticd::os {
 
@@ -56,26 +57,37 @@ std::string limitOf(int resource) {
 
 }  // namespace
 
+struct Thread::Handle {
+  pthread_t thread{};
+};
+
+Thread::Thread() = default;
+
+Thread::~Thread() {
+  join();
+}
+
 std::error_code Thread::start(const std::string& name, std::function<void()> body) {
   body_ = std::move(body);
+  auto handle = std::make_unique<Handle>();
   pthread_attr_t attributes;
   pthread_attr_init(&attributes);
   pthread_attr_setstacksize(&attributes, kThreadStackBytes);
-  const int code = pthread_create(&handle_, &attributes, &Thread::enter, this);
+  const auto enter = [](void* self) -> void* {
+    static_cast<Thread*>(self)->body_();
+    return nullptr;
+  };
+  const int code = pthread_create(&handle->thread, &attributes, enter, this);
   pthread_attr_destroy(&attributes);
-  started_ = code == 0;
-  if (started_) pthread_setname_np(handle_, name.substr(0, 15).c_str());
-  return error(code);
-}
-
-void* Thread::enter(void* self) {
-  static_cast<Thread*>(self)->body_();
-  return nullptr;
+  if (code != 0) return error(code);
+  pthread_setname_np(handle->thread, name.substr(0, 15).c_str());
+  handle_ = std::move(handle);
+  return {};
 }
 
 void Thread::join() {
-  if (started_) pthread_join(handle_, nullptr);
-  started_ = false;
+  if (handle_ != nullptr) pthread_join(handle_->thread, nullptr);
+  handle_.reset();
 }
 
 std::error_code setFifo(int priority) {
@@ -130,12 +142,6 @@ void unlockMemory() {
   munlockall();
 }
 
-long pageFaultsOfThread() noexcept {
-  rusage usage{};
-  getrusage(RUSAGE_THREAD, &usage);
-  return usage.ru_minflt + usage.ru_majflt;
-}
-
 size_t residentBytes() {
   std::ifstream in("/proc/self/statm");
   size_t total = 0, resident = 0;
@@ -161,33 +167,8 @@ bool inVirtualMachine() {
   return false;
 }
 
-clockid_t cpuClockOfThread() {
-  clockid_t clock = CLOCK_THREAD_CPUTIME_ID;
-  pthread_getcpuclockid(pthread_self(), &clock);
-  return clock;
-}
-
-uint64_t cpuTime(clockid_t clock) noexcept {
-  timespec time{};
-  clock_gettime(clock, &time);
-  return static_cast<uint64_t>(time.tv_sec) * 1'000'000'000u + static_cast<uint64_t>(time.tv_nsec);
-}
-
 int threadId() noexcept {
   return static_cast<int>(syscall(SYS_gettid));
-}
-
-bool wasPreempted() noexcept {
-  static thread_local long known = 0;
-  rusage usage{};
-  getrusage(RUSAGE_THREAD, &usage);
-  const bool preempted = usage.ru_nivcsw != known;
-  known = usage.ru_nivcsw;
-  return preempted;
-}
-
-int wakeWaiting(uint32_t* word, int most) noexcept {
-  return static_cast<int>(syscall(SYS_futex, word, FUTEX_WAKE, most, nullptr, nullptr, 0));
 }
 
 void onFatalSignals(void (*handler)(int, siginfo_t*, void*)) {

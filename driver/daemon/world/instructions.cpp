@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "session/instructions.hpp"
+#include "world/instructions.hpp"
 
 #include <cstdlib>
 

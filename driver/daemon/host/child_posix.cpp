@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "host/child.hpp"
-
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -15,6 +13,8 @@
 #include <exception>
 #include <optional>
 #include <thread>
+
+#include "host/child.hpp"
 
 namespace hapticd::host {
 namespace {

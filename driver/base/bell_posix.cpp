@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "base/bell.hpp"
-
 #include <linux/futex.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <ctime>
+
+#include "base/bell.hpp"
 
 namespace hapticd {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "base/sealed_memory.hpp"
-
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+
+#include "base/sealed_memory.hpp"
 
 namespace hapticd {
 

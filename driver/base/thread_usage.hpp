@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+/// What a thread has used of its processor and of memory. A platform that does not measure it answers zeros: nothing
+/// that is computed in virtual time depends on these numbers.
+#pragma once
+#include <cstdint>
+
+namespace hapticd::os {
+
+/// Names the CPU clock of a thread, so that other threads can read it.
+using CpuClock = int;
+constexpr CpuClock kNoCpuClock = 1;  ///< CLOCK_MONOTONIC: before the thread has told its own
+
+/// [rt] Page faults (minor and major) of the calling thread so far.
+long pageFaultsOfThread() noexcept;
+
+/// [rt] CPU clock of the calling thread, for other threads to read.
+CpuClock cpuClockOfThread() noexcept;
+/// [any] CPU time [ns] that the thread of a clock has used; async-signal-safe.
+uint64_t cpuTime(CpuClock clock) noexcept;
+/// [rt] CPU time [ns] that the calling thread has used.
+uint64_t cpuTimeOfThread() noexcept;
+
+/// [any] The thread lost its processor since it last asked: what it did took time of others. A system call.
+bool wasPreempted() noexcept;
+
+/// [rt] Wakes at most `most` threads, of any process, that wait for a word of shared memory to change; never waits.
+/// @return how many were woken
+int wakeWaiting(uint32_t* word, int most) noexcept;
+
+}  // namespace hapticd::os

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+/// For programs that hold all their plugins: nothing is loaded, and no process is started.
+#include <cstdlib>
+
+#include "host/child.hpp"
+#include "host/file_stamp.hpp"
+#include "host/loader.hpp"
+
+namespace hapticd::host {
+namespace {
+
+constexpr const char* kNoFiles = "this program loads no files: its plugins are linked into it";
+
+}  // namespace
+
+Result<void*> loadFile(const std::filesystem::path&) {
+  return Error{kNoFiles};
+}
+
+Result<const void*> symbolOf(void*, const char*) {
+  return Error{kNoFiles};
+}
+
+std::optional<FileStamp> stampOf(const std::filesystem::path&) {
+  return std::nullopt;
+}
+
+Result<std::string> runInChild(const std::function<std::string()>& work, int) {
+  return work();
+}
+
+Result<std::string> runProgram(std::vector<std::string>, int) {
+  return Error{"could not be tried: this program starts no other"};
+}
+
+void answerParent(const std::function<std::string()>&) {
+  std::abort();  // never called: nothing starts this program as a child
+}
+
+}  // namespace hapticd::host

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+/// From a sample to a probe: whether the sample can be trusted, where the tip is, and when forces may come back.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "servo/arm/arm.hpp"
+
+namespace hapticd::servo {
+
+namespace {
+
+constexpr double kCalmFor = 0.5;           ///< [s] that a device must be well before its force comes back by itself
+constexpr double kCalmTravel = 0.02;       ///< [m] and its tip may move meanwhile, while something pushes on it
+constexpr double kStaleAfter = 0.05;       ///< [s] without a new sample: no force on yesterday's position
+constexpr double kPeriodsTrusted = 2.001;  ///< without a new sample before the force fades: one may be late
+constexpr double kTrustFades = 2e-3;       ///< [s] in which it does
+constexpr double kPairWithin = 2e-3;  ///< [s] two samples may come so close together that were measured farther apart
+
+}  // namespace
+
+/// What a sample of this age is good for: an arm that falls silent keeps the last force no longer than two of its
+/// periods and 2 ms more. Where its period is unknown, silence of 50 ms is all that is noticed.
+double Arm::trustIn(Nanoseconds age) const noexcept HSP_RT {
+  if (sample_period_ <= 0) return 1;
+  const double over = static_cast<double>(age) * kSecondsPerNanosecond - kPeriodsTrusted * sample_period_;
+  return std::clamp(1 - over / kTrustFades, 0.0, 1.0);
+}
+
+const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
+  if (cut_.load()) {
+    findCut(CutFound::kInRead);
+    limiter_.cut(Fault::kStuck, cut_after_.load());
+  }
+  if (taken_.exchange(true)) {  // the watchdog is writing its zero force
+    probe_.valid = tip_known_ = well_ = false;
+    if (velocity_) velocity_->reset();
+    return probe_;
+  }
+  read_status_ = device_->read(now, sample_);
+  taken_.store(false);
+  const bool sampled = read_status_ >= 0 && (sample_.flags & HDV_S_LOST) == 0;
+  limiter_.watchButtons(sampled ? std::optional(sample_.buttons) : std::nullopt);
+  probe_.valid = judge(read_status_, now) && locate();
+  if (!probe_.valid) {
+    tip_known_ = false;
+    if (velocity_) velocity_->reset();
+    return probe_;
+  }
+  watchJump();
+  if (admittance_) takeVirtualProbe();
+  // A device slower than the servo repeats its sample: a difference to itself is no speed, and one taken for a tick's
+  // way would be several times the hand's. A virtual mass moves in every tick.
+  if (velocity_ && (fresh_ || admittance_)) {
+    probe_.velocity = velocity_->update(probe_.position, admittance_ ? dt : fresh_after_);
+    limiter_.watchVelocity(probe_.velocity);
+    if (velocity_->speed() > kMaxProbeSpeed) limiter_.watchSpeed(velocity_->speed());
+  }
+  return probe_;
+}
+
+bool Arm::judge(hsp_status status, Nanoseconds now) noexcept HSP_RT {
+  well_ = false;
+  if (status < 0 || (sample_.flags & HDV_S_LOST) != 0) {
+    trip(Fault::kDeviceLost);
+    return false;
+  }
+  const bool at_fault = (sample_.flags & HDV_S_FAULT) != 0;
+  if (at_fault) trip(Fault::kDeviceFault);
+  const bool lacks_zero =
+      (device_->info().capabilities & HDV_C_CALIBRATION) != 0 && (sample_.flags & HDV_S_CALIBRATED) == 0;
+  if (lacks_zero) limiter_.trip(Fault::kNotCalibrated);
+  fresh_ = sample_.sequence != last_sequence_;
+  if (fresh_) {
+    last_sequence_ = sample_.sequence;
+    fresh_after_ = static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond;
+    fresh_at_ = now;
+  } else if (static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond > kStaleAfter) {
+    trip(Fault::kStale, static_cast<double>(now - fresh_at_) * kSecondsPerNanosecond);
+    return false;
+  }
+  for (uint32_t i = 0; i < device_->info().joint_count; ++i) {
+    if (std::isfinite(sample_.position[i])) continue;
+    limiter_.trip(Fault::kNotFinite);
+    return false;
+  }
+  well_ = !at_fault && !lacks_zero;
+  return true;
+}
+
+void Arm::trip(Fault fault, double measured) noexcept HSP_RT {
+  if (limiter_.fault() == Fault::kNone) trouble_.store(device_->trouble(), std::memory_order_release);
+  limiter_.trip(fault, measured);
+}
+
+/// A device that was unplugged, silent or at fault gets its force back once it has been well for a while and nobody is
+/// surprised by it: its tip rests, or nothing would push on it now.
+void Arm::recover(double dt, bool pushes) noexcept HSP_RT {
+  const bool moved = pushes && !((probe_.position - calm_at_).norm() <= kCalmTravel);
+  if (!well_ || !probe_.valid || moved || !limiter_.silent()) {
+    calm_ = 0;
+    calm_at_ = probe_.position;
+    return;
+  }
+  calm_ += dt;
+  if (calm_ >= kCalmFor) limiter_.recover();
+}
+
+bool Arm::locate() noexcept HSP_RT {
+  Eigen::Vector3d p_device;
+  std::array<double, 4> q{1, 0, 0, 0};
+  const hdv_ext_kinematics& kinematics = device_->kinematics();
+  const bool known = kinematics.forward(device_->handle(), sample_.position, p_device.data(), q.data()) >= 0;
+  if (!known || !p_device.allFinite() || !Eigen::Map<const Eigen::Vector4d>(q.data()).allFinite()) {
+    limiter_.trip(Fault::kNotFinite);
+    return false;
+  }
+  constexpr double kUnit = 1e-3;
+  const double length = Eigen::Map<const Eigen::Vector4d>(q.data()).norm();
+  if (!(std::abs(length - 1) <= kUnit)) {
+    limiter_.trip(Fault::kNotUnit, length);
+    return false;
+  }
+  probe_.position = R_world_device_ * p_device + origin_world_;
+  probe_.orientation = q_world_device_ * Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
+  return true;
+}
+
+/// An encoder that lost its count, or a packet that was misread, must not choose the force: no hand moves a tip so far.
+/// Where there is no force anyway, a device may find its zero or itself anew.
+void Arm::watchJump() noexcept HSP_RT {
+  if (!watches_jumps_ || !fresh_) return;
+  const double jumped = (probe_.position - tip_).norm() / std::max(fresh_after_, kPairWithin);
+  if (!tip_known_) sample_speed_.reset();
+  const double speed = sample_speed_.update(probe_.position, sample_.time_ns, fresh_after_);
+  const bool felt = limiter_.fault() == Fault::kNone;
+  if (felt && tip_known_ && !(jumped <= kMaxProbeSpeed)) limiter_.trip(Fault::kJumped, jumped);
+  if (felt && tip_known_ && fastest_ > 0 && !(speed <= fastest_)) limiter_.trip(Fault::kTooFast, speed);
+  tip_known_ = felt;
+  tip_ = probe_.position;
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+#include "base/clock.hpp"
+#include "record/recorder.hpp"
+
+namespace hapticd::servo {
+
+/// Virtual time that waits for the recording: it runs hundreds of times faster than the disk was asked to follow.
+class RecordedClock final : public Clock {
+ public:
+  explicit RecordedClock(const record::Recorder& recorder) : recorder_(recorder) {}
+  Nanoseconds now() noexcept HSP_RT override { return clock_.now(); }
+  Nanoseconds waitUntil(Nanoseconds deadline) noexcept HSP_RT override {
+    constexpr Nanoseconds kPause = 1'000'000;
+    while (recorder_.behind()) pause_.waitUntil(pause_.now() + kPause);
+    return clock_.waitUntil(deadline);
+  }
+
+ private:
+  const record::Recorder& recorder_;
+  VirtualClock clock_;
+  RealClock pause_{0};
+};
+
+}  // namespace hapticd::servo

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <utility>
+#include <vector>
+
+#include "commands_fixture.hpp"
+
+namespace hapticd::test {
+namespace {
+
+using ImportCommands = Commands;
+
+TEST_F(ImportCommands, ImportScalesCentresAndKeepsTheCredit) {
+  const std::string patch = put("patch.bpt", "# By somebody\n1\n1 1\n0 0 0\n0 0 2\n4 0 0\n4 0 2\n");
+  const Outcome outcome = run("import " + patch + " --scale 0.5 --center -o " + (dir_ / "model.yaml").string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
+  EXPECT_EQ(get("model.yaml"),
+            "# By somebody\nformat: hapticd-model/1\nsurfaces:\n  - name: patch0\n    degree: [1, 1]\n"
+            "    knots: [[0, 0, 1, 1], [0, 0, 1, 1]]\n"
+            "    points: [[-1, 0, -0.5], [-1, 0, 0.5],\n             [1, 0, -0.5], [1, 0, 0.5]]\n");
+  EXPECT_EQ(run("import " + patch + " -o /nowhere/at/all.yaml").exit_code, 1);
+}
+
+TEST_F(ImportCommands, ImportSaysWhereAPatchFileIsWrong) {
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"", "ends early, expected the number of patches"},
+      {"1\n3 3\n0 0 0\n", "ends early, expected a coordinate"},
+      {"1\n99 3\n", "bad.bpt:2:1: 99, expected a degree"},
+      {"1\n1 1\n0 0 0\n0 x 2\n", "bad.bpt:4:3: x, expected a coordinate"},
+      {"1\n1 1\n0 0 0\n0 0 2\n4 0 0\n4 0 2\n7\n", "bad.bpt:7:1: 7, expected the end"},
+      {"999999999\n", "expected the number of patches, 1 to 100000"},
+  };
+  for (const auto& [text, reason] : cases) {
+    const Outcome outcome = run("import " + put("bad.bpt", text) + " -o " + (dir_ / "x.yaml").string());
+    EXPECT_EQ(outcome.exit_code, 2) << text;
+    EXPECT_TRUE(has(outcome.text, reason)) << outcome.text;
+  }
+}
+
+TEST_F(ImportCommands, ImportMakesAPartOfTriangles) {
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", part = (dir_ / "egg.hpart").string();
+  const std::string mesh = put("egg.obj", triangle);
+  const Outcome wrong = run("import " + mesh + " -o " + (dir_ / "egg.yaml").string());
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_TRUE(has(wrong.text, "triangles become a part, expected a name that ends in .hpart")) << wrong.text;
+  const Outcome made = run("import " + mesh + " --scale 0.1 -o " + part);
+  EXPECT_EQ(made.exit_code, 0);
+  EXPECT_TRUE(has(made.text, "1 triangles, 3 points, 0.1 x 0.1 x 0 m, open")) << made.text;
+  EXPECT_TRUE(has(made.text, "1 hole with 3 free edges")) << made.text;
+  const Outcome info = run("part info " + part);
+  EXPECT_EQ(info.exit_code, 0);
+  EXPECT_TRUE(has(info.text, "body 'egg': mesh, open, 1 triangles")) << info.text;
+  EXPECT_EQ(run("part info " + mesh).exit_code, 2);
+}
+
+TEST_F(ImportCommands, CheckSaysWhatAPartCannotDo) {
+  const std::string part = (dir_ / "egg.hpart").string();
+  ASSERT_EQ(run("import " + put("egg.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n") + " -o " + part).exit_code, 0);
+  const auto check = [&](const std::string& plugin, const std::string& parameters) {
+    return run("check " + put("scene.yaml", "hapticd: 1\nmodels:\n  - {name: egg, plugin: " + plugin +
+                                                ", parameters: {geometry: egg.hpart" + parameters + "}}\n"),
+               kShipped);
+  };
+  EXPECT_EQ(check("nurbs_rigid", "").exit_code, 0) << check("nurbs_rigid", "").text;
+  EXPECT_TRUE(has(check("nurbs_rigid", ", method: dpt").text, "a part is searched as a whole in every tick"));
+  EXPECT_TRUE(has(check("nurbs_rigid", ", instance: lid").text, "there is no 'lid', expected one of egg"));
+  EXPECT_TRUE(has(check("nurbs_rigid", ", sides: front").text, "bounds no volume"));
+  EXPECT_TRUE(has(check("push_button", "").text, "is a part; expected a model file here"));
+}
+
+}  // namespace
+}  // namespace hapticd::test
