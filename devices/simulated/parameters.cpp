@@ -28,7 +28,7 @@ JointVector perJoint(const std::vector<double>& from, int count, double fallback
   if (from.size() == 1) return JointVector::Constant(count, from[0]);
   if (from.size() != static_cast<size_t>(count))
     throw std::invalid_argument(std::string(id) + ": " + std::to_string(from.size()) + " numbers, expected 1 or " +
-                                std::to_string(count) + ", one a joint");
+                                std::to_string(count) + ", one per joint");
   return Eigen::Map<const JointVector>(from.data(), count);
 }
 

@@ -178,7 +178,7 @@ int showEvents(const Options& options) {
 void addEvents(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
   CLI::App* events = ctl.add_subcommand(
       "events", "Show what happened: clicks, touches, faults, models and programs that came and left.");
-  events->add_flag("--follow", options->follow, "go on with what happens, a line of JSON each");
+  events->add_flag("--follow", options->follow, "do not end; print each new event as one line of JSON");
   events->footer(exampleOf("events"));
   events->callback([options, &exit_code] { exit_code = showEvents(*options); });
 }

@@ -86,7 +86,7 @@ int decode(const Options& options) {
                capture::summaryOf(decoded).c_str(), capture::hintsOf(described->wire, decoded).c_str());
   if (decoded.reports.empty())
     return fail(kFailed, "no report in " + std::to_string(bytes->size()) + " bytes, expected " +
-                             std::to_string(described->wire.input.bytes()) + " bytes a report");
+                             std::to_string(described->wire.input.bytes()) + " bytes per report");
   return decoded.good() == decoded.reports.size() && decoded.lost == 0 ? kWorked : kFailed;
 }
 
@@ -167,14 +167,14 @@ void addDecode(CLI::App& device, int& exit_code) {
       device.add_subcommand("decode", "Show a captured stream of an arm as numbers, as its device file reads it.");
   command->add_option("file", options->file, "device file (YAML)")->required();
   command->add_option("capture", options->input, "captured bytes; - for standard input")->capture_default_str();
-  auto* hex = command->add_flag("--hex", options->hex, "the capture is text: a transfer a line, two digits a byte");
+  auto* hex = command->add_flag("--hex", options->hex, "the capture is text: one transfer per line, two digits per byte");
   command->add_flag("--raw", options->raw, "the capture is the bytes themselves, even if they read as text")
       ->excludes(hex);
   command->add_option("-o,--out", options->out, "CSV file to write; - for standard output");
   command->footer(
-      "A capture is raw bytes, or text with one transfer a line: \"01 ff 3c\", the E: lines of hid-recorder, or what\n"
-      "`hapticd device record` writes. One row a report: positions, torques, buttons in SI units, or why it is no "
-      "report.\nThe exit code is 1 if a report is bad.\n\n"
+      "A capture is raw bytes, or text with one transfer per line: \"01 ff 3c\", the E: lines of hid-recorder, or what\n"
+      "`hapticd device record` writes. The output has one row per report: positions, torques and buttons in SI units,\n"
+      "or the reason why the bytes are not a report. The exit code is 1 if a report is bad.\n\n"
       "Examples:\n  hapticd device decode my-arm.yaml capture.bin\n"
       "  printf '00 01 00 02 00 03 00 00 00 00 00 00 00 00\\n' | hapticd device decode "
       "config/devices/woodenhaptics.yaml --hex");
@@ -190,7 +190,7 @@ void addEncode(CLI::App& device, int& exit_code) {
   command->add_flag("--raw", options->raw, "write the bytes themselves instead of hexadecimal text");
   command->add_option("-o,--out", options->out, "file to write; - for standard output");
   command->footer(
-      "A row of the CSV is a report. Its header names columns: torque1,torque2 [N m, N], reference1, enable, follow,\n"
+      "Each row of the CSV is one report. Its header names the columns: torque1,torque2 [N m, N], reference1, enable, follow,\n"
       "calibrate; with --from-arm position1, velocity1, torque1, buttons, sequence, starts, fault, calibrated. Without "
       "a\nheader they are the torques or, with --from-arm, the positions of all joints. Constants, counters, checksums "
       "and\nescapes are added.\n\n"

@@ -146,13 +146,13 @@ std::string armOf(const Options& o) {
         "Falcon's, guessed\n";
   } else {
     text +=
-        "    dh:                           # a, alpha, d, theta: m, rad (standard Denavit-Hartenberg), a row a joint\n";
+        "    dh:                           # a, alpha, d, theta: m, rad (standard Denavit-Hartenberg), one row per joint\n";
     for (int i = 0; i < o.joints; ++i)
       text += fmt::format("      - [{:g}, 0, 0, 0]\n", o.lengths.empty() ? 0.2 : o.lengths[static_cast<size_t>(i)]);
-    text += "    # masses: [...]               # kg, one a row; left out: its weight is not carried\n";
+    text += "    # masses: [...]               # kg, one per row; left out: its weight is not carried\n";
   }
   text += fmt::format(
-      "    # limits: [[-1, 1], ...]      # rad, a row a joint; left out: the mechanism's own\n"
+      "    # limits: [[-1, 1], ...]      # rad, one row per joint; left out: the mechanism's own\n"
       "    max_torque: [{:g}]             # N m at the joint: the motor's, times its turns in one joint turn\n",
       o.torque);
   return text;

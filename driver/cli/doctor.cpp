@@ -95,7 +95,7 @@ void addDoctor(CLI::App& app, int& exit_code) {
   auto arms = std::make_shared<std::vector<std::string>>();
   CLI::App* command = app.add_subcommand(
       "doctor", "Find what keeps real time or a device from working, with the command that fixes it.");
-  command->add_option("devices", *arms, "device files (YAML) of arms that are looked at as well");
+  command->add_option("devices", *arms, "device files (YAML) of arms to check as well");
   command->add_flag("--json", *json, "print JSON, for issue reports");
   command->add_option("--seconds", *seconds, "duration of the latency test [s]; 0: no test")
       ->check(within(0.0, 3600.0))

@@ -156,13 +156,14 @@ int partInfo(const std::string& file, bool json) {
 
 void addPart(CLI::App& app, int& exit_code) {
   CLI::App* command =
-      app.add_subcommand("part", "Work with part files, which hapticd import makes from CAD and meshes.");
+      app.add_subcommand("part", "Work with part files, which `hapticd import` makes from CAD files and meshes.");
   command->require_subcommand(1);
+  command->footer("Example:\n  hapticd part info bracket.hpart");
   auto file = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false);
   CLI::App* info = command->add_subcommand("info", "Show what a part file holds: bodies, instances, faces, losses.");
   info->add_option("part", *file, "a part file (.hpart)")->required();
-  info->add_flag("--json", *json, "as JSON");
+  info->add_flag("--json", *json, "print JSON");
   info->footer("Example:\n  hapticd part info bracket.hpart");
   info->callback([file, json, &exit_code] { exit_code = partInfo(*file, *json); });
 }

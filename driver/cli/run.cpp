@@ -339,11 +339,11 @@ void addOutputs(CLI::App* command, Options& options) {
                     "show the run in a browser page; on a simulated arm the mouse replaces the hand's script");
   command->add_flag("--no-open", options.no_open, "with --view: print the address of the page, but start no browser")
       ->needs("--view");
-  command->add_option("--log-level", options.log_level, "least that is logged; default: info")
+  command->add_option("--log-level", options.log_level, "lowest level that is logged; default: info")
       ->check(CLI::IsMember({"debug", "info", "warning", "error"}));
   command->add_option("--log-file", options.log.file,
-                      "write the log to this file too: 10 MB at most, and three older ones are kept");
-  command->add_flag("--log-json", options.log.json, "log one JSON object a line");
+                      "write the log to this file too; at 10 MB a new file begins, and three older ones are kept");
+  command->add_flag("--log-json", options.log.json, "log one JSON object per line");
 }
 
 }  // namespace

@@ -274,7 +274,7 @@ void addTop(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"step", "force", "depth", "name"}));
   command->add_option("--every", options->every, "refresh interval [s]")->check(within(0.05, 60.0));
   command->add_flag("--once", options->once, "print once and exit");
-  command->add_flag("--json", options->json, "print JSON: a line each interval, or once with --once");
+  command->add_flag("--json", options->json, "print JSON: one line per interval; with --once, one line");
   command->footer(
       "Keys: s, f, d and n sort by step time, force, depth and name; q quits.\n\n"
       "Examples:\n  hapticd top --sort force\n  hapticd top --json --every 1 | jq .models[0].force_n");

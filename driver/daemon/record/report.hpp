@@ -47,7 +47,7 @@ struct RunReport {
   uint64_t resident_bytes = 0;
   double start_ms = 0;  ///< from the start of the program to the first tick
   std::vector<ModelReport> models;
-  std::vector<LimitReport> limits;  ///< a line a device
+  std::vector<LimitReport> limits;  ///< one per device
   std::vector<std::string> faults;
 };
 

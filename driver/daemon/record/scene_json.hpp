@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// A loaded scene as JSON and back, to the last bit: a recording carries it, so that a replay needs no YAML file, no
-/// daemon file and no option of then.
+/// daemon file and no option of the recorded run.
 #pragma once
 #include <string>
 

@@ -27,7 +27,7 @@ Result<void> readableByAll(const std::vector<std::string>& files) {
     if (!open)
       return Error{file +
                    ": is not a file that every user may read, as one must be that a program of another user names\n  "
-                   "fix: chmod o+r, or ask as the user whom the daemon runs as"};
+                   "fix: chmod o+r, or send the request as the user that the daemon runs as"};
   }
   return {};
 }

@@ -26,7 +26,7 @@ std::vector<QuarantinedPlugin> quarantined(const std::filesystem::path& dir);
 /// [main] Takes a plugin off the list. False: it was not on it.
 Result<bool> clearQuarantine(const std::filesystem::path& dir, const std::string& plugin);
 
-/// The file under the state folder: a line a plugin, its name, a tab, the reason.
+/// The file under the state folder: one line per plugin: its name, a tab, the reason.
 constexpr const char* kQuarantineFile = "quarantine";
 
 }  // namespace hapticd::watch

@@ -51,7 +51,7 @@ std::string summaryOf(const Decoded& decoded);
 Result<std::vector<uint8_t>> encodeRow(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns,
                                        const double* values, uint32_t sequence);
 
-/// [main] The columns that encodeRow() understands for an arm of so many joints, in this order.
+/// [main] The columns that encodeRow() understands for an arm of `joints` joints, in this order.
 std::vector<std::string> columnsOf(const codec::Wire& wire, size_t joints, bool to_arm);
 
 }  // namespace hapticd::capture

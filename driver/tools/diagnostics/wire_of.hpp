@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The wire format of a device file, for what can be said of an arm before it is there.
+/// The wire format of a device file, for checks that need no arm.
 #pragma once
 #include <optional>
 #include <stdexcept>

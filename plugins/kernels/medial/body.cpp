@@ -18,7 +18,7 @@ constexpr double kSideways = 2;  ///< over this is the cosine to a sheet's norma
 ScalarField fieldOf(const Skeleton& skeleton, std::vector<double> samples, const SkeletonGrid& grid, const char* what) {
   if (samples.size() != grid.points.size())
     throw std::invalid_argument(std::string(what) + ": " + std::to_string(samples.size()) + " values, expected " +
-                                std::to_string(grid.points.size()) + ", one a point");
+                                std::to_string(grid.points.size()) + ", one per point");
   if (skeleton.curve()) {
     const std::vector<double> row = samples;
     samples.insert(samples.end(), row.begin(), row.end());

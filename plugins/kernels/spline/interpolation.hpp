@@ -40,7 +40,7 @@ class Collocation {
   /// (Schoenberg-Whitney condition).
   Collocation(const std::vector<double>& parameters, const std::vector<double>& knots, int degree);
 
-  /// [any] Replaces data (a row a point) by control points. Allocates nothing.
+  /// [any] Replaces data (one row per point) by control points. Allocates nothing.
   void solve(Eigen::Ref<Eigen::MatrixXd> data) const noexcept;
   int size() const noexcept { return static_cast<int>(band_.rows()); }
 

@@ -82,7 +82,7 @@ void validatePoints(const std::vector<Eigen::Vector3d>& points, const std::vecto
   if (weights.empty()) return;
   if (weights.size() != points.size()) {
     fail(what + ": weights", std::to_string(weights.size()) + " weights for " + std::to_string(points.size()) +
-                                 " points; expected one a point, or none for a polynomial");
+                                 " points; expected one per point, or none for a polynomial");
   }
   for (std::size_t i = 0; i < weights.size(); ++i) {
     if (!(weights[i] > 0) || !std::isfinite(weights[i])) {

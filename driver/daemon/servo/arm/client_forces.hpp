@@ -36,7 +36,7 @@ class ClientForces {
   };
 
   /// [main] @param device_force [N] what the device's limits let through, 0: no bound
-  /// @param device_torque [N m] the same; 0: nobody has said what a wrist may feel, and programs turn nothing
+  /// @param device_torque [N m] the same; 0: no limit is known, so programs apply no torque
   /// @param period [s] of the servo
   ClientForces(const scene::Clients& clients, double device_force, double device_torque, double period);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-/// A plugin claims how stiff its shape is at most, how much it damps, and how far its force may jump on purpose. A
-/// force that changes by more than that, over what the probe moved and how fast, is no answer of that shape: it is let
-/// through only as far as the claim goes. Forces are compared as vectors in the world, after every rotation, traced or
-/// not.
+/// A plugin claims how stiff its shape is at most, how much it damps, and how far its force may jump on purpose. These
+/// claims and the motion of the probe bound the change of the force. A force that changes by more is let through only as
+/// far as the bound. Forces are compared as vectors in the world frame, after every rotation, whether the model is
+/// traced or not.
 #pragma once
 #include <Eigen/Core>
 
@@ -41,8 +41,8 @@ class Claim {
   static constexpr double kDrift = 100;       ///< [N/s] that a force may change with nothing to explain it
   static constexpr double kOwnSpeed = 5;      ///< [m/s] of a surface that moves itself
   static constexpr double kOwnTurn = 50;      ///< [rad/s] the same
-  /// A surface that is found anew under the probe, or a foot that goes over an edge, changes the force at once. So many
-  /// such changes may come together, and so many a second.
+  /// A surface that is found anew under the probe, or a foot that goes over an edge, changes the force at once.
+  /// kPasses such changes may come together, and kPassesPerSecond per second.
   static constexpr double kPasses = 3, kPassesPerSecond = 20;
   static constexpr double kEdge = 0.1;  ///< [rad] a normal that turns farther in one step has gone over an edge
 

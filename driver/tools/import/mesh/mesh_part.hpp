@@ -29,7 +29,7 @@ struct MeshReport {
 /// [main] One body of triangles. `file_name` is noted in it. @throws std::invalid_argument if nothing is left of it.
 brep::Part meshPart(const MeshFile& mesh, const MeshOptions& options, const std::string& file_name, MeshReport& report);
 
-/// [main] The report in lines for a person: only what there is to say.
+/// [main] The report as lines for a person. Empty parts are left out.
 std::vector<std::string> linesOf(const MeshReport& report);
 
 }  // namespace hapticd::importing
