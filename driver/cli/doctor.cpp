@@ -8,7 +8,9 @@
 #include "cli/colour.hpp"
 #include "cli/command.hpp"
 #include "diagnostics/arm_controls.hpp"
+#include "diagnostics/client_advice.hpp"
 #include "diagnostics/doctor_checks.hpp"
+#include "status/page_file.hpp"
 
 namespace hapticd::cli {
 
@@ -61,6 +63,7 @@ Finding checkArm(const std::string& file) {
 /// 0: all well, 1: warnings, 2: something fails.
 int doctor(const std::vector<std::string>& arms, bool json, double seconds) {
   std::vector<Finding> findings = checkSystem(catalog());
+  findings.push_back(checkClients(status::runtimeFolder(false)));
   for (const std::string& file : arms) findings.push_back(checkArm(file));
   if (!json)
     for (const Finding& finding : findings) print(finding);

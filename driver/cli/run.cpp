@@ -159,6 +159,7 @@ int conclude(const Options& options, servo::Runner& runner, const std::vector<st
         model.residual_m = state.degraded_residual;
       }
   report.resident_bytes = runner.residentBytes();
+  report.answer_time = runner.scene().clients.answer_time;
   for (size_t i = 0; i < runner.arms().size(); ++i)
     report.limits.push_back(limitsOf(runner.scene().devices[i].name, runner.arms()[i]->limiter()));
   std::fputs(record::summary(report).c_str(), stdout);

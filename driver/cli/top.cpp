@@ -17,6 +17,7 @@
 
 #include "base/clock.hpp"
 #include "cli/command.hpp"
+#include "diagnostics/client_advice.hpp"
 #include "host/class_table.hpp"
 #include "servo/safety/limiter.hpp"
 #include "session/silence_reason.hpp"
@@ -58,6 +59,8 @@ struct View {
   double late[3] = {}, compute[3] = {};
   std::vector<ArmLine> arms;
   std::vector<ModelLine> models;
+  std::vector<diagnostics::ClientNow> clients;
+  double answer_time = 0;  ///< [s]
 };
 
 std::string textOf(const char* text, size_t size) {
@@ -99,6 +102,8 @@ View look(const status::Page& page) {
         servo::silenceReason(line.name, static_cast<servo::Trouble>(line.now.trouble), line.now.failed_status);
     view.models.push_back(line);
   }
+  view.clients = diagnostics::clientsOf(page);
+  view.answer_time = page.answer_time;
   return view;
 }
 
@@ -116,7 +121,17 @@ void sortModels(std::vector<ModelLine>& models, const std::string& by) {
 
 Json toJson(const View& view) {
   const auto three = [](const double* q) { return Json{{"p50", q[0]}, {"p99", q[1]}, {"max", q[2]}}; };
-  Json devices = Json::array(), models = Json::array();
+  Json devices = Json::array(), models = Json::array(), clients = Json::array();
+  for (const diagnostics::ClientNow& client : view.clients)
+    clients.push_back({{"device", client.report.device},
+                       {"program", client.report.program},
+                       {"pid", client.report.pid},
+                       {"answers", client.report.answers},
+                       {"same_tick", client.report.sameTick()},
+                       {"next_tick", client.report.nextTick()},
+                       {"silences", client.report.silences},
+                       {"force_n", client.force},
+                       {"largest_n", client.report.largest_n}});
   for (const ArmLine& arm : view.arms)
     devices.push_back({{"name", arm.name},
                        {"module", arm.module},
@@ -144,7 +159,24 @@ Json toJson(const View& view) {
           {"lateness_us", three(view.late)},
           {"compute_us", three(view.compute)},
           {"devices", devices},
-          {"models", models}};
+          {"models", models},
+          {"clients", clients}};
+}
+
+/// Programs that push; "": none does.
+std::string clientsTable(const View& view) {
+  if (view.clients.empty()) return "";
+  std::string text = fmt::format("\n{:<28} {:>8} {:<16} {:>9} {:>9} {:>11} {:>11} {:>7}  {}\n", "PROGRAM", "PID",
+                                 "DEVICE", "FORCE N", "MAX N", "SAME TICK %", "NEXT TICK %", "SILENT", "ANSWERS");
+  bool late = false;
+  for (const auto& [client, force] : view.clients) {
+    text += fmt::format("{:<28.28} {:>8} {:<16.16} {:9.3f} {:9.3f} {:11.1f} {:11.1f} {:7}  {}{}\n", client.program,
+                        client.pid, client.device, force, client.largest_n, 100 * client.sameTick(),
+                        100 * client.nextTick(), client.silences, client.answers, record::late(client) ? "  LATE" : "");
+    late = late || record::late(client);
+  }
+  if (late) text += "late: " + record::lateFix(view.answer_time) + "\n";
+  return text;
 }
 
 std::string table(const View& view, size_t rows) {
@@ -160,6 +192,7 @@ std::string table(const View& view, size_t rows) {
     text += fmt::format("{:<28.28} {:<16.16} {:9.3f} {:8.1f} {:8.1f} {:8.1f} {:12}  {}\n", arm.name, arm.module,
                         arm.force(), 1e3 * arm.now.position[0], 1e3 * arm.now.position[1], 1e3 * arm.now.position[2],
                         arm.now.sequence, arm.fault());
+  text += clientsTable(view);
   text += fmt::format("\n{:<28} {:<16} {:>9} {:>9} {:>8} {:>8} {:>8} {:>5}  {}\n", "MODEL", "PLUGIN", "FORCE N",
                       "DEPTH mm", "p50 us", "p99 us", "max us", "ITER", "STATUS");
   for (size_t i = 0; i < std::min(rows, view.models.size()); ++i) {

@@ -106,6 +106,22 @@ std::string limitText(const LimitReport& device, uint64_t ticks) {
   return text + ")\n";
 }
 
+Json clientJson(const ClientReport& client) {
+  return {{"device", client.device},        {"program", client.program},   {"pid", client.pid},
+          {"times", client.times},          {"answers", client.answers},   {"same_tick", client.sameTick()},
+          {"next_tick", client.nextTick()}, {"silences", client.silences}, {"largest_n", client.largest_n}};
+}
+
+std::string clientText(const ClientReport& client, double answer_time) {
+  std::string text = fmt::format(
+      "program {} on {}: {} answers, {:.1f} % in their tick, {:.1f} % in the next; silent {} times; force max {:.2f} "
+      "N\n",
+      client.program, client.device, client.answers, 100 * client.sameTick(), 100 * client.nextTick(), client.silences,
+      client.largest_n);
+  if (!late(client)) return text;
+  return text + "  a tick of delay cuts the stiffest stable wall to a third\n  fix: " + lateFix(answer_time) + "\n";
+}
+
 }  // namespace
 
 Result<void> writeJson(const RunReport& report, const std::string& file) {
@@ -132,6 +148,8 @@ Result<void> writeJson(const RunReport& report, const std::string& file) {
     ticks = {{"clipped_ticks", device.any}};
     for (const auto& [limit, count] : device.ticks) ticks["by_limit"][limit] = count;
   }
+  json["clients"] = Json::array();
+  for (const ClientReport& client : report.clients) json["clients"].push_back(clientJson(client));
   for (const ModelReport& model : report.models) json["models"][model.name] = modelJson(model);
   return writeWhole(file, json.dump(2) + "\n");
 }
@@ -160,6 +178,7 @@ std::string summary(const RunReport& report) {
     if ((model.contact.contactTicks() > 0 || report.models.size() <= kMostModels) && shown++ < kMostModels)
       text += modelText(model, report);
   for (const LimitReport& device : report.limits) text += limitText(device, report.ticks);
+  for (const ClientReport& client : report.clients) text += clientText(client, report.answer_time);
   for (const std::string& fault : report.faults) text += "fault: " + fault + "\n";
   return text;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.hpp"
+#include "record/client_report.hpp"
 #include "record/contact_statistics.hpp"
 #include "record/histogram.hpp"
 
@@ -49,6 +50,8 @@ struct RunReport {
   std::vector<ModelReport> models;
   std::vector<LimitReport> limits;  ///< one per device
   std::vector<std::string> faults;
+  std::vector<ClientReport> clients;  ///< programs that pushed
+  double answer_time = 0;             ///< [s] that the servo listened for them
 };
 
 /// [main] Writes the report as JSON, whole or not at all.

@@ -84,13 +84,16 @@ Json pushersJson(const Session& session, uint32_t index) {
   Json list = Json::array();
   for (const Leads::Pusher& pusher : session.leads.pushers(index)) {
     const auto& client = session.runner.arms()[index]->clients().clients()[pusher.place];
-    const auto read = [](const std::atomic<uint64_t>& counter) { return counter.load(std::memory_order_relaxed); };
-    const uint64_t answers = read(client.answers), in_time = std::min(read(client.in_time), answers);
+    const record::ClientReport report = reportOf(client, pusher, "");
     list.push_back({{"pid", pusher.pid},
                     {"place", pusher.place},
-                    {"answers", answers},
-                    {"same_tick", answers > 0 ? static_cast<double>(in_time) / static_cast<double>(answers) : 0.0},
-                    {"silences", read(client.silences)}});
+                    {"answers", report.answers},
+                    {"same_tick", report.sameTick()},
+                    {"silences", report.silences},
+                    {"program", report.program},
+                    {"next_tick", report.nextTick()},
+                    {"force_n", client.felt.load(std::memory_order_relaxed)},
+                    {"largest_n", report.largest_n}});
   }
   return list;
 }
@@ -125,6 +128,21 @@ Json silencedJson(const Session& session) {
 }
 
 }  // namespace
+
+record::ClientReport reportOf(const ClientForces::Client& client, const Leads::Pusher& pusher,
+                              const std::string& device) {
+  const auto read = [](const auto& value) { return value.load(std::memory_order_relaxed); };
+  record::ClientReport report;
+  report.device = device;
+  report.program = pusher.program;
+  report.pid = pusher.pid;
+  report.answers = read(client.answers);
+  report.in_time = read(client.in_time);
+  report.next_tick = read(client.next_tick);
+  report.silences = read(client.silences);
+  report.largest_n = read(client.largest);
+  return report;
+}
 
 double valueOf(const scene::Model& model, const hsp_param& param, uint32_t index) {
   const scene::Value* value = given(model, index);

@@ -25,6 +25,10 @@ struct Session {
   const std::string& scene_file;
 };
 
+/// [main] What a program that pushes was like until now.
+record::ClientReport reportOf(const ClientForces::Client& client, const Leads::Pusher& pusher,
+                              const std::string& device);
+
 /// [main] Times, devices, and models that are not felt.
 std::string statusAnswer(const Session& session);
 

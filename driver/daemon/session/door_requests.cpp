@@ -21,6 +21,14 @@ Result<uint32_t> RequestHandler::armOf(const std::string& device) const {
                                document::suggestion(device.substr(0, 100), names));
 }
 
+/// For the status page, and for the report of the run.
+void RequestHandler::tellOfPusher(uint32_t arm, const Leads::Pusher& pusher, bool begins) {
+  runner_.namePusher(arm, pusher.place, begins ? pusher.pid : 0, begins ? pusher.program : "");
+  if (begins) return;
+  const ClientForces::Client& client = runner_.arms()[arm]->clients().clients()[pusher.place];
+  runner_.book(reportOf(client, pusher, runner_.scene().devices[arm].name));
+}
+
 Result<Leads::Target> RequestHandler::pushOf(const std::string& device) const {
   const auto arm = armOf(device);
   if (!arm) return Error{arm.error()};

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <new>
 
+#include "session/program_name.hpp"
+
 namespace hapticd::servo {
 
 namespace {
@@ -59,7 +61,9 @@ Result<Descriptor> Leads::begin(Target target, const control::Peer& peer) {
   else
     order.slot = new ((*memory)->data()) link::PoseSlot;
   const auto given = give_(order);
-  leads_.push_back({target, peer, std::move(*memory)});  // also where the servo was late: it may obey yet
+  // also where the servo was late: it may obey yet
+  leads_.push_back({target, peer, std::move(*memory), programOf(peer.pid)});
+  tell(leads_.back(), true);
   if (given) return std::move(*shared);
   (void)end(target, peer);
   return Error{given.error()};
@@ -75,10 +79,20 @@ Result<void> Leads::end(const Target& target, const control::Peer& peer) {
   return finish(std::move(lead));
 }
 
+Leads::~Leads() {
+  for (const Lead& lead : leads_) tell(lead, false);
+}
+
+void Leads::tell(const Lead& lead, bool begins) const {
+  if (tell_ && lead.target.led == Order::Led::kForce)
+    tell_(lead.target.index, {lead.peer.pid, lead.target.place, lead.program}, begins);
+}
+
 Result<void> Leads::finish(Lead lead) {
   Order order = orderOf(Order::Kind::kUnlead, lead.target);
   order.value = lead.peer.pid;
   auto done = give_(order);
+  tell(lead, false);
   if (!done) kept_.push_back(std::move(lead.memory));
   return done;
 }
@@ -108,7 +122,7 @@ std::vector<Leads::Pusher> Leads::pushers(uint32_t arm) const {
   std::vector<Pusher> found;
   for (const Lead& lead : leads_)
     if (lead.target.led == Order::Led::kForce && lead.target.index == arm)
-      found.push_back({lead.peer.pid, lead.target.place});
+      found.push_back({lead.peer.pid, lead.target.place, lead.program});
   return found;
 }
 

@@ -30,8 +30,21 @@ class Leads {
     uint32_t place = 0;  ///< of a force: given by begin()
   };
 
+  /// A program that pushes.
+  struct Pusher {
+    pid_t pid;
+    uint32_t place;
+    std::string program;
+  };
+  /// Hears of a program that begins to push on an arm, and that ends.
+  using Tell = std::function<void(uint32_t arm, const Pusher& pusher, bool begins)>;
+
   /// @param exclusive one program pushes on an arm; otherwise as many as there are places
-  explicit Leads(Give give, bool exclusive = false) : give_(std::move(give)), exclusive_(exclusive) {}
+  explicit Leads(Give give, bool exclusive = false, Tell tell = nullptr)
+      : give_(std::move(give)), tell_(std::move(tell)), exclusive_(exclusive) {}
+  ~Leads();  ///< tells of those that push still
+  Leads(const Leads&) = delete;
+  Leads& operator=(const Leads&) = delete;
 
   /// [main] Begins a lead. @return a descriptor of its memory. An error names the leader that is there already.
   Result<Descriptor> begin(Target target, const control::Peer& peer);
@@ -44,11 +57,6 @@ class Leads {
 
   /// [main] The process that leads a model or a hand, if one does.
   std::optional<pid_t> leader(Order::Led led, uint32_t index) const;
-  /// A program that pushes.
-  struct Pusher {
-    pid_t pid;
-    uint32_t place;
-  };
   /// [main] Those that push on an arm.
   std::vector<Pusher> pushers(uint32_t arm) const;
   /// [main] Something lives as long as the peer's connection.
@@ -61,11 +69,14 @@ class Leads {
     Target target;
     control::Peer peer;
     std::unique_ptr<SealedMemory> memory;
+    std::string program;  ///< that pushes
   };
   Result<void> finish(Lead lead);
+  void tell(const Lead& lead, bool begins) const;
   Result<void> findPlace(Target& target, const control::Peer& peer);
 
   Give give_;
+  Tell tell_;
   bool exclusive_;
   uint32_t last_place_ = 0;
   std::vector<Lead> leads_;

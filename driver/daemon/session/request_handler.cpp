@@ -46,7 +46,8 @@ RequestHandler::RequestHandler(Runner& runner, LoadScene load, host::Services::L
       dump_folder_(std::move(dump_folder)),
       scene_file_(std::filesystem::absolute(runner.scene().file).string()),
       places_(runner.world().places()),
-      leads_([this](const Order& order) { return give(order); }, runner.scene().clients.exclusive) {
+      leads_([this](const Order& order) { return give(order); }, runner.scene().clients.exclusive,
+             [this](uint32_t arm, const Leads::Pusher& who, bool begins) { tellOfPusher(arm, who, begins); }) {
   for (size_t i = 0; i < runner.scene().models.size(); ++i) places_[i] = {runner.scene().models[i], true, true};
 }
 

@@ -348,6 +348,11 @@ void Runner::nameModel(uint32_t place, const std::string& name, const std::strin
   if (telemetry_->statusWriter() != nullptr) telemetry_->statusWriter()->name(place, name, plugin);
 }
 
+void Runner::namePusher(uint32_t arm, uint32_t place, pid_t pid, const std::string& program) {
+  if (telemetry_->statusWriter() != nullptr)
+    telemetry_->statusWriter()->pusher(arm, place, static_cast<uint64_t>(pid), program);
+}
+
 bool Runner::onlySimulated() const {
   for (const auto& arm : arms_)
     if (!arm->simulated()) return false;

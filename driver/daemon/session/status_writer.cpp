@@ -25,6 +25,7 @@ StatusWriter::StatusWriter(std::unique_ptr<status::PageFile> file, const scene::
   page.arms = static_cast<uint32_t>(std::min<size_t>(arms.size(), status::kMaxArms));
   page.models = status::kMaxModels;
   page.rate = rate;
+  page.answer_time = scene.clients.answer_time;
   for (uint32_t i = 0; i < page.arms; ++i)
     page.arm[i].name.write(named(scene.devices[i].name, scene.devices[i].module));
   for (uint32_t i = 0; i < scene.models.size(); ++i) name(i, scene.models[i].name, scene.models[i].plugin);
@@ -54,8 +55,29 @@ void StatusWriter::tick(const status::Now& now, Nanoseconds late, Nanoseconds sp
     arm.fault = static_cast<uint32_t>(arms[i]->limiter().fault());
     arm.valid = arms[i]->probe().valid ? 1 : 0;
     page.arm[i].now.write(arm);
+    if (arms[i]->clients().present()) pushers(i, arms[i]->clients());
   }
   models(now.tick, core);
+}
+
+void StatusWriter::pusher(uint32_t arm, uint32_t place, uint64_t pid, const std::string& program) {
+  if (arm >= status::kMaxArms || place >= status::kPushersOfArm) return;
+  status::Pusher who;
+  std::strncpy(who.program, program.c_str(), sizeof who.program - 1);
+  who.pid = pid;
+  file_->page().pusher[arm * status::kPushersOfArm + place].who.write(who);
+}
+
+void StatusWriter::pushers(uint32_t index, const ClientForces& clients) noexcept HSP_RT {
+  static_assert(ClientForces::kMost == status::kPushersOfArm);
+  const auto read = [](const auto& value) { return value.load(std::memory_order_relaxed); };
+  for (uint32_t place = 0; place < ClientForces::kMost; ++place) {
+    const ClientForces::Client& client = clients.clients()[place];
+    if (client.slot == nullptr && client.gain == 0) continue;
+    file_->page().pusher[index * status::kPushersOfArm + place].now.write(
+        {read(client.answers), read(client.in_time), read(client.next_tick), read(client.silences), read(client.felt),
+         read(client.largest)});
+  }
 }
 
 void StatusWriter::models(uint64_t tick, const Core& core) noexcept HSP_RT {

@@ -19,6 +19,9 @@ class StatusWriter {
   /// [main] A model takes a place, or "" leaves it.
   void name(uint32_t place, const std::string& name, const std::string& plugin);
 
+  /// [main] A program pushes on an arm. @param pid 0: it does no more
+  void pusher(uint32_t arm, uint32_t place, uint64_t pid, const std::string& program);
+
   /// [rt] After a tick. Copies what lives alone: its cost does not grow with models that are far away.
   void tick(const status::Now& now, Nanoseconds late, Nanoseconds spent, const Core& core,
             const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
@@ -26,6 +29,7 @@ class StatusWriter {
   const status::Page& page() const { return file_->page(); }
 
  private:
+  void pushers(uint32_t index, const ClientForces& clients) noexcept HSP_RT;
   void models(uint64_t tick, const Core& core) noexcept HSP_RT;
   std::unique_ptr<status::PageFile> file_;
 };

@@ -138,6 +138,7 @@ record::RunReport Telemetry::report(const std::vector<std::string>& faults) cons
     left.name += before == 0 ? " (removed)" : " (removed " + std::to_string(before + 1) + ")";
     report.models.push_back(std::move(left));
   }
+  report.clients = clients_;
   report.faults = faults;
   return report;
 }

@@ -52,6 +52,9 @@ class Telemetry final : public TickLog {
   Flight* flight() { return flight_.get(); }
   const Flight* flight() const { return flight_.get(); }
 
+  /// [main] A program pushed on an arm, and does no more.
+  void pushed(const record::ClientReport& client) { record::add(clients_, client); }
+
   /// [rt] Before a tick at time `now`.
   void begin(Nanoseconds now, const Arms& arms) noexcept HSP_RT override {
     if (flight_) flight_->begin(now, arms);
@@ -93,6 +96,7 @@ class Telemetry final : public TickLog {
 
   std::vector<std::string> names_, plugins_;
   std::vector<record::ModelReport> left_;  ///< models that are not there any more
+  std::vector<record::ClientReport> clients_;
   double rate_, simulated_seconds_ = 0;
   record::Histogram lateness_us_, compute_us_, arms_us_;
   std::vector<record::ContactStatistics> models_;

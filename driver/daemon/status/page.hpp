@@ -73,6 +73,17 @@ struct ModelNow {
   int32_t failed_status = 0;  ///< the first status that was no status of a step
 };
 
+/// A program that pushes on an arm.
+struct Pusher {
+  char program[56] = {};
+  uint64_t pid = 0;  ///< 0: an empty place
+};
+struct PusherNow {
+  uint64_t answers = 0, in_time = 0, next_tick = 0, silences = 0;
+  double force = 0, largest = 0;  ///< [N] now, and of all
+};
+constexpr uint32_t kPushersOfArm = 8;
+
 struct Name {
   char text[56] = {}, kind[56] = {};  ///< of a model and its plugin, or a device and its module; "": an empty place
 };
@@ -92,6 +103,11 @@ struct Page {
     Slot<ModelNow> now;
     SharedHistogram step_us;
   } model[kMaxModels];
+  double answer_time = 0;  ///< [s] that the servo listens for programs
+  struct {
+    Slot<Pusher> who;
+    Slot<PusherNow> now;
+  } pusher[kMaxArms * kPushersOfArm];  ///< of arm i from i * kPushersOfArm on
 };
 
 }  // namespace hapticd::status

@@ -49,8 +49,10 @@ void ClientForces::begin(uint32_t place, const link::PushSlot& slot) noexcept HS
   client.seen = 0;
   client.silence = kSilentAfter + kFadeOut;
   client.answered = false;
-  for (std::atomic<uint64_t>* counter : {&client.answers, &client.in_time, &client.silences})
+  for (std::atomic<uint64_t>* counter : {&client.answers, &client.in_time, &client.silences, &client.next_tick})
     counter->store(0, std::memory_order_relaxed);
+  client.felt.store(0, std::memory_order_relaxed);
+  client.largest.store(0, std::memory_order_relaxed);
 }
 
 void ClientForces::end(uint32_t place) noexcept HSP_RT {
@@ -90,10 +92,14 @@ void ClientForces::step(Client& client, uint64_t tick, double dt) noexcept HSP_R
   const bool was_silent = client.silence > kSilentAfter;
   client.silence = take(client, tick) ? 0 : client.silence + dt;
   const bool silent = client.slot == nullptr || client.silence > kSilentAfter;
-  if (silent && !was_silent) count(client.silences);
+  if (silent && !was_silent && client.slot != nullptr) count(client.silences);  // who leaves does not fall silent
   client.gain = faded(client.gain, !silent, dt);
-  if (client.gain == 0) return;
-  force_ += client.gain * bounded(client.push.force, max_force_);
+  if (client.gain == 0) return client.felt.store(0, std::memory_order_relaxed);
+  const Vector3d force = client.gain * bounded(client.push.force, max_force_);
+  const double felt = force.norm();
+  client.felt.store(felt, std::memory_order_relaxed);
+  if (felt > client.largest.load(std::memory_order_relaxed)) client.largest.store(felt, std::memory_order_relaxed);
+  force_ += force;
   torque_ += client.gain * bounded(client.push.torque, max_torque_);
 }
 
@@ -112,6 +118,7 @@ bool ClientForces::take(Client& client, uint64_t tick) noexcept HSP_RT {
   client.answered = client.fresh = true;
   count(client.answers);
   if (push.tick == tick) count(client.in_time);
+  if (push.tick + 1 == tick) count(client.next_tick);
   return true;
 }
 

@@ -33,6 +33,9 @@ class ClientForces {
     std::atomic<uint64_t> answers{0};      ///< that were taken
     std::atomic<uint64_t> in_time{0};      ///< of these, in the tick that they answer
     std::atomic<uint64_t> silences{0};     ///< times that it fell silent
+    std::atomic<uint64_t> next_tick{0};    ///< of the answers, one tick late
+    std::atomic<double> felt{0};           ///< [N] of its force now, bounded and faded
+    std::atomic<double> largest{0};        ///< [N] of that ever
   };
 
   /// [main] @param device_force [N] what the device's limits let through, 0: no bound

@@ -43,6 +43,42 @@ class Report : public testing::Test {
   fs::path dir_ = fs::temp_directory_path() / ("hapticd-report-" + std::to_string(getpid()));
 };
 
+ClientReport client(const std::string& program, uint64_t answers, uint64_t in_time) {
+  ClientReport one;
+  one.device = "arm", one.program = program, one.pid = 7;
+  one.answers = answers, one.in_time = in_time, one.next_tick = answers - in_time;
+  one.silences = 1, one.largest_n = 2.5;
+  return one;
+}
+
+TEST_F(Report, TellsOfProgramsThatPushed) {
+  RunReport report = sample();
+  add(report.clients, client("spring", 1000, 990));
+  add(report.clients, client("late", 1000, 200));
+  add(report.clients, client("spring", 1000, 970));
+  ASSERT_TRUE(writeJson(report, file("r.json")));
+  const auto clients = nlohmann::json::parse(read(file("r.json"))).at("clients");
+  ASSERT_EQ(clients.size(), 2u);
+  EXPECT_EQ(clients[0].at("program"), "spring");
+  EXPECT_EQ(clients[0].at("times"), 2);
+  EXPECT_EQ(clients[0].at("answers"), 2000);
+  EXPECT_DOUBLE_EQ(clients[0].at("same_tick"), 0.98);
+  EXPECT_DOUBLE_EQ(clients[0].at("next_tick"), 0.02);
+  EXPECT_EQ(clients[0].at("silences"), 2);
+  EXPECT_DOUBLE_EQ(clients[0].at("largest_n"), 2.5);
+  const std::string text = summary(report);
+  EXPECT_NE(text.find("program spring on arm: 2000 answers, 98.0 % in their tick, 2.0 % in the next; silent 2 times; "
+                      "force max 2.50 N\nprogram late"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("answer_time: 60e-6"), std::string::npos) << "the late one is told what helps\n" << text;
+  report.answer_time = 60e-6;
+  EXPECT_EQ(summary(report).find("answer_time"), std::string::npos) << "that is set already";
+  for (int i = 0; i < 100; ++i) add(report.clients, client("p" + std::to_string(i), 1, 1));
+  EXPECT_EQ(report.clients.size(), 32u);
+  EXPECT_EQ(report.clients.back().program, "p99");
+}
+
 TEST_F(Report, HasEveryPromisedKeyInItsUnit) {
   ASSERT_TRUE(writeJson(sample(), file("r.json")));
   const auto json = nlohmann::json::parse(read(file("r.json")));

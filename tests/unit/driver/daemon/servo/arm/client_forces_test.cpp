@@ -71,6 +71,35 @@ TEST(ClientForces, FadesInAndIsThenWhatTheProgramWants) {
   EXPECT_EQ(p.x(), -1);
 }
 
+TEST(ClientForces, TellsOfLateAnswersAndOfTheForceThatIsFelt) {
+  Pushed p;
+  p.begin();
+  p.run(0.1, 2);
+  const ClientForces::Client& client = p.forces.clients()[0];
+  EXPECT_EQ(client.felt.load(), 2);
+  EXPECT_EQ(client.next_tick.load(), 0u);
+  for (int i = 0; i < 10; ++i) {
+    p.put(0, 1, 1);
+    p.tick();
+  }
+  EXPECT_EQ(client.next_tick.load(), 9u) << "the first answers a tick that was answered already";
+  EXPECT_EQ(client.felt.load(), 1);
+  EXPECT_EQ(client.largest.load(), 2);
+  p.run(0.1, std::nullopt);
+  EXPECT_EQ(client.felt.load(), 0);
+  p.begin();
+  EXPECT_EQ(client.largest.load(), 0) << "of the one before";
+}
+
+TEST(ClientForces, WhoLeavesHasNotFallenSilent) {
+  Pushed p;
+  p.begin();
+  p.run(0.1, 2);
+  p.forces.end(0);
+  p.run(0.1, std::nullopt);
+  EXPECT_EQ(p.forces.clients()[0].silences.load(), 0u);
+}
+
 TEST(ClientForces, AwaitsWhoKeepsUpAndHasNotAnsweredYet) {
   Pushed p;
   EXPECT_FALSE(p.forces.awaits(p.now)) << "nobody is there";

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+/// What a process calls itself.
+#pragma once
+#include <sys/types.h>
+
+#include <string>
+
+namespace hapticd::servo {
+
+/// [any] The name of a process for people: that of its file, with the script behind it where an interpreter runs one.
+/// Printable characters alone, 48 of them at most; "?" where the process cannot be looked at.
+std::string programOf(pid_t pid);
+
+}  // namespace hapticd::servo
