@@ -88,12 +88,27 @@ struct Admittance {
   double mass = 1, damping = 10;  ///< [kg], [N s/m]
 };
 
+/// A joint as programs of the HDAPI know it: sign times the device's joint, and an offset.
+struct HdJoint {
+  uint32_t joint = 0;  ///< of the device, counted from 0
+  double sign = 1;     ///< 1 or -1
+  double offset = 0;   ///< [rad]
+};
+
+/// How programs of the HDAPI see an arm. Empty: as the device says of itself.
+struct HdArm {
+  std::string model, vendor, serial;
+  std::vector<HdJoint> joints;    ///< turret, thigh, shin, and the three of the gimbal
+  std::vector<uint32_t> buttons;  ///< of the device, in the order of theirs
+};
+
 struct Device {
   std::string name, module;
   std::filesystem::path file, library;
   Pose mount;  ///< the device frame in the world
   Limits limits;
   std::optional<Admittance> admittance;
+  std::optional<HdArm> hd;
   std::vector<Value> parameters;
   bool chosen_by_default = false;  ///< the scene named none
   Place place;
@@ -130,11 +145,16 @@ enum class ClientMode {
   kAdd,     ///< their forces are added to those of the models
   kInstead  ///< the models fade out while a program pushes
 };
+/// Whose axes programs of the HDAPI count in.
+enum class ClientFrame { kWorld, kDevice };
 struct Clients {
   ClientMode mode = ClientMode::kOff;
   double max_force = 0;    ///< [N] of one program; 0: as much as the device's limit
   bool exclusive = false;  ///< one program an arm; otherwise their forces add up
   double answer_time = 0;  ///< [s] after a tick began in which the servo listens for answers; 0: it waits for nobody
+  bool push = true;        ///< false: programs see what those who push see, and may not
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< [m] of the HDAPI's coordinates, in the axes of `frame`
+  ClientFrame frame = ClientFrame::kWorld;           ///< whose axes those are: the world's, or the arm's mount
 };
 
 struct Scene {

@@ -55,6 +55,9 @@ using PushSlot = LeadSlot<hapticd_push>;
 
 /// What the servo tells those who push: the other way round, it writes and they read.
 using StateSlot = LeadSlot<hapticd_state>;
+using JacobianSlot = LeadSlot<hapticd_jacobian>;
+constexpr size_t kJacobianAt = 320;  ///< [bytes] of an arm's Jacobian behind the beginning of its state
+static_assert(sizeof(StateSlot) <= kJacobianAt);
 
 static_assert(sizeof(PoseSlot) <= sizeof(hapticd_lead_page) && sizeof(PushSlot) <= sizeof(hapticd_lead_page));
 static_assert(sizeof(PoseSlot) == offsetof(hapticd_lead_page, words) + sizeof(hapticd_target));

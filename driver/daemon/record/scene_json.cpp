@@ -153,6 +153,23 @@ scene::Limits toLimits(const Json& json) {
   return limits;
 }
 
+Json hdJson(const scene::HdArm& hd) {
+  Json joints = Json::array();
+  for (const scene::HdJoint& joint : hd.joints) joints.push_back({joint.joint, real(joint.sign), real(joint.offset)});
+  return {{"model", hd.model},
+          {"vendor", hd.vendor},
+          {"serial", hd.serial},
+          {"joints", std::move(joints)},
+          {"buttons", hd.buttons}};
+}
+
+scene::HdArm toHd(const Json& json) {
+  scene::HdArm hd{json.at("model"), json.at("vendor"), json.at("serial"), {}, json.at("buttons")};
+  for (const Json& joint : json.at("joints"))
+    hd.joints.push_back({joint.at(0), toReal(joint.at(1)), toReal(joint.at(2))});
+  return hd;
+}
+
 Json deviceJson(const scene::Device& device) {
   Json json = {{"name", device.name},
                {"module", device.module},
@@ -163,6 +180,7 @@ Json deviceJson(const scene::Device& device) {
                {"parameters", values(device.parameters)}};
   if (device.admittance)
     json["admittance"] = {{"mass", real(device.admittance->mass)}, {"damping", real(device.admittance->damping)}};
+  if (device.hd) json["hd"] = hdJson(*device.hd);
   return json;
 }
 
@@ -177,6 +195,7 @@ scene::Device toDevice(const Json& json) {
   device.parameters = toValues(json.at("parameters"));
   if (json.contains("admittance"))
     device.admittance = {toReal(json["admittance"].at("mass")), toReal(json["admittance"].at("damping"))};
+  if (json.contains("hd")) device.hd = toHd(json["hd"]);
   return device;
 }
 
@@ -212,7 +231,10 @@ Json clientsJson(const scene::Clients& clients) {
   return {{"mode", static_cast<int>(clients.mode)},
           {"max_force", real(clients.max_force)},
           {"exclusive", clients.exclusive},
-          {"answer_time", real(clients.answer_time)}};
+          {"answer_time", real(clients.answer_time)},
+          {"push", clients.push},
+          {"origin", vector(clients.origin)},
+          {"frame", clients.frame == scene::ClientFrame::kDevice ? "device" : "world"}};
 }
 
 /// Recordings older than this had none.
@@ -222,8 +244,13 @@ scene::Clients toClients(const Json& json) {
   const int mode = clients.at("mode");
   if (mode < 0 || mode > static_cast<int>(scene::ClientMode::kInstead))
     throw std::runtime_error("clients: no such mode");
-  return {static_cast<scene::ClientMode>(mode), toReal(clients.at("max_force")), clients.at("exclusive"),
-          clients.contains("answer_time") ? toReal(clients.at("answer_time")) : 0};
+  return {static_cast<scene::ClientMode>(mode),
+          toReal(clients.at("max_force")),
+          clients.at("exclusive"),
+          clients.contains("answer_time") ? toReal(clients.at("answer_time")) : 0,
+          clients.value("push", true),
+          clients.contains("origin") ? toVector(clients.at("origin")) : Eigen::Vector3d::Zero(),
+          clients.value("frame", "world") == "device" ? scene::ClientFrame::kDevice : scene::ClientFrame::kWorld};
 }
 
 }  // namespace

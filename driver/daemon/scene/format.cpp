@@ -13,6 +13,7 @@ constexpr Range kVersion{1, 1};
 
 constexpr std::string_view kPaces[] = {"clock", "device"};
 constexpr std::string_view kInstructions[] = {"auto", "portable"};
+constexpr std::string_view kClientFrames[] = {"world", "device"};
 constexpr std::string_view kEstimators[] = {"window", "butterworth", "foaw", "least_squares", "kalman"};
 
 constexpr Key kPoseKeys[] = {
@@ -91,6 +92,12 @@ constexpr Key kClientsKeys[] = {
         "answer_time", {0, 200e-6, "s"}, "0",
         "The servo listens so long after a tick began for programs that answered the last ticks, "
         "so that their answers count in the same tick; 0: it waits for nobody."),
+    boolean<&Clients::push>("push", "true", "false: programs may look on, and none may push."),
+    vector3<&Clients::origin>("origin", kMeters, "[0, 0, 0]",
+                              "Where the coordinates of OpenHaptics programs have their origin, in the axes of frame."),
+    choice<&Clients::frame>(
+        "frame", kClientFrames, "world",
+        "Axes of OpenHaptics programs: world, or device (as the arm's mount is turned and placed)."),
 };
 
 constexpr Key kSceneKeys[] = {
@@ -157,6 +164,16 @@ constexpr Key kLimitKeys[] = {
 };
 constexpr Table kLimits{kLimitKeys};
 
+constexpr Key kHdKeys[] = {
+    name<&HdText::model>("model", "HD_DEVICE_MODEL_TYPE; some programs look for names that they know."),
+    name<&HdText::vendor>("vendor", "HD_DEVICE_VENDOR."),
+    name<&HdText::serial>("serial", "HD_DEVICE_SERIAL_NUMBER."),
+    any<&HdText::joints>("joints", "up to 6 lists [joint, sign, offset]",
+                         "Turret, thigh, shin and the gimbal's three: joint of the device from 0, 1 or -1, rad."),
+    any<&HdText::buttons>("buttons", "a list of buttons", "Buttons of the device, from 0, in the order of theirs."),
+};
+constexpr Table kHd{kHdKeys};
+
 constexpr Key kDeviceKeys[] = {
     required(integer<&DeviceText::version>("hapticd-device", kVersion, nullptr, "Version of the format.")),
     required(name<&DeviceText::module>("module", "Device module; `hapticd device list` names them.")),
@@ -168,6 +185,7 @@ constexpr Key kDeviceKeys[] = {
     any<&DeviceText::parameters>("parameters", "a mapping of the module's parameters", "Parameters of the module."),
     any<&DeviceText::hand>("hand", "a mapping of the hand's parameters",
                            "The simulated hand: the module's parameters that begin with `hand.`."),
+    object<&DeviceText::hd>("hd", kHd, "How programs of OpenHaptics see the arm; default: as it says of itself."),
 };
 
 constexpr Key kDaemonServoKeys[] = {

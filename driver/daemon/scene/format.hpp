@@ -42,6 +42,12 @@ struct SceneText {
 /// The modes of `clients`, in the order of ClientMode.
 inline constexpr std::string_view kClientModes[] = {"off", "add", "instead"};
 
+/// How programs of the HDAPI see the arm; its lists are read later.
+struct HdText {
+  std::string model, vendor, serial;
+  const Node *joints = nullptr, *buttons = nullptr;
+};
+
 struct DeviceText {
   int version = 0;
   std::string name, module;
@@ -49,6 +55,7 @@ struct DeviceText {
   Limits limits;
   std::optional<Admittance> admittance;
   const Node *parameters = nullptr, *hand = nullptr;
+  std::optional<HdText> hd;
 };
 
 struct DaemonText {

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "document/suggestion.hpp"
+#include "hapticd/device.h"
 #include "scene/loader.hpp"
 #include "scene/parameters.hpp"
 
@@ -26,6 +27,47 @@ void readHand(const Node& node, const std::string& key, const host::ClassInfo& i
                "module " + info.name + " has no simulated hand, expected this key only with a module that has one");
 }
 
+constexpr size_t kHdJoints = 6, kHdButtons = 32;
+
+/// [joint, sign, offset]; the last two may be left out.
+HdJoint readHdJoint(const Node& node, const std::string& key, Reader& in) {
+  HdJoint joint;
+  if (!node.isSequence() || node.items.empty() || node.items.size() > 3) {
+    in.problem(node, key, describe(node) + ", expected [joint, sign, offset], such as [0, -1, 0]");
+    return joint;
+  }
+  if (const auto index = in.whole(node.items[0], key + "[0]", {0, HDV_MAX_JOINTS - 1}))
+    joint.joint = static_cast<uint32_t>(*index);
+  if (node.items.size() > 1)
+    if (const auto sign = in.whole(node.items[1], key + "[1]", {-1, 1})) joint.sign = *sign;
+  if (joint.sign == 0) in.problem(node.items[1], key + "[1]", "0, expected 1 or -1");
+  if (node.items.size() > 2)
+    if (const auto offset = in.number(node.items[2], key + "[2]", {-10, 10, "rad"})) joint.offset = *offset;
+  return joint;
+}
+
+/// A list of a few.
+bool isShortList(const Node& list, const std::string& key, size_t most, const char* of, Reader& in) {
+  if (list.isSequence() && list.items.size() <= most) return true;
+  in.problem(list, key,
+             (list.isSequence() ? "a list of " + std::to_string(list.items.size()) : describe(list)) +
+                 ", expected a list of up to " + std::to_string(most) + " " + of);
+  return false;
+}
+
+HdArm readHd(const HdText& text, Reader& in) {
+  HdArm arm{text.model, text.vendor, text.serial, {}, {}};
+  if (text.joints != nullptr && isShortList(*text.joints, "hd.joints", kHdJoints, "lists [joint, sign, offset]", in))
+    for (size_t i = 0; i < text.joints->items.size(); ++i)
+      arm.joints.push_back(readHdJoint(text.joints->items[i], "hd.joints[" + std::to_string(i) + "]", in));
+  if (text.buttons != nullptr && isShortList(*text.buttons, "hd.buttons", kHdButtons, "buttons", in))
+    for (size_t i = 0; i < text.buttons->items.size(); ++i)
+      if (const auto button = in.whole(text.buttons->items[i], "hd.buttons[" + std::to_string(i) + "]",
+                                       {0, static_cast<double>(kHdButtons - 1)}))
+        arm.buttons.push_back(static_cast<uint32_t>(*button));
+  return arm;
+}
+
 }  // namespace
 
 std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceReference& reference, host::Catalog& catalog,
@@ -40,6 +82,7 @@ std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceRefer
   device.mount = reference.mount.value_or(text.mount);
   device.limits = text.limits;
   device.admittance = reference.admittance ? reference.admittance : text.admittance;
+  if (text.hd) device.hd = readHd(*text.hd, in);
   if (text.module.empty()) return std::nullopt;
 
   auto found = catalog.device(text.module);

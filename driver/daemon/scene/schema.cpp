@@ -173,6 +173,14 @@ void addPaths(Json& scene) {
   model["path"]["type"] = "string";
 }
 
+/// What the lists of `hd` hold.
+void addHd(Json& device) {
+  Json& hd = device["properties"]["hd"]["properties"];
+  const Json joint{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 1}, {"maxItems", 3}};
+  hd["joints"].update(Json{{"type", "array"}, {"items", joint}, {"maxItems", 6}});
+  hd["buttons"].update(Json{{"type", "array"}, {"items", {{"type", "integer"}, {"minimum", 0}, {"maximum", 31}}}});
+}
+
 }  // namespace
 
 std::string jsonSchema(const std::string& format, host::Catalog* catalog) {
@@ -181,6 +189,7 @@ std::string jsonSchema(const std::string& format, host::Catalog* catalog) {
     Json json{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", known.doc}};
     json.update(schemaOf(*known.table));
     if (known.table == &kSceneTable) addPaths(json);
+    if (known.table == &kDeviceTable) addHd(json);
     if (catalog != nullptr && known.table == &kSceneTable)
       json["properties"]["models"]["items"]["allOf"] = choicesOf(*catalog, host::Kind::kShape, "plugin");
     if (catalog != nullptr && known.table == &kDeviceTable)

@@ -32,6 +32,9 @@ void RequestHandler::tellOfPusher(uint32_t arm, const Leads::Pusher& pusher, boo
 Result<Leads::Target> RequestHandler::pushOf(const std::string& device) const {
   const auto arm = armOf(device);
   if (!arm) return Error{arm.error()};
+  if (!runner_.scene().clients.push)
+    return refuse("unsupported",
+                  "the scene lets programs look on, and none push\n  fix: clients: {push: true} in the scene");
   if (!runner_.arms()[*arm]->clients().possible())
     return refuse("unsupported",
                   "the scene does not let programs push on its arms\n  fix: clients: add (or instead) in the scene");

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "coordinates.hpp"
+#include "joint_torque.hpp"
+
 namespace hapticd::hd {
 
 namespace {
@@ -82,7 +85,8 @@ void Arm::look(const hapticd_state& state) {
   if (seen_ && state.tick <= now_.tick) return;
   seen_ = true;
   now_ = state;
-  motion_.add(state);
+  toProgram(facts_, now_);
+  motion_.add(now_);
 }
 
 void Arm::tick(const hapticd_state& state, uint64_t ns) {
@@ -139,6 +143,7 @@ void Arm::end(uint64_t scheduler_tick, uint64_t ns, bool pushes) {
   if (pushes && forceOn() && force_since_ns_ == 0) force_since_ns_ = ns;
   double force[3], torque[3];
   std::copy_n(frame_.force, 3, force), std::copy_n(frame_.torque, 3, torque);
+  addJointTorque(force, torque);
   if (const HDerror error = checked(ns, force); error != HD_SUCCESS) {
     errors_.push(error, handle_);
     std::fill_n(force, 3, 0.0);
@@ -147,6 +152,22 @@ void Arm::end(uint64_t scheduler_tick, uint64_t ns, bool pushes) {
   std::copy_n(force, 3, held_force_), std::copy_n(torque, 3, held_torque_);
   last_end_ns_ = ns;
   if (pushes && forceOn()) answer(frame_.state.tick, force, torque, ns);
+}
+
+bool Arm::knowsJacobian() const {
+  hapticd_jacobian jacobian;
+  return isOpen() && link_->jacobian(jacobian);
+}
+
+void Arm::addJointTorque(double force[3], double torque[3]) const {
+  const double* of_joint = frame_.joint_torque;
+  if (std::all_of(of_joint, of_joint + std::size(frame_.joint_torque), [](double t) { return t == 0; })) return;
+  hapticd_jacobian jacobian;
+  if (!link_ || !link_->jacobian(jacobian)) return;
+  double more_force[3], more_torque[3];
+  wrenchOf(facts_, jacobian, of_joint, more_force, more_torque);
+  fromWorld(facts_, more_force), fromWorld(facts_, more_torque);
+  for (int i = 0; i < 3; ++i) force[i] += more_force[i], torque[i] += more_torque[i];
 }
 
 /// What the library lets out of what the program asked for. An error: nothing of it.
@@ -173,6 +194,7 @@ void Arm::answer(uint64_t tick, const double force[3], const double torque[3], u
   hapticd_push push{};
   push.tick = tick;
   std::copy_n(force, 3, push.force), std::copy_n(torque, 3, push.torque);
+  toWorld(facts_, push.force), toWorld(facts_, push.torque);
   push.woke_ns = woke_ns_, push.written_ns = ns;
   link_->push(push);
   pushed_tick_ = tick, pushed_ = true;

@@ -16,6 +16,7 @@ struct Frame {
   hapticd_state state{};
   double velocity[3] = {}, angular[3] = {};
   double force[3] = {}, torque[3] = {};  ///< [N], [N m]
+  double joint_torque[6] = {};           ///< [N m] of turret, thigh, shin and gimbal; added to force and torque
 };
 
 /// Bounds that the library itself checks; the daemon has its own, which nothing here reaches.
@@ -57,6 +58,7 @@ class Arm {
   bool enable(HDenum capability, bool on, std::string& why);
   Bounds& bounds() { return bounds_; }
   bool forceOn() const { return isEnabled(HD_FORCE_OUTPUT); }
+  bool knowsJacobian() const;                ///< torques of joints can become a force
   double motorTemperature(int joint) const;  ///< 0 cold to 1 as hot as it may get
   bool first = false;                        ///< opened as the default device
   int32_t light = 0;                         ///< HD_USER_STATUS_LIGHT, which no arm has
@@ -67,6 +69,7 @@ class Arm {
   void see(Frame& frame) const;
   void reportFault();
   HDerror checked(uint64_t ns, double force[3]) const;
+  void addJointTorque(double force[3], double torque[3]) const;
   void answer(uint64_t tick, const double force[3], const double torque[3], uint64_t ns);
 
   HHD handle_;

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "coordinates.hpp"
+
 namespace hapticd::hd {
 
 namespace {
@@ -14,6 +16,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double kMmPerMetre = 1000;
+constexpr size_t kFull = 6;  // degrees of freedom
 
 /// Arms that HDAPI programs know by name: usable workspace in mm, as their makers publish it.
 struct Known {
@@ -38,23 +41,53 @@ const Known& knownAs(const std::string& product) {
 /// A box about the place where the arm stands; the largest that a link of it may reach is a quarter longer.
 void readWorkspace(const Known& known, const Json& mount, Facts& facts) {
   constexpr double kBeyondUsable = 1.25;
+  double place[3];
+  for (size_t i = 0; i < 3; ++i) place[i] = mount.at("position").at(i).get<double>() - facts.origin[i];
+  fromWorld(facts, place);
   for (size_t i = 0; i < 3; ++i) {
-    const double middle = mount.at("position").at(i).get<double>() * kMmPerMetre, half = known.size[i] / 2;
+    const double middle = place[i] * kMmPerMetre, half = known.size[i] / 2;
     facts.usable[i] = middle - half, facts.usable[i + 3] = middle + half;
     facts.workspace[i] = middle - kBeyondUsable * half, facts.workspace[i + 3] = middle + kBeyondUsable * half;
   }
   facts.tabletop = -facts.usable[1];
 }
 
+/// Their coordinates: those of the world, or of the arm's mount, with an origin of their own.
+void readFrame(const Json& clients, const Json& mount, Facts& facts) {
+  const bool of_device = clients.value("frame", "world") == "device";
+  double origin[3] = {};
+  for (size_t i = 0; i < 3; ++i) origin[i] = clients.contains("origin") ? clients["origin"].at(i).get<double>() : 0.0;
+  for (size_t i = 0; i < 4 && of_device; ++i) facts.turn[i] = mount.at("orientation").at(i);
+  facts.is_world = !of_device && std::count(std::begin(origin), std::end(origin), 0.0) == 3;
+  toWorld(facts, origin);
+  for (size_t i = 0; i < 3; ++i)
+    facts.origin[i] = origin[i] + (of_device ? mount.at("position").at(i).get<double>() : 0.0);
+}
+
+/// What the device file says for programs of the HDAPI.
+void readHd(const Json& device, Facts& facts) {
+  const Json hd = device.value("hd", Json::object());
+  const auto words = [&](const char* key, std::string& text) {
+    if (const std::string given = hd.value(key, ""); !given.empty()) text = given;
+  };
+  words("model", facts.model), words("vendor", facts.vendor), words("serial", facts.serial);
+  for (const Json& joint : hd.value("joints", Json::array()))
+    facts.joint_of.push_back({joint.at(0), joint.at(1), joint.at(2)});
+  std::erase_if(facts.joint_of, [&](const auto& of) { return of.joint >= static_cast<size_t>(facts.joints); });
+  for (const Json& button : hd.value("buttons", Json::array())) facts.button_of.push_back(button);
+  for (size_t i = 0; facts.joint_of.empty() && i < std::min<size_t>(kFull, static_cast<size_t>(facts.joints)); ++i)
+    facts.joint_of.push_back({i, 1, 0});
+  facts.input_dof = facts.joint_of.size() >= kFull ? static_cast<int>(kFull) : 3;
+  facts.output_dof = std::min(facts.input_dof, facts.output_dof);
+}
+
 void readInfo(const Json& info, Facts& facts) {
-  constexpr int kFull = 6;               // degrees of freedom
   constexpr double kDampingTime = 1e-3;  // s: N s/mm for each N/mm, what a wall of 1 kHz bears in any case
   facts.joints = info.at("joint_count");
   const Json& torque = info.at("max_torque");
   const auto motors = std::count_if(torque.begin(), torque.end(),
                                     [](const Json& most) { return most.is_string() || most.get<double>() > 0; });
-  facts.input_dof = facts.joints >= kFull ? kFull : 3;
-  facts.output_dof = motors >= kFull ? kFull : 3;
+  facts.output_dof = motors >= static_cast<long>(kFull) ? static_cast<int>(kFull) : 3;
   facts.max_force = info.at("max_force");
   facts.continuous_force = info.at("continuous_force");
   facts.max_stiffness = info.at("max_stiffness").get<double>() / kMmPerMetre;
@@ -72,7 +105,10 @@ void readScene(const Json& scene, size_t device, Facts& facts) {
     facts.max_force = facts.max_force > 0 ? std::min(facts.max_force, force) : force;
   constexpr size_t kHottest = 7, kAmbient = 8;  // places in the list that a motor is
   for (const Json& motor : limits.at("motors")) facts.motors.push_back({motor.at(kHottest), motor.at(kAmbient)});
-  facts.pushable = scene.contains("clients") && scene.at("clients").at("mode") != 0;
+  facts.max_torque = limits.at("torque");
+  const Json clients = scene.value("clients", Json::object());
+  facts.pushable = clients.value("mode", 0) != 0;
+  readFrame(clients, arm.at("mount"), facts);
 }
 
 }  // namespace
@@ -89,6 +125,7 @@ bool readFacts(const char* about, int device, Facts& facts) try {
   facts.rate = json.at("rate_hz");
   readInfo(arm.at("info"), facts);
   readScene(json.at("scene"), place, facts);
+  readHd(json.at("scene").at("devices").at(place), facts);
   readWorkspace(known, json.at("scene").at("devices").at(place).at("mount"), facts);
   return true;
 } catch (const std::exception&) {

@@ -24,6 +24,17 @@ struct Facts {
     double hottest, ambient;  ///< [degC]
   };
   std::vector<Motor> motors;  ///< with a model of their heat
+  /// A joint of theirs: sign times the device's, and an offset.
+  struct Joint {
+    size_t joint;
+    double sign, offset;
+  };
+  std::vector<Joint> joint_of;      ///< turret, thigh, shin, and up to three of the gimbal
+  std::vector<unsigned> button_of;  ///< of the device, in the order of theirs; none: as they are
+  double max_torque = 0;            ///< [N m] on the hand; 0: programs turn nothing
+  bool is_world = true;             ///< their coordinates are the world's
+  double origin[3] = {};            ///< [m] of their coordinates, world
+  double turn[4] = {1, 0, 0, 0};    ///< w x y z, from their axes to the world's
 };
 
 /// [main] @param about what a daemon says of itself @return false: it cannot be understood

@@ -13,7 +13,7 @@ namespace hapticd::hd {
 namespace {
 
 constexpr double kMmPerMetre = 1000;  // also mN m of an N m
-constexpr int kTurnJoints = 3;        // the first three joints carry the tip, the next three turn it
+constexpr size_t kTurnJoints = 3;     // the first three joints carry the tip, the next three turn it
 
 void copy(const double* from, int count, double factor, double* out) {
   for (int i = 0; i < count; ++i) out[i] = factor * from[i];
@@ -26,8 +26,11 @@ struct OfFrame {
   void (*get)(const Arm& arm, const Frame& frame, double* out);
 };
 
-void buttons(const Arm&, const Frame& frame, double* out) {
-  out[0] = frame.state.buttons;
+void buttons(const Arm& arm, const Frame& frame, double* out) {
+  const auto& order = arm.facts().button_of;
+  uint32_t theirs = order.empty() ? frame.state.buttons : 0;
+  for (size_t i = 0; i < order.size(); ++i) theirs |= (frame.state.buttons >> order[i] & 1u) << i;
+  out[0] = theirs;
 }
 void safetySwitch(const Arm& arm, const Frame& frame, double* out) {
   const int button = arm.facts().enable_button;
@@ -51,19 +54,32 @@ void transform(const Arm&, const Frame& frame, double* out) {
 void angularVelocity(const Arm&, const Frame& frame, double* out) {
   copy(frame.angular, 3, 1, out);
 }
-void jointAngles(const Arm&, const Frame& frame, double* out) {
-  copy(frame.state.joints, 3, 1, out);
+void threeJoints(const Arm& arm, const Frame& frame, size_t first, double* out) {
+  nothing(arm, frame, out);
+  const auto& joints = arm.facts().joint_of;
+  for (size_t i = 0; i < 3 && first + i < joints.size(); ++i) {
+    const Facts::Joint& joint = joints[first + i];
+    out[i] = joint.sign * frame.state.joints[joint.joint] + joint.offset;
+  }
+}
+void jointAngles(const Arm& arm, const Frame& frame, double* out) {
+  threeJoints(arm, frame, 0, out);
 }
 void gimbalAngles(const Arm& arm, const Frame& frame, double* out) {
-  nothing(arm, frame, out);
-  const int turning = std::clamp(arm.facts().joints - kTurnJoints, 0, 3);
-  copy(frame.state.joints + kTurnJoints, turning, 1, out);
+  threeJoints(arm, frame, kTurnJoints, out);
 }
 void force(const Arm&, const Frame& frame, double* out) {
   copy(frame.force, 3, 1, out);
 }
 void torque(const Arm&, const Frame& frame, double* out) {
   copy(frame.torque, 3, kMmPerMetre, out);
+}
+
+void jointTorque(const Arm&, const Frame& frame, double* out) {
+  copy(frame.joint_torque, 3, kMmPerMetre, out);
+}
+void gimbalTorque(const Arm&, const Frame& frame, double* out) {
+  copy(frame.joint_torque + kTurnJoints, 3, kMmPerMetre, out);
 }
 
 constexpr OfFrame kOfFrames[] = {
@@ -80,8 +96,8 @@ constexpr OfFrame kOfFrames[] = {
     {HD_CURRENT_GIMBAL_ANGLES, HD_LAST_GIMBAL_ANGLES, 3, gimbalAngles},
     {HD_CURRENT_FORCE, HD_LAST_FORCE, 3, force},
     {HD_CURRENT_TORQUE, HD_LAST_TORQUE, 3, torque},
-    {HD_CURRENT_JOINT_TORQUE, HD_LAST_JOINT_TORQUE, 3, nothing},
-    {HD_CURRENT_GIMBAL_TORQUE, HD_LAST_GIMBAL_TORQUE, 3, nothing},
+    {HD_CURRENT_JOINT_TORQUE, HD_LAST_JOINT_TORQUE, 3, jointTorque},
+    {HD_CURRENT_GIMBAL_TORQUE, HD_LAST_GIMBAL_TORQUE, 3, gimbalTorque},
     {HD_CURRENT_MOTOR_DAC_VALUES, HD_LAST_MOTOR_DAC_VALUES, 6, nothing},
 };
 
@@ -97,6 +113,11 @@ double stiffness(const Asked& asked) {
   constexpr double kLate = 3;
   const bool in_time = sysconf(_SC_NPROCESSORS_ONLN) > 1 && asked.scheduler.realTime();
   return asked.arm.facts().max_stiffness / (in_time ? 1 : kLate);
+}
+
+/// What an arm may turn the hand with, in mN m; one of three joints turns nothing.
+double torque(const Arm& arm) {
+  return arm.facts().output_dof > 3 ? arm.facts().max_torque * kMmPerMetre : 0;
 }
 
 void temperatures(const Asked& asked, double* out) {
@@ -119,7 +140,7 @@ constexpr OfArm kOfArms[] = {
     {HD_NOMINAL_MAX_DAMPING, 1, [](const Asked& a, double* o) { o[0] = a.arm.facts().max_damping; }},
     {HD_NOMINAL_MAX_TORQUE_STIFFNESS, 1, [](const Asked&, double* o) { o[0] = 0; }},
     {HD_NOMINAL_MAX_TORQUE_DAMPING, 1, [](const Asked&, double* o) { o[0] = 0; }},
-    {HD_NOMINAL_MAX_TORQUE_FORCE, 1, [](const Asked&, double* o) { o[0] = 0; }},
+    {HD_NOMINAL_MAX_TORQUE_FORCE, 1, [](const Asked& a, double* o) { o[0] = torque(a.arm); }},
     {HD_NOMINAL_MAX_TORQUE_CONTINUOUS_FORCE, 1, [](const Asked&, double* o) { o[0] = 0; }},
     {HD_SOFTWARE_VELOCITY_LIMIT, 1, [](const Asked& a, double* o) { o[0] = a.arm.bounds().velocity; }},
     {HD_SOFTWARE_FORCE_IMPULSE_LIMIT, 1, [](const Asked& a, double* o) { o[0] = a.arm.bounds().impulse; }},
@@ -198,12 +219,18 @@ HDerror set(Arm& arm, HDenum name, const double* numbers) {
       arm.light = static_cast<int32_t>(numbers[0]);
       return HD_SUCCESS;
     case HD_CURRENT_MOTOR_DAC_VALUES:
-    case HD_CURRENT_JOINT_TORQUE:
       return HD_INVALID_OPERATION;
+    case HD_CURRENT_JOINT_TORQUE:
+      if (!arm.knowsJacobian()) return HD_INVALID_OPERATION;
+      break;
     default:
       break;
   }
   if (!arm.inFrame()) return HD_FRAME_ERROR;
+  double* joints = arm.frame().joint_torque;
+  if (name == HD_CURRENT_JOINT_TORQUE) copy(numbers, 3, 1 / kMmPerMetre, joints);
+  if (name == HD_CURRENT_GIMBAL_TORQUE && arm.facts().output_dof > 3)
+    copy(numbers, 3, 1 / kMmPerMetre, joints + kTurnJoints);
   if (name == HD_CURRENT_FORCE) copy(numbers, 3, 1, arm.frame().force);
   if (name == HD_CURRENT_TORQUE) copy(numbers, 3, 1 / kMmPerMetre, arm.frame().torque);
   return HD_SUCCESS;  // the torque of a gimbal without motors is nobody's

@@ -50,10 +50,19 @@ typedef struct hapticd_state {
   uint32_t fault, joint_count; /* why no force flows, 0: it does */
 } hapticd_state;
 
+/* How a joint moves the tip, in the tick that is going on, so that joint torques become a force: of arms that programs
+ * may push on. Rows: tip x, y, z in m/rad (of a sliding joint m/m), turn about x, y, z; a column a joint, zeros beyond
+ * joint_count. */
+typedef struct hapticd_jacobian {
+  uint64_t tick;
+  double rows[6][16];
+} hapticd_jacobian;
+
 enum { HAPTICD_GOOD = 1u << 0 }; /* of a state: the sample was good; otherwise the pose is an older one */
 
 /* The first bytes of the memory of `state`. The state of arm i is at 64 + i * stride: a count as that of a lead's page,
- * and a hapticd_state behind it. */
+ * and a hapticd_state behind it; 320 bytes after that count comes another, and a hapticd_jacobian behind it, where the
+ * stride has room for them. */
 typedef struct hapticd_state_page {
   uint32_t arms, stride;
   uint64_t reserved[7];
@@ -182,6 +191,9 @@ HAPTICD_API int hapticd_next_state(hapticd_client* client, int device, uint64_t 
  * so that no wake-up delays an answer. It keeps a processor busy for that time. 0, as before the first call: it sleeps.
  * More than 200 counts as 200. */
 HAPTICD_API void hapticd_listen(hapticd_client* client, unsigned microseconds);
+/* The newest Jacobian of an arm. Never waits. 1: `jacobian` is filled; 0: none was told yet, as of an arm that no
+ * program may push on; -1: no such arm, or the daemon is older than this. */
+HAPTICD_API int hapticd_read_jacobian(hapticd_client* client, int device, hapticd_jacobian* jacobian);
 
 #ifdef __cplusplus
 }
@@ -192,6 +204,7 @@ HAPTICD_API void hapticd_listen(hapticd_client* client, unsigned microseconds);
 HAPTICD_LAYOUT(hapticd_target, 112);
 HAPTICD_LAYOUT(hapticd_push, 72);
 HAPTICD_LAYOUT(hapticd_state, 280);
+HAPTICD_LAYOUT(hapticd_jacobian, 776);
 HAPTICD_LAYOUT(hapticd_state_page, 64);
 HAPTICD_LAYOUT(hapticd_bell, 128);
 HAPTICD_LAYOUT(hapticd_lead_page, 128);

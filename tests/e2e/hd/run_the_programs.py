@@ -41,6 +41,34 @@ devices:
 clients: add
 models: []
 """
+SIX_ARM = """hapticd-device: 1
+module: simulated
+name: six
+mount: {position: [0.1, 0.2, 0.3], orientation: [0.7071067811865476, 0, 0.7071067811865476, 0]}
+limits: {force: 20, torque: 1, weight: 0, passivity: false}
+hd:
+  model: PHANTOM Premium 1.5 6DOF
+  vendor: a workshop
+  serial: S6
+  joints: [[0, -1], [1, 1, 0.25], [2], [3], [4], [5]]
+parameters:
+  seed: 1
+  arm:
+    kind: chain
+    dh: [[0, 1.5707963267948966, 0, 0], [0.2, 0, 0, 0], [0, 1.5707963267948966, 0, 0],
+         [0, -1.5707963267948966, 0.2, 0], [0, 1.5707963267948966, 0, 0], [0, 0, 0.05, 0]]
+    limits: [[-1.5, 1.5], [0.2, 1.4], [-1, 1], [-1.5, 1.5], [0.2, 1.6], [-2, 2]]
+    base_position: [-0.332395801, 0, -0.010572101]
+  joint: {counts: 1000000, damping: 5, max_torque: 10, rotor: 0.01}
+  device: {max_force: 20, mass: 0.5}
+hand: {script: guided, tremor: 0, wander: 0, stiffness: 500}
+"""
+SIX = """hapticd: 1
+servo: {{rate: 1000}}
+device: {folder}/six-arm.yaml
+clients: {{mode: add, frame: device, origin: [0, 0, 0.1]}}
+models: []
+"""
 ARM = "simulated Premium 1.5"
 
 
@@ -189,6 +217,31 @@ def two_arms(folder):
               (right["fx"] == 0).all() and left["fx"].max() == 0.5 and right["fy"].max() == 0.25)
 
 
+def six(folder):
+    """Torques of joints reach the motors as they were asked for; coordinates are those that the scene and the device say."""
+    with open(os.path.join(folder, "six-arm.yaml"), "w") as file:
+        file.write(SIX_ARM)
+    with Daemon(folder, "six", SIX.format(folder=folder)) as daemon, daemon.connect() as client:
+        done = daemon.program("six")
+        ticks, pushes = client.rows("ticks", last=5000), client.rows("pushes", last=1000)
+    saw = [float(word) for word in done.stdout.split("saw ")[1].split()]
+    _, at_push, at_tick = numpy.intersect1d(pushes["tick"], ticks["tick"], return_indices=True)
+    pushes, ticks = pushes[at_push], ticks[at_tick]
+    whole = sum(abs(ticks["arm0_client_f" + c] - pushes["f" + c]) for c in "xyz") < 1e-9  # it is not faded
+    ticks = ticks[whole & (pushes["fx"] != 0)]
+    check("six joints are pushed", len(ticks) > 50, len(ticks))
+    joints = numpy.stack([ticks[f"arm0_q{i}"] for i in range(6)], axis=1)
+    told = joints * [-1, 1, 1, 1, 1, 1] + [0, 0.25, 0, 0, 0, 0]
+    check("joints have their signs and offsets", abs(told - saw[3:]).max() < 0.05, (told[-1], saw))
+    x, y, z = (ticks[f"arm0_{c}"][-1] - at for c, at in zip("xyz", (0.1, 0.2, 0.3)))
+    off = numpy.abs(numpy.array([-z, y, x - 0.1]) * 1000 - saw[:3]).max()
+    check("the position is that of the mount, about the scene's origin", off < 2, (x, y, z, saw))
+    asked = numpy.array([-40, -30, 20, 6, -4, 2]) * 1e-3
+    command = numpy.stack([ticks[f"arm0_command{i}"] for i in range(6)], axis=1)
+    off = abs(command - asked).max()
+    check("the motors get the torques that were asked for", off < 0.02 * 0.04, (off, command[-1]))
+
+
 def outage(folder):
     daemon = Daemon(folder, "short", scene()).start()
     program = subprocess.Popen(daemon.command("outage"), env=daemon.environment, stdin=subprocess.PIPE,
@@ -256,6 +309,7 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as place:
         wall(plain_daemon)
     sphere(place)
     two_arms(place)
+    six(place)
     outage(place)
     refused(place)
     command(place)

@@ -106,6 +106,8 @@ static void that_are_set(void) {
   check_error("a position cannot be set", HD_INVALID_ENUM);
   hdSetDoublev(HD_CURRENT_FORCE, torque);
   check_error("a force needs a frame", HD_FRAME_ERROR);
+  hdSetDoublev(HD_CURRENT_JOINT_TORQUE, torque);
+  check_error("so does a torque of joints", HD_FRAME_ERROR);
 }
 
 /* Without a frame, a thread that is not the scheduler's sees what is now. */

@@ -86,6 +86,15 @@ def stalls(run, program):
     check("one that died is gone", until(lambda: run.clients() == []), run.clients())
 
 
+def watched(folder):
+    """A scene that lets programs look on."""
+    run = Run(folder, "{mode: add, push: false}")
+    program = run.pusher()
+    check("push: false lets nobody push", program.wait(timeout=60) != 0)
+    told, report = run.end()
+    check("and the report tells of nobody", report["clients"] == [] and "program " not in told, report)
+
+
 with tempfile.TemporaryDirectory(dir="/dev/shm") as place:
     first = Run(place, "add")
     stalls(first, told_meanwhile(first))
@@ -100,4 +109,5 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as place:
     check("with its figures", clients[0]["answers"] > 600 and clients[0]["largest_n"] == 2 and clients[0]["silences"] >= 1 and
           clients[0]["device"] == ARM, clients)
     check("the summary too, with what helps", "pusher.py on " + ARM in printed and "answer_time: 60e-6" in printed, printed)
+    watched(place)
 finish()

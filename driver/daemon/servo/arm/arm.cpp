@@ -27,6 +27,21 @@ double delayOf(const scene::Velocity& velocity, double rate) {
   return velocity.parameter / (2 * rate);
 }
 
+/// What programs of the HDAPI are to see, and the device has not; "": it has all of it.
+std::string refusalOf(const std::optional<scene::HdArm>& hd, const hdv_info& info) {
+  const auto told = [](const std::string& key, uint32_t wrong, uint32_t count, const char* things) {
+    return key + " is " + std::to_string(wrong) + ", but the device has " + std::to_string(count) + " " + things +
+           "; expected one of them, counted from 0";
+  };
+  for (size_t i = 0; hd && i < hd->joints.size(); ++i)
+    if (hd->joints[i].joint >= info.joint_count)
+      return told("hd.joints[" + std::to_string(i) + "][0]", hd->joints[i].joint, info.joint_count, "joints");
+  for (size_t i = 0; hd && i < hd->buttons.size(); ++i)
+    if (hd->buttons[i] >= info.buttons)
+      return told("hd.buttons[" + std::to_string(i) + "]", hd->buttons[i], info.buttons, "buttons");
+  return "";
+}
+
 }  // namespace
 
 Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& described, Limiter limiter,
@@ -62,6 +77,8 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
     arm->passivity_.emplace(passivity::stableDamping(mass, 1 / options.rate), arm->info().damping,
                             arm->info().resolution_m);
   }
+  if (const std::string no = refusalOf(described.hd, arm->info()); !no.empty() && options.playback == nullptr)
+    return Error{"device '" + described.name + "': " + no};
   const auto& button = described.limits.enable.button;
   if (button && static_cast<uint32_t>(*button) >= arm->info().buttons && options.playback == nullptr)
     return Error{"device '" + described.name + "': limits.enable.button is " + std::to_string(*button) +
@@ -116,6 +133,19 @@ std::optional<Eigen::Vector3d> Arm::handForce() const noexcept HSP_RT {
   const Eigen::Vector3d force_device = -TipInverse(J.topRows<3>()).force(torque);
   if (!force_device.allFinite()) return std::nullopt;
   return R_world_device_ * force_device;
+}
+
+bool Arm::jacobian(double (&rows)[6][HDV_MAX_JOINTS]) const noexcept HSP_RT {
+  const auto joints = static_cast<Eigen::Index>(device_->info().joint_count);
+  Jacobian J(6, joints);
+  if (!probe_.valid || device_->kinematics().jacobian(device_->handle(), sample_.position, J.data()) != HSP_OK ||
+      !J.allFinite())
+    return false;
+  Eigen::Map<Eigen::Matrix<double, 6, HDV_MAX_JOINTS, Eigen::RowMajor>> world(&rows[0][0]);
+  world.setZero();
+  world.topLeftCorner(3, joints).noalias() = R_world_device_ * J.topRows<3>();
+  world.bottomLeftCorner(3, joints).noalias() = R_world_device_ * J.bottomRows<3>();
+  return true;
 }
 
 uint32_t Arm::links(std::array<LinkEnd, HDV_MAX_LINKS>& ends) const noexcept HSP_RT {

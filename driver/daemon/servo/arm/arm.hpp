@@ -98,6 +98,9 @@ class Arm {
   /// the arm's own weight: -pinv(J^T) (tau - gravity). Nothing: the device measures no torque. In motion it has the
   /// inertia of what lies beyond the load cells in it.
   std::optional<Eigen::Vector3d> handForce() const noexcept HSP_RT;
+  /// [rt] The Jacobian at the newest sample, world frame: rows x, y, z of the tip [m/rad] and of the turn [rad/rad], a
+  /// column a joint, zeros beyond. False: it cannot be told now.
+  bool jacobian(double (&rows)[6][HDV_MAX_JOINTS]) const noexcept HSP_RT;
   /// Compliance control; nullptr: this arm is driven by force.
   const Admittance* admittance() const noexcept { return admittance_ ? &*admittance_ : nullptr; }
   /// The passivity controller; nullptr: this arm needs none.

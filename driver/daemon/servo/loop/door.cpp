@@ -10,12 +10,16 @@
 
 namespace hapticd::servo {
 
-static_assert(Door::kStateStride >= sizeof(link::StateSlot));
+static_assert(Door::kStateStride >= link::kJacobianAt + sizeof(link::JacobianSlot));
 
 namespace {
 
 link::StateSlot& slotAt(std::byte* page, size_t arm) noexcept HSP_RT {
   return *reinterpret_cast<link::StateSlot*>(page + Door::kStateAt + arm * Door::kStateStride);
+}
+
+link::JacobianSlot& jacobianAt(std::byte* page, size_t arm) noexcept HSP_RT {
+  return *reinterpret_cast<link::JacobianSlot*>(page + Door::kStateAt + arm * Door::kStateStride + link::kJacobianAt);
 }
 
 hapticd_state stateOf(const TickTime& tick, const Arm& arm) noexcept HSP_RT {
@@ -40,13 +44,21 @@ hapticd_state stateOf(const TickTime& tick, const Arm& arm) noexcept HSP_RT {
 }  // namespace
 
 void Door::showState(std::byte* page, uint32_t arms) noexcept {
-  for (uint32_t i = 0; i < arms; ++i) new (page + kStateAt + i * kStateStride) link::StateSlot;  // all zeros as it is
+  for (uint32_t i = 0; i < arms; ++i) {  // all zeros as they are
+    new (page + kStateAt + i * kStateStride) link::StateSlot;
+    new (page + kStateAt + i * kStateStride + link::kJacobianAt) link::JacobianSlot;
+  }
   new (page) hapticd_state_page{arms, kStateStride, {}};
   state_.store(page, std::memory_order_release);
 }
 
 void Door::write(std::byte* page, const TickTime& tick, const Arms& arms) noexcept HSP_RT {
-  for (size_t i = 0; i < arms.size(); ++i) slotAt(page, i).put(stateOf(tick, *arms[i]));
+  hapticd_jacobian jacobian;
+  jacobian.tick = tick.number;
+  for (size_t i = 0; i < arms.size(); ++i) {
+    slotAt(page, i).put(stateOf(tick, *arms[i]));
+    if (arms[i]->clients().possible() && arms[i]->jacobian(jacobian.rows)) jacobianAt(page, i).put(jacobian);
+  }
 }
 
 /// The word first, then the look at who waits, both in one order for all: who sets the flag after that look sees the

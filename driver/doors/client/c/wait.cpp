@@ -56,12 +56,13 @@ hapticd_bell* bellOf(hapticd_client* client) {
       client->page(R"({"do":"bell"})", client->bell, sizeof(hapticd_bell), PROT_READ | PROT_WRITE));
 }
 
-/// The newest state of an arm; the servo writes it in less than a microsecond.
-bool newest(std::byte* at, hapticd_state& state) {
+/// The newest record of an arm; the servo writes it in less than a microsecond.
+template <class Record>
+bool newest(std::byte* at, Record& record) {
   constexpr int kTries = 1000;
   for (int i = 0; i < kTries; ++i) {
     uint64_t seen = 0;  // of one that was never written
-    if (reinterpret_cast<hapticd::link::StateSlot*>(at)->take(seen, state)) return true;
+    if (reinterpret_cast<hapticd::link::LeadSlot<Record>*>(at)->take(seen, record)) return true;
     if (std::atomic_ref<uint64_t>(*reinterpret_cast<uint64_t*>(at)).load() == 0) return false;
   }
   return false;
@@ -76,6 +77,15 @@ bool listen(std::byte* at, int64_t period, int64_t before, uint64_t after, hapti
   while (nowNs() < due + before)
     if (newest(at, state) && state.tick > after) return true;
   return false;
+}
+
+/// A record of an arm on the page of states. nullptr: there is none
+std::byte* recordOf(hapticd_client* client, int device, size_t behind, size_t bytes) {
+  const auto* page = reinterpret_cast<hapticd_state_page*>(
+      client->page(R"({"do":"state"})", client->states, sizeof(hapticd_state_page), PROT_READ));
+  if (page == nullptr || device < 0 || static_cast<uint32_t>(device) >= page->arms || page->stride < behind + bytes)
+    return nullptr;
+  return client->states.at(sizeof *page + size_t{page->stride} * static_cast<uint32_t>(device) + behind, bytes);
 }
 
 }  // namespace
@@ -93,13 +103,9 @@ int hapticd_wait(hapticd_client* client, uint64_t tick, int timeout_ms) try {
 }
 
 int hapticd_next_state(hapticd_client* client, int device, uint64_t after, int timeout_ms, hapticd_state* state) try {
-  const auto* page = reinterpret_cast<hapticd_state_page*>(
-      client->page(R"({"do":"state"})", client->states, sizeof(hapticd_state_page), PROT_READ));
+  std::byte* at = recordOf(client, device, 0, sizeof(hapticd::link::StateSlot));
   hapticd_bell* bell = bellOf(client);
-  if (page == nullptr || bell == nullptr || device < 0 || static_cast<uint32_t>(device) >= page->arms) return -1;
-  std::byte* at = client->states.at(sizeof *page + size_t{page->stride} * static_cast<uint32_t>(device),
-                                    sizeof(hapticd::link::StateSlot));
-  if (at == nullptr) return -1;
+  if (at == nullptr || bell == nullptr) return -1;
   const auto there = [&] { return newest(at, *state) && (after == UINT64_MAX || state->tick > after); };
   const int64_t before = client->listen_ns.load(std::memory_order_relaxed), period = client->rows.period();
   const long end = nowMs() + timeout_ms;
@@ -115,4 +121,12 @@ int hapticd_next_state(hapticd_client* client, int device, uint64_t after, int t
 void hapticd_listen(hapticd_client* client, unsigned microseconds) {
   constexpr unsigned kMost = 200;
   client->listen_ns.store(std::min(microseconds, kMost) * int64_t{1000}, std::memory_order_relaxed);
+}
+
+int hapticd_read_jacobian(hapticd_client* client, int device, hapticd_jacobian* jacobian) try {
+  std::byte* at = recordOf(client, device, hapticd::link::kJacobianAt, sizeof(hapticd::link::JacobianSlot));
+  if (at == nullptr) return -1;
+  return newest(at, *jacobian) ? 1 : 0;
+} catch (const std::exception&) {
+  return -1;
 }

@@ -14,6 +14,8 @@ scene::Scene sceneWithEveryLimit() {
   scene::Device& device = scene.devices.emplace_back();
   device.name = "arm";
   device.admittance = {2, 30};
+  device.hd = {"Desktop", "us", "12", {{1, -1, 0.5}}, {2, 0}};
+  scene.clients = {scene::ClientMode::kAdd, 2, true, 50e-6, false, {1, 2, 3}, scene::ClientFrame::kDevice};
   scene::Limits& limits = device.limits;
   limits.torque_slew = 5, limits.power = 2, limits.impulse = 0.3, limits.passivity = true;
   limits.enable = {1, scene::EnableMode::kToggle};
@@ -28,6 +30,12 @@ TEST(SceneJson, ComesBackAsItWas) {
   EXPECT_EQ(sceneToJson(*scene), once);
   EXPECT_EQ(scene->devices[0].limits.enable.button, 1);
   EXPECT_EQ(scene->devices[0].limits.power, 2);
+  ASSERT_TRUE(scene->devices[0].hd);
+  EXPECT_EQ(scene->devices[0].hd->joints.at(0).sign, -1);
+  EXPECT_EQ(scene->devices[0].hd->buttons.at(0), 2u);
+  EXPECT_FALSE(scene->clients.push);
+  EXPECT_EQ(scene->clients.origin.y(), 2);
+  EXPECT_EQ(scene->clients.frame, scene::ClientFrame::kDevice);
 }
 
 TEST(SceneJson, AnOlderRecordingWasMadeWithoutWhatCameLater) {
@@ -35,6 +43,8 @@ TEST(SceneJson, AnOlderRecordingWasMadeWithoutWhatCameLater) {
   auto& device = json["devices"][0];
   for (const char* key : {"torque_slew", "power", "impulse", "enable", "motors"}) device["limits"].erase(key);
   device.erase("admittance");
+  device.erase("hd");
+  for (const char* key : {"answer_time", "push", "origin", "frame"}) json["clients"].erase(key);
   json["servo"].erase("spin_us");
   const auto scene = sceneFromJson(json.dump());
   ASSERT_TRUE(scene) << scene.error();
@@ -46,6 +56,9 @@ TEST(SceneJson, AnOlderRecordingWasMadeWithoutWhatCameLater) {
   EXPECT_TRUE(limits.motors.empty());
   EXPECT_FALSE(scene->devices[0].admittance);
   EXPECT_FALSE(scene->servo.spin_us);
+  EXPECT_FALSE(scene->devices[0].hd);
+  EXPECT_TRUE(scene->clients.push);
+  EXPECT_EQ(scene->clients.frame, scene::ClientFrame::kWorld);
 }
 
 TEST(SceneJson, SaysWhatIsMissing) {

@@ -47,6 +47,48 @@ class Load : public testing::Test {
   host::Catalog catalog_{host::SearchPath{{TEST_MODULES "/good"}, {TEST_MODULES "/good"}}};
 };
 
+TEST_F(Load, TellsHowProgramsOfTheHdapiSeeAnArm) {
+  put("hd.yaml",
+      "hapticd-device: 1\nmodule: test_device\nname: arm\nparameters: {gain: 2, port: /dev/nothing}\n"
+      "hd: {model: PHANTOM Desktop, vendor: us, serial: '12', joints: [[2, -1, 0.5], [0], [1, 1]], buttons: [1, 0]}\n");
+  const Scene scene =
+      good("device: hd.yaml\nclients: {mode: add, push: false, origin: [0.1, 0, -0.2], frame: device}\nmodels: []\n");
+  ASSERT_EQ(scene.devices.size(), 1u);
+  ASSERT_TRUE(scene.devices[0].hd);
+  const HdArm& hd = *scene.devices[0].hd;
+  EXPECT_EQ(hd.model, "PHANTOM Desktop");
+  EXPECT_EQ(hd.vendor, "us");
+  EXPECT_EQ(hd.serial, "12");
+  ASSERT_EQ(hd.joints.size(), 3u);
+  EXPECT_EQ(hd.joints[0].joint, 2u);
+  EXPECT_EQ(hd.joints[0].sign, -1);
+  EXPECT_EQ(hd.joints[0].offset, 0.5);
+  EXPECT_EQ(hd.joints[1].sign, 1);
+  EXPECT_EQ(hd.buttons, (std::vector<uint32_t>{1, 0}));
+  EXPECT_FALSE(scene.clients.push);
+  EXPECT_EQ(scene.clients.origin, Eigen::Vector3d(0.1, 0, -0.2));
+  EXPECT_EQ(scene.clients.frame, ClientFrame::kDevice);
+}
+
+TEST_F(Load, RefusesWrongHdKeysByName) {
+  const auto refused = [&](const std::string& device, const std::string& clients, const std::string& expected) {
+    put("hd.yaml", "hapticd-device: 1\nmodule: test_device\nparameters: {gain: 2, port: /dev/nothing}\n" + device);
+    const Loaded loaded = load(put("scene.yaml", "hapticd: 1\ndevice: hd.yaml\n" + clients + "models: []\n"), catalog_);
+    ASSERT_FALSE(loaded.problems.empty()) << expected;
+    EXPECT_NE(loaded.problems[0].text().find(expected), std::string::npos) << loaded.problems[0].text();
+  };
+  refused("hd: {modell: x}\n", "", "hd.modell: unknown key, did you mean model?");
+  refused("hd: {joints: 3}\n", "", "hd.joints: 3, expected a list of up to 6");
+  refused("hd: {joints: [[0, 0]]}\n", "", "hd.joints[0][1]: 0, expected 1 or -1");
+  refused("hd: {joints: [[16]]}\n", "", "hd.joints[0][0]");
+  refused("hd: {joints: [2]}\n", "", "expected [joint, sign, offset]");
+  refused("hd: {joints: [[0],[1],[2],[3],[4],[5],[6]]}\n", "", "a list of 7, expected a list of up to 6");
+  refused("hd: {buttons: [99]}\n", "", "hd.buttons[0]");
+  refused("", "clients: {mode: add, frame: arm}\n", "clients.frame");
+  refused("", "clients: {mode: add, orgin: [0, 0, 0]}\n", "clients.orgin: unknown key, did you mean origin?");
+  refused("", "clients: {mode: add, origin: [0, 0]}\n", "clients.origin");
+}
+
 TEST_F(Load, FillsEveryKindOfParameter) {
   const Scene scene = good(
       "device: arm.yaml\nmodels:\n  - name: cup\n    plugin: test_shape\n"
