@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+/// One arm of a daemon for one program: a thread answers every tick with the program's force, which programs send as
+/// seldom as they like.
+#pragma once
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "base/os.hpp"
+#include "base/result.hpp"
+#include "hapticd/client.h"
+
+namespace hapticd::haply {
+
+class Arm {
+ public:
+  static constexpr uint64_t kHoldsNs = 100'000'000;  ///< a force ends so long after the program was heard last
+
+  Arm(hapticd_client* client, int device, std::string name)
+      : client_(client), device_(device), name_(std::move(name)) {}
+  ~Arm();
+  Arm(const Arm&) = delete;
+  Arm& operator=(const Arm&) = delete;
+
+  const std::string& name() const { return name_; }
+  /// [main] The newest state. False: none comes any more.
+  bool look(hapticd_state& state);
+  /// [main] From now on this force [N, world frame] counts. The first one begins to push.
+  Result<void> push(const double force[3]);
+  /// [main] What counts now [N].
+  void wanted(double force[3]) const;
+
+ private:
+  void run();
+  hapticd_client* client_;
+  int device_;
+  std::string name_;
+  hapticd_lead* lead_ = nullptr;
+  os::Thread thread_;
+  std::atomic<bool> end_{false};
+  mutable std::mutex lock_;
+  double force_[3] = {};
+  uint64_t heard_ns_ = 0;
+};
+
+}  // namespace hapticd::haply

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd-inverse-service`: the arms of a running daemon for programs that were written for Haply's Inverse Service.
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <list>
+#include <thread>
+
+#include "session.hpp"
+#include "websocket/channel.hpp"
+
+namespace {
+
+using namespace hapticd;
+
+constexpr int kFailed = 1, kBadInput = 2, kMostSessions = 4, kLookMs = 200;
+
+std::atomic<bool> told_to_end{false};
+
+void onEnd(int) {
+  told_to_end = true;
+}
+
+void say(int number, const std::string& what) {
+  if (!what.empty()) std::fprintf(stderr, "program %d: %s\n", number, what.c_str());
+}
+
+/// One program, until it leaves, or the daemon does.
+void converse(websocket::Channel& channel, const std::string& daemon, int number) {
+  constexpr int kSendMs = 2000;
+  auto session = haply::Session::open(daemon, number);
+  if (!session) return say(number, session.error());
+  std::string text = (*session)->inventory();
+  while (!text.empty() && !told_to_end && channel.send(text, kSendMs)) {
+    constexpr int kSilentMs = 30'000;  // a program that says nothing for so long has gone
+    const auto message = channel.receive(kSilentMs);
+    if (!message) return;
+    text = (*session)->answer(*message);
+    say(number, (*session)->complaint());
+  }
+  if (text.empty()) say(number, "the daemon tells of no tick any more");
+}
+
+struct Visit {
+  std::thread thread;
+  std::atomic<bool> over{false};
+};
+
+void serve(websocket::Listener& listener, const std::string& daemon) {
+  std::list<Visit> visits;
+  for (int number = 1; !told_to_end;) {
+    visits.remove_if([](Visit& visit) {
+      if (visit.over) visit.thread.join();
+      return visit.over.load();
+    });
+    std::shared_ptr<websocket::Channel> channel = listener.accept(kLookMs);
+    if (!channel || visits.size() >= kMostSessions) continue;
+    Visit& visit = visits.emplace_back();
+    visit.thread = std::thread([&visit, channel, daemon, number] {
+      converse(*channel, daemon, number);
+      visit.over = true;
+    });
+    ++number;
+  }
+  std::fflush(nullptr);
+  std::_Exit(0);  // programs that say nothing are not waited for; the daemon ends their forces with the connection
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  std::string daemon = "hapticd";
+  unsigned short port = 10001;
+  CLI::App app("The arms of a running hapticd in the interface of Haply's Inverse Service (WebSocket, JSON).");
+  app.add_option("--name", daemon, "name of the daemon, as given to `hapticd run --name`")->capture_default_str();
+  app.add_option("--port", port, "port of 127.0.0.1; 0: one that is free")->capture_default_str();
+  app.footer("Example:\n  hapticd-inverse-service --port 10001");
+  try {
+    app.parse(count, words);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadInput;
+  }
+  auto first = haply::Session::open(daemon, 0);
+  if (!first) return std::fprintf(stderr, "error: %s\n", first.error().c_str()), kFailed;
+  auto listener = websocket::Listener::listen(port);
+  if (!listener) return std::fprintf(stderr, "error: %s\n", listener.error().c_str()), kFailed;
+  std::signal(SIGINT, onEnd);
+  std::signal(SIGTERM, onEnd);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::printf("ws://127.0.0.1:%u\n", (*listener)->port());
+  std::fflush(stdout);
+  serve(**listener, daemon);
+  return 0;
+}
