@@ -37,7 +37,7 @@ const double* rowOf(const std::vector<double>& from, size_t columns, size_t join
   if (from.empty()) return nullptr;
   if (from.size() != columns * joints)
     throw std::invalid_argument(std::string(id) + ": " + std::to_string(from.size() / columns) + " rows, expected " +
-                                std::to_string(joints) + ", one a row of arm.dh");
+                                std::to_string(joints) + ": one for each row of arm.dh");
   return &from[columns * joint];
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd check`: validates files and prints every problem, warns of what cannot be stable; also prints the JSON
 /// Schema of a format.
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/hand_start.hpp"
 #include "diagnostics/model_trial.hpp"
+#include "diagnostics/unit_advice.hpp"
+#include "document/node.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
 #include "tune/stability.hpp"
@@ -40,15 +43,37 @@ scene::Scene withArm(scene::Scene scene) {
   return scene;
 }
 
-/// What cannot be stable. Only simulated arms are opened: `check` touches no hardware; `run` warns of it as well.
+/// What the device file of an arm that is not opened says of it; 0: unknown.
+hdv_info infoOf(const scene::Device& device) {
+  hdv_info info{};
+  info.capabilities = HDV_C_PACING;  // nobody knows: no warning of it
+  for (const scene::Value& value : device.parameters) {
+    if (value.id == "device.max_stiffness") info.max_stiffness = value.number;
+    if (value.id == "device.mass") info.mass_kg = value.number;
+    if (value.id == "device.max_force") info.max_force = value.number;
+    if (value.id == "device.continuous_force") info.continuous_force = value.number;
+  }
+  return info;
+}
+
+/// What cannot be stable. Only simulated arms are opened: `check` touches no hardware, and takes what the file of
+/// another one says; `run` warns of it as well.
 document::Problems unstable(const scene::Scene& scene, const std::vector<double>& stiffness) {
   document::Problems warnings = tune::fastPaths(scene);
   for (const scene::Device& device : scene.devices) {
-    if (device.module != "simulated") continue;
-    auto arm = host::DeviceInstance::create(device, nullptr);
-    if (!arm || !(*arm)->open()) continue;
-    const document::Problems found = tune::unstableSettings(scene, device, (*arm)->info(), stiffness);
+    hdv_info info = infoOf(device);
+    if (device.module == "simulated") {
+      auto arm = host::DeviceInstance::create(device, nullptr);
+      if (!arm || !(*arm)->open()) continue;
+      info = (*arm)->info();
+    }
+    const document::Problems found = tune::unstableSettings(scene, device, info, stiffness);
     warnings.insert(warnings.end(), found.begin(), found.end());
+    if (info.max_stiffness <= 0 && std::any_of(stiffness.begin(), stiffness.end(), [](double k) { return k > 0; }))
+      document::report(warnings, device.place.file.empty() ? document::Place{device.file.string()} : device.place,
+                       "parameters.device.max_stiffness",
+                       "not given, so nobody knows whether " + device.name +
+                           " bears these models; expected what was found stable, begin with 100 N/m");
   }
   return warnings;
 }
@@ -89,6 +114,8 @@ Verdict checkOne(const std::string& file, const Options& options) {
   const scene::Scene full = withArm(*scene);
   document::Problems more = unstable(full, trial.stiffness);
   for (const document::Problem& far : farModels(full)) more.push_back(far);
+  document::Problems unread;
+  if (const auto root = document::parseFile(file, unread)) adviseZeros(*root, file, more);
   if (!options.files_only)
     for (const document::Problem& inside : startsInside(full)) more.push_back(inside);
   verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());

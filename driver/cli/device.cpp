@@ -13,6 +13,7 @@
 #include "diagnostics/device_trial.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
+#include "session/arm_force.hpp"
 
 namespace hapticd::cli {
 
@@ -90,13 +91,14 @@ int list() {
   return kWorked;
 }
 
-void printLimits(const scene::Limits& limits) {
+/// @param most [N] that the device file says of the arm; 0: nothing
+void printLimits(const scene::Limits& limits, double most) {
   const auto text = [](double value, const char* unit, const char* none) {
     return value == 0 ? std::string(none) : document::numberText(value) + " " + unit;
   };
   std::printf("limits\n  force      %s\n  torque     %s\n  slew       %s\n  velocity   %s\n  workspace  %s\n",
-              text(limits.force, "N", "the device's own").c_str(), text(limits.torque, "N m", "the motors'").c_str(),
-              text(limits.slew, "N/s", "none").c_str(),
+              text(limits.force > 0 ? limits.force : most, "N", "none known: the motors alone bound it").c_str(),
+              text(limits.torque, "N m", "the motors'").c_str(), text(limits.slew, "N/s", "none").c_str(),
               (limits.velocity ? text(*limits.velocity, "m/s", "none") : std::string("5 m/s on real hardware")).c_str(),
               text(limits.workspace, "m", "none").c_str());
   std::printf("  ramps      %g s in, %g s out\n  passivity  %s\n", limits.ramp_in, limits.ramp_out,
@@ -219,7 +221,9 @@ int info(const std::string& file, bool with_parameters, bool as_json) {
   std::printf("  mount   position [%g, %g, %g] m, orientation [%g, %g, %g, %g]\n", p.x(), p.y(), p.z(), q.w(), q.x(),
               q.y(), q.z());
   printDoubts(description, **device);
-  printLimits(description.limits);
+  scene::Scene alone;
+  alone.devices.push_back(description);
+  printLimits(description.limits, servo::maxForceOf(alone));
   printHardware(**device);
   if (with_parameters)
     if (auto about = catalog().device(description.module)) printClass(**about);

@@ -17,6 +17,7 @@ constexpr Against kAgainst[] = {{"H4 H6 H8 H9 H13 H17 H21", "wrong numbers, faul
                                 {"H16", "too much force"},
                                 {"H18", "a blow"},
                                 {"H1 H2", "false positions or times"},
+                                {"H1", "false positions"},
                                 {"H19", "a push too long or strong"},
                                 {"A3", "running into the stops"},
                                 {"A1", "a burnt winding"},

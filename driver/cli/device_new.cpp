@@ -238,6 +238,9 @@ int makeNew(const CLI::App& command, Options options) {
   if (problems.empty()) problems = diagnostics::tryDevice(file, catalog());
   printProblems(problems, stderr);
   const std::string name = file.string();
+  if (!problems.empty())
+    return fail(kFailed,
+                name + " is written, but cannot be used yet\n  fix: what is said above, then hapticd check " + name);
   std::printf(
       "%s\n\nthen, step by step (driver/docs/devices.md, \"A new arm, step by step\"):\n"
       "  hapticd check %s                       # after each change\n"
@@ -246,7 +249,7 @@ int makeNew(const CLI::App& command, Options options) {
       "  hapticd device calibrate %s\n"
       "  hapticd run SCENE.yaml --device %s --view       # the arm in a page\n",
       name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str());
-  return problems.empty() ? kWorked : kFailed;
+  return kWorked;
 }
 
 }  // namespace

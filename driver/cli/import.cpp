@@ -51,8 +51,13 @@ std::string otherWay(const std::string& file) {
 
 /// What the options of one format are worth with another one.
 std::string misplaced(const Options& options, bool cad) {
-  const bool placed = options.placement.scale != 1 || options.placement.fit > 0 || options.placement.center;
-  if (cad && placed) return "--scale, --fit and --center are not for CAD files, which state their unit";
+  const bool turned = options.placement.fit > 0 || options.placement.center || options.up != "y";
+  if (cad && (turned || options.placement.scale != 1))
+    return "--scale, --fit, --center and --up are not for CAD files, which state their unit: place the part by pose";
+  if (options.medial && turned)
+    return "--fit, --center and --up are not for --medial, expected --scale (metres per unit of the file)";
+  if (options.outward != "auto" && (cad || options.medial || isMeshFile(options.file)))
+    return "--outward is for .bpt files; triangles and CAD faces are turned outward by the volume that they enclose";
   if (!cad && options.cad.check) return "--check is for CAD files (.step, .iges, .brep)";
   if (options.out.empty() && !options.cad.check)
     return "--out is required: a name for what the file becomes, such as part.hpart";
@@ -78,33 +83,13 @@ int importSoftBody(const Options& options) {
   return done ? kWorked : fail(kFailed, done.error());
 }
 
-int importPatches(const Options& options);
-
-int importModel(const Options& options) {
-  const bool from_cad = isCadFile(options.file) && !options.medial;
-  if (const std::string wrong = misplaced(options, from_cad); !wrong.empty())
-    return fail(kBadInput, options.file + ": " + wrong);
-  if (from_cad) return importCadFile(options);
-  if (const std::string way = otherWay(options.file); !way.empty()) return fail(kBadInput, way);
-  if (options.medial) return importSoftBody(options);
-  if (!options.answers.empty()) {
-    const auto done = calibrate({options.file, options.answers, options.dents, options.out}, catalog());
-    return done ? kWorked : fail(kBadInput, done.error());
-  }
-  if (isMeshFile(options.file))
-    return importMesh({options.file, options.out, options.placement.scale, options.smooth_angle, options.json});
-  return importPatches(options);
-}
-
-int importPatches(const Options& options) {
+int importPatches(const Options& options, const Placement& placement) {
   document::Problems problems;
   const auto text = document::readFile(options.file, document::kMaxFileBytes, problems);
   printProblems(problems, stderr);
   if (!text) return kBadInput;
   auto model = parseBpt(*text, options.file);
   if (!model) return fail(kBadInput, model.error());
-  Placement placement = options.placement;
-  placement.up = options.up[0];
   placeModel(*model, placement);
   if (options.outward != "auto") model->reversed = options.outward == "reversed";
 
@@ -121,6 +106,24 @@ int importPatches(const Options& options) {
   std::printf("%s: %zu surfaces%s\n", options.out.c_str(), model->patches.size(),
               model->reversed ? ", outward reversed" : "");
   return kWorked;
+}
+
+int importModel(const Options& options) {
+  const bool from_cad = isCadFile(options.file) && !options.medial;
+  if (const std::string wrong = misplaced(options, from_cad); !wrong.empty())
+    return fail(kBadInput, options.file + ": " + wrong);
+  if (from_cad) return importCadFile(options);
+  if (const std::string way = otherWay(options.file); !way.empty()) return fail(kBadInput, way);
+  if (options.medial) return importSoftBody(options);
+  if (!options.answers.empty()) {
+    const auto done = calibrate({options.file, options.answers, options.dents, options.out}, catalog());
+    return done ? kWorked : fail(kBadInput, done.error());
+  }
+  Placement placement = options.placement;
+  placement.up = options.up[0];
+  if (isMeshFile(options.file))
+    return importMesh({options.file, options.out, placement, options.smooth_angle, options.json});
+  return importPatches(options, placement);
 }
 
 void addMedialOptions(CLI::App& command, Options& options) {

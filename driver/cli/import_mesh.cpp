@@ -53,12 +53,15 @@ int importMesh(const MeshImport& options) {
                                "soft body (.ma, .yaml) add --medial");
   const auto bytes = readRegular(options.file, kMaxMeshBytes);
   if (!bytes) return fail(kBadInput, options.file + ": " + bytes.error());
-  const auto mesh = importing::parseMesh(*bytes, options.file);
+  auto mesh = importing::parseMesh(*bytes, options.file);
   if (!mesh) return fail(kBadInput, mesh.error());
+  const importing::Placement& placement = options.placement;
+  const bool placed = placement.fit > 0 || placement.center || placement.up != 'y';
+  if (placed) importing::placePoints(mesh->points, mesh->corners, placement);
   importing::MeshReport report;
   std::string part;
   try {
-    const importing::MeshOptions how{options.scale, options.smooth_angle * std::numbers::pi / 180};
+    const importing::MeshOptions how{placed ? 1 : placement.scale, options.smooth_angle * std::numbers::pi / 180};
     const std::string name = std::filesystem::path(options.file).filename().string();
     part = brep::writePart(importing::meshPart(*mesh, how, name, report));
   } catch (const std::exception& error) {

@@ -3,11 +3,13 @@
 #pragma once
 #include <string>
 
+#include "import/bezier_import.hpp"
+
 namespace hapticd::cli {
 
 struct MeshImport {
   std::string file, out;
-  double scale = 1;         ///< metres per unit of the file
+  importing::Placement placement;
   double smooth_angle = 0;  ///< [degrees]
   bool json = false;        ///< the report as JSON
 };

@@ -171,6 +171,7 @@ std::string mappingMeant(const Node& node) {
 }
 
 std::string keyMeant(std::string_view key) {
+  if (toNumber(key)) return " (a comma stands before it: a half is 0.5, with a point)";
   const size_t colon = key.find(':');
   if (colon != key.npos && colon > 0 && colon + 1 < key.size())
     return " (no blank after the colon, expected \"" + std::string(key.substr(0, colon)) + ": " +

@@ -176,6 +176,18 @@ std::optional<Eigen::Quaterniond> Reader::quaternion(const Node& node, const std
   return std::nullopt;
 }
 
+namespace {
+
+/// Where a key belongs that was written one level too high.
+std::string belongsTo(const Table& table, const std::string& name) {
+  for (const Key& key : table.keys)
+    if (key.type == Type::kObject && key.table->find(name) != nullptr)
+      return std::string("; ") + name + " belongs under " + key.name;
+  return table.find("parameters") != nullptr ? "; a parameter of the plugin or module belongs under parameters" : "";
+}
+
+}  // namespace
+
 void Reader::object(const Node& node, const std::string& key, const Table& table, void* object) {
   if (!node.isMap()) {
     problem(node, key, describe(node) + ", expected a mapping with " + listed(table.names()) + mappingMeant(node));
@@ -194,7 +206,8 @@ void Reader::object(const Node& node, const std::string& key, const Table& table
       problem(entry.key, path,
               "unknown key, expected one of " + listed(table.names(), 20) +
                   suggestion(entry.key.scalar, table.names()) +
-                  (empty != nullptr ? "; indent it further than " + *empty + ", if it belongs there" : ""));
+                  (empty != nullptr ? "; indent it further than " + *empty + ", if it belongs there"
+                                    : belongsTo(table, entry.key.scalar)));
     }
   }
   for (const Key& wanted : table.keys)

@@ -32,7 +32,9 @@ class Reader {
   ModelFile read(const Json& root) {
     ModelFile file;
     if (!root.is_object()) {
-      problems_.add({}, "expected a mapping with format and surfaces");
+      problems_.add({},
+                    "no model file, expected a mapping with format and surfaces; triangles and CAD files become a part "
+                    "first: hapticd import FILE -o PART.hpart");
       return file;
     }
     checkKeys(root, {}, {"format", "name", "credit", "surfaces", "edges", "medial"});

@@ -1,17 +1,25 @@
 // SPDX-License-Identifier: MIT
 #include "kinematics/arm.hpp"
 
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 
 namespace hapticd::kinematics {
 
 void Arm::narrow(const JointLimits& limits) {
+  const auto text = [](double value) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%g", value);
+    return std::string(buffer);
+  };
+  if (limits.min.size() != jointCount())
+    throw std::invalid_argument("arm.limits: " + std::to_string(limits.min.size()) + " rows, expected " +
+                                std::to_string(jointCount()) + ": one for each joint");
   for (Eigen::Index i = 0; i < limits.min.size(); ++i)
-    if (limits.min.size() != jointCount() || !(limits.min[i] <= limits.max[i]))
-      throw std::invalid_argument("arm.limits: row " + std::to_string(i + 1) + " of " +
-                                  std::to_string(limits.min.size()) + ", expected " + std::to_string(jointCount()) +
-                                  " rows, each the smaller one first");
+    if (!(limits.min[i] <= limits.max[i]))
+      throw std::invalid_argument("arm.limits[" + std::to_string(i) + "]: [" + text(limits.min[i]) + ", " +
+                                  text(limits.max[i]) + "], expected the smaller number first");
   limits_ = limits;
 }
 

@@ -47,6 +47,14 @@ std::string textOf(const std::vector<fs::path>& dirs) {
   return text;
 }
 
+/// Plugins and modules that ship: `driver/demo` builds two of them alone.
+bool ships(const std::string& name) {
+  constexpr const char* kShipped[] = {"mat_deformable", "nurbs_rigid", "pendulum", "push_button", "template",
+                                      "simulated",      "usb_hid",     "usb_bulk", "vme",         "template_arm",
+                                      "vendor_dhd",     "vendor_hd"};
+  return std::any_of(std::begin(kShipped), std::end(kShipped), [&](const char* one) { return name == one; });
+}
+
 }  // namespace
 
 fs::path executableDir() {
@@ -155,8 +163,10 @@ std::string Catalog::notFound(Kind kind, const std::string& name, const std::str
   if (reason.empty())
     for (const CatalogFile* file : files(kind))
       if (!file->error.empty()) text += "\n  not usable: " + file->error;
-  text +=
-      "\n  searched:" + textOf(dirs(kind)) + "\n  fix: name an existing one, or add its folder to HAPTICD_PLUGIN_PATH";
+  text += "\n  searched:" + textOf(dirs(kind)) + "\n  fix: ";
+  if (reason.empty() && ships(name))  // of a checkout: the packages have all of them
+    return text + "it comes with hapticd but is not built here: cmake --build build/release --target modules";
+  text += "name an existing one, or add its folder to HAPTICD_PLUGIN_PATH";
   if (name.find('/') == name.npos && !name.ends_with(".so")) return text;
   return text + "; a file is named by its class, such as " + fs::path(name).stem().string() +
          ", and its folder by --plugin-path";

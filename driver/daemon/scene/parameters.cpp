@@ -20,6 +20,17 @@ bool isGroup(const host::ClassInfo& info, const std::string& id) {
   return false;
 }
 
+/// The ids of a group without its name: "script" of "hand.script"; all of them for "".
+std::vector<std::string> idsIn(const host::ClassInfo& info, const std::string& group) {
+  std::vector<std::string> ids;
+  for (const std::string& id : info.paramIds())
+    if (group.empty())
+      ids.push_back(id);
+    else if (id.size() > group.size() && id.compare(0, group.size(), group) == 0 && id[group.size()] == '.')
+      ids.push_back(id.substr(group.size() + 1));
+  return ids;
+}
+
 std::string countText(const host::ParamInfo& p) {
   std::string text = p.min_count == p.max_count ? std::to_string(p.min_count) + " numbers"
                      : p.max_count == UINT32_MAX
@@ -40,7 +51,7 @@ void ParameterReader::read(const Node& node, const std::string& key, const std::
                            const std::string& skip) {
   if (!node.isMap())
     return in_->problem(node, key,
-                        describe(node) + ", expected a mapping with " + document::listed(info_.paramIds()) +
+                        describe(node) + ", expected a mapping with " + document::listed(idsIn(info_, prefix)) +
                             document::mappingMeant(node));
   for (const Entry& entry : node.entries) {
     if (!skip.empty() && entry.key.scalar == skip) continue;
@@ -77,7 +88,8 @@ void ParameterReader::unknown(const Entry& entry, const std::string& key, const 
   std::vector<std::string> ids = info_.paramIds();
   if (ids.empty()) return in_->problem(entry.key, key, "unknown key: " + info_.name + " has no parameters");
   in_->problem(entry.key, key,
-               "unknown parameter of " + info_.name + ", expected one of " + document::listed(ids, 24) +
+               "unknown parameter of " + info_.name + ", expected one of " +
+                   document::listed(idsIn(info_, id.substr(0, id.find('.') == id.npos ? 0 : id.rfind('.'))), 24) +
                    document::suggestion(id, ids));
 }
 

@@ -50,7 +50,7 @@ Result<Leads::Target> RequestHandler::leadOf(const Request& request) const {
     if (!places_[*place].model.kinematic)
       return refuse("unsupported", "model \"" + request.model +
                                        "\" is not kinematic: only such can be led\n"
-                                       "  fix: motion: kinematic, and a path, in the scene");
+                                       "  fix: motion: kinematic in the scene");
     return Leads::Target{Order::Led::kModel, *place, "model \"" + request.model + "\""};
   }
   const auto arm = armOf(request.hand);

@@ -12,7 +12,8 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr size_t kAtOnce = 256;  ///< events that are read in one go
+constexpr size_t kAtOnce = 256;    ///< events that are read in one go
+constexpr double kBegins = 0.005;  ///< [s] nobody brings a tip to a surface so soon: it was inside already
 
 std::string leaderOf(const hapticd_event& event) {
   return fmt::format("process {:.0f}", event.value);
@@ -70,6 +71,11 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
     case HAPTICD_CLICK:
       return {HSP_LOG_DEBUG, who, fmt::format("clicked at {:.4f} s", event.t)};
     case HAPTICD_TOUCH:
+      if (event.t < kBegins)
+        return {HSP_LOG_WARNING, who,
+                device(event) +
+                    " begins inside it, so it is pushed at once, over limits.ramp_in; expected outside: move "
+                    "the model, the arm (mount) or the hand (hand)"};
       return {HSP_LOG_DEBUG, who, fmt::format("{} touches it at {:.4f} s", device(event), event.t)};
     case HAPTICD_SILENCED:
       return {HSP_LOG_ERROR, "",

@@ -14,6 +14,8 @@ using codec::Field;
 
 /// Fewer reports than that agree with some method by chance.
 constexpr size_t kEnough = 3;
+/// Of the reports whose checksum is wrong: some of them are really damaged.
+constexpr double kMost = 0.8;
 
 std::string hexByte(uint8_t byte) {
   char text[8];
@@ -48,15 +50,23 @@ std::string sizeHint(const codec::Wire& wire, const Decoded& decoded) {
   return "";
 }
 
-bool fitsAll(const Field& field, const Decoded& decoded) {
-  return std::all_of(decoded.bad.begin(), decoded.bad.end(), [&](const BadReport& bad) {
-    return codec::codeAt(field, bad.bytes) == codec::checksumAt(field, bad.bytes);
-  });
+using Reports = std::vector<const BadReport*>;
+
+size_t fitting(const Field& field, const Reports& reports) {
+  return static_cast<size_t>(std::count_if(reports.begin(), reports.end(), [&](const BadReport* bad) {
+    return codec::codeAt(field, bad->bytes) == codec::checksumAt(field, bad->bytes);
+  }));
 }
 
-/// The methods, in both byte orders, that agree with the checksum of every bad report.
-std::vector<std::string> fittingMethods(Field field, const Decoded& decoded) {
-  std::vector<std::string> names;
+/// A method, and how many reports agree with it.
+struct Fit {
+  std::string name;
+  size_t count = 0;
+};
+
+/// The method and byte order that agree with most of them.
+Fit bestMethod(Field field, const Reports& reports) {
+  Fit best;
   std::vector<codec::NamedCrc> all(codec::namedCrcs().begin(), codec::namedCrcs().end());
   codec::Check plain;
   plain.bits = field.bits;
@@ -67,25 +77,32 @@ std::vector<std::string> fittingMethods(Field field, const Decoded& decoded) {
       if (one.check.bits > field.bits || (big && field.bits <= 8)) continue;
       field.check = one.check;
       field.check.big_endian = field.big_endian = big;
-      if (fitsAll(field, decoded)) names.push_back(std::string(one.name) + ", endian: " + (big ? "big" : "little"));
+      const size_t count = fitting(field, reports);
+      if (count > best.count) best = {std::string(one.name) + ", endian: " + (big ? "big" : "little"), count};
     }
-  return names;
+  return best;
 }
 
 std::string checksumHint(const Decoded& decoded) {
-  const Field* field = decoded.bad.empty() ? nullptr : decoded.bad.front().wrong;
-  if (field == nullptr || field->role != codec::Role::kChecksum || decoded.good() > 0) return "";
+  const Field* field = nullptr;
+  Reports sums;
   std::set<std::string> different;
   for (const BadReport& bad : decoded.bad) {
-    if (bad.wrong != field) return "";
+    if (bad.wrong == nullptr || bad.wrong->role != codec::Role::kChecksum) continue;
+    if (field != nullptr && bad.wrong != field) return "";
+    field = bad.wrong;
+    sums.push_back(&bad);
     different.insert(hexText(bad.bytes.data(), bad.bytes.size()));
   }
-  if (different.size() < kEnough) return "";
-  const std::vector<std::string> names = fittingMethods(*field, decoded);
-  if (names.empty())
+  if (decoded.good() > 0 || different.size() < kEnough) return "";
+  const Fit best = bestMethod(*field, sums);
+  if (static_cast<double>(best.count) < kMost * static_cast<double>(sums.size()))
     return "no method that is known by name fits them either, from byte " + std::to_string(field->from) + " to " +
            std::to_string(field->to - 1) + ": see from, to and at of the checksum\n";
-  return "the checksum of each of them is right with method: " + names.front() + "\n";
+  const bool all = best.count == sums.size() && sums.size() == decoded.bad.size();
+  return "the checksum of " +
+         (all ? "each" : std::to_string(best.count) + " of the " + std::to_string(decoded.bad.size())) +
+         " of them is right with method: " + best.name + "\n";
 }
 
 }  // namespace

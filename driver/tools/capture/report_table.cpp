@@ -269,7 +269,9 @@ std::string summaryOf(const Decoded& decoded) {
   if (decoded.others > 0) text += "; besides " + counted(decoded.others, "report") + " with another id";
   if (decoded.lost > 0) text += "; besides " + counted(decoded.lost, "byte") + " of no report";
   if (decoded.repeats > 0) text += "; the counter stands still " + counted(decoded.repeats, "time");
-  if (decoded.gaps > 0) text += "; numbers of the counter are missing " + counted(decoded.gaps, "time");
+  if (decoded.gaps > 0)
+    text += "; numbers of the counter are missing " + counted(decoded.gaps, "time") +
+            (decoded.good() < decoded.reports.size() ? ", bad reports among them" : "");
   for (size_t i = 0; i < decoded.reports.size(); ++i)
     if (!decoded.reports[i].wrong.empty())
       return text + "\nreport " + std::to_string(i + 1) + " is the first bad one: " + decoded.reports[i].wrong;

@@ -33,10 +33,12 @@ void addTimes(const host::DeviceInstance& device, bool opened, const std::option
   const hdv_info& info = device.info();
   const bool known = opened || wire;
   const bool watchdog = opened ? (info.capabilities & HDV_C_WATCHDOG) != 0 : wire && wire->watchdog > 0;
+  const std::string after = wire && wire->watchdog > 0 ? numberText(wire->watchdog * 1e3) + " ms after the last command"
+                                                       : std::string("when commands stop");
   to.push_back({"H30", "the hardware's own watchdog", known ? onIf(watchdog) : ControlState::kUnknown,
                 !known ? "the arm itself says it; it is not plugged in"
                 : watchdog
-                    ? "the arm cuts its motors when commands stop"
+                    ? "the arm cuts its motors " + after
                     : "the arm holds the last force when the machine dies: keep a switch within reach; if it cuts "
                       "its motors by itself, give wire.watchdog"});
   const double rate = opened ? info.rate_hz : wire ? wire->rate : 0;
@@ -44,6 +46,22 @@ void addTimes(const host::DeviceInstance& device, bool opened, const std::option
                 !known     ? "the arm itself says its rate"
                 : rate > 0 ? "fades after " + numberText(2000 / rate) + " ms"
                            : "held for up to 50 ms: give the rate of the arm"});
+}
+
+/// What a report carries so that a wrong or an old one is seen.
+void addReports(const std::optional<codec::Wire>& wire, std::vector<Control>& to) {
+  if (!wire) return;
+  const auto has = [&wire](codec::Role role) {
+    return std::any_of(wire->input.fields.begin(), wire->input.fields.end(),
+                       [role](const codec::Field& field) { return field.role == role; });
+  };
+  const bool sum = has(codec::Role::kChecksum), counter = has(codec::Role::kSequence);
+  to.push_back(
+      {"H1", "a misread report is noticed", onIf(sum),
+       sum ? "by its checksum" : "no checksum in wire.input: only by what the bus itself checks, and by the speed"});
+  to.push_back(
+      {"H3", "a repeated report is noticed", onIf(counter),
+       counter ? "by its counter" : "no counter in wire.input: firmware that hangs may send the last one for ever"});
 }
 
 /// @param buttons of the arm
@@ -100,7 +118,9 @@ std::vector<Control> controlsOf(const scene::Device& description, const host::De
   controls.push_back({"H30 H32", "silenced by another process", onIf(has("hdv.silence/1")),
                       has("hdv.silence/1") ? "a guard switches the motors off once the daemon is gone"
                                            : "the module does not say how: nothing but the arm itself is left"});
-  addTimes(device, opened, wireOf(description, device.kinematics().joint_count), controls);
+  const auto wire = wireOf(description, device.kinematics().joint_count);
+  addTimes(device, opened, wire, controls);
+  addReports(wire, controls);
   const bool guarded = description.limits.passivity.value_or(opened && (info.capabilities & HDV_C_UNVERIFIED) != 0);
   controls.push_back({"H22", "passivity controller",
                       opened || description.limits.passivity ? onIf(guarded) : ControlState::kUnknown,

@@ -12,6 +12,7 @@
 
 #include "diagnostics/limit_advice.hpp"
 #include "diagnostics/node_path.hpp"
+#include "diagnostics/safety_advice.hpp"
 #include "diagnostics/unit_advice.hpp"
 #include "diagnostics/wire_advice.hpp"
 #include "document/node.hpp"
@@ -81,6 +82,7 @@ document::Problems adviseDevice(const std::filesystem::path& file, host::Catalog
   adviseUnits(*root, file.string(), warnings);
   if (const auto arm = host::DeviceInstance::create(*loaded.device, nullptr)) {
     adviseLimits(*root, *loaded.device, **arm, warnings);
+    adviseSafety(*root, *loaded.device, **arm, warnings);
     restOutsideWorkspace(*root, *loaded.device, **arm, warnings);
     adviseWire(*root, *loaded.device, (*arm)->kinematics().joint_count, warnings);
   }

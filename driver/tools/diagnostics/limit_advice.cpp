@@ -25,15 +25,6 @@ const scene::Value* valueOf(const scene::Device& device, std::initializer_list<c
   return nullptr;
 }
 
-/// [N m] of each joint's motor; empty: not known.
-std::vector<double> motorsOf(const scene::Device& device, size_t joints) {
-  const scene::Value* value = valueOf(device, {"arm.max_torque"});
-  std::vector<double> torque = value == nullptr ? std::vector<double>() : value->numbers;
-  if (torque.size() == 1) torque.assign(joints, torque[0]);
-  const bool all = torque.size() == joints && std::all_of(torque.begin(), torque.end(), [](double t) { return t > 0; });
-  return all ? torque : std::vector<double>();
-}
-
 /// A device whose force may be larger than its arm can give. Nothing is known of an arm that gives 0.
 void forceBeyondArm(const scene::Device& device, document::Problems& warnings) {
   const scene::Value* most = valueOf(device, {"device.max_force", "max_force"});
@@ -74,14 +65,28 @@ std::array<double, HDV_MAX_JOINTS> restJoints(const Node& root, uint32_t joints)
   return q;
 }
 
+std::vector<double> motorsOf(const scene::Device& device, size_t joints) {
+  const scene::Value* value = valueOf(device, {"arm.max_torque"});
+  std::vector<double> torque = value == nullptr ? std::vector<double>() : value->numbers;
+  if (torque.size() == 1) torque.assign(joints, torque[0]);
+  const bool all = torque.size() == joints && std::all_of(torque.begin(), torque.end(), [](double t) { return t > 0; });
+  return all ? torque : std::vector<double>();
+}
+
+std::optional<double> forceOfMotors(const Node& root, const scene::Device& device, const host::DeviceInstance& arm) {
+  const std::vector<double> motors = motorsOf(device, arm.kinematics().joint_count);
+  const auto linear = jacobianAtRest(root, arm, 0);
+  return motors.empty() || !linear ? std::nullopt : farthestReach(*linear, motors);
+}
+
 void adviseLimits(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                   document::Problems& warnings) {
   forceBeyondArm(device, warnings);
   const std::string file = device.file.string();
   const std::vector<double> motors = motorsOf(device, arm.kinematics().joint_count);
-  const auto linear = jacobianAtRest(root, arm, 0), angular = jacobianAtRest(root, arm, 3);
-  if (motors.empty() || !linear || !angular) return;
-  if (const auto reach = farthestReach(*linear, motors)) {
+  const auto angular = jacobianAtRest(root, arm, 3);
+  if (motors.empty() || !angular) return;
+  if (const auto reach = forceOfMotors(root, device, arm)) {
     beyondMotors(find(root, {"limits", "force"}), "limits.force", device.limits.force, *reach, "N", file, warnings);
     const scene::Value* claimed = valueOf(device, {"device.max_force"});
     beyondMotors(find(root, {"parameters", "device", "max_force"}), "parameters.device.max_force",

@@ -2,6 +2,8 @@
 /// Limits of a device file against what its arm and its motors can give.
 #pragma once
 #include <array>
+#include <optional>
+#include <vector>
 
 #include "description/scene.hpp"
 #include "document/node.hpp"
@@ -11,6 +13,13 @@ namespace hapticd::diagnostics {
 
 /// [main] Joints of the arm at rest [rad]: in the pose of its calibration, else at zero.
 std::array<double, HDV_MAX_JOINTS> restJoints(const document::Node& root, uint32_t joints);
+
+/// [main] arm.max_torque of each joint [N m]; empty: not known of all of them.
+std::vector<double> motorsOf(const scene::Device& device, size_t joints);
+
+/// [main] [N] What the motors give at rest in the arm's strongest direction; nothing where that is not known.
+std::optional<double> forceOfMotors(const document::Node& root, const scene::Device& device,
+                                    const host::DeviceInstance& arm);
 
 /// [main] Warns of `limits.force` and `device.max_force` beyond what arm.max_torque gives at rest in the arm's
 /// strongest direction, of `limits.force` beyond `device.max_force`, and of `limits.torque` beyond the motors.

@@ -56,9 +56,27 @@ void quaternionTurnedRound(const Node* orientation, const std::string& file, doc
                    "is w, x, y, z, so this is a half turn about z; expected [1, 0, 0, 0] where no turn was meant");
 }
 
+/// "05", "-0800": a number with a zero in front that says nothing.
+bool idleZero(const std::string& text) {
+  const size_t first = text.find_first_not_of("+-");
+  return first != std::string::npos && first + 1 < text.size() && text[first] == '0' &&
+         text.find_first_not_of("0123456789", first) == std::string::npos;
+}
+
 }  // namespace
 
+void adviseZeros(const Node& root, const std::string& file, document::Problems& warnings) {
+  if (root.isScalar() && !root.quoted && idleZero(root.scalar))
+    document::report(warnings, file, root.line, root.column, "",
+                     "\"" + root.scalar +
+                         "\" begins with a zero: a comma separates numbers, and decimals have a point (0." +
+                         root.scalar + " is one number, 0," + root.scalar + " are two)");
+  for (const Node& item : root.items) adviseZeros(item, file, warnings);
+  for (const document::Entry& entry : root.entries) adviseZeros(entry.value, file, warnings);
+}
+
 void adviseUnits(const Node& root, const std::string& file, document::Problems& warnings) {
+  adviseZeros(root, file, warnings);
   beyondATurn(find(root, {"parameters", "arm", "limits"}), "parameters.arm.limits", file, warnings);
   beyondATurn(find(root, {"parameters", "calibration", "pose"}), "parameters.calibration.pose", file, warnings);
   mountFarAway(find(root, {"mount", "position"}), file, warnings);

@@ -11,4 +11,7 @@ namespace hapticd::diagnostics {
 /// that was probably written x, y, z, w.
 void adviseUnits(const document::Node& root, const std::string& file, document::Problems& warnings);
 
+/// [main] Warns of whole numbers that begin with a zero, as in [0,05, 0]: the comma separated two numbers.
+void adviseZeros(const document::Node& root, const std::string& file, document::Problems& warnings);
+
 }  // namespace hapticd::diagnostics

@@ -176,6 +176,22 @@ void placeModel(BezierModel& model, const Placement& placement) {
     for (Vector3d& point : patch.points) point = (scale * (point - origin)).unaryExpr(&clean);
 }
 
+void placePoints(std::vector<Vector3d>& points, const std::vector<std::array<std::uint32_t, 3>>& used,
+                 const Placement& placement) {
+  if (used.empty()) return;
+  for (Vector3d& point : points) point = turned(point, placement.up);
+  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const std::array<std::uint32_t, 3>& corners : used)
+    for (const std::uint32_t corner : corners) {
+      low = low.cwiseMin(points[corner]);
+      high = high.cwiseMax(points[corner]);
+    }
+  const double extent = (high - low).maxCoeff();
+  const double scale = placement.fit > 0 && extent > 0 ? placement.fit / extent : placement.scale;
+  const Vector3d origin = placement.center ? Vector3d(0.5 * (low + high)) : Vector3d::Zero();
+  for (Vector3d& point : points) point = (scale * (point - origin)).unaryExpr(&clean);
+}
+
 double signedVolume(const BezierModel& model) {
   constexpr std::array<double, 4> kAt{0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263};
   constexpr std::array<double, 4> kWeight{

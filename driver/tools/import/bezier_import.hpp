@@ -35,6 +35,10 @@ Result<BezierModel> parseBpt(const std::string& text, const std::string& file);
 /// [main] Turns, scales and centres all points.
 void placeModel(BezierModel& model, const Placement& placement);
 
+/// [main] The same for the points of triangles; the box is that of the corners that are used.
+void placePoints(std::vector<Eigen::Vector3d>& points, const std::vector<std::array<std::uint32_t, 3>>& used,
+                 const Placement& placement);
+
 /// [main] Volume under the signed surface, by the divergence theorem; below zero where Su x Sv points inward.
 double signedVolume(const BezierModel& model);
 

@@ -59,4 +59,17 @@ with tempfile.TemporaryDirectory() as folder:
             out.write(f"hapticd: 1\nmodels:\n  - {{name: egg, plugin: nurbs_rigid, {pose}parameters: {{geometry: egg.hpart}}}}\n")
         done = subprocess.run([HAPTICD, "check", scene], capture_output=True, text=True, timeout=120)
         check(f"check of a part: {told or 'no warning'}", done.returncode == 0 and (told in done.stdout if told else "warning" not in done.stdout), done.stdout)
+    def imported(*options):
+        return subprocess.run([HAPTICD, "import", mesh, "-o", part, *options], capture_output=True, text=True, timeout=120)
+
+    done = imported("--fit", "0.06", "--center", "--up", "z")
+    check("triangles are fitted and turned", done.returncode == 0 and "0.06 x 0 x 0.06 m" in done.stdout, (done.stdout, done.stderr))
+    done = imported("--outward", "normal")
+    check("what means nothing for triangles is refused", done.returncode == 2 and "--outward is for .bpt files" in done.stderr, done.stderr)
+    stl = os.path.join(folder, "cube.stl")
+    open(stl, "w").write("solid\nendsolid\n")
+    with open(scene, "w") as out:
+        out.write("hapticd: 1\nmodels:\n  - {name: egg, plugin: nurbs_rigid, parameters: {geometry: cube.stl}}\n")
+    done = subprocess.run([HAPTICD, "check", scene], capture_output=True, text=True, timeout=120)
+    check("a mesh in the place of a model says how it becomes a part", done.returncode == 2 and "hapticd import" in done.stdout, done.stdout)
 finish()

@@ -111,6 +111,37 @@ test('a part file of 20 000 triangles is drawn with its normals', async () => {
   }
 });
 
+test('beside a model without triangles stands why it is not drawn, for as long as it is there', async () => {
+  const sandbox = new Sandbox();
+  let page;
+  try {
+    const file = (name) => join(sandbox.folder, name);
+    execFileSync('gcc', ['-shared', '-fPIC', '-DVERSIONED_NAME=c_ball', '-I', join(root, 'driver/include/hapticd'),
+      join(root, 'tests/abi/plugins/versioned_sphere.c'), '-o', file('c_ball.so'), '-lm']);
+    writeFileSync(file('unseen.yaml'), `hapticd: 1\ndevice: ${join(root, 'config', 'devices', 'simulated-premium15.yaml')}\n` +
+      'models:\n  - {name: unseen, plugin: c_ball}\n  - {name: seen, plugin: template, pose: {position: [0.2, 0, 0]}}\n');
+    sandbox.start(['--plugin-path', sandbox.folder, 'run', file('unseen.yaml'), '--name', 'test', '--allow-non-rt']);
+    const [url] = await sandbox.start(['view', '--name', 'test', '--control']).says(/http:\S+/);
+    page = await browser.page(url);
+    const told = (name) => page.evaluate((model) => {
+      const words = document.querySelector(`[data-model="${model}"] .undrawn`);
+      return words ? {hidden: words.hidden, text: words.textContent} : null;
+    }, name);
+    await until(async () => (await told('unseen'))?.hidden === false, kPatience, 'a word beside the model');
+    assert.match((await told('unseen')).text, /hsp\.geometry\/1.*felt all the same/);
+    await new Promise((resolve) => setTimeout(resolve, 7000)); // a notice is gone after 6 s
+    await page.evaluate(() => document.querySelector('[data-model="seen"] header button').click()); // the list is made anew
+    await until(() => page.evaluate(() => document.querySelector('[data-model="seen"] header button').textContent === 'Enable'), kPatience, 'a new list');
+    assert.equal((await told('unseen')).hidden, false);
+    assert.equal((await told('seen')).hidden, true, 'what is drawn has no such word');
+    await page.screenshot({path: join(pictures, 'unseen.png')});
+    assert.deepEqual(page.wrong, []);
+  } finally {
+    await page?.close();
+    await sandbox.close();
+  }
+});
+
 /** [m] Of compliance control the rows have the virtual mass; the arm follows it, by 0.9 mm at most in 4 s of that scene. */
 const kBehind = {compliance: 5e-3};
 

@@ -49,6 +49,7 @@ TEST(Meant, ReadsAListInATextAndTwoNumbersInOne) {
 TEST(Meant, FindsTheValueInsideAKey) {
   EXPECT_EQ(suggestion("rate:1000", {"rate"}), " (no blank after the colon, expected \"rate: 1000\")");
   EXPECT_EQ(suggestion("\u00a0rate", {"rate"}), " (it has a no-break space in it, expected blanks)");
+  EXPECT_EQ(suggestion("5", {"rate"}), " (a comma stands before it: a half is 0.5, with a point)");
   EXPECT_EQ(suggestion("poke", {"none", "press"}), "");
 }
 

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/safety_advice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "diagnostics/limit_advice.hpp"
+#include "diagnostics/node_path.hpp"
+#include "diagnostics/wire_of.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+using codec::Field;
+using codec::Role;
+using document::Node;
+
+/// What all warnings of one file need.
+struct File {
+  const Node& root;
+  const scene::Device& device;
+  document::Problems& warnings;
+  void warn(const Node& at, const std::string& key, const std::string& what) const {
+    document::report(warnings, device.file.string(), at.line, at.column, key, what);
+  }
+  double number(const char* id) const {
+    for (const scene::Value& value : device.parameters)
+      if (value.id == id) return value.number;
+    return 0;
+  }
+};
+
+void noForceLimit(const File& file, const host::DeviceInstance& arm) {
+  if (file.device.limits.force > 0 || file.number("device.max_force") > 0) return;
+  const Node* limits = file.root.find("limits");
+  const auto reach = forceOfMotors(file.root, file.device, arm);
+  file.warn(limits != nullptr ? *limits : file.root, "limits.force",
+            "not given, nor parameters.device.max_force, so the motors alone bound the force" +
+                (reach ? fmt::format(": about {:.3g} N at rest", *reach) : std::string()) +
+                "; expected what a hand may feel, such as 0.5 N to begin with");
+}
+
+/// Forces of an arm that is described so draw the hand in where they should push it out.
+void oppositeSigns(const File& file, const codec::Wire& wire) {
+  const Node* fields = find(file.root, {"parameters", "wire", "output", "fields"});
+  for (const Field& in : wire.input.fields)
+    for (size_t i = 0; i < wire.output.fields.size() && fields != nullptr && i < fields->items.size(); ++i) {
+      const Field& out = wire.output.fields[i];
+      if (in.role != Role::kPosition || out.role != Role::kTorque || in.index != out.index) continue;
+      if (in.scale * out.scale > 0) continue;
+      file.warn(fields->items[i], fmt::format("parameters.wire.output.fields[{}].scale", i),
+                fmt::format("its sign is not that of the position of joint {}: if the board does not turn one of them, "
+                            "forces draw the hand in; try the signs with the smallest force first",
+                            in.index + 1));
+    }
+}
+
+void slowWatchdog(const File& file, const codec::Wire& wire) {
+  constexpr double kSlow = 0.1;  // s
+  const Node* watchdog = find(file.root, {"parameters", "wire", "watchdog"});
+  if (watchdog == nullptr || wire.watchdog <= kSlow) return;
+  file.warn(*watchdog, "parameters.wire.watchdog",
+            fmt::format("{:g} s: so long the last force stays when commands stop; expected seconds, such as 0.02",
+                        wire.watchdog));
+}
+
+/// Encoders that count through and wrap are at zero wherever the arm was switched on.
+void noCalibration(const File& file, const codec::Wire& wire) {
+  const bool wraps = std::any_of(wire.input.fields.begin(), wire.input.fields.end(),
+                                 [](const Field& field) { return field.role == Role::kPosition && field.wraps; });
+  const bool says = std::any_of(wire.input.fields.begin(), wire.input.fields.end(),
+                                [](const Field& field) { return field.role == Role::kCalibrated; });
+  if (!wraps || says || file.number("calibration.method") > 0) return;
+  const Node *given = find(file.root, {"parameters", "calibration"}), *parameters = file.root.find("parameters");
+  file.warn(given != nullptr ? *given : *parameters, "parameters.calibration.method",
+            "none, though positions wrap: they count from where the arm was switched on; expected method: pose (or "
+            "device), or no wraps where the encoders are absolute");
+}
+
+void tooHeavy(const File& file, const host::DeviceInstance& arm) {
+  const Node* masses = find(file.root, {"parameters", "arm", "masses"});
+  const std::vector<double> motors = motorsOf(file.device, arm.kinematics().joint_count);
+  if (masses == nullptr || motors.empty()) return;
+  const auto q = restJoints(file.root, arm.kinematics().joint_count);
+  const double gravity[3] = {0, -9.81, 0};
+  std::array<double, HDV_MAX_JOINTS> tau{};
+  if (arm.kinematics().gravity(arm.handle(), q.data(), gravity, tau.data()) < 0) return;
+  for (size_t i = 0; i < motors.size(); ++i)
+    if (std::abs(tau[i]) > motors[i])
+      return file.warn(
+          *masses, "parameters.arm.masses",
+          fmt::format("its weight asks joint {} for {:.3g} N m at rest, and its motor gives {:g}; expected "
+                      "kg",
+                      i + 1, std::abs(tau[i]), motors[i]));
+}
+
+/// Keys that a field of this kind reads, beside those of every field.
+std::set<std::string> keysOf(Role role) {
+  std::set<std::string> keys{"is", "at", "type", "endian", "bit_offset"};
+  const auto add = [&keys](std::initializer_list<const char*> more) { keys.insert(more.begin(), more.end()); };
+  if (role == Role::kPosition || role == Role::kVelocity || role == Role::kTorque || role == Role::kReference)
+    add({"joint", "scale", "offset", "scale_degrees", "offset_degrees", "limit", "wraps"});
+  else if (role == Role::kButton)
+    add({"button", "bit", "inverted"});
+  else if (role == Role::kFault || role == Role::kCalibrated)
+    add({"bit", "inverted"});
+  else if (role == Role::kEnable || role == Role::kCalibrate || role == Role::kFollow)
+    add({"bit", "inverted", "value"});
+  else if (role == Role::kSequence || role == Role::kStarts)
+    add({"modulo"});
+  else if (role == Role::kConstant || role == Role::kFirmware)
+    add({"value"});
+  else if (role == Role::kChecksum)
+    add({"method", "from", "to", "word", "polynomial", "initial", "reflected", "final_xor", "negated"});
+  return keys;
+}
+
+void unusedKeys(const File& file, const codec::Report& report, const char* which) {
+  const Node* fields = find(file.root, {"parameters", "wire", which, "fields"});
+  if (fields == nullptr || !fields->isSequence()) return;
+  for (size_t i = 0; i < report.fields.size() && i < fields->items.size(); ++i) {
+    const Field& field = report.fields[i];
+    const std::set<std::string> used = keysOf(field.role);
+    const std::string key = fmt::format("parameters.wire.{}.fields[{}]", which, i);
+    const Node* is = fields->items[i].find("is");
+    for (const document::Entry& entry : fields->items[i].entries)
+      if (used.count(entry.key.scalar) == 0)
+        file.warn(entry.key, key + "." + entry.key.scalar,
+                  fmt::format("not read: a field that is {} has no {}", is != nullptr ? is->scalar : "this",
+                              entry.key.scalar));
+    const Node* value = fields->items[i].find("value");
+    if (field.role == Role::kEnable && field.bit < 0 && field.value == 0 && value != nullptr)
+      file.warn(*value, key + ".value", "0, which is what off is: the motors could never be enabled; expected another");
+  }
+}
+
+void sameButton(const File& file, const codec::Report& report) {
+  const Node* fields = find(file.root, {"parameters", "wire", "input", "fields"});
+  std::set<int> known;
+  for (size_t i = 0; i < report.fields.size() && fields != nullptr && i < fields->items.size(); ++i)
+    if (report.fields[i].role == Role::kButton && !known.insert(report.fields[i].index).second)
+      file.warn(fields->items[i], fmt::format("parameters.wire.input.fields[{}].button", i),
+                fmt::format("another field is button {} too: either of them is enough to press it",
+                            report.fields[i].index + 1));
+}
+
+}  // namespace
+
+void adviseSafety(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
+                  document::Problems& warnings) {
+  const File file{root, device, warnings};
+  const auto wire = wireOf(device, arm.kinematics().joint_count);
+  if (!wire) return;
+  noForceLimit(file, arm);
+  oppositeSigns(file, *wire);
+  slowWatchdog(file, *wire);
+  noCalibration(file, *wire);
+  tooHeavy(file, arm);
+  unusedKeys(file, wire->input, "input");
+  unusedKeys(file, wire->output, "output");
+  sameButton(file, wire->input);
+}
+
+}  // namespace hapticd::diagnostics
