@@ -69,7 +69,10 @@ document::Problems unstable(const scene::Scene& scene, const std::vector<double>
     }
     const document::Problems found = tune::unstableSettings(scene, device, info, stiffness);
     warnings.insert(warnings.end(), found.begin(), found.end());
-    if (info.max_stiffness <= 0 && std::any_of(stiffness.begin(), stiffness.end(), [](double k) { return k > 0; }))
+    const bool described = std::any_of(device.parameters.begin(), device.parameters.end(),
+                                       [](const scene::Value& value) { return value.id == "wire"; });
+    if (described && info.max_stiffness <= 0 &&
+        std::any_of(stiffness.begin(), stiffness.end(), [](double k) { return k > 0; }))
       document::report(warnings, device.place.file.empty() ? document::Place{device.file.string()} : device.place,
                        "parameters.device.max_stiffness",
                        "not given, so nobody knows whether " + device.name +

@@ -46,6 +46,7 @@ void noForceLimit(const File& file, const host::DeviceInstance& arm) {
 
 /// Forces of an arm that is described so draw the hand in where they should push it out.
 void oppositeSigns(const File& file, const codec::Wire& wire) {
+  if (file.number("loader") > 0) return;  // a Falcon's board turns the signs of all three
   const Node* fields = find(file.root, {"parameters", "wire", "output", "fields"});
   for (const Field& in : wire.input.fields)
     for (size_t i = 0; i < wire.output.fields.size() && fields != nullptr && i < fields->items.size(); ++i) {
