@@ -114,6 +114,15 @@ class TracedShape : public Shape {
     uint32_t count = 0;
   };
 
+  /// What was found about a place, and how often that was told since.
+  struct Search {
+    Eigen::Vector3d at{0, 0, 0};
+    double radius = -1;
+    int told = 0;
+    trace::Found found;
+  };
+
+  const Search& searchAbout(const Eigen::Vector3d& p, double radius) const;
   void beginAnew(uint32_t probe) noexcept HSP_RT;
   trace::TraceOptions optionsOf(const hsp_step& step) const noexcept HSP_RT;
   int64_t nearby(const double p_model[3], double radius, hsp_near* out, uint64_t cap) const;
@@ -133,9 +142,11 @@ class TracedShape : public Shape {
   std::unique_ptr<brep::Model> part_;
   std::vector<brep::Tracer> part_tracers_;  ///< one a probe
   std::unique_ptr<trace::Model> model_;
-  std::vector<trace::Tracer> tracers_;  ///< one a probe
-  std::vector<Offers> offers_;          ///< by probe
-  std::vector<char> searched_;          ///< by probe: a search has answered since the last jump
+  std::vector<trace::Tracer> tracers_;      ///< one a probe
+  std::vector<Offers> offers_;              ///< by probe
+  std::vector<char> searched_;              ///< by probe: a search has answered since the last jump
+  mutable std::array<Search, 4> searches_;  ///< [sim] newest ones, for some fingers
+  mutable std::size_t next_search_ = 0;     ///< [sim] the one to be replaced
   Mesh mesh_;
   hsp_ext_surfaces surfaces_extension_{};
   hsp_ext_geometry geometry_extension_{};

@@ -92,6 +92,23 @@ double turn(const Piece& piece, int axis) {
   return std::min(widest, 2.0);
 }
 
+/// [rad] About how far the normal turns from `normal` on a piece that is nearly flat: that of each mesh of its control
+/// net, and a quarter more. Pi where a mesh has none.
+double turnOfNormal(const Piece& piece, const Vector3d& normal) {
+  constexpr double kMore = 1.25, kLeast = 0.02;
+  double widest = 0;
+  for (int i = 0; i + 1 < piece.count_u; ++i)
+    for (int j = 0; j + 1 < piece.count_v; ++j) {
+      const Vector3d a = piece.point(i + 1, j + 1) - piece.point(i, j),
+                     b = piece.point(i, j + 1) - piece.point(i + 1, j);
+      const Vector3d across = a.cross(b);
+      const double size = across.norm();
+      if (!(size > 1e-9 * a.norm() * b.norm()) || !(size > 0)) return std::numbers::pi;
+      widest = std::max(widest, std::acos(std::clamp(across.dot(normal) / size, -1.0, 1.0)));
+    }
+  return kMore * widest + kLeast;
+}
+
 constexpr double kFlat = 0.03;   // 1 - cos 14 deg: Newton from the middle of such a piece goes straight to the foot
 constexpr int kMaxHalvings = 7;  // of one Bezier piece: at most 128 leaves
 
@@ -116,6 +133,7 @@ void addLeaves(const Piece& piece, int patch, int halvings, std::vector<Leaf>& l
   // The tangents stay in cones about their means; the closer the means are to parallel, the more the normal turns.
   if (sine > 0) leaf.normal = normal / sine;
   leaf.cone = sine > 0 ? (std::acos(1 - turn_u) + std::acos(1 - turn_v)) / sine : std::numbers::pi;
+  if (sine > 0) leaf.cone = std::min(leaf.cone, turnOfNormal(piece, leaf.normal));
   leaves.push_back(leaf);
 }
 
@@ -134,10 +152,21 @@ void BoxTree::add(const spline::SurfaceData& patch, int index) {
   for (const spline::SurfaceData& bezier : spline::bezierPieces(patch)) addLeaves(pieceOf(bezier), index, 0, leaves_);
 }
 
+/// Leaves come patch by patch.
 void BoxTree::build() {
   nodes_.clear();
   nodes_.reserve(2 * leaves_.size());
-  if (!leaves_.empty()) buildNode(0, static_cast<int>(leaves_.size()));
+  roots_.clear();
+  for (int first = 0, end = 0; first < leafCount(); first = end) {
+    while (end < leafCount() && leaf(end).patch == leaf(first).patch) ++end;
+    roots_.push_back(buildNode(first, end - first));
+  }
+}
+
+Eigen::AlignedBox3d BoxTree::bounds() const noexcept {
+  Eigen::AlignedBox3d box;
+  for (const int root : roots_) box.extend(nodes_[static_cast<std::size_t>(root)].box);
+  return box;
 }
 
 int BoxTree::buildNode(int first, int count) {
@@ -149,7 +178,7 @@ int BoxTree::buildNode(int first, int count) {
     box.extend(leaf(i).box);
     centers.extend(leaf(i).box.center());
   }
-  nodes_[static_cast<std::size_t>(index)] = Node{box, first, count};
+  nodes_[static_cast<std::size_t>(index)] = Node{box, first, count, first};
   if (count <= kLeavesPerNode) return index;
   Eigen::Index axis;
   centers.sizes().maxCoeff(&axis);
@@ -164,25 +193,77 @@ int BoxTree::buildNode(int first, int count) {
   return index;
 }
 
-void BoxTree::within(const Vector3d& p, double radius, std::vector<LeafHit>& hits) const {
-  hits.clear();
-  const double limit = radius * radius;
-  std::vector<int> stack;
-  if (!nodes_.empty()) stack.push_back(0);
-  while (!stack.empty()) {
-    const int index = stack.back();
-    stack.pop_back();
+struct BoxTree::Query {
+  const Vector3d& p;
+  double radius, margin;
+  std::span<const int> parts;
+  std::vector<double> upper;  ///< [m] by part: it has a point as near as this
+  std::vector<LeafHit>& hits;
+  std::vector<std::pair<double, int>> open;  ///< squared distance and node
+
+  /// Squared: what is farther from p than this needs no look.
+  double limit2(int part) const {
+    const double limit = std::min(radius, upper[static_cast<std::size_t>(part)] + margin);
+    return limit * limit;
+  }
+};
+
+/// Collects leaves of a patch, nearer boxes first: so the limit falls early.
+void BoxTree::lookAt(int root, Query& query) const {
+  const int part = query.parts[static_cast<std::size_t>(leaf(nodes_[static_cast<std::size_t>(root)].leaf).patch)];
+  double limit2 = query.limit2(part);
+  query.open.assign(1, {nodes_[static_cast<std::size_t>(root)].box.squaredExteriorDistance(query.p), root});
+  while (!query.open.empty()) {
+    const auto [distance2, index] = query.open.back();
+    query.open.pop_back();
+    if (!(distance2 <= limit2)) continue;
     const Node& node = nodes_[static_cast<std::size_t>(index)];
-    if (!(node.box.squaredExteriorDistance(p) <= limit)) continue;
     if (node.count == 0) {
-      stack.push_back(index + 1);
-      stack.push_back(node.first);
+      const auto entry = [&](int child) {
+        return std::pair(nodes_[static_cast<std::size_t>(child)].box.squaredExteriorDistance(query.p), child);
+      };
+      auto nearer = entry(index + 1), farther = entry(node.first);
+      if (farther.first < nearer.first) std::swap(nearer, farther);
+      query.open.push_back(farther);
+      query.open.push_back(nearer);
       continue;
     }
     for (int i = node.first; i < node.first + node.count; ++i) {
-      const double distance2 = leaf(i).box.squaredExteriorDistance(p);
-      if (distance2 <= limit) hits.push_back({distance2, i});
+      const double leaf2 = leaf(i).box.squaredExteriorDistance(query.p);
+      if (!(leaf2 <= limit2)) continue;
+      query.hits.push_back({leaf2, i});
+      double& upper = query.upper[static_cast<std::size_t>(part)];
+      const double center = (query.p - leaf(i).center).norm();  // of a point of the surface
+      if (center >= upper) continue;
+      upper = center;
+      limit2 = query.limit2(part);
     }
+  }
+}
+
+void BoxTree::near(const Vector3d& p, double radius, double margin, std::span<const int> parts, int part_count,
+                   std::vector<LeafHit>& hits) const {
+  hits.clear();
+  Query query{p, radius, margin, parts, std::vector<double>(static_cast<std::size_t>(part_count), radius), hits, {}};
+  std::vector<std::pair<double, int>> patches;
+  for (const int root : roots_) {
+    const double distance2 = nodes_[static_cast<std::size_t>(root)].box.squaredExteriorDistance(p);
+    if (distance2 <= radius * radius) patches.emplace_back(distance2, root);
+  }
+  std::sort(patches.begin(), patches.end());
+  for (const auto& [distance2, root] : patches) lookAt(root, query);
+  std::vector<char> seen(parts.size(), 0);
+  std::erase_if(hits, [&](const LeafHit& hit) {  // some were collected before the limit fell
+    const auto patch = static_cast<std::size_t>(leaf(hit.leaf).patch);
+    const bool far = hit.distance2 > query.limit2(parts[patch]);
+    if (!far) seen[patch] = 1;
+    return far;
+  });
+  for (const auto& [distance2, root] : patches) {
+    const int first = nodes_[static_cast<std::size_t>(root)].leaf;
+    const auto patch = static_cast<std::size_t>(leaf(first).patch);
+    if (seen[patch] == 0)
+      hits.push_back({std::max(distance2, query.limit2(parts[patch])), first});  // no leaf is within
   }
   std::sort(hits.begin(), hits.end(), [](const LeafHit& a, const LeafHit& b) {
     return a.distance2 != b.distance2 ? a.distance2 < b.distance2 : a.leaf < b.leaf;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// Bounding boxes of small, nearly flat pieces of patches, in a binary tree: where a global search may stop looking.
+/// Bounding boxes of small, nearly flat pieces of patches, a binary tree for each patch: where a global search may stop
+/// looking.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "kernels/spline/surface_data.hpp"
@@ -26,7 +28,7 @@ struct Leaf {
 
 /// A leaf that a query met.
 struct LeafHit {
-  double distance2 = 0;  ///< [m^2] squared distance to the leaf's box: the piece is no nearer
+  double distance2 = 0;  ///< [m^2] squared distance to its box, or to that of its patch: the piece is no nearer
   int leaf = 0;
 };
 
@@ -36,23 +38,31 @@ class BoxTree {
   void add(const spline::SurfaceData& patch, int index);
   /// [main] Arranges the leaves; call once, after the last add().
   void build();
-  /// [sim] All leaves whose boxes come within `radius` [m] of p, nearest box first.
-  void within(const Eigen::Vector3d& p, double radius, std::vector<LeafHit>& hits) const;
+  /// [sim] What a search has to look at, nearest box first: the leaves that may be at most `margin` [m] farther from p
+  /// than the nearest point of their part, and one leaf, with a lower bound, for each other patch
+  /// within `radius` [m]. @param parts by patch, from 0 to part_count - 1
+  void near(const Eigen::Vector3d& p, double radius, double margin, std::span<const int> parts, int part_count,
+            std::vector<LeafHit>& hits) const;
 
   const Leaf& leaf(int index) const noexcept { return leaves_[static_cast<std::size_t>(index)]; }
   int leafCount() const noexcept { return static_cast<int>(leaves_.size()); }
-  Eigen::AlignedBox3d bounds() const noexcept { return nodes_.empty() ? Eigen::AlignedBox3d() : nodes_.front().box; }
+  Eigen::AlignedBox3d bounds() const noexcept;
   std::size_t bytes() const noexcept { return leaves_.capacity() * sizeof(Leaf) + nodes_.capacity() * sizeof(Node); }
 
  private:
   struct Node {
     Eigen::AlignedBox3d box;
     int first = 0, count = 0;  ///< leaves; count 0: the children are the next node and node `first`
+    int leaf = 0;              ///< the first below it
   };
+  /// One query under way.
+  struct Query;
   int buildNode(int first, int count);
+  void lookAt(int root, Query& query) const;
 
   std::vector<Leaf> leaves_;
   std::vector<Node> nodes_;
+  std::vector<int> roots_;  ///< by patch: its node
 };
 
 }  // namespace hapticd::trace

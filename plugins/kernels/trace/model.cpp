@@ -24,6 +24,7 @@ Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOption
   if (!complete)
     warnings_.push_back(
         "model: too many shells that run into each other; some are felt where they are buried in others");
+  for (const Patch& piece : patches_) patch_part_.push_back(part_[static_cast<std::size_t>(piece.shell)]);
   part_count_ = 1 + *std::max_element(part_.begin(), part_.end());
 }
 

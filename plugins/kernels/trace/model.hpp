@@ -98,7 +98,8 @@ class Model {
   std::vector<PoleFan> poles_;
   std::vector<Eigen::Vector3d> vertex_normal_;
   std::vector<char> shell_closed_;
-  std::vector<int> part_;  ///< by shell
+  std::vector<int> part_;        ///< by shell
+  std::vector<int> patch_part_;  ///< by patch
   int part_count_ = 1;
   std::vector<std::string> warnings_;
   std::vector<std::string> names_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Global search over a model: leaves of the box tree, nearest first, and Newton from the middle of each.
+/// Global search over a model: leaves of the box tree that may matter soon, nearest first, and Newton from the middle
+/// of each.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,9 +18,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// One search under way.
 class Search {
  public:
-  Search(const Model& model, const BoxTree& tree, const Vector3d& p, Found& found)
+  Search(const Model& model, const BoxTree& tree, std::span<const int> parts, const Vector3d& p, Found& found)
       : model_(model),
         tree_(tree),
+        parts_(parts),
         p_(p),
         found_(found),
         slot_(static_cast<std::size_t>(model.surfaceCount()), -1),
@@ -28,7 +30,7 @@ class Search {
 
   void run(double radius) {
     std::vector<LeafHit> hits;
-    tree_.within(p_, radius, hits);
+    tree_.near(p_, radius, Model::kSoon, parts_, model_.partCount(), hits);
     for (const LeafHit& hit : hits) look(tree_.leaf(hit.leaf), std::sqrt(hit.distance2));
     std::erase_if(found_.nearest, [radius](const Near& near) { return !(near.distance <= radius); });
     std::sort(found_.nearest.begin(), found_.nearest.end(), before);
@@ -132,6 +134,7 @@ class Search {
 
   const Model& model_;
   const BoxTree& tree_;
+  std::span<const int> parts_;  ///< by patch
   const Vector3d p_;
   Found& found_;
   std::vector<int> slot_;  ///< by surface: index in found_.nearest before it is sorted
@@ -145,7 +148,7 @@ class Search {
 void Model::search(const Vector3d& p, double radius, Found& found) const {
   found.nearest.clear();
   found.rivals.clear();
-  if (p.allFinite() && radius >= 0) Search(*this, tree_, p, found).run(radius);
+  if (p.allFinite() && radius >= 0) Search(*this, tree_, patch_part_, p, found).run(radius);
 }
 
 std::int64_t Model::nearby(const Vector3d& p, double radius, Near* out, std::size_t cap) const {
