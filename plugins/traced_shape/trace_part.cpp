@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <span>
 #include <stdexcept>
+#include <vector>
 
 #include "kernels/brep/part_file.hpp"
+#include "kernels/brep/placements.hpp"
 #include "traced_shape.hpp"
 
 namespace hapticd {
@@ -31,7 +33,33 @@ std::string oddPlace(const Eigen::AlignedBox3d& box, const hsp_pose& pose) {
   return text;
 }
 
+/// Which features belong to which instance, a line each.
+std::vector<std::string> instancesOf(const brep::Model& part) {
+  constexpr size_t kMost = 100;
+  std::vector<std::string> lines;
+  for (const brep::Placement& place : part.placements()) {
+    if (lines.size() == kMost) {
+      lines.push_back("and " + std::to_string(part.placements().size() - kMost) + " more instances");
+      break;
+    }
+    const brep::Body& body = part.part().bodies[place.body];
+    const uint32_t count = body.face_count + body.triangle_count;
+    lines.push_back(
+        "features " + std::to_string(place.first_feature) + " to " + std::to_string(place.first_feature + count - 1) +
+        ": " + brep::instancePath(part.part(), place.instance) + (body.triangle_count > 0 ? ", triangles" : ", faces"));
+  }
+  return lines;
+}
+
 }  // namespace
+
+/// [main] See hsp_ext_names.
+int64_t TracedShape::nameOf(uint32_t feature, char* text, uint64_t cap) const {
+  if (!part_) return 0;
+  const std::string name = part_->featureName(feature);
+  std::copy_n(name.begin(), std::min<uint64_t>(cap, name.size()), text);
+  return static_cast<int64_t>(name.size());
+}
 
 void TracedShape::loadPart(const std::string& bytes, const hsp_activation& activation, hsp_report& report) {
   if (!takes_parts_)
@@ -51,6 +79,7 @@ void TracedShape::loadPart(const std::string& bytes, const hsp_activation& activ
       host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": " + warning).c_str());
     if (const std::string odd = oddPlace(part_->bounds(), activation.pose); !odd.empty())
       host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": " + odd).c_str());
+    for (const std::string& line : instancesOf(*part_)) host()->log(host(), HSP_LOG_DEBUG, line.c_str());
     if (sides_ == kFront && part_->open())
       host()->log(
           host(), HSP_LOG_WARNING,

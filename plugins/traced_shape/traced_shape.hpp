@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hapticd/shape.hpp"
+#include "hapticd/shape_names.h"
 #include "kernels/brep/tracer.hpp"
 #include "kernels/trace/tracer.hpp"
 #include "traced_shape/mesh.hpp"
@@ -130,6 +131,7 @@ class TracedShape : public Shape {
   hsp_status stop(uint32_t probe, uint32_t surface) noexcept HSP_RT;
   hsp_status mesh(double chord_error, hsp_mesh& out);
   hsp_status bounds(double min[3], double max[3]) const;
+  int64_t nameOf(uint32_t feature, char* text, uint64_t cap) const;
   void takeFormerNames();
   contact::ContactRule contactRule() const noexcept HSP_RT;
   Touch answer(const contact::Foot& foot, hsp_contact& contact) const noexcept HSP_RT;
@@ -150,6 +152,7 @@ class TracedShape : public Shape {
   Mesh mesh_;
   hsp_ext_surfaces surfaces_extension_{};
   hsp_ext_geometry geometry_extension_{};
+  hsp_ext_names names_extension_{};
 };
 
 template <class T>
@@ -183,6 +186,14 @@ const void* TracedShape::tracedExtension(const char* name) {
                              return self.bounds(min, max);
                            }};
     return &geometry_extension_;
+  }
+  if (wanted == HSP_EXT_NAMES && part_) {
+    names_extension_ = {sizeof(hsp_ext_names), 0,
+                        [](hsp_shape* shape, uint32_t feature, char* text, uint64_t cap) -> int64_t {
+                          const TracedShape& self = *reinterpret_cast<T*>(shape);
+                          return self.nameOf(feature, text, cap);
+                        }};
+    return &names_extension_;
   }
   return nullptr;
 }

@@ -177,17 +177,7 @@ std::size_t Model::bytes() const noexcept {
 }
 
 std::string Model::featureName(std::uint32_t feature) const {
-  const auto after = std::upper_bound(placements_.begin(), placements_.end(), feature,
-                                      [](std::uint32_t f, const Placement& p) { return f < p.first_feature; });
-  if (after == placements_.begin() || feature >= feature_count_) return "";
-  const Placement& place = *(after - 1);
-  const Body& body = part_.bodies[place.body];
-  const std::uint32_t at = feature - place.first_feature;
-  const bool mesh = body.kind == BodyKind::kMesh;
-  std::string text = instancePath(part_, place.instance) + ": " + (mesh ? "triangle " : "face ") + std::to_string(at);
-  if (!mesh && part_.faces[body.first_face + at].name != kNone)
-    text += " '" + part_.names[part_.faces[body.first_face + at].name] + "'";
-  return text;
+  return brep::featureName(part_, feature);
 }
 
 }  // namespace hapticd::brep

@@ -62,6 +62,25 @@ std::string instancePath(const Part& part, std::uint32_t instance) {
   return path;
 }
 
+std::string featureName(const Part& part, std::uint32_t feature) {
+  std::uint64_t first = 0;
+  for (std::uint32_t i = 0; i < part.instances.size(); ++i) {
+    if (part.instances[i].body == kNone) continue;
+    const Body& body = part.bodies[part.instances[i].body];
+    const std::uint64_t count = std::uint64_t{body.face_count} + body.triangle_count;
+    if (feature >= first + count) {
+      first += count;
+      continue;
+    }
+    const auto at = static_cast<std::uint32_t>(feature - first);
+    const std::string path = instancePath(part, i);
+    if (at >= body.face_count) return path + ": triangle " + std::to_string(at - body.face_count);
+    const std::uint32_t name = part.faces[body.first_face + at].name;
+    return path + ": face " + std::to_string(at) + (name == kNone ? "" : " '" + part.names[name] + "'");
+  }
+  return "";
+}
+
 std::vector<Placement> placementsOf(const Part& part, const std::string& wanted, std::uint32_t& feature_count) {
   std::vector<Placement> placements;
   std::uint64_t features = 0;

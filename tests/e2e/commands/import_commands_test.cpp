@@ -69,5 +69,15 @@ TEST_F(ImportCommands, CheckSaysWhatAPartCannotDo) {
   EXPECT_TRUE(has(check("push_button", "").text, "is a part; expected a model file here"));
 }
 
+TEST_F(ImportCommands, NamesInstanceAndFaceOfAFeature) {
+  const std::string part = HAPTICD_SOURCE_DIR "/config/models/as1.hpart";
+  const std::string scene =
+      put("rod.yaml", "hapticd: 1\nmodels:\n  - {name: rod, plugin: nurbs_rigid, parameters: {geometry: " + part +
+                          ", instance: rod-assembly_1}}\n");
+  const Outcome told = run("explain " + scene, kShipped);
+  EXPECT_TRUE(has(told.text, "features 16 to 19: as1/rod-assembly_1/rod_1, faces")) << told.text;
+  EXPECT_FALSE(has(told.text, "plate_1")) << told.text;
+}
+
 }  // namespace
 }  // namespace hapticd::test
