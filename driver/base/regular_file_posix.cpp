@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/passed_files.hpp"
 #include "base/regular_file.hpp"
 
 namespace hapticd {
@@ -52,7 +53,10 @@ std::string notAFile(std::filesystem::file_type type) {
   return std::string(what) + ", expected a file";
 }
 
-Result<int> openRegular(const std::string& file) {
+Result<int> openRegular(const std::string& name) {
+  const auto where = whereToOpen(name);
+  if (!where) return Error{where.error()};
+  const std::string& file = *where;
   struct stat info{};
   if (stat(file.c_str(), &info) != 0) return cannotBeRead(errno);
   // known before it is opened: opening a device may already move something, and a socket has no better message

@@ -11,6 +11,7 @@
 #include "base/clock.hpp"
 #include "cli/command.hpp"
 #include "cli/ctl_lead.hpp"
+#include "cli/named_files.hpp"
 #include "control/client.hpp"
 #include "status/page_file.hpp"
 
@@ -51,8 +52,8 @@ std::string lineOf(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-int send(const Options& options, const std::string& line) {
-  auto answer = control::ask(socketOf(options), line);
+/// Prints an answer.
+int show(const Options& options, const Result<std::string>& answer) {
   if (!answer) return fail(kFailed, answer.error());
   const Json json = Json::parse(*answer, nullptr, false);
   if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
@@ -60,6 +61,29 @@ int send(const Options& options, const std::string& line) {
   if (!options.obj.empty()) return saveObj(json, options.obj);
   std::printf("%s\n", json.dump(2).c_str());
   return kWorked;
+}
+
+int send(const Options& options, const std::string& line) {
+  return show(options, control::ask(socketOf(options), line));
+}
+
+/// `add` and `reload`: the scene and what it names are opened here, with the rights of whoever asks.
+int sendScene(const Options& options, Json request) {
+  auto client = control::Client::connect(socketOf(options));
+  if (!client) return fail(kFailed, client.error());
+  const bool again = !request.contains("file");
+  if (again) {
+    const auto answer = client->ask(lineOf({{"do", "status"}}));
+    const Json status = answer ? Json::parse(*answer, nullptr, false) : Json();
+    if (!status.is_object()) return show(options, answer);
+    request["file"] = status.value("scene", "");
+  }
+  auto files = openNamed(request["file"].get<std::string>());
+  if (!files && !again) return fail(kFailed, files.error());
+  if (!files) request.erase("file");  // the daemon may read its own scene, also where its user alone may
+  if (files) request["files"] = files->names;
+  const std::vector<int> numbers = files ? files->numbers() : std::vector<int>();
+  return show(options, client->askWith(lineOf(request), numbers));
 }
 
 /// Prints the triangles, and then each frame of vertices when it comes, a line of JSON each: until nobody reads them
@@ -124,7 +148,8 @@ CLI::App* addRequest(CLI::App& parent, const char* word, const char* doc, const 
   command->callback([options, &exit_code, build, word] {
     Json json = {{"do", word}};
     build(json);
-    exit_code = options->follow ? follow(*options) : send(*options, lineOf(json));
+    const bool scene = std::string(word) == "add" || std::string(word) == "reload";
+    exit_code = options->follow ? follow(*options) : scene ? sendScene(*options, json) : send(*options, lineOf(json));
   });
   return command;
 }

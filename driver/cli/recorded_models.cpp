@@ -48,7 +48,7 @@ class RecordedModelsImpl final : public RecordedModels {
     if (!server) return Error{server.error()};
     server_ = std::move(*server);
     control::Server::Service service;
-    service.answer = [this](const control::Peer&, const std::string& line) {
+    service.answer = [this](const control::Peer&, const std::string& line, std::vector<Descriptor>) {
       Descriptor memory;
       std::string text = answer(line, memory);
       return control::Reply(std::move(text), std::move(memory));

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/passed_files.hpp"
 #include "base/regular_file.hpp"
 #include "document/meant.hpp"
 #include "document/suggestion.hpp"
@@ -115,7 +116,12 @@ std::optional<std::filesystem::path> Reader::existingFile(const Node& node, cons
   std::error_code error;
   const fs::path written(node.scalar);
   const fs::path full = fs::absolute(file_.parent_path() / written, error).lexically_normal();
-  if (const fs::file_status status = fs::status(full, error); fs::exists(status)) {
+  const auto where = whereToOpen(full.string());
+  if (!where) {
+    problem(node, key, full.string() + " " + where.error());
+    return std::nullopt;
+  }
+  if (const fs::file_status status = fs::status(*where, error); fs::exists(status)) {
     const std::string other = notAFile(status.type());
     if (other.empty()) return full;
     problem(node, key, full.string() + " " + other);

@@ -61,10 +61,11 @@ Client::~Client() {
   if (fd_ >= 0) close(fd_);
 }
 
-Result<void> Client::say(const std::string& line) {
+Result<void> Client::say(const std::string& line, std::span<const int> descriptors) {
   const std::string out = line + "\n";
   for (size_t sent = 0; sent < out.size();) {
-    const ssize_t now = send(fd_, out.data() + sent, out.size() - sent, MSG_NOSIGNAL);
+    const ssize_t now =
+        sendWith(fd_, std::string_view(out).substr(sent), sent == 0 ? descriptors : std::span<const int>());
     if (now < 0 && errno == EAGAIN) return Error{"the daemon at " + file_ + " accepts no request"};
     if (now <= 0) break;
     sent += static_cast<size_t>(now);
@@ -99,6 +100,11 @@ Result<std::string> Client::ask(const std::string& line, double seconds) {
   auto reply = askForMore(line, seconds);
   if (!reply) return Error{reply.error()};
   return std::move(reply->line);
+}
+
+Result<std::string> Client::askWith(const std::string& line, std::span<const int> descriptors, double seconds) {
+  if (auto said = say(line, descriptors); !said) return Error{said.error()};
+  return hear(seconds);
 }
 
 Result<std::string> Client::hear(double seconds) {

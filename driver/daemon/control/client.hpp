@@ -30,6 +30,8 @@ class Client {
 
   /// [main] Sends one line and waits for its answer. @param seconds at most
   Result<std::string> ask(const std::string& line, double seconds = 10);
+  /// [main] The same, with descriptors that go along with the line; they stay open here.
+  Result<std::string> askWith(const std::string& line, std::span<const int> descriptors, double seconds = 10);
   /// [main] The same, with the descriptor that came along.
   Result<Reply> askForMore(const std::string& line, double seconds = 10);
   /// [main] The next line that comes by itself. @param seconds at most; an error where none came
@@ -37,7 +39,7 @@ class Client {
 
  private:
   Client(std::string file, int fd) : file_(std::move(file)), fd_(fd) {}
-  Result<void> say(const std::string& line);
+  Result<void> say(const std::string& line, std::span<const int> descriptors = {});
   Result<Reply> receive(double seconds);
   std::string file_;
   int fd_;

@@ -7,7 +7,7 @@
 
 namespace hapticd::control {
 
-std::error_code Desk::start(std::function<bool(const Job&, Done&)> work, std::function<void()> ring) {
+std::error_code Desk::start(std::function<bool(Job&, Done&)> work, std::function<void()> ring) {
   work_ = std::move(work);
   ring_ = std::move(ring);
   return thread_.start("hapticd-desk", [this] { run(); });
@@ -41,7 +41,7 @@ void Desk::run() {
   for (;;) {
     more_.wait(lock, [this] { return stop_ || !jobs_.empty(); });
     if (stop_) return;
-    const Job job = std::move(jobs_.front());
+    Job job = std::move(jobs_.front());
     jobs_.pop_front();
     lock.unlock();
     Done done;

@@ -20,6 +20,7 @@ struct Job {
   Kind kind = Kind::kAnswer;
   Peer peer;
   std::string line;
+  std::vector<Descriptor> files = {};  ///< that came along with it
 };
 struct Done {
   uint64_t peer = 0;
@@ -33,7 +34,7 @@ class Desk {
   ~Desk() { stop(); }
 
   /// [main] @param work does a job; false: nothing comes back  @param ring called after each, from the desk's thread
-  std::error_code start(std::function<bool(const Job&, Done&)> work, std::function<void()> ring);
+  std::error_code start(std::function<bool(Job&, Done&)> work, std::function<void()> ring);
   void stop();  ///< [main] after the job that goes on; the rest is forgotten
 
   void give(Job job);        ///< [any]
@@ -42,7 +43,7 @@ class Desk {
  private:
   void run();
 
-  std::function<bool(const Job&, Done&)> work_;
+  std::function<bool(Job&, Done&)> work_;
   std::function<void()> ring_;
   std::mutex mutex_;
   std::condition_variable more_;

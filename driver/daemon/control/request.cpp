@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/descriptors.hpp"
+
 namespace hapticd::control {
 
 namespace {
@@ -39,9 +41,9 @@ const std::array<Form, 23>& forms() {
                                             {"disable", Kind::kDisable, {"model"}, {}},
                                             {"move", Kind::kMove, {"model", "position"}, {"orientation", "seconds"}},
                                             {"set", Kind::kSet, {"model", "parameter", "value"}, {"consent"}},
-                                            {"add", Kind::kAdd, {"file"}, {"model"}},
+                                            {"add", Kind::kAdd, {"file"}, {"model", "files"}},
                                             {"remove", Kind::kRemove, {"model"}, {}},
-                                            {"reload", Kind::kReload, {}, {"file"}},
+                                            {"reload", Kind::kReload, {}, {"file", "files"}},
                                             {"hold", Kind::kHold, {}, {"device"}},
                                             {"clear", Kind::kClear, {}, {"device"}},
                                             {"dump", Kind::kDump, {}, {}},
@@ -99,6 +101,20 @@ class Taker {
       good = std::abs(to[i]) <= bound;
     }
     if (!good) complain(key, "a list of " + std::to_string(N) + " numbers within " + Json(bound).dump() + " of 0");
+  }
+  /// Absolute paths, each once.
+  void paths(const char* key, size_t most, std::vector<std::string>& to) {
+    const Json* value = find(key);
+    if (value == nullptr) return;
+    std::set<std::string> known;
+    bool good = value->is_array() && value->size() <= most;
+    for (size_t i = 0; good && i < value->size(); ++i) {
+      const std::string path = (*value)[i].is_string() ? (*value)[i].get<std::string>() : "";
+      good = path.size() <= kMaxText && path[0] == '/' && path.find('\0') == std::string::npos &&
+             known.insert(path).second;
+      to.push_back(path);
+    }
+    if (!good) complain(key, "a list of at most " + std::to_string(most) + " absolute paths, each once");
   }
   /// The only word that may stand there. @param to true where it does
   void word(const char* key, const char* only, bool& to) {
@@ -205,6 +221,7 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
   take.text("force", request.force);
   take.text("parameter", request.parameter);
   take.text("file", request.file);
+  take.paths("files", kMostDescriptors, request.files);
   take.number("value", -1e300, 1e300, request.value);
   take.number("tolerance", kFinestDrawing, 1, request.tolerance);
   take.word("as", "memory", request.as_memory);

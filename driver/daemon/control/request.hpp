@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/result.hpp"
 
@@ -40,6 +41,7 @@ struct Request {
   };
   Kind kind = Kind::kStatus;
   std::string model, device, parameter, file;     ///< as the kind needs them
+  std::vector<std::string> files;                 ///< kAdd, kReload: names of the descriptors that came along
   std::string hand;                               ///< kLead, kUnlead: the device whose simulated hand is led
   std::string force;                              ///< kLead, kUnlead: the device that is pushed on
   double value = 0;                               ///< kSet

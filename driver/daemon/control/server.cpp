@@ -66,7 +66,7 @@ Server::~Server() {
 
 std::error_code Server::start(Service service) {
   service_ = std::move(service);
-  if (const auto code = desk_.start([this](const Job& job, Done& done) { return work(job, done); }, [this] { wake(); }))
+  if (const auto code = desk_.start([this](Job& job, Done& done) { return work(job, done); }, [this] { wake(); }))
     return code;
   return thread_.start("hapticd-control", [this] { serve(); });
 }
@@ -206,7 +206,8 @@ void Server::queue(Client& client, Reply reply) {
 bool Server::receive(Client& client) {
   char buffer[4096];
   for (int i = 0; i < kReadsATurn && client.in.size() <= kMaxRequestBytes; ++i) {
-    const ssize_t got = recv(client.fd, buffer, sizeof buffer, 0);
+    const ssize_t got = receiveWith(client.fd, buffer, client.given);
+    if (given() > kMostDescriptors) return false;  // a program has few, and others need some too
     if (got < 0 && (errno == EAGAIN || errno == EINTR)) break;
     if (got < 0) return false;
     if (got == 0) {
@@ -238,6 +239,7 @@ void Server::answerLines(Client& client) {
     reply->line += '\n';
     queue(client, std::move(*reply));
   }
+  if (client.in.empty()) client.given.clear();  // no line is left that they could belong to
   if (client.in.size() > kMaxRequestBytes && client.in.find('\n') == std::string::npos) {
     queue(client, refusal("the request is longer than " + std::to_string(kMaxRequestBytes) + " bytes") + "\n");
     client.in.clear();
@@ -252,21 +254,40 @@ void Server::actAtOnce(Client& client) {
     (void)urgent(client, client.in.substr(client.scanned, end - client.scanned));
 }
 
+/// Descriptors of clients that wait for their line's turn.
+size_t Server::given() const {
+  size_t sum = 0;
+  for (const Client& client : clients_) sum += client.given.size();
+  return sum;
+}
+
+/// The descriptors that a line names; they came in the order of the lines.
+std::vector<Descriptor> Server::takeGiven(Client& client, const std::string& line) {
+  std::vector<Descriptor> taken;
+  const auto request = client.given.empty() ? Result<Request>(Error{}) : parseRequest(line);
+  const size_t count = request ? std::min(request->files.size(), client.given.size()) : 0;
+  for (size_t i = 0; i < count; ++i) taken.push_back(std::move(client.given[i]));
+  client.given.erase(client.given.begin(), client.given.begin() + static_cast<std::ptrdiff_t>(count));
+  if (client.in.empty()) client.given.clear();  // no line is left that they could belong to
+  return taken;
+}
+
 void Server::ask(Client& client, std::string line) {
   client.asked = client.known = true;
   client.peer.asked = monotonicNow();
-  desk_.give({Job::Kind::kAnswer, client.peer, std::move(line)});
+  std::vector<Descriptor> files = takeGiven(client, line);
+  desk_.give({Job::Kind::kAnswer, client.peer, std::move(line), std::move(files)});
 }
 
 /// The desk's thread.
-bool Server::work(const Job& job, Done& done) {
+bool Server::work(Job& job, Done& done) {
   done.peer = job.peer.id;
   done.answers = job.kind == Job::Kind::kAnswer;
   if (job.kind == Job::Kind::kLeft && service_.left) service_.left(job.peer);
   if (job.kind == Job::Kind::kLeft) return false;
   if (job.kind == Job::Kind::kNews && service_.news) done.reply.line = service_.news(job.peer);
   if (done.answers) {
-    done.reply = service_.answer(job.peer, job.line);
+    done.reply = service_.answer(job.peer, job.line, std::move(job.files));
     done.reply.line += '\n';
   }
   if (service_.standing) done.standing = service_.standing(job.peer);

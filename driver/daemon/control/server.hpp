@@ -26,8 +26,9 @@ class Server {
  public:
   /// What the server calls, all but `urgent` from the thread that works on requests; all but `answer` may be left out.
   struct Service {
-    std::function<Reply(const Peer&, const std::string& line)> answer;  ///< one line without its end
-    std::function<Standing(const Peer&)> standing;                      ///< after each answer
+    /// One line without its end, and the descriptors that it names (see `files` of a request).
+    std::function<Reply(const Peer&, const std::string& line, std::vector<Descriptor> files)> answer;
+    std::function<Standing(const Peer&)> standing;  ///< after each answer
     /// Lines, each with its end, for one that listens; "" for none. About every kNewsPeriod, and only while it has read
     /// all that came before.
     std::function<std::string(const Peer&)> news;
@@ -61,17 +62,18 @@ class Server {
     Peer peer;
     Standing standing;
     std::string in;
-    std::list<Reply> out;    ///< with their ends; a descriptor goes with the first byte of its line
-    size_t waiting = 0;      ///< [bytes] in `out`
-    Nanoseconds since = 0;   ///< half a line, or an answer not yet taken, waits since then; 0: nothing waits
-    Nanoseconds heard = 0;   ///< the last time that anything came or went
-    bool closing = false;    ///< once `out` is gone
-    bool hung = false;       ///< it waits for no answer; what it asked is done all the same
-    bool seated = true;      ///< otherwise it waits for a place
-    bool asked = false;      ///< one of its requests is worked on
-    bool listening = false;  ///< its news are put together
-    bool known = false;      ///< to those who work on requests
-    size_t scanned = 0;      ///< [bytes] of `in`, already searched for urgent requests
+    std::vector<Descriptor> given;  ///< came along with lines in `in`, in their order
+    std::list<Reply> out;           ///< with their ends; a descriptor goes with the first byte of its line
+    size_t waiting = 0;             ///< [bytes] in `out`
+    Nanoseconds since = 0;          ///< half a line, or an answer not yet taken, waits since then; 0: nothing waits
+    Nanoseconds heard = 0;          ///< the last time that anything came or went
+    bool closing = false;           ///< once `out` is gone
+    bool hung = false;              ///< it waits for no answer; what it asked is done all the same
+    bool seated = true;             ///< otherwise it waits for a place
+    bool asked = false;             ///< one of its requests is worked on
+    bool listening = false;         ///< its news are put together
+    bool known = false;             ///< to those who work on requests
+    size_t scanned = 0;             ///< [bytes] of `in`, already searched for urgent requests
   };
   Server(std::string file, int fd, int wake_read, int wake_write)
       : file_(std::move(file)), fd_(fd), wake_{wake_read, wake_write} {}
@@ -89,7 +91,9 @@ class Server {
   std::optional<Reply> urgent(const Client& client, const std::string& line);
   void answerLines(Client& client);
   void actAtOnce(Client& client);
-  bool work(const Job& job, Done& done);
+  size_t given() const;
+  static std::vector<Descriptor> takeGiven(Client& client, const std::string& line);
+  bool work(Job& job, Done& done);
   void ask(Client& client, std::string line);
   void takeDone();
   bool owes(const Client& client) const;

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Files that a program of another user names: the daemon may be allowed to read what that user is not.
+/// Programs of another user: the daemon may be allowed to read what that user is not, so they pass their files open.
 #pragma once
-#include <string>
-#include <vector>
-
-#include "base/result.hpp"
+#include "base/passed_files.hpp"
 #include "control/peer.hpp"
 #include "description/scene.hpp"
 
@@ -13,10 +10,7 @@ namespace hapticd::servo {
 /// [any] The peer has rights of its own, so that what the daemon may read is none of its business.
 bool isForeign(const control::Peer& peer);
 
-/// [main] Files that the models of a scene name, beside the scene's own.
-std::vector<std::string> filesOf(const std::vector<scene::Model>& models);
-
-/// [main] Nothing, or the first that is no regular file that every user may read. Nothing of what it holds is told.
-Result<void> readableByAll(const std::vector<std::string>& files);
+/// [main] The model with its files' paths as a plugin can open them: copies of what was passed.
+scene::Model withPaths(scene::Model model, const PassedFiles& files);
 
 }  // namespace hapticd::servo

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "session/foreign_files.hpp"
 #include "session/patience.hpp"
@@ -29,22 +30,61 @@ bool sameDevices(const scene::Scene& a, const scene::Scene& b) {
 
 }  // namespace
 
-/// What is wrong with a scene quotes it, so a program of another user hears of that only if it may read the files too.
-Result<scene::Scene> RequestHandler::loadFor(const control::Peer& peer, const std::string& file) {
-  const bool foreign = isForeign(peer) && file != scene_file_;
-  if (foreign)
-    if (auto open = readableByAll({file}); !open) return refuse("forbidden", open.error());
-  auto scene = load_(file);
-  if (!foreign) return scene;
-  if (!scene) return refuse("failed", file + ": cannot be used\n  fix: hapticd check tells why");
-  std::vector<std::string> files = filesOf(scene->models);
-  files.push_back(file);
-  if (auto open = readableByAll(files); !open) return refuse("forbidden", open.error());
+/// The scene of a request. The rights of whoever asks count: what is not passed along open is opened by name only for
+/// the daemon's own user and for root.
+Result<scene::Scene> RequestHandler::loadFor(const control::Peer& peer, const Request& request) {
+  passed_.reset();
+  if (!request.files.empty() || !given_files_.empty()) {
+    auto copies = PassedFiles::copy(request.files, std::exchange(given_files_, {}));
+    if (!copies) return refuse("bad_request", copies.error());
+    passed_ = std::move(*copies);
+    return loadPassed(peer, request.file.empty() ? scene_file_ : request.file);
+  }
+  if (request.file.empty()) return loadOwn(peer);
+  if (!isForeign(peer)) return load_(request.file);
+  return refuse("forbidden",
+                request.file +
+                    ": a program of another user passes the scene and the files that it names along, open\n  "
+                    "fix: use hapticd ctl, or see \"files\" in the documentation of the protocol");
+}
+
+/// What was started with, read anew. Its texts are nobody else's business.
+Result<scene::Scene> RequestHandler::loadOwn(const control::Peer& peer) {
+  if (!isForeign(peer)) return load_(scene_file_);
+  if (scene_passed_)
+    return refuse("forbidden",
+                  scene_file_ + ": came from a program, which must pass it again\n  fix: hapticd ctl reload FILE");
+  auto scene = load_(scene_file_);
+  if (!scene) return refuse("failed", tellable(peer, scene.error()));
   return scene;
 }
 
+/// The arms' own files stay readable, as the scene must name the arms that run; what they hold is not told.
+Result<scene::Scene> RequestHandler::loadPassed(const control::Peer& peer, const std::string& file) {
+  std::vector<std::string> own;
+  for (const scene::Device& device : runner_.scene().devices) {
+    own.push_back(device.file.string());
+    for (const scene::Value& value : device.parameters)
+      if (value.kind == HSP_PATH && !value.text.empty()) own.push_back(value.text);
+  }
+  for (const std::string& name : own) passed_->allow(name);
+  const PassedFiles::Scope scope(*passed_);
+  auto scene = load_(file);
+  if (scene) return scene;
+  for (const std::string& name : own)
+    if (isForeign(peer) && passed_->pathOf(name) == name && scene.error().find(name) != std::string::npos)
+      return refuse("failed", name + ": cannot be used with this scene");
+  return Error{passed_->named(scene.error())};
+}
+
+/// What is wrong with the daemon's own scene quotes it.
+std::string RequestHandler::tellable(const control::Peer& peer, const std::string& why) const {
+  if (passed_) return passed_->named(why);
+  return isForeign(peer) ? scene_file_ + ": cannot be used\n  fix: ask the daemon's user for hapticd check" : why;
+}
+
 Result<std::string> RequestHandler::add(const control::Peer& peer, const Request& request) {
-  auto scene = loadFor(peer, request.file);
+  auto scene = loadFor(peer, request);
   if (!scene) return Error{scene.error()};
   std::vector<scene::Model> models;
   for (const scene::Model& model : scene->models)
@@ -52,7 +92,7 @@ Result<std::string> RequestHandler::add(const control::Peer& peer, const Request
   if (models.empty()) return Error{request.file + ": has no model" + (request.model.empty() ? "" : " of that name")};
   for (const scene::Model& model : models)
     if (placeOf(model.name)) return refuse("busy", "a model named \"" + model.name + "\" exists already");
-  if (auto done = adopt(models); !done) return Error{done.error()};
+  if (auto done = adopt(models); !done) return Error{tellable(peer, done.error())};
   return addedText(models.size());
 }
 
@@ -79,7 +119,7 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
   if (auto trusted = refuseQuarantined(models); !trusted) return trusted;
   std::vector<std::unique_ptr<host::ShapeInstance>> shapes;
   for (const scene::Model& model : models) {
-    auto shape = runner_.world().prepare(model, log_);
+    auto shape = runner_.world().prepare(passed_ ? withPaths(model, *passed_) : model, log_);
     if (!shape) return Error{shape.error()};
     shapes.push_back(std::move(*shape));
   }
@@ -121,8 +161,9 @@ Result<void> RequestHandler::release(uint32_t place) {
   return {};
 }
 
-Result<std::string> RequestHandler::reload(const control::Peer& peer, const std::string& file) {
-  auto scene = loadFor(peer, file);
+Result<std::string> RequestHandler::reload(const control::Peer& peer, const Request& request) {
+  const std::string file = request.file.empty() ? scene_file_ : request.file;
+  auto scene = loadFor(peer, request);
   if (!scene) return Error{scene.error()};
   if (!sameDevices(*scene, runner_.scene()))
     return Error{file +
@@ -130,10 +171,12 @@ Result<std::string> RequestHandler::reload(const control::Peer& peer, const std:
   std::vector<uint32_t> old;
   for (uint32_t i = 0; i < places_.size(); ++i)
     if (places_[i].taken) old.push_back(i);
-  if (auto done = adopt(scene->models); !done) return Error{file + ": nothing was changed: " + done.error()};
+  if (auto done = adopt(scene->models); !done)
+    return Error{file + ": nothing was changed: " + tellable(peer, done.error())};
   for (const uint32_t place : old)
     if (auto done = release(place); !done) return Error{done.error()};
   scene_file_ = file;
+  scene_passed_ = passed_.has_value();
   return addedText(scene->models.size());
 }
 

@@ -51,15 +51,18 @@ RequestHandler::RequestHandler(Runner& runner, LoadScene load, host::Services::L
   for (size_t i = 0; i < runner.scene().models.size(); ++i) places_[i] = {runner.scene().models[i], true, true};
 }
 
-control::Reply RequestHandler::answer(const control::Peer& peer, const std::string& line) {
+control::Reply RequestHandler::answer(const control::Peer& peer, const std::string& line,
+                                      std::vector<Descriptor> files) {
   std::string id;
   const auto request = control::parseRequest(line, &id);
   if (!request) return control::withId(control::refusal(request.error()), id);
   try {
     sweep();
     attached_ = Descriptor();
+    given_files_ = std::move(files);
     code_ = "failed";
     const auto done = obey(peer, *request);
+    passed_.reset();
     if (!done) return control::withId(control::refusal(done.error(), code_), id);
     return {control::withId(*done, id), std::move(attached_)};
   } catch (const std::exception& error) {
@@ -141,7 +144,7 @@ Result<std::string> RequestHandler::obeyForModels(const control::Peer& peer, con
     case Request::Kind::kAdd:
       return add(peer, request);
     case Request::Kind::kReload:
-      return reload(peer, request.file.empty() ? scene_file_ : request.file);
+      return reload(peer, request);
     case Request::Kind::kEnable:
     case Request::Kind::kDisable:
       done = able(request.model, request.kind == Request::Kind::kEnable);

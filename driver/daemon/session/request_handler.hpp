@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/passed_files.hpp"
 #include "base/result.hpp"
 #include "control/request.hpp"
 #include "control/server.hpp"
@@ -26,8 +27,8 @@ class RequestHandler {
   /// [main] @param dump_folder where black boxes are written
   RequestHandler(Runner& runner, LoadScene load, host::Services::Log log, std::string dump_folder);
 
-  /// [any] One thread at a time. A line of JSON for a line of JSON.
-  control::Reply answer(const control::Peer& peer, const std::string& line);
+  /// [any] One thread at a time. A line of JSON for a line of JSON. @param files the descriptors that the line names
+  control::Reply answer(const control::Peer& peer, const std::string& line, std::vector<Descriptor> files = {});
   /// [any] Any thread, at any time: holds arms or ends the run at once, behind no other request.
   /// @return the answer; nothing: the line is no such request
   std::optional<control::Reply> urgent(const control::Peer& peer, const std::string& line);
@@ -74,13 +75,16 @@ class RequestHandler {
   Result<std::string> move(const control::Request& request);
   Result<void> clear(const control::Peer& peer, const std::string& device);
   Result<std::string> hold(const std::string& device, const char*& code);
-  Result<scene::Scene> loadFor(const control::Peer& peer, const std::string& file);
+  Result<scene::Scene> loadFor(const control::Peer& peer, const control::Request& request);
+  Result<scene::Scene> loadOwn(const control::Peer& peer);
+  Result<scene::Scene> loadPassed(const control::Peer& peer, const std::string& file);
+  std::string tellable(const control::Peer& peer, const std::string& why) const;
   Result<std::string> add(const control::Peer& peer, const control::Request& request);
   Result<void> refuseQuarantined(const std::vector<scene::Model>& models) const;
   Result<void> adopt(const std::vector<scene::Model>& models);
   Result<void> remove(const std::string& model);
   Result<void> release(uint32_t place);
-  Result<std::string> reload(const control::Peer& peer, const std::string& file);
+  Result<std::string> reload(const control::Peer& peer, const control::Request& request);
   void sweep();
 
   Runner& runner_;
@@ -93,6 +97,9 @@ class RequestHandler {
   Leads leads_;
   std::map<uint64_t, uint64_t> listeners_;  ///< by peer: the next event
   std::atomic<Nanoseconds> held_at_{0};     ///< CLOCK_MONOTONIC of the last hold
+  bool scene_passed_ = false;               ///< the scene's file came from a program: its name is not to be opened
+  std::vector<Descriptor> given_files_;     ///< along with the request that is answered
+  std::optional<PassedFiles> passed_;       ///< copies of them, while it is answered
   Descriptor attached_;                     ///< to the answer that is being made
   mutable const char* code_ = "failed";     ///< of its error
 };

@@ -122,7 +122,9 @@ void RunFiles::serve(Runner& runner, const std::string& device_file, host::Catal
   }
   server_ = std::move(*server);
   control::Server::Service service;
-  service.answer = [this](const control::Peer& peer, const std::string& line) { return handler_->answer(peer, line); };
+  service.answer = [this](const control::Peer& peer, const std::string& line, std::vector<Descriptor> files) {
+    return handler_->answer(peer, line, std::move(files));
+  };
   service.standing = [this](const control::Peer& peer) { return handler_->standing(peer); };
   service.news = [this](const control::Peer& peer) { return handler_->news(peer); };
   service.urgent = [this](const control::Peer& peer, const std::string& line) { return handler_->urgent(peer, line); };

@@ -25,6 +25,18 @@
 namespace hapticd::control {
 namespace {
 
+std::string contentOf(int fd) {
+  char text[64];
+  const ssize_t got = pread(fd, text, sizeof text, 0);
+  return got > 0 ? std::string(text, static_cast<size_t>(got)) : "";
+}
+
+Descriptor memory(const std::string& text) {
+  Descriptor file(memfd_create("test", MFD_CLOEXEC));
+  EXPECT_EQ(write(file.get(), text.data(), text.size()), static_cast<ssize_t>(text.size()));
+  return file;
+}
+
 struct Rig {
   explicit Rig(const char* name, std::string answer = "")
       : file(testing::TempDir() + name + std::to_string(getpid()) + ".sock") {
@@ -32,15 +44,17 @@ struct Rig {
     EXPECT_TRUE(listening) << (listening ? "" : listening.error());
     server = std::move(*listening);
     Server::Service service;
-    service.answer = [this, answer](const Peer& peer, const std::string& line) {
+    service.answer = [this, answer](const Peer& peer, const std::string& line, std::vector<Descriptor> files) {
       last_peer = peer;
+      for (const Descriptor& passed : files) given += "," + contentOf(passed.get());
       return answer.empty() ? "you said " + line : answer;
     };
     service.left = [this](const Peer& peer) { left = peer.id; };
     server->start(std::move(service));
   }
   std::atomic<uint64_t> left{0};
-  Peer last_peer;  ///< the server's thread's until it has answered
+  std::string given;  ///< what the descriptors hold that came, the server's thread's too
+  Peer last_peer;     ///< the server's thread's until it has answered
   std::string file;
   std::unique_ptr<Server> server;
 };
@@ -228,7 +242,7 @@ struct GivingRig {
   explicit GivingRig(const char* name) : file(testing::TempDir() + name + std::to_string(getpid()) + ".sock") {
     server = std::move(*Server::listen(file));
     Server::Service service;
-    service.answer = [this](const Peer& peer, const std::string& line) {
+    service.answer = [this](const Peer& peer, const std::string& line, const std::vector<Descriptor>&) {
       if (line == "stay") staying.insert(peer.id);
       if (line == "listen") listening.insert(peer.id);
       if (line != "give") return Reply("you said " + line);
@@ -246,6 +260,48 @@ struct GivingRig {
   std::unique_ptr<Server> server;
   std::set<uint64_t> staying, listening;  ///< the server's thread's
 };
+
+TEST(Server, TakesDescriptorsWithTheLineThatNamesThem) {
+  Rig rig("files");
+  const Descriptor a = memory("a"), b = memory("b"), c = memory("c");
+  const std::string two = R"({"do":"add","file":"/x","files":["/x","/y"]})", one = R"({"do":"reload","files":["/z"]})";
+  const int fd = connectRaw(rig.file);
+  const int first[] = {a.get(), b.get()}, second[] = {c.get()};
+  ASSERT_GT(sendWith(fd, "plain\n", {}), 0);  // the kernel may glue it to what follows
+  ASSERT_EQ(sendWith(fd, two + "\n", first), static_cast<ssize_t>(two.size() + 1));
+  ASSERT_EQ(sendWith(fd, one.substr(0, 9), second), 9);
+  ASSERT_GT(sendWith(fd, one.substr(9) + "\n", {}), 0);
+  shutdown(fd, SHUT_WR);
+  EXPECT_EQ(readAll(fd), "you said plain\nyou said " + two + "\nyou said " + one + "\n");
+  rig.server->stop();
+  EXPECT_EQ(rig.given, ",a,b,c");
+  close(fd);
+}
+
+TEST(Server, GivesDescriptorsToNoLineThatNamesNone) {
+  Rig rig("stray");
+  auto client = Client::connect(rig.file);
+  ASSERT_TRUE(client);
+  const Descriptor a = memory("a"), b = memory("b");
+  const int stray[] = {a.get()}, meant[] = {b.get()};
+  ASSERT_TRUE(client->askWith("no request", stray));
+  ASSERT_TRUE(client->askWith(R"({"do":"add","file":"/x","files":["/x"]})", meant));
+  rig.server->stop();
+  EXPECT_EQ(rig.given, ",b");
+}
+
+TEST(Server, DropsWhoHeapsUpDescriptors) {
+  Rig rig("heap");
+  const Descriptor file = memory("x");
+  const std::vector<int> many(kMostDescriptors, file.get());
+  const int fd = connectRaw(rig.file);
+  ASSERT_EQ(sendWith(fd, "half ", many), 5);
+  ASSERT_TRUE(ask(rig.file, "another"));
+  sendWith(fd, "a line", many);
+  EXPECT_EQ(readAll(fd), "");
+  EXPECT_EQ(*ask(rig.file, "and the next"), "you said and the next");
+  close(fd);
+}
 
 TEST(Server, PassesADescriptorWithItsOwnLine) {
   GivingRig rig("give");
