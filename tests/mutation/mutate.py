@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: MIT
 """Changes the servo's safety code one operator, constant or condition at a time, and counts what its tests notice.
 
-usage: mutate.py BUILD_DIR [--count 300] [--seed 1] [--report FILE.md] [--list]
+usage: mutate.py BUILD_DIR [--count 300] [--seed 1] [--report FILE.md] [--list] [--only FILE]
 
 Each mutant compiles one file (without optimisation, with a precompiled header) and links the program safety_test anew,
 which must have been built before:  ninja -C BUILD_DIR safety_test
-A mutant is killed when a test fails, crashes or does not end. What does not compile is not counted. Survivors that are
-explained stand in explained.txt beside this file; they are counted as survivors all the same.
-Exit 1: fewer than 95 % were killed.
+A mutant is killed when a test fails, crashes or does not end. What does not compile is not counted. Mutants that change
+nothing that anybody can see stand in explained.txt beside this file, each with the reason; they are told apart. An
+explanation of a mutant that does not exist, or that a test kills, is an error.
+--only runs those of the sample that FILE names (lines of --list, or of a report).
+Exit 1: fewer than 95 % of those that are not explained were killed, or explained.txt is wrong.
 """
 import argparse
 import collections
@@ -45,7 +47,7 @@ SWAPS = [
 ]
 NUMBER = re.compile(r"(?<![\w.'\"])(\d+(?:\.\d+)?(?:e-?\d+)?)(?![\w.'\"])")
 CONDITION = re.compile(r"\bif (?:constexpr )?\(")
-Mutant = collections.namedtuple("Mutant", "file line column old new")
+Mutant = collections.namedtuple("Mutant", "file line column old new nth", defaults=[1])
 
 
 def code_of(text):
@@ -86,7 +88,12 @@ def mutants_of(file):
         if (closes := closing(code, opens)) and ";" not in code[opens:closes]:
             inside = text[opens + 1:closes]
             add(opens, closes + 1, f"(!({inside}))")
-    return found
+    counted, nth = collections.Counter(), {}
+    for mutant in sorted(found, key=lambda m: m.column):  # which of the same changes in a line
+        same = (mutant.line, mutant.old, mutant.new)
+        counted[same] += 1
+        nth[mutant] = counted[same]
+    return [mutant._replace(nth=nth[mutant]) for mutant in found]
 
 
 class Bench:
@@ -186,7 +193,7 @@ class Bench:
 
 
 def explanations():
-    """Of survivors: `FILE: line of code: old -> new` and why no test can notice it."""
+    """Of survivors, by key_of(): why no test can notice them. A line each: KEY :: WHY."""
     explained = {}
     file = HERE / "explained.txt"
     for line in file.read_text().splitlines() if file.exists() else []:
@@ -197,29 +204,47 @@ def explanations():
 
 
 def key_of(mutant):
+    """FILE: line of code: old -> new, and which of them if the line has several."""
     line = (ROOT / mutant.file).read_text().splitlines()[mutant.line - 1].strip()
-    return f"{pathlib.Path(mutant.file).name}: {line}: {mutant.old.strip()} -> {mutant.new.strip()}".replace("\n", " ")
+    nth = f" (no. {mutant.nth})" if mutant.nth > 1 else ""
+    return f"{pathlib.Path(mutant.file).name}: {line}: {mutant.old.strip()} -> {mutant.new.strip()}{nth}".replace("\n", " ")
+
+
+def wrong_explanations(every, results):
+    """What is wrong with explained.txt."""
+    known = {key_of(mutant) for mutant in every}
+    killed = {key_of(mutant) for mutant, kind in results if kind == "killed"}
+    for key, why in explanations().items():
+        if key not in known:
+            yield f"explained.txt: there is no such mutant (any more): {key}"
+        elif not why:
+            yield f"explained.txt: no reason is given: {key}"
+        elif key in killed:
+            yield f"explained.txt: a test kills it: {key}"
 
 
 def report(results, seconds):
-    kinds = collections.Counter(kind for _, kind in results)
+    kinds, explained = collections.Counter(kind for _, kind in results), explanations()
+    same = sum(kind == "survived" and key_of(mutant) in explained for mutant, kind in results)
     counted = kinds["killed"] + kinds["survived"]
+    part = kinds["killed"] / max(1, counted - same)
     lines = ["# Mutants of the servo's safety code", "",
              f"`tests/mutation/mutate.py` changed one operator, constant or condition at a time in `{SAFETY}`, and ran the "
              "tests of that file in `safety_test`. Other tests (hand_test, servo_test, soak) were not asked.", "",
-             f"**{kinds['killed']} of {counted} mutants were killed: {100 * kinds['killed'] / max(1, counted):.1f} %.** "
-             f"{kinds['broken']} more did not compile and are not counted. {seconds:.0f} s.", "",
+             f"**{kinds['killed']} of {counted} mutants were killed: {100 * kinds['killed'] / max(1, counted):.1f} %; "
+             f"{100 * part:.1f} % of the {counted - same} that change what anybody can see.** {same} survivors change "
+             f"nothing, each for the reason given below. {kinds['broken']} more did not compile and are not counted. "
+             f"{seconds:.0f} s.", "",
              "| file | killed | survived |", "|---|---|---|"]
     for file in sorted({mutant.file for mutant, _ in results}):
         per = collections.Counter(kind for mutant, kind in results if mutant.file == file)
         lines.append(f"| {pathlib.Path(file).name} | {per['killed']} | {per['survived']} |")
     lines += ["", "## Survivors", ""]
-    explained = explanations()
     for mutant, kind in results:
         if kind == "survived":
             key = key_of(mutant)
             lines.append(f"- `{key}` (line {mutant.line}): {explained.get(key, 'not explained')}")
-    return "\n".join(lines) + "\n", kinds["killed"] / max(1, counted)
+    return "\n".join(lines) + "\n", part
 
 
 def main():
@@ -229,10 +254,14 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--report", type=pathlib.Path)
     parser.add_argument("--list", action="store_true")
+    parser.add_argument("--only", type=pathlib.Path)
     options = parser.parse_args()
     files = [f"{SAFETY}/{unit}{suffix}" for unit in TESTS for suffix in (".cpp", ".hpp")]
     every = [mutant for file in files for mutant in mutants_of(file)]
     chosen = random.Random(options.seed).sample(every, min(options.count, len(every)))
+    if options.only:
+        wanted = options.only.read_text()
+        chosen = [mutant for mutant in chosen if key_of(mutant) in wanted]
     if options.list:
         print("\n".join(key_of(mutant) for mutant in chosen))
         return 0
@@ -249,7 +278,9 @@ def main():
     print(text)
     if options.report:
         options.report.write_text(text)
-    return 0 if part >= 0.95 else 1
+    wrong = list(wrong_explanations(every, results))
+    print("\n".join(wrong))
+    return 0 if part >= 0.95 and not wrong else 1
 
 
 if __name__ == "__main__":

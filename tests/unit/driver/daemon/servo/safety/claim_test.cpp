@@ -313,5 +313,81 @@ TEST(PullsIn, IsNotSaidOfRoundingNorOfWhatIsNotTraced) {
   EXPECT_FALSE(pullsIn(untraced, inside));
 }
 
+TEST(Claim, AClickIsNoMotionThatExplainsTheNext) {
+  Rested clicks;
+  clicks.next(at({0, 0, 0}, {0, Claim::kStep, 0}));
+  ASSERT_FALSE(clicks.held);
+  const Vector3d let = clicks.next(at({0, 0, 0}, {0, 2 * Claim::kStep, 0}));
+  EXPECT_TRUE(clicks.held);
+  EXPECT_NEAR(let.y(), Claim::kStep + Claim::kDrift * kTick, 1e-12);
+}
+
+TEST(Claim, ALateTickExplainsNoMoreThanWhatWasLetThrough) {
+  Rested late;
+  EXPECT_NEAR(late.next(at({0, 0, 0}, {0, 50, 0}), 0.05).y(), Claim::kStep, 1e-12);
+  EXPECT_NEAR(late.next(at({0, 0, 0}, {0, 50, 0})).y(), 2 * Claim::kStep, 1e-12);
+}
+
+TEST(Claim, ATickWithoutTimeExplainsNoSpeed) {
+  ClaimBounds bounds;
+  bounds.damping = 30;
+  Rested still(Vector3d::Zero(), bounds);
+  EXPECT_NEAR(still.next(at({1e-4, 0, 0}, {0, 50, 0}), 0).y(), Claim::kMargin * Claim::kUnclaimed * 1e-4 + Claim::kStep,
+              1e-9);
+}
+
+TEST(Claim, ComparesForcesOfAnArmOfLessThanANewton) {
+  ClaimBounds bounds;
+  bounds.force = 0.5;
+  Rested weak({0, 0.4, 0}, bounds);
+  EXPECT_EQ(weak.next(at({0, 0, 0}, {0, 300, 0})), Vector3d(0, 300, 0));
+  EXPECT_FALSE(weak.held);
+}
+
+TEST(Claim, AFootThatIsFoundAnewMayPushThoughTheNormalStoodThereAlready) {
+  Rested found;
+  ClaimStep hidden = traced(1, 0);
+  hidden.out = 0;
+  found.next(hidden);
+  found.next(traced(1));
+  EXPECT_FALSE(found.held);
+}
+
+TEST(Claim, TheHostTurnsAModelUnlessItsReportSaysOtherwise) {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(M_PI / 2, Vector3d::UnitZ()).toRotationMatrix();
+  Rested turned({8, 0, 0});
+  ClaimStep step = at({0, 0, 0}, {0, 8, 0});
+  step.turn = &turn;
+  turned.next(step);
+  EXPECT_FALSE(turned.held);
+}
+
+TEST(Claim, OfAShapeThatMovesItselfAndRestsExplainsNothing) {
+  ClaimBounds bounds;
+  bounds.moves_itself = true;
+  Rested aside({8, 0, 0}, bounds);
+  EXPECT_NEAR(aside.next(at({0, 0, 0}, {0, 8, 0})).norm(), Claim::kStep, 1e-12) << "it did not turn";
+  Claim away;
+  bool held = false;
+  ClaimStep step = at({0, 0, 0}, {0, 0, 0});
+  step.origin = {1, 0, 0};
+  away.judge(step, bounds, 0, held);
+  step.force = {0, 1000, 0};
+  step.p_model = {1e-3, 0, 0};  // says its pose, though neither the probe nor the origin moved
+  EXPECT_NEAR(away.judge(step, bounds, kTick, held).y(), Claim::kStep, 1e-12);
+}
+
+TEST(PullsIn, IsNotSaidAtItsBoundsAndTakesAFootAtNoDepthForOneOutside) {
+  const Vector3d inside(0, -1e-3, 0), outside(0, 1e-3, 0);
+  EXPECT_FALSE(pullsIn(contact(-0.01, 1e-3), inside));
+  EXPECT_FALSE(pullsIn(contact(-1, 1e-6), {0, -1e-6, 0}));
+  hsp_contact slanted = contact(-0.01, 1);
+  slanted.force[0] = std::sqrt(1 - 1e-4);
+  ASSERT_EQ(std::sqrt(slanted.force[0] * slanted.force[0] + 1e-4), 1);
+  EXPECT_FALSE(pullsIn(slanted, {0, -1, 0}));
+  EXPECT_FALSE(pullsIn(contact(1, 0), outside));
+  EXPECT_TRUE(pullsIn(contact(-1, 0), outside));
+}
+
 }  // namespace
 }  // namespace hapticd::servo

@@ -85,5 +85,30 @@ TEST(Guard, LetsAShapeInSlowlyAgain) {
   EXPECT_EQ(guard.gain(), 1);
 }
 
+TEST(Guard, AHundredTicksAreAHundredAfterAnyPeace) {
+  for (const int over : {0, 1}) {
+    Guard guard;
+    for (int i = 0; i < 10; ++i) guard.gain(true, true, 1e-3);
+    guard.strike(Trouble::kJump, 3);
+    for (int i = 0; i < 50; ++i) guard.gain(true, true, 1e-3);
+    guard.strike(Trouble::kJump, 3);
+    for (int i = 0; i < 49 + over; ++i) guard.gain(true, true, 1e-3);
+    EXPECT_EQ(guard.strike(Trouble::kJump, 3), over == 0 ? Trouble::kJump : Trouble::kNone);
+  }
+}
+
+TEST(Guard, ALongPeaceEarnsNothingAndOwesNothing) {
+  Guard fresh;
+  EXPECT_EQ(fresh.strike(Trouble::kJump, 3), Trouble::kNone);
+  EXPECT_EQ(fresh.strike(Trouble::kJump, 3), Trouble::kNone) << "in the first tick";
+  EXPECT_EQ(fresh.strike(Trouble::kJump, 3), Trouble::kJump);
+  Guard old;
+  old.strike(Trouble::kJump, 3);
+  for (int i = 0; i < 1000; ++i) old.gain(true, true, 1e-3);
+  EXPECT_EQ(old.strike(Trouble::kJump, 3), Trouble::kNone);
+  EXPECT_EQ(old.strike(Trouble::kJump, 3), Trouble::kNone);
+  EXPECT_EQ(old.strike(Trouble::kJump, 3), Trouble::kJump);
+}
+
 }  // namespace
 }  // namespace hapticd::servo

@@ -113,6 +113,18 @@ TEST(Limiter, HoldsAForceThatTheImpulseLimitAllowsForEver) {
   EXPECT_NEAR(applied(strong, {8, 0, 0}).force.x(), 5, 0.05);
 }
 
+TEST(Limiter, ForgetsThePushesOfASecondAgo) {
+  scene::Limits limits = generous();
+  limits.impulse = 0.2;
+  Limiter limiter(limits, 0);
+  for (int push = 0; push < 3; ++push) {
+    EXPECT_EQ(applied(limiter, {8, 0, 0}).force.x(), 8) << push;
+    for (int i = 0; i < 20; ++i) applied(limiter, {8, 0, 0});
+    EXPECT_LT(applied(limiter, {8, 0, 0}).force.x(), 7) << push;
+    for (int i = 0; i < 1000; ++i) applied(limiter, Vector3d::Zero());
+  }
+}
+
 TEST(Limiter, ASpeedAtItsLimitIsNoFault) {
   scene::Limits limits = generous();
   limits.velocity = 3;
@@ -121,6 +133,83 @@ TEST(Limiter, ASpeedAtItsLimitIsNoFault) {
   EXPECT_EQ(limiter.fault(), Fault::kNone);
   limiter.watchSpeed(3.0001);
   EXPECT_EQ(limiter.fault(), Fault::kTooFast);
+}
+
+TEST(Limiter, TheFilesLimitHoldsWhereTheDeviceNamesNone) {
+  for (const double most : {0.5, 5.0}) {
+    scene::Limits limits = generous();
+    limits.force = most;
+    Limiter limiter(limits, 0);
+    EXPECT_NEAR(applied(limiter, {8, 0, 0}).force.x(), most, 1e-12);
+  }
+}
+
+TEST(Limiter, WithoutALimitOfPowerSpeedTakesNothing) {
+  Limiter limiter(generous(), 8.5);
+  limiter.watchVelocity({2, 0, 0});
+  EXPECT_EQ(applied(limiter, {4, 0, 0}).force.x(), 4);
+}
+
+TEST(Limiter, ALetGoSwitchTakesTheForceAwayWithinTwoMilliseconds) {
+  for (const double ramp_out : {0.5, 0.02, 0.0005}) {
+    scene::Limits limits = generous();
+    limits.ramp_out = ramp_out;
+    limits.enable.button = 0;
+    limits.enable.mode = scene::EnableMode::kHold;
+    Limiter limiter(limits, 8.5);
+    limiter.watchButtons(1);
+    EXPECT_EQ(applied(limiter, {4, 0, 0}).force.x(), 4);
+    limiter.watchButtons(0);
+    EXPECT_NEAR(applied(limiter, {4, 0, 0}).force.x(), ramp_out < kTick ? 0 : 2, 1e-9) << ramp_out;
+    EXPECT_EQ(applied(limiter, {4, 0, 0}).force.x(), 0) << ramp_out;
+  }
+}
+
+TEST(Limiter, SlewMayBeLessThanANewtonASecond) {
+  scene::Limits limits = generous();
+  limits.slew = 0.5;
+  Limiter limiter(limits, 8.5);
+  EXPECT_NEAR(applied(limiter, {4, 0, 0}).force.x(), 0.5 * kTick, 1e-12);
+  limits.slew = 0;
+  limits.torque_slew = 0.5;
+  Limiter turned(limits, 8.5);
+  EXPECT_NEAR(applied(turned, {4, 0, 0}, {0.1, 0, 0}).torque.x(), 0.5 * kTick, 1e-12);
+}
+
+TEST(Limiter, CountsWhatTookAwaySomethingAndNothingElse) {
+  const auto count = [](const Limiter& l, Limit which) { return l.clips().ticks[static_cast<size_t>(which)]; };
+  Limiter aged(generous(), 8.5);
+  aged.trustSample(0.5);
+  applied(aged, {0.5, 0, 0});
+  EXPECT_EQ(count(aged, Limit::kSample), 1u);
+  applied(aged, Vector3d::Zero(), {0.5, 0, 0});
+  EXPECT_EQ(count(aged, Limit::kSample), 2u);
+  applied(aged, Vector3d::Zero());
+  EXPECT_EQ(count(aged, Limit::kSample), 2u) << "there was nothing to take";
+  scene::Limits limits = generous();
+  limits.workspace = 0.1;
+  Limiter far(limits, 8.5);
+  far.spareMotors(0.5);
+  applied(far, Vector3d::Zero(), Vector3d::Zero(), {1, 0, 0});
+  EXPECT_EQ(far.clips().any, 0u);
+  applied(far, Vector3d::Zero(), {0.1, 0, 0}, {1, 0, 0});
+  EXPECT_EQ(count(far, Limit::kWorkspace), 1u);
+  EXPECT_EQ(count(far, Limit::kHeat), 1u);
+  EXPECT_EQ(far.clips().any, 1u) << "ticks, not limits";
+  Limiter first(generous(), 8.5);
+  first.clippedByMotors();
+  EXPECT_EQ(first.clips().any, 1u) << "in the first tick too";
+}
+
+TEST(Limiter, AClearBeginsTheRampAnew) {
+  scene::Limits limits = generous();
+  limits.ramp_in = 0.1;
+  Limiter limiter(limits, 8.5);
+  EXPECT_EQ(limiter.measured(), 0);
+  for (int i = 0; i < 50; ++i) applied(limiter, {4, 0, 0});
+  limiter.clear();
+  EXPECT_EQ(limiter.allowed(), 0);
+  EXPECT_NEAR(applied(limiter, {4, 0, 0}).force.x(), 0.04, 1e-9);
 }
 
 }  // namespace

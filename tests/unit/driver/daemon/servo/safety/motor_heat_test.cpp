@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace hapticd::servo {
@@ -62,6 +63,58 @@ TEST(MotorHeat, ATorqueThatIsNotANumberDoesNotSpoilTheModel) {
   const double bad = std::nan("");
   heat.heat(&bad, 0.01);
   EXPECT_EQ(heat.hottest(), 25);
+}
+
+/// The bounds that safety.md names: sparing from 10 K below the limit, a fault 5 K beyond it.
+TEST(MotorHeat, SparesFromTenKelvinBelowItsLimitAndIsAFaultFiveBeyond) {
+  MotorHeat heat({re25()});
+  EXPECT_FALSE(heat.overheated());
+  bool spared = false, hot = false;
+  for (int i = 0; i < 100000 && !hot; ++i) {
+    heat.heat(&kStall, 1e-3);
+    const double room = 100 - heat.hottest();
+    ASSERT_NEAR(heat.factor(), std::clamp(room / 10, 0.0, 1.0), 1e-12);
+    ASSERT_EQ(heat.overheated(), room < -5) << room;
+    spared = spared || (heat.factor() > 0 && heat.factor() < 1);
+    hot = heat.overheated();
+  }
+  EXPECT_TRUE(spared && hot);
+}
+
+TEST(MotorHeat, WatchesEveryMotor) {
+  for (size_t hot = 0; hot < 3; ++hot) {
+    MotorHeat heat({re25(), re25(), re25()});
+    double torque[3] = {0, 0, 0};
+    torque[hot] = kStall;
+    for (int i = 0; i < 10000; ++i) heat.heat(torque, 0.01);
+    EXPECT_TRUE(heat.overheated()) << hot;
+    EXPECT_EQ(heat.factor(), 0) << hot;
+    EXPECT_EQ(heat.hottest(), heat.winding(hot)) << hot;
+  }
+}
+
+TEST(MotorHeat, TakesALongGapForATenthOfASecond) {
+  MotorHeat gap({re25()}), tenth({re25()});
+  gap.heat(&kStall, 5);
+  tenth.heat(&kStall, 0.1);
+  EXPECT_EQ(gap.winding(0), tenth.winding(0));
+  EXPECT_GT(tenth.winding(0), 25);
+}
+
+TEST(MotorHeat, NamesTheFirstOfTwoThatAreEquallyNearTheirLimits) {
+  scene::Motor warm = re25();
+  warm.ambient = 35;
+  warm.max_temperature = 110;
+  MotorHeat heat({re25(), warm});
+  const double none[2] = {0, 0};
+  heat.heat(none, 0.01);
+  EXPECT_EQ(heat.hottest(), 25);
+}
+
+TEST(MotorHeat, IsEmptyWithoutMotors) {
+  EXPECT_TRUE(MotorHeat({}).empty());
+  EXPECT_FALSE(MotorHeat({re25()}).empty());
+  EXPECT_EQ(MotorHeat({re25(), re25()}).count(), 2u);
 }
 
 }  // namespace

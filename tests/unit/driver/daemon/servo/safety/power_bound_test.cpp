@@ -51,5 +51,33 @@ TEST(PowerBound, ReckonsWithWhatTheForceDoesToALightArm) {
   EXPECT_GT(against, force);
 }
 
+TEST(PowerBound, OfTwoEstimatesAtOnceMakesNoAcceleration) {
+  PowerBound bound;
+  bound.watch(Vector3d::Zero());
+  bound.watch({0.5, 0, 0});
+  bound.pass(1e-3);
+  EXPECT_NEAR(bound.most(kAlong, 1), 2, 1e-12);
+}
+
+TEST(PowerBound, LagsNotAndWeighsNothingUntilItIsTold) {
+  PowerBound bound;
+  bound.watch(Vector3d::Zero());
+  bound.pass(1e-3);
+  bound.watch({0.01, 0, 0});
+  EXPECT_NEAR(1 / bound.most(kAlong, 1), 0.01 + PowerBound::kMargin * 10 * 1e-3, 1e-9);
+}
+
+TEST(PowerBound, ReckonsWithTheTimeThatPassedAlone) {
+  const auto from_rest = [](double ahead) { return std::sqrt(0.3 * 0.05 / ahead); };  // F * F t / m = P
+  PowerBound told;
+  told.expect(1e-3, 0.05);
+  told.watch(Vector3d::Zero());
+  EXPECT_NEAR(told.most(kAlong, 0.3), from_rest(1e-3), 1e-9) << "before the first tick";
+  PowerBound silent;
+  silent.expect(0, 0.05);
+  silent.pass(1e-3);
+  EXPECT_NEAR(silent.most(kAlong, 0.3), from_rest(2e-3), 1e-9) << "without an estimate";
+}
+
 }  // namespace
 }  // namespace hapticd::servo

@@ -64,5 +64,17 @@ TEST(SampleSpeed, StartsAnewAfterAGap) {
   EXPECT_EQ(speed.update({1, 0, 0}, 2, 1e-3), 0);
 }
 
+TEST(SampleSpeed, TakesTheHostsTimeWhereStampsStandStill) {
+  SampleSpeed unstamped(1000, 0);
+  unstamped.update({0, 0, 0}, 0, 1);
+  EXPECT_NEAR(unstamped.update({0.004, 0, 0}, 0, 4e-3), 1, 1e-9);
+}
+
+TEST(SampleSpeed, BelievesAnArmThatIsSlow) {
+  SampleSpeed slow(0.5, 0);
+  slow.update({0, 0, 0}, 0, 1);
+  EXPECT_NEAR(slow.update({1, 0, 0}, 0, 1e-3), 0.5, 1e-9);
+}
+
 }  // namespace
 }  // namespace hapticd::servo
