@@ -16,6 +16,8 @@
 #include "base/os.hpp"
 #include "cli/command.hpp"
 #include "cli/view_process.hpp"
+#include "diagnostics/enable_button.hpp"
+#include "document/node.hpp"
 #include "log/log.hpp"
 #include "record/picture.hpp"
 #include "record/report.hpp"
@@ -291,11 +293,21 @@ int runScene(const Options& options, scene::Scene& scene) {
   return conclude(options, **runner, left_out);
 }
 
+/// Says which enable button no report of its arm has: no force could ever be felt. The module knows only the highest.
+bool switchesAreThere(const scene::Scene& scene) {
+  document::Problems wrong;
+  for (const scene::Device& device : scene.devices)
+    if (const auto root = document::parseFile(device.file, wrong))
+      diagnostics::checkEnableButton(*root, device.file.string(), wrong);
+  printProblems(wrong, stderr);
+  return wrong.empty();
+}
+
 int run(const Options& options) {
   if (auto opened = log::open(options.log); !opened) return fail(kBadInput, opened.error());
   if (const std::string wrong = wrongFiles(options); !wrong.empty()) return fail(kBadInput, wrong);
   auto scene = loadSceneOrReport(options.scene, options.device);
-  if (!scene) return kBadInput;
+  if (!scene || !switchesAreThere(*scene)) return kBadInput;
   if (scene->devices.front().chosen_by_default)
     log::write(HSP_LOG_INFO, "",
                "no device is named: using the simulated one of " + scene->devices.front().file.string());

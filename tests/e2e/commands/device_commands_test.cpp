@@ -95,7 +95,7 @@ TEST_F(DeviceCommands, DeviceInfoPrintsTheParametersWhenAsked) {
 }
 
 TEST_F(DeviceCommands, DeviceInfoSaysWhatNobodyTriedAlthoughNothingIsPluggedIn) {
-  for (const char* name : {"woodenhaptics", "polhem"}) {
+  for (const char* name : {"woodenhaptics", "polhem", "falcon", "sarcos"}) {
     const Outcome outcome =
         run("device info " HAPTICD_SOURCE_DIR "/config/devices/" + std::string(name) + ".yaml", kShipped);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.text;
@@ -123,6 +123,24 @@ double columnOf(const std::string& csv, const std::string& name) {
   while (std::getline(names, column, ',') && std::getline(row, value, ','))
     if (column == name) return std::stod(value);
   return std::nan("");
+}
+
+TEST_F(DeviceCommands, RunRefusesAnEnableButtonThatNoReportHas) {
+  const std::string folder = HAPTICD_SOURCE_DIR "/tests/scenes/first_hour/";
+  const std::string gap = put("gap.yaml", [&] {
+    std::ifstream in(folder + "61-enable-counts-from-0.yaml");
+    std::string text((std::istreambuf_iterator<char>(in)), {});
+    const size_t field = text.find("button: 1,"), key = text.find("enable: {button: 1");
+    EXPECT_TRUE(field != std::string::npos && key != std::string::npos) << text;
+    return text.replace(field, 10, "button: 2,").replace(key, 18, "enable: {button: 0");
+  }());
+  for (const std::string& arm : {folder + "61-enable-counts-from-0.yaml", folder + "62-enable-beyond.yaml",
+                                 folder + "63-enable-without-a-button.yaml", gap}) {
+    const Outcome outcome =
+        run("run " HAPTICD_SOURCE_DIR "/config/scenes/sphere.yaml --for 0.1 --device " + arm, kShipped);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.text;
+    EXPECT_TRUE(has(outcome.text, "is no button of wire.input, so forces could never be enabled")) << outcome.text;
+  }
 }
 
 TEST_F(DeviceCommands, EveryArmThatShipsRestsBeforeTheShapesOfAScene) {

@@ -22,6 +22,7 @@ failures = 0
 
 def scene(folder):
     text = (CONFIG / "devices/sarcos.yaml").read_text().replace("/dev/bus/vme/m0", str(folder / "window"))
+    text = text.replace("masses: [0, 0, 0, 0, 0, 0, 0, 0]", "masses: [1.0, 0.5, 2.0, 0.5, 1.2, 0.2, 0.3, 0.05]")  # the board's own
     (folder / "sarcos.yaml").write_text(text)
     file = folder / "scene.yaml"
     file.write_text(f"hapticd: 1\nservo: {{rate: 1500}}\ndevice: {{file: sarcos.yaml, mount: {{position: [0, 0, 0]}}}}\n"

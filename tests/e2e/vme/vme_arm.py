@@ -20,6 +20,7 @@ LATE = 2e-3  # [s] the watchdog cuts a tick that is 3 ms old, and the board look
 
 def device(folder, window):
     text = (CONFIG / "devices/sarcos.yaml").read_text().replace("/dev/bus/vme/m0", str(window))
+    text = text.replace("masses: [0, 0, 0, 0, 0, 0, 0, 0]", "masses: [1.0, 0.5, 2.0, 0.5, 1.2, 0.2, 0.3, 0.05]")  # the board's own
     file = folder / "sarcos.yaml"
     file.write_text(text)
     return file

@@ -224,7 +224,8 @@ with tempfile.TemporaryDirectory() as folder:
     try:
         check("the board is up", board.stdout.readline() == "ready\n")
         arm = os.path.join(folder, "sarcos.yaml")
-        open(arm, "w").write(open(os.path.join(SOURCE, "config/devices/sarcos.yaml")).read().replace("/dev/bus/vme/m0", window))
+        open(arm, "w").write(open(os.path.join(SOURCE, "config/devices/sarcos.yaml")).read().replace("/dev/bus/vme/m0", window)
+                             .replace("masses: [0, 0, 0, 0, 0, 0, 0, 0]", "masses: [1.0, 0.5, 2.0, 0.5, 1.2, 0.2, 0.3, 0.05]"))
         capture = os.path.join(folder, "capture.txt")
         code, out, err = run("record", arm, "--for", "1", "-o", capture)
         text = open(capture).read()
