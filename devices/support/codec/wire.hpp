@@ -81,6 +81,9 @@ struct Wire {
   std::vector<StartStep> startup;
   Report input, output;
   uint8_t endpoint_in = 0x81, endpoint_out = 0x02;
+  /// Its own watchdog takes a force away soon enough for a hand. A slower one counts as none: a guard process stands
+  /// by.
+  bool cutsSoon() const noexcept { return watchdog > 0 && watchdog <= 0.1; }
 };
 
 /// [main] Reads JSON text (the parameter `wire` of a device file). Throws std::invalid_argument: the key's path, what

@@ -223,7 +223,7 @@ class Arm : public Device, public Parameters {
     info.joint_count = static_cast<uint32_t>(joints_);
     info.capabilities = HDV_C_PACING | (velocity_ ? uint32_t{HDV_C_VELOCITY} : 0u) |
                         (torque_ ? uint32_t{HDV_C_TORQUE} : 0u) | (follows_ ? uint32_t{HDV_C_POSITION} : 0u) |
-                        (wire_.watchdog > 0 ? uint32_t{HDV_C_WATCHDOG} : 0u) |
+                        (wire_.cutsSoon() ? uint32_t{HDV_C_WATCHDOG} : 0u) |
                         (method != 0 ? uint32_t{HDV_C_CALIBRATION} : 0u) | (verified ? 0u : uint32_t{HDV_C_UNVERIFIED});
     info.rate_hz = wire_.rate;
     info.max_force = max_force, info.continuous_force = continuous_force, info.max_stiffness = max_stiffness;

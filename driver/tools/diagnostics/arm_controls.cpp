@@ -32,7 +32,7 @@ void addTimes(const host::DeviceInstance& device, bool opened, const std::option
               std::vector<Control>& to) {
   const hdv_info& info = device.info();
   const bool known = opened || wire;
-  const bool watchdog = opened ? (info.capabilities & HDV_C_WATCHDOG) != 0 : wire && wire->watchdog > 0;
+  const bool watchdog = opened ? (info.capabilities & HDV_C_WATCHDOG) != 0 : wire && wire->cutsSoon();
   const std::string after = wire && wire->watchdog > 0 ? numberText(wire->watchdog * 1e3) + " ms after the last command"
                                                        : std::string("when commands stop");
   to.push_back({"H30", "the hardware's own watchdog", known ? onIf(watchdog) : ControlState::kUnknown,
@@ -149,7 +149,7 @@ std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog
   const uint32_t capabilities = found.opened ? (*device)->info().capabilities : 0;
   const auto wire = wireOf(*loaded.device, (*device)->kinematics().joint_count);
   found.simulated = (capabilities & HDV_C_SIMULATED) != 0;
-  found.watchdog = (capabilities & HDV_C_WATCHDOG) != 0 || (!found.opened && wire && wire->watchdog > 0);
+  found.watchdog = (capabilities & HDV_C_WATCHDOG) != 0 || (!found.opened && wire && wire->cutsSoon());
   found.silenced_after_us = (*device)->silenceable() || found.watchdog || found.simulated;
   return found;
 }

@@ -147,6 +147,15 @@ TEST(Wire, NothingStandsOnTheBitsOfAJoint) {
       std::string::npos);
 }
 
+TEST(Wire, AWatchdogThatIsSlowIsNoneForAHand) {
+  const auto cutsSoon = [](const std::string& seconds) {
+    return readWire(changed("\"rate\":1000", "\"rate\":1000,\"watchdog\":" + seconds), 1).cutsSoon();
+  };
+  EXPECT_TRUE(cutsSoon("0.1"));
+  EXPECT_FALSE(cutsSoon("0.2"));
+  EXPECT_FALSE(cutsSoon("0"));
+}
+
 TEST(Wire, NeighboursInOneByteAreNoOverlap) {
   const std::string twelve = R"("at":1,"type":"i12")", big = R"("at":1,"type":"i12","endian":"big")";
   const std::string low = R"({"is":"button","button":1,"at":2,"type":"u8","bit":3})",
