@@ -13,7 +13,7 @@
 #include "diagnostics/device_trial.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
-#include "session/arm_force.hpp"
+#include "world/arm_force.hpp"
 
 namespace hapticd::cli {
 

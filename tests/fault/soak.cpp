@@ -11,6 +11,7 @@
 #include <random>
 
 #include "base/allocation_count.hpp"
+#include "base/os.hpp"
 #include "dying_readers.hpp"
 #include "session/status_writer.hpp"
 #include "session/watched_servo.hpp"

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "base/os.hpp"
 #include "test_rig.hpp"
 
 namespace hapticd::servo {
