@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "base/passed_files.hpp"
-
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -13,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/passed_files.hpp"
 #include "base/regular_file.hpp"
 
 namespace hapticd {

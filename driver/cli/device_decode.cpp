@@ -167,12 +167,14 @@ void addDecode(CLI::App& device, int& exit_code) {
       device.add_subcommand("decode", "Show a captured stream of an arm as numbers, as its device file reads it.");
   command->add_option("file", options->file, "device file (YAML)")->required();
   command->add_option("capture", options->input, "captured bytes; - for standard input")->capture_default_str();
-  auto* hex = command->add_flag("--hex", options->hex, "the capture is text: one transfer per line, two digits per byte");
+  auto* hex =
+      command->add_flag("--hex", options->hex, "the capture is text: one transfer per line, two digits per byte");
   command->add_flag("--raw", options->raw, "the capture is the bytes themselves, even if they read as text")
       ->excludes(hex);
   command->add_option("-o,--out", options->out, "CSV file to write; - for standard output");
   command->footer(
-      "A capture is raw bytes, or text with one transfer per line: \"01 ff 3c\", the E: lines of hid-recorder, or what\n"
+      "A capture is raw bytes, or text with one transfer per line: \"01 ff 3c\", the E: lines of hid-recorder, or "
+      "what\n"
       "`hapticd device record` writes. The output has one row per report: positions, torques and buttons in SI units,\n"
       "or the reason why the bytes are not a report. The exit code is 1 if a report is bad.\n\n"
       "Examples:\n  hapticd device decode my-arm.yaml capture.bin\n"
@@ -190,7 +192,8 @@ void addEncode(CLI::App& device, int& exit_code) {
   command->add_flag("--raw", options->raw, "write the bytes themselves instead of hexadecimal text");
   command->add_option("-o,--out", options->out, "file to write; - for standard output");
   command->footer(
-      "Each row of the CSV is one report. Its header names the columns: torque1,torque2 [N m, N], reference1, enable, follow,\n"
+      "Each row of the CSV is one report. Its header names the columns: torque1,torque2 [N m, N], reference1, enable, "
+      "follow,\n"
       "calibrate; with --from-arm position1, velocity1, torque1, buttons, sequence, starts, fault, calibrated. Without "
       "a\nheader they are the torques or, with --from-arm, the positions of all joints. Constants, counters, checksums "
       "and\nescapes are added.\n\n"

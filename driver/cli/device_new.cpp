@@ -146,7 +146,8 @@ std::string armOf(const Options& o) {
         "Falcon's, guessed\n";
   } else {
     text +=
-        "    dh:                           # a, alpha, d, theta: m, rad (standard Denavit-Hartenberg), one row per joint\n";
+        "    dh:                           # a, alpha, d, theta: m, rad (standard Denavit-Hartenberg), one row per "
+        "joint\n";
     for (int i = 0; i < o.joints; ++i)
       text += fmt::format("      - [{:g}, 0, 0, 0]\n", o.lengths.empty() ? 0.2 : o.lengths[static_cast<size_t>(i)]);
     text += "    # masses: [...]               # kg, one per row; left out: its weight is not carried\n";

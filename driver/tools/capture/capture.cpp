@@ -91,7 +91,8 @@ Result<Capture> readText(const std::string& text) {
     auto bytes = bytesIn(line);
     if (!bytes)
       return Error{"line " + std::to_string(number) + ": \"" + shown(line) +
-                   "\" is not hexadecimal, expected two digits per byte and one report per line: 01 ff 3c" + otherForm(text)};
+                   "\" is not hexadecimal, expected two digits per byte and one report per line: 01 ff 3c" +
+                   otherForm(text)};
     transfer.bytes = std::move(*bytes);
     if (!transfer.bytes.empty()) capture.transfers.push_back(std::move(transfer));
   }
