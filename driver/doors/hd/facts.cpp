@@ -75,8 +75,9 @@ void readHd(const Json& device, Facts& facts) {
     facts.joint_of.push_back({joint.at(0), joint.at(1), joint.at(2)});
   std::erase_if(facts.joint_of, [&](const auto& of) { return of.joint >= static_cast<size_t>(facts.joints); });
   for (const Json& button : hd.value("buttons", Json::array())) facts.button_of.push_back(button);
-  for (size_t i = 0; facts.joint_of.empty() && i < std::min<size_t>(kFull, static_cast<size_t>(facts.joints)); ++i)
-    facts.joint_of.push_back({i, 1, 0});
+  const auto all = std::min<size_t>(kFull, static_cast<size_t>(facts.joints));
+  if (facts.joint_of.empty())
+    for (size_t i = 0; i < all; ++i) facts.joint_of.push_back({i, 1, 0});
   facts.input_dof = facts.joint_of.size() >= kFull ? static_cast<int>(kFull) : 3;
   facts.output_dof = std::min(facts.input_dof, facts.output_dof);
 }
