@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// A plugin claims how stiff its shape is at most, how much it damps, and how far its force may jump on purpose. These
-/// claims and the motion of the probe bound the change of the force. A force that changes by more is let through only as
-/// far as the bound. Forces are compared as vectors in the world frame, after every rotation, whether the model is
+/// claims and the motion of the probe bound the change of the force. A force that changes by more is let through only
+/// as far as the bound. Forces are compared as vectors in the world frame, after every rotation, whether the model is
 /// traced or not.
 #pragma once
 #include <Eigen/Core>

@@ -26,7 +26,8 @@ inline host::Catalog builtModules() {
   return host::Catalog(path);
 }
 
-/// The mechanism that a device file with a chain describes.
+/// The mechanism that a device file with a chain describes. The shipped Sarcos file carries no weight, since no mass of
+/// it was published; here it weighs what the simulated arm behind the board does.
 inline std::unique_ptr<kinematics::Arm> mechanismOf(const std::string& file) {
   const YAML::Node arm = YAML::LoadFile(file)["parameters"]["arm"];
   const auto flat = [&](const char* key) {
@@ -42,6 +43,7 @@ inline std::unique_ptr<kinematics::Arm> mechanismOf(const std::string& file) {
   p.kind = static_cast<int>(wire_arm::Kind::kChain);
   p.dh = flat("dh"), p.limits = flat("limits"), p.masses = flat("masses"), p.centers = flat("centers");
   p.base_orientation = flat("base_orientation");
+  if (file == kSarcos) p.masses = YAML::LoadFile(kSimulated)["parameters"]["arm"]["masses"].as<std::vector<double>>();
   p.others = arm["others"].as<int>(0);
   for (size_t i = 0; i < 3; ++i) {
     p.origin[i] = arm[arm["origin"] ? "origin" : "base_position"][i].as<double>();

@@ -77,7 +77,7 @@ TEST_F(Load, RefusesWrongHdKeysByName) {
     ASSERT_FALSE(loaded.problems.empty()) << expected;
     EXPECT_NE(loaded.problems[0].text().find(expected), std::string::npos) << loaded.problems[0].text();
   };
-  refused("hd: {modell: x}\n", "", "hd.modell: unknown key, did you mean model?");
+  refused("hd: {modell: x}\n", "", "(did you mean \"model\"?)");
   refused("hd: {joints: 3}\n", "", "hd.joints: 3, expected a list of up to 6");
   refused("hd: {joints: [[0, 0]]}\n", "", "hd.joints[0][1]: 0, expected 1 or -1");
   refused("hd: {joints: [[16]]}\n", "", "hd.joints[0][0]");
@@ -85,7 +85,7 @@ TEST_F(Load, RefusesWrongHdKeysByName) {
   refused("hd: {joints: [[0],[1],[2],[3],[4],[5],[6]]}\n", "", "a list of 7, expected a list of up to 6");
   refused("hd: {buttons: [99]}\n", "", "hd.buttons[0]");
   refused("", "clients: {mode: add, frame: arm}\n", "clients.frame");
-  refused("", "clients: {mode: add, orgin: [0, 0, 0]}\n", "clients.orgin: unknown key, did you mean origin?");
+  refused("", "clients: {mode: add, orgin: [0, 0, 0]}\n", "(did you mean \"origin\"?)");
   refused("", "clients: {mode: add, origin: [0, 0]}\n", "clients.origin");
 }
 
