@@ -152,7 +152,11 @@ void addClient(CLI::App& app, int& exit_code) {
   command->footer(
       "The program finds hapticd's own libHD.so and the daemon of --name. Where none runs, one is started with the\n"
       "simulated arm, and ends with the program. Options of this command stand before PROGRAM; its exit code is the "
-      "program's.\n\nExamples:\n  hapticd client ./my_program --its-own option\n  eval \"$(hapticd client --env)\"");
+      "program's.\n\n"
+      "With real-time priority, the program's servo loop looks for each tick without sleeping from 100 us before it "
+      "is\n"
+      "due (a tenth of the period at most). HAPTICD_LISTEN in the environment sets this time: 0 to 200 us.\n\n"
+      "Examples:\n  hapticd client ./my_program --its-own option\n  eval \"$(hapticd client --env)\"");
   command->callback([command, options, &exit_code] { exit_code = client(*options, command->remaining()); });
 }
 

@@ -25,6 +25,8 @@ class Link {
   int next(uint64_t after, int timeout_ms, hapticd_state& state) const {
     return hapticd_next_state(client_, device_, after, timeout_ms, &state);
   }
+  /// [any] As hapticd_listen.
+  void listen(unsigned microseconds) const { hapticd_listen(client_, microseconds); }
   /// [any] The newest Jacobian of the arm. @return false: it is not told
   bool jacobian(hapticd_jacobian& jacobian) const { return hapticd_read_jacobian(client_, device_, &jacobian) == 1; }
   /// [any] A daemon of this name runs; perhaps not the one that was connected to.

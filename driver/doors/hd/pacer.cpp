@@ -65,7 +65,10 @@ uint64_t Pacer::wait() {
 bool Pacer::waitFor(const Lead& lead, hapticd_state& state) {
   const auto period = static_cast<uint64_t>(static_cast<double>(kNsPerSecond) / rate());
   const bool alone = !lead.link || lost_ || silent_since_ns_ != 0;
-  if (!alone) return lead.link->next(seen_, kPatienceMs, state) == 1;
+  if (!alone) {
+    lead.link->listen(listen_us_);
+    return lead.link->next(seen_, kPatienceMs, state) == 1;
+  }
   sleepNs(period);
   return lead.link && lead.link->next(seen_, 0, state) == 1;
 }

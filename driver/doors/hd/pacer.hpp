@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Ticks for the scheduler: those of the daemon, or, where none is there, of this process's own clock.
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -18,6 +19,9 @@ class Pacer {
   /// Waits for a tick and shows its states to the arms. One thread after the other. @return CLOCK_MONOTONIC [ns] when
   /// it began
   uint64_t wait();
+  /// [servo] Looks for ticks without sleeping from so many microseconds before they are due; 0: it sleeps
+  /// (hapticd_listen)
+  void listen(unsigned microseconds) { listen_us_ = microseconds; }
   void endTick();  ///< [servo] every arm hears that the program lives
   double rate() const;
 
@@ -36,6 +40,7 @@ class Pacer {
   std::shared_ptr<Link> followed_;  ///< the arm that the ticks are those of
   uint64_t seen_ = UINT64_MAX, silent_since_ns_ = 0, looked_ns_ = 0;
   bool lost_ = false;  ///< and told so
+  std::atomic<unsigned> listen_us_{0};
 };
 
 uint64_t nowNs();

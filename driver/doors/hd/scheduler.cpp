@@ -5,9 +5,12 @@
 #include <sched.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
+#include <cstring>
 
 #include "errors.hpp"
 #include "pacer.hpp"
@@ -29,6 +32,21 @@ bool becomeRealTime() {
       "no real-time priority for the servo loop: forces may be felt a tick late\n"
       "  fix: join the group haptic (`hapticd doctor` says how)");
   return false;
+}
+
+/// [us] How long before and after a tick is due the servo loop looks for it without sleeping: what $HAPTICD_LISTEN
+/// says; else, with real-time priority, a tenth of the period, 100 us at most. Without that priority a busy loop would
+/// only use up the time that the kernel gives to the thread.
+unsigned listeningTime(bool real_time, double rate) {
+  constexpr double kMost = 100, kShare = 0.1, kUsPerSecond = 1e6;
+  if (const char* text = std::getenv("HAPTICD_LISTEN"); text != nullptr && *text != '\0') {
+    unsigned us = 0;
+    const char* end = text + std::strlen(text);
+    const auto [stopped, error] = std::from_chars(text, end, us);
+    if (error == std::errc{} && stopped == end) return us;
+    hintOnce("HAPTICD_LISTEN is not a number of microseconds, expected 0 to 200: it is ignored");
+  }
+  return real_time ? static_cast<unsigned>(std::min(kMost, kShare * kUsPerSecond / rate)) : 0;
 }
 
 }  // namespace
@@ -58,6 +76,7 @@ void Scheduler::stop() {
     running_ = false;
     thread.swap(thread_);
   }
+  pacer_.listen(0);
   changed_.notify_all();
   if (!thread.joinable()) return;
   if (thread.get_id() == std::this_thread::get_id())
@@ -69,6 +88,7 @@ void Scheduler::stop() {
 
 void Scheduler::loop(uint64_t run) {
   real_time_ = becomeRealTime();
+  pacer_.listen(listeningTime(real_time_, pacer_.rate()));
   Tasks batch;
   uint64_t count = 0;
   const auto goes_on = [&] { return running_ && run_ == run; };

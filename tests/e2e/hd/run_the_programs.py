@@ -4,6 +4,7 @@
 Usage: run_the_programs.py HAPTICD SOURCE PROGRAMS     prints one line per case; exit 1 when one is off.
 PROGRAMS is the folder of the built hd_... programs.
 """
+import contextlib
 import os
 import signal
 import subprocess
@@ -168,6 +169,35 @@ def spring(daemon):
     check("no force stays behind", until(lambda: client_force(daemon) == 0))
 
 
+def sleeps_by_the_clock(daemon, listen):
+    """Share of the looks at which the program's servo loop slept until a time; else it waited for the daemon's bell."""
+    clock = {"x86_64": "230", "aarch64": "115"}[os.uname().machine]
+    program = subprocess.Popen(daemon.command("forces", "spring", "1"), stdout=subprocess.DEVNULL,
+                               env=dict(daemon.environment, HAPTICD_LISTEN=listen))
+    seen = []
+    while program.poll() is None:
+        for thread in os.listdir(f"/proc/{program.pid}/task"):
+            if int(thread) != program.pid:
+                with contextlib.suppress(OSError), open(f"/proc/{program.pid}/task/{thread}/syscall") as file:
+                    seen.append(file.read().split()[0])
+        time.sleep(0.0007)
+    asleep = [call for call in seen if call != "running"]
+    return sum(call == clock for call in asleep) / max(1, len(asleep))
+
+
+def listens(daemon):
+    """HAPTICD_LISTEN: the servo loop sleeps until shortly before a tick and looks for it, so that nobody need wake it."""
+    if not os.access("/proc/self/syscall", os.R_OK):
+        return print("SKIPPED: this kernel does not tell what a thread waits for")
+    check("without listening it waits for the bell alone", sleeps_by_the_clock(daemon, "0") == 0)
+    share = sleeps_by_the_clock(daemon, "100")
+    check("with HAPTICD_LISTEN it sleeps by the clock", share > 0.2, share)
+    done = subprocess.run(daemon.command("forces", "spring", "0.1"), capture_output=True, text=True, timeout=60,
+                          env=dict(daemon.environment, HAPTICD_LISTEN="soon"))
+    check("what is no number is told and ignored",
+          done.returncode == 0 and "HAPTICD_LISTEN is not a number of microseconds" in done.stderr, done)
+
+
 def clamp(daemon):
     force, *_ = pushes_of(daemon, "forces", "clamp", "1")
     largest = numpy.linalg.norm(force, axis=1).max()
@@ -304,6 +334,7 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as place:
         if not os.environ.get("HAPTICD_SANITIZE"):  # Python lacks the runtime that such a library needs
             python(plain_daemon)
         spring(plain_daemon)
+        listens(plain_daemon)
         clamp(plain_daemon)
         poll(plain_daemon)
         wall(plain_daemon)
