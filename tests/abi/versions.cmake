@@ -29,8 +29,9 @@ file(READ ${include_dir}/shape.h shape)
 string(REGEX REPLACE "HSP_LAYOUT\\([a-z_]+, [0-9]+\\);\n" "" abi "${abi}")
 string(REGEX REPLACE "HSP_LAYOUT\\([a-z_]+, [0-9]+\\);\n" "" shape "${shape}")
 
-set(small_abi "${abi}")
-set(small_shape "${shape}")
+# How far comments are indented does not matter.
+string(REGEX REPLACE " +" " " small_abi "${abi}")
+string(REGEX REPLACE " +" " " small_shape "${shape}")
 cut(small_abi "const char* def_text;")
 cut(small_shape "hsp_pose* pose;")
 cut(small_shape "uint32_t iterations, reserved;")

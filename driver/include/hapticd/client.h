@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-/* client.h - a program beside a running hapticd: what both sides of the door agree on. C11, C++17 and newer.
+/* client.h - for programs beside a running hapticd: the memory that both share, and the client library. C11 and C++17.
  *
- * Rows out: the daemon keeps the newest rows of every stream in one file in memory, NAME.blackbox.h5, which any program
- * of the group may map read-only. Leads in: a small memory file that the daemon hands out on request and looks at once
- * a tick; the newest record wins. Everything rare is a line of JSON on the control socket. SI units; vectors in the
- * world frame: x to the right, y up, z toward the user; quaternions are w,x,y,z. */
+ * Rows come out: the daemon keeps the newest rows of every stream in one file in memory, NAME.blackbox.h5, which a
+ * program of the group may map read-only. Leads go in: the daemon hands out a small memory file on request and reads it
+ * once per tick; the newest record wins. Everything rare is a line of JSON on the control socket. SI units; vectors in
+ * the WORLD frame: x to the right, y up, z toward the user; quaternions are w,x,y,z. */
 #ifndef HAPTICD_CLIENT_H
 #define HAPTICD_CLIENT_H
 #include <stddef.h>
@@ -13,96 +13,96 @@
 extern "C" {
 #endif
 
-/* ---- what a lead holds. The layout never changes: a new kind of lead is a new record. */
+/* ---- the records that a lead holds. Their layouts never change: a new kind of lead gets a new record. */
 
-/* Where the leader of a kinematic model, or of the simulated hand, wants it to be. The daemon follows it with bounded
- * speed and acceleration. Refused as a whole, and counted: a number that is not finite, a position beyond 10 m, an
- * orientation that is no unit quaternion (within 1e-3), a time that lies ahead. Older than the one followed: ignored.
+/* Where a leader wants a kinematic model, or the simulated hand, to be. The daemon follows it with bounded speed and
+ * acceleration. It refuses and counts the whole record if a number is not finite, the position is beyond 10 m, the
+ * orientation is not a unit quaternion (within 1e-3), or the time lies ahead. It ignores one older than the last.
  */
 typedef struct hapticd_target {
   double position[3];    /* m */
-  double orientation[4]; /* unit quaternion; the simulated hand does not look at it */
-  double linear[3];      /* m/s, of the position; more than the bound counts as the bound */
-  double angular[3];     /* rad/s */
-  double time;           /* s, CLOCK_MONOTONIC of this machine, when all of this was true; 0: when the servo reads it */
+  double orientation[4]; /* unit quaternion; it has no effect on the simulated hand */
+  double linear[3];      /* m/s of the position; the daemon bounds it */
+  double angular[3];     /* rad/s; the daemon bounds it */
+  double time;           /* s, CLOCK_MONOTONIC: when the rest was true; 0: when the servo reads it */
 } hapticd_target;
 
-/* What a program adds to the force of an arm. It answers one tick: the newest that it has seen. Refused as a whole, and
- * counted: a number that is not finite or beyond 1e6, a tick that lies ahead. Ignored: one that does not grow, or that
- * was more than 20 ms ago. 3 ms after its last answer the force of a program ramps out, and is gone after 20 ms. */
+/* The force that a program adds to that of an arm: its answer to the newest tick that it has seen. The daemon refuses
+ * and counts the whole record if a number is not finite or beyond 1e6, or the tick lies ahead. It ignores a tick that
+ * does not grow or is more than 20 ms old. 3 ms after the last answer the force ramps out; after 20 ms it is gone. */
 typedef struct hapticd_push {
-  uint64_t tick;                /* that it answers: must grow and may not lie ahead */
-  double force[3], torque[3];   /* N, N m on the hand; a torque needs limits.torque in the device file */
-  uint64_t woke_ns, written_ns; /* CLOCK_MONOTONIC: when the program woke for that tick and when it wrote; 0: unknown */
+  uint64_t tick;                /* the tick that this answers; it must grow and may not lie ahead */
+  double force[3], torque[3];   /* N, N*m on the hand; a torque needs limits.torque in the device file */
+  uint64_t woke_ns, written_ns; /* CLOCK_MONOTONIC: when the program woke for that tick, and wrote this; 0: unknown */
 } hapticd_push;
 
-/* An arm in the tick that is going on, told before the shapes are felt, so that who pushes can answer in the same tick.
- * The servo writes one for each arm into the memory of the request `state`, which nobody else can write. */
+/* The state of an arm in the tick that is under way. The servo writes it before it steps the shapes, so that a program
+ * that pushes can answer in the same tick. It is in the memory of the request `state`; only the servo writes there. */
 typedef struct hapticd_state {
   uint64_t tick, time_ns;      /* number of the tick; CLOCK_MONOTONIC of its deadline */
-  double t, dt;                /* s since the first tick, and since the one before */
-  double position[3];          /* m, tip */
-  double orientation[4];       /* of the tip */
+  double t, dt;                /* s since the first tick, and since the previous one */
+  double position[3];          /* m: the tip */
+  double orientation[4];       /* of the tip, unit quaternion */
   double velocity[3];          /* m/s */
   double joints[16];           /* rad or m */
-  double sent[3];              /* N: what the tick before sent to the device */
-  uint32_t flags, buttons;     /* HAPTICD_GOOD, ...; bit i: button i is down */
-  uint32_t fault, joint_count; /* why no force flows, 0: it does */
+  double sent[3];              /* N: the force that the previous tick sent to the arm */
+  uint32_t flags, buttons;     /* HAPTICD_GOOD; bit i: button i is down */
+  uint32_t fault, joint_count; /* why the arm gets no force; 0: it does. joint_count: joints in use */
 } hapticd_state;
 
-/* How a joint moves the tip, in the tick that is going on, so that joint torques become a force: of arms that programs
- * may push on. Rows: tip x, y, z in m/rad (of a sliding joint m/m), turn about x, y, z; a column a joint, zeros beyond
- * joint_count. */
+/* The Jacobian of an arm that programs may push on, in the tick that is under way: a program turns joint torques into a
+ * force with it. Rows: velocity of the tip along x, y, z (m/rad; m/m of a sliding joint), angular velocity about x, y,
+ * z. One column per joint; zeros from joint_count on. */
 typedef struct hapticd_jacobian {
   uint64_t tick;
   double rows[6][16];
 } hapticd_jacobian;
 
-enum { HAPTICD_GOOD = 1u << 0 }; /* of a state: the sample was good; otherwise the pose is an older one */
+enum { HAPTICD_GOOD = 1u << 0 }; /* hapticd_state.flags: this tick has a good sample; else the pose is older */
 
-/* The first bytes of the memory of `state`. The state of arm i is at 64 + i * stride: a count as that of a lead's page,
- * and a hapticd_state behind it; 320 bytes after that count comes another, and a hapticd_jacobian behind it, where the
- * stride has room for them. */
+/* The head of the memory of the request `state`. Arm i has a block at byte 64 + i * stride: a count as that of
+ * hapticd_lead_page, then a hapticd_state. If the stride has room for it, byte 320 of the block begins another count
+ * and then a hapticd_jacobian. */
 typedef struct hapticd_state_page {
   uint32_t arms, stride;
   uint64_t reserved[7];
 } hapticd_state_page;
 
-/* The memory of the request `bell`: words that the servo counts up, and wakes (FUTEX_WAKE) while somebody waits. To
- * wait for more than `seen`: set the `..._waiting` beside it, look at the word again, then FUTEX_WAIT on it as long as
- * it is `seen`; each sequentially consistent. */
+/* The memory of the request `bell`: two words that the servo counts up. It calls FUTEX_WAKE on a word while somebody
+ * waits for it. To wait until a word differs from `seen`: set its `..._waiting`, read the word again, and while it is
+ * `seen`, FUTEX_WAIT on it. All of these accesses are sequentially consistent. */
 typedef struct hapticd_bell {
   uint32_t rows, rows_waiting; /* rows: the low 32 bits of the number of ticks whose rows are written */
   uint32_t reserved_0[14];
-  uint32_t state, state_waiting; /* state: the same of the states told */
+  uint32_t state, state_waiting; /* state: the same of the ticks whose states are written */
   uint32_t reserved_1[14];
 } hapticd_bell;
 
-/* The first bytes of a lead's memory. To write: make `count` odd, store the record word by word, make it even, each
- * with release order. The daemon tries once a tick and keeps the last record where it finds an odd count. */
+/* The head of a lead's memory. To write: make `count` odd, store the record word by word, make `count` even, each with
+ * release order. The daemon reads once per tick; if the count is odd or changes, it goes on with the last record. */
 typedef struct hapticd_lead_page {
   uint64_t count;
-  uint64_t words[15]; /* hapticd_target: 14 of them; hapticd_push: 9 */
+  uint64_t words[15]; /* a hapticd_target (14 words) or a hapticd_push (9 words) */
 } hapticd_lead_page;
 
-#define HAPTICD_LEAD_BYTES 4096u /* of the memory file */
+#define HAPTICD_LEAD_BYTES 4096u /* size of the memory file of a lead */
 
-/* ---- a row of the stream `events`. Numbers of kinds never change; new kinds come at the end. */
+/* ---- a row of the stream `events`. The number of a kind never changes; new kinds come at the end. */
 enum {
   HAPTICD_CLICK = 1, /* a button or switch snapped; model, probe */
   HAPTICD_TOUCH,     /* a probe touched a model that it had left for 50 ms or more; model, probe, value: N */
   HAPTICD_FAULT,     /* an arm's force was taken away; probe, code: which fault, value: what was measured */
-  HAPTICD_CLEARED,   /* the fault of an arm is over; probe */
-  HAPTICD_SILENCED,  /* a model is not trusted any more and not felt; model, code: why */
-  HAPTICD_DEGRADED,  /* a model answers coarser, for lack of time; model, value: how much, 1 and more */
-  HAPTICD_RESTORED,  /* it answers as exactly as asked for again; model */
-  HAPTICD_CAME,      /* a model came; model */
-  HAPTICD_LEFT,      /* a model left; model */
-  HAPTICD_JOINED,    /* a program leads; model or probe, code: what (0 a model, 1 a hand, 2 a force), value: its pid */
-  HAPTICD_LOST,      /* that program leads no more */
-  HAPTICD_REFUSED,   /* records of a leader were refused; model or probe, value: how many so far; told once a second */
-  HAPTICD_QUARANTINED, /* models of a plugin were left out: it ended an earlier run */
-  HAPTICD_EVENT_KINDS  /* one more than the last */
+  HAPTICD_CLEARED,   /* the fault of an arm has ended; probe */
+  HAPTICD_SILENCED,  /* a model is faded out for the rest of the run; model, code: why */
+  HAPTICD_DEGRADED,  /* a model answers more coarsely for lack of time; model, value: level, 1 or more */
+  HAPTICD_RESTORED,  /* a model answers as exactly as asked again; model */
+  HAPTICD_CAME,      /* a model was added; model */
+  HAPTICD_LEFT,      /* a model was removed; model */
+  HAPTICD_JOINED,  /* a program took a lead; model or probe, code: 0 of a model, 1 a hand, 2 a force, value: its pid */
+  HAPTICD_LOST,    /* that lead has ended; the same */
+  HAPTICD_REFUSED, /* records of a lead were refused; model or probe, value: how many so far; once per second */
+  HAPTICD_QUARANTINED, /* models of a plugin were left out, because it ended an earlier run */
+  HAPTICD_EVENT_KINDS  /* one more than the last kind */
 };
 typedef struct hapticd_event {
   uint64_t tick;
@@ -113,86 +113,86 @@ typedef struct hapticd_event {
   double value;
 } hapticd_event;
 
-/* ---- the library: link hapticd::client (CMake) or pkg-config hapticd-client. Of one client, one thread at a time may
- * ask and lead; rows, states, put and push may be used by any thread beside it. No function throws or exits. */
+/* ---- the library: link hapticd::client (CMake), or use pkg-config hapticd-client. With one client, one thread at a
+ * time may ask and lead; any thread may read rows and states, put and push meanwhile. No function throws or exits. */
 #if defined(__GNUC__)
 #define HAPTICD_API __attribute__((visibility("default")))
 #else
 #define HAPTICD_API
 #endif
 
-/* Why something failed: `code` is one word for programs (control.md lists those of the daemon; here also `gone`: the
- * daemon has ended, or none is there, and `damaged`: what it shows cannot be understood), `text` is for people. */
+/* Why a call failed. `code` is one word for programs: one that control.md lists, or `gone` (the daemon has ended, or
+ * none is there), or `damaged` (its memory cannot be understood). `text` is for people. The caller owns it. */
 typedef struct hapticd_error {
   char code[32], text[992];
 } hapticd_error;
 
-/* A number of a row. */
+/* Describes one number of a row. */
 typedef struct hapticd_column {
   const char *name, *unit, *doc;
   char type[4];    /* f8, f4, u8, u4 or i4 */
-  uint32_t offset; /* in the row, bytes */
+  uint32_t offset; /* bytes from the start of the row */
 } hapticd_column;
 
 typedef struct hapticd_client hapticd_client;
 typedef struct hapticd_lead hapticd_lead;
 
-/* Connects to the daemon that runs as `name` (NULL: "hapticd"). NULL: it cannot; `error` (or NULL) says why. */
+/* Connects to the daemon `name` (NULL: "hapticd"). Returns NULL if it cannot; `error` (may be NULL) says why. */
 HAPTICD_API hapticd_client* hapticd_connect(const char* name, hapticd_error* error);
-/* Ends everything that the client leads, and frees it, its leads and its texts. NULL is allowed. */
+/* Ends all leads of the client, and frees it with its leads and texts. `client` may be NULL. */
 HAPTICD_API void hapticd_close(hapticd_client* client);
-/* "0.1.0": of the library. */
+/* The version of the library, "0.1.0". */
 HAPTICD_API const char* hapticd_version(void);
-/* The daemon runs still: 1; otherwise 0. */
+/* Returns 1 while the daemon runs, 0 once it has ended. */
 HAPTICD_API int hapticd_alive(hapticd_client* client);
 
-/* Any request of control.md, one object of JSON: `answer` gets its answer, ended by a zero. The length of the answer
- * (more than fits is cut), -1: there was none, or a refusal: `error` says why. Waits for at most 10 s. */
+/* Sends a request of control.md (JSON, one line) and writes the answer into `answer`, cut to `bytes` and ended by a
+ * zero. Returns the length of the whole answer, or -1 for a refusal or no answer in 10 s; `error` says why. */
 HAPTICD_API long hapticd_ask(hapticd_client* client, const char* request, char* answer, size_t bytes,
                              hapticd_error* error);
-/* What the daemon says of itself, as JSON: versions, scene, devices, columns. Valid until hapticd_close. */
+/* Returns what the daemon says of itself, as JSON: versions, scene, devices, columns. Valid until hapticd_close. */
 HAPTICD_API const char* hapticd_about(hapticd_client* client);
-/* The number of a device in rows and states; -1: there is none of that name. */
+/* Returns the number of a device in rows and states, or -1 if there is none of that name. */
 HAPTICD_API int hapticd_device(hapticd_client* client, const char* name);
-/* The name of a device; NULL: there are fewer. Valid until hapticd_close. */
+/* Returns the name of a device, or NULL if there is none of that number. Valid until hapticd_close. */
 HAPTICD_API const char* hapticd_device_name(hapticd_client* client, int device);
 
-/* The number of a stream ("ticks", "contacts", "poses", "events", ...); -1: there is none of that name. */
+/* Returns the number of a stream ("ticks", "contacts", "poses", "events", ...), or -1 if there is none of that name. */
 HAPTICD_API int hapticd_stream(hapticd_client* client, const char* name);
-/* Its columns; `columns` is valid until hapticd_close, `row_bytes` (or NULL) gets the size of a row. How many; -1: no
- * such stream. */
+/* Describes the columns of a stream; `columns` is valid until hapticd_close. Writes the size of a row to `row_bytes`,
+ * which may be NULL. Returns how many columns there are, or -1 if there is no such stream. */
 HAPTICD_API long hapticd_columns(hapticd_client* client, int stream, const hapticd_column** columns, size_t* row_bytes);
-/* Rows ever written: the number of the row to come. */
+/* Returns how many rows were ever written, which is the number of the next row. */
 HAPTICD_API uint64_t hapticd_written(hapticd_client* client, int stream);
-/* Copies rows from number `*row` on into `rows`, at most `most`. Those that are not kept any more are left out: `*row`
- * becomes the number behind the last that was copied. How many; 0: nothing new; -1: no such stream. Never waits. */
+/* Copies up to `most` rows, from number `*row` on, into `rows`. It skips those that are no longer kept, and sets `*row`
+ * behind the last one copied. Returns how many; 0: there is nothing new; -1: no such stream. It never waits. */
 HAPTICD_API long hapticd_read(hapticd_client* client, int stream, uint64_t* row, void* rows, size_t most);
-/* Sleeps until the rows of a tick are written, at most so many milliseconds. 1: they are; 0: not yet; -1: it cannot
- * wait. The servo wakes it with the tick. */
+/* Sleeps until the rows of `tick` are written, at most timeout_ms; the servo wakes it. Returns 1: they are; 0: not yet;
+ * -1: it cannot wait. */
 HAPTICD_API int hapticd_wait(hapticd_client* client, uint64_t tick, int timeout_ms);
 
-/* Leads a kinematic model, or the hand of a simulated arm, or pushes on the hand of an arm. NULL: it cannot. */
+/* Take the lead of a kinematic model, of the hand of a simulated arm, or of a force on an arm. NULL: see `error`. */
 HAPTICD_API hapticd_lead* hapticd_lead_model(hapticd_client* client, const char* model, hapticd_error* error);
 HAPTICD_API hapticd_lead* hapticd_lead_hand(hapticd_client* client, const char* device, hapticd_error* error);
 HAPTICD_API hapticd_lead* hapticd_lead_force(hapticd_client* client, const char* device, hapticd_error* error);
-/* Where it shall be; of a lead of a model or of a hand. Wait-free, one thread a lead. 0: done; -1: not such a lead. */
+/* Says where a model or a hand shall be. Wait-free; one thread per lead. Returns 0, or -1 if the lead is of a force. */
 HAPTICD_API int hapticd_lead_put(hapticd_lead* lead, const hapticd_target* target);
-/* The answer to a tick; of a lead of a force. The same. */
+/* Answers a tick with a force. Wait-free; one thread per lead. Returns 0, or -1 if the lead is not of a force. */
 HAPTICD_API int hapticd_lead_push(hapticd_lead* lead, const hapticd_push* push);
-/* Leads no more: a model brakes and stays, a force ramps out. Frees the lead. NULL is allowed. */
+/* Ends a lead and frees it: a model brakes and stays, a force ramps out. `lead` may be NULL. */
 HAPTICD_API void hapticd_lead_end(hapticd_lead* lead);
 
-/* An arm in the tick that goes on; see hapticd_state. Waits until there is a newer tick than `after` (UINT64_MAX: for
- * any), at most so many milliseconds. 1: `state` is filled; 0: there is none newer; -1: no such arm, or it cannot wait.
+/* Waits for the state of an arm in a tick after tick `after` (UINT64_MAX: in any tick), at most timeout_ms. Returns 1:
+ * `state` is filled in; 0: there is none yet; -1: there is no such arm, or it cannot wait.
  */
 HAPTICD_API int hapticd_next_state(hapticd_client* client, int device, uint64_t after, int timeout_ms,
                                    hapticd_state* state);
-/* Lets hapticd_next_state look without sleeping from so many microseconds before a tick is due until as long after it,
- * so that no wake-up delays an answer. It keeps a processor busy for that time. 0, as before the first call: it sleeps.
- * More than 200 counts as 200. */
+/* Makes hapticd_next_state poll, instead of sleep, from `microseconds` before a tick is due until as long after it. So
+ * no wake-up delays an answer, but a processor is busy for that time. 0, the default: it sleeps. More than 200 counts
+ * as 200. */
 HAPTICD_API void hapticd_listen(hapticd_client* client, unsigned microseconds);
-/* The newest Jacobian of an arm. Never waits. 1: `jacobian` is filled; 0: none was told yet, as of an arm that no
- * program may push on; -1: no such arm, or the daemon is older than this. */
+/* Reads the newest Jacobian of an arm, and never waits. Returns 1: `jacobian` is filled in; 0: there is none, or none
+ * yet, as for an arm that no program may push on; -1: there is no such arm, or the daemon is too old. */
 HAPTICD_API int hapticd_read_jacobian(hapticd_client* client, int device, hapticd_jacobian* jacobian);
 
 #ifdef __cplusplus

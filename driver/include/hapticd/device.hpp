@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A device module in C++: derive from hapticd::Device, list the parameters, write open, start, read, write, stop,
-/// close, and name the class in HAPTICD_DEVICES(...). The C ABI behind it is device.h.
+/// For a device module in C++: derive from hapticd::Device, list the parameters, write open, start, read, write, stop
+/// and close, and name the class in HAPTICD_DEVICES(...). device.h, the C ABI behind it, says what each call must do.
 #pragma once
 #include <exception>
 #include <new>
@@ -10,28 +10,28 @@
 
 namespace hapticd {
 
-/// What a class says of itself before any instance exists.
+/// Describes a class before any instance exists. All texts have static storage.
 struct DeviceInfo {
   const char* id;    ///< reverse DNS, "org.example.device.arm"
-  const char* name;  ///< as device files write it, "simulated"
+  const char* name;  ///< as device files name it, "arm"
   const char* version;
   const char* license;
   const char* doc;
 };
 
-/// Base of devices. A derived class T has
+/// Base class of devices. The host creates and destroys instances. A derived class T has
 ///   static constexpr DeviceInfo kInfo;
-///   static constexpr auto fields();                        std::array<Field<T>, N>, one line a parameter
-///   void open(hdv_info&);  void start(const hdv_start&);   [main] may allocate, block, and throw std::exception
+///   static constexpr auto fields();                        std::array<Field<T>, N>, one line per parameter
+///   void open(hdv_info&);  void start(const hdv_start&);   [main] may allocate, block and throw
 ///   hsp_status read(uint64_t now_ns, hdv_sample&) noexcept HSP_RT;           [rt]
 ///   hsp_status write(uint64_t now_ns, const hdv_command&) noexcept HSP_RT;   [rt]
-/// and may hide the functions below.
+/// and may hide the functions below. The text of an exception becomes the error that the user reads.
 class Device {
  public:
-  void stop() {}                                                   ///< [main] motors off
-  void close() {}                                                  ///< [main]
-  const void* extension(const char* /*name*/) { return nullptr; }  ///< [main]
-  const hsp_host* host() const { return host_; }
+  void stop() {}   ///< [main] started: switches the motors off, ends threads
+  void close() {}  ///< [main] open: gives the hardware back
+  const void* extension(const char* /*name*/) { return nullptr; }  ///< [main] nullptr: it has none of that name
+  const hsp_host* host() const { return host_; }                   ///< [any] not in the constructor
 
  private:
   template <class T>
@@ -41,7 +41,7 @@ class Device {
   State state_ = State::kClosed;
 };
 
-/// The C functions of class T, and its description as constant data.
+/// Makes the C functions of class T, and its description as constant data. A call in a wrong state gets HSP_E_STATE.
 template <class T>
 struct DeviceClass {
   static constexpr auto kFields = T::fields();
@@ -150,7 +150,7 @@ inline constexpr std::array<const hdv_class*, sizeof...(T)> kDeviceClasses = {&D
 
 }  // namespace hapticd
 
-/// Exports the devices of this module: HAPTICD_DEVICES(SimulatedArm)
+/// Exports the devices of this module; once per shared object, at file scope: HAPTICD_DEVICES(SimulatedArm)
 #define HAPTICD_DEVICES(...)                                                                            \
   extern "C" {                                                                                          \
   constinit const hdv_entry hdv_module_entry = {HDV_MAGIC, HSP_ABI_MAJOR, HSP_ABI_MINOR,                \

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* device_links.h - extension of a device module: where the arm's links are, for those who draw it. Beside device.h,
- * which it needs. Nothing of it is felt.
+/* device_links.h - an extension of device.h: it tells where the links of the arm are, for those who draw it. No force
+ * depends on it.
  */
 #ifndef HAPTICD_DEVICE_LINKS_H
 #define HAPTICD_DEVICE_LINKS_H
@@ -9,14 +9,14 @@
 extern "C" {
 #endif
 
-#define HDV_EXT_LINKS "hdv.links/1" /* const and usable from set() on, hardware or not */
+#define HDV_EXT_LINKS "hdv.links/1" /* works from set() on, with and without hardware */
 #define HDV_MAX_LINKS 24
 typedef struct hdv_ext_links {
-  uint32_t struct_size, link_count; /* at most HDV_MAX_LINKS */
-  const int32_t* parent; /* of each link: the number of the one that it begins at, less than its own; -1: the base */
-  double base[3];        /* m, DEVICE frame: where links without a parent begin */
-  /* [any] The far end of each link (m) and the orientation (w,x,y,z) of its body for joints q, DEVICE frame: 3 and 4
-   * numbers a link. The last link's far end is the tip. */
+  uint32_t struct_size, link_count; /* 1 to HDV_MAX_LINKS */
+  const int32_t* parent;            /* per link: the link at whose far end it begins, less than its own; -1: the base */
+  double base[3];                   /* m, DEVICE frame: where links without a parent begin */
+  /* [any] Writes where the joints are at q: per link 3 numbers for the position of its far end (m) and 4 for the
+   * orientation of its body (unit quaternion w,x,y,z), in the DEVICE frame. The far end of the last link is the tip. */
   hsp_status (*frames)(const hdv_device*, const double* q, double* position, double* orientation) HSP_RT;
 } hdv_ext_links;
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* device_trouble.h - extension of a device module: why the arm is not well, in words. Beside device.h, which it needs.
+/* device_trouble.h - an extension of device.h: it tells in words what is wrong with the arm.
  */
 #ifndef HAPTICD_DEVICE_TROUBLE_H
 #define HAPTICD_DEVICE_TROUBLE_H
@@ -11,8 +11,8 @@ extern "C" {
 #define HDV_EXT_TROUBLE "hdv.trouble/1"
 typedef struct hdv_ext_trouble {
   uint32_t struct_size, reserved;
-  /* [any] What is wrong as of the last read(), and after "; " what cures it. NULL: nothing. Of static storage: it
-   * outlives the device. */
+  /* [any] Returns what was wrong at the last read() and, after "; ", how to fix it. NULL: nothing was. The text has
+   * static storage: it outlives the device. */
   const char* (*why)(const hdv_device*)HSP_RT;
 } hdv_ext_trouble;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Parameter tables for plugins and device modules in C++: one line a parameter gives the C table, the defaults, the
-/// checks and the assignment to a member. Used through shape.hpp and device.hpp.
+/// Parameter tables for plugins and device modules in C++. One line per parameter makes the C table, the defaults, the
+/// checks and the assignment to a member. shape.hpp and device.hpp include this header.
 #pragma once
 #include <array>
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace hapticd {
 
-/// The member of class T that holds a value: exactly one of the pointers is set.
+/// Names the member of class T that holds a value: exactly one of the pointers is set.
 template <class T>
 struct Member {
   double T::* real = nullptr;
@@ -32,14 +32,14 @@ struct Member {
   constexpr Member(std::array<double, 3> T::* m) : vector3(m) {}  // NOLINT
 };
 
-/// One parameter of class T and its member.
+/// A parameter of class T, and the member that holds its value.
 template <class T>
 struct Field {
   hsp_param param{};
   Member<T> member;
 };
 
-/// Builders of one table line each: `id` (a dot nests), member, unit, range and default, one sentence of documentation.
+/// Each function makes one table line: id (a dot nests), member, unit, range, default, one sentence of documentation.
 template <class T>
 struct Fields {
   static constexpr hsp_param blank(uint32_t kind, const char* id, const char* unit, uint32_t flags, const char* doc) {
@@ -69,7 +69,7 @@ struct Fields {
     p.min = 0, p.max = 1, p.def = def ? 1 : 0;
     return {p, member};
   }
-  /// `choices` must have static storage; the member holds the index of the choice.
+  /// One word of `choices`, which must have static storage. The member holds its index.
   template <size_t N>
   static constexpr Field<T> choice(const char* id, int T::* member, const char* const (&choices)[N], int def,
                                    const char* doc, uint32_t flags = 0) {
@@ -88,19 +88,19 @@ struct Fields {
     p.def_text = def;
     return {p, member};
   }
-  /// Any structure, handed over as JSON text that the module itself checks.
+  /// Any structure. The member holds it as JSON text, which the module itself checks.
   static constexpr Field<T> data(const char* id, std::string T::* member, const char* def, const char* doc,
                                  uint32_t flags = 0) {
     hsp_param p = blank(HSP_DATA, id, "", flags, doc);
     p.def_text = def;
     return {p, member};
   }
-  /// Three numbers; `def` is their default as text, "[0, 1, 0]".
+  /// Three numbers. `def` is their default as text, "[0, 1, 0]".
   static constexpr Field<T> vector3(const char* id, std::array<double, 3> T::* member, const char* unit, double min,
                                     double max, const char* def, const char* doc, uint32_t flags = 0) {
     return {arrayParam(id, unit, 3, 3, 3, min, max, def, doc, flags), member};
   }
-  /// `columns` numbers a row, between min_count and max_count numbers in all.
+  /// Rows of `columns` numbers, with min_count to max_count numbers in all.
   static constexpr Field<T> array(const char* id, std::vector<double> T::* member, const char* unit, uint32_t columns,
                                   uint32_t min_count, uint32_t max_count, double min, double max, const char* def,
                                   const char* doc, uint32_t flags = 0) {
@@ -119,7 +119,7 @@ struct Fields {
   }
 };
 
-/// Joins tables, so that a base class can bring its own lines: `join(Base::fields<T>(), std::array{...})`.
+/// Joins tables, so that a base class can add its own lines: `join(Base::fields<T>(), std::array{...})`.
 template <class T, size_t... N>
 constexpr auto join(const std::array<Field<T>, N>&... tables) {
   std::array<Field<T>, (N + ...)> all{};
@@ -134,7 +134,7 @@ constexpr auto join(const std::array<Field<T>, N>&... tables) {
 
 namespace detail {
 
-/// Numbers of a default such as "[[0, 1], [2, 3]]" in reading order.
+/// Returns the numbers of a default such as "[[0, 1], [2, 3]]" in reading order.
 inline std::vector<double> numbersIn(const char* text) {
   std::vector<double> numbers;
   while (text != nullptr && *text != '\0') {
@@ -154,8 +154,8 @@ inline void logError(const hsp_host* host, const std::string& text) {
   if (host != nullptr && host->log != nullptr) host->log(host, HSP_LOG_ERROR, text.c_str());
 }
 
-/// [main] Puts the defaults of the table into the members of a new object. Not inlined: g++ 12 would judge members that
-/// the object does not have by the size of the allocation it sees.
+/// [main] Puts the defaults of the table into the members of a new object. It is not inlined, because g++ 12 would then
+/// warn about members that the object does not have.
 template <class T, size_t N>
 [[gnu::noinline]] void applyDefaults(T& object, const std::array<Field<T>, N>& fields) {
   for (const Field<T>& field : fields) {
@@ -176,7 +176,7 @@ inline bool inRange(const hsp_param& p, double x) {
   return std::isfinite(x) && x >= p.min && x <= p.max;
 }
 
-/// Nothing, or what is wrong with `value` for parameter `p`.
+/// Returns what is wrong with `value` for parameter `p`, or an empty text.
 inline std::string complaint(const hsp_param& p, const hsp_value& value) {
   char text[256] = "";
   const bool numeric = p.kind == HSP_REAL || p.kind == HSP_INT || p.kind == HSP_BOOL || p.kind == HSP_ENUM;
@@ -200,7 +200,7 @@ inline std::string complaint(const hsp_param& p, const hsp_value& value) {
   return text;
 }
 
-/// [rt] for numeric kinds: assigns a value that has been checked.
+/// [rt] Assigns a checked value to a member of a numeric kind.
 template <class T>
 void assignNumber(T& object, const Field<T>& field, double number) noexcept {
   if (const auto m = field.member.real) object.*m = number;
@@ -208,7 +208,7 @@ void assignNumber(T& object, const Field<T>& field, double number) noexcept {
   if (const auto m = field.member.boolean) object.*m = number != 0;
 }
 
-/// [main] Checks and assigns one parameter.
+/// [main] Checks a value and assigns it. A wrong one is logged and gives HSP_E_ARG.
 template <class T, size_t N>
 hsp_status assign(T& object, const std::array<Field<T>, N>& fields, const hsp_host* host, uint32_t index,
                   const hsp_value* value) {
@@ -230,7 +230,7 @@ hsp_status assign(T& object, const std::array<Field<T>, N>& fields, const hsp_ho
   return HSP_OK;
 }
 
-/// [main] The current value of one parameter; pointers live until the object changes.
+/// [main] Fetches the current value of one parameter. Its pointers are valid until the object changes.
 template <class T, size_t N>
 hsp_status fetch(const T& object, const std::array<Field<T>, N>& fields, uint32_t index, hsp_value* value) {
   if (index >= N || value == nullptr) return HSP_E_ARG;

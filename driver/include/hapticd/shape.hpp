@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A shape plugin in C++: derive from hapticd::Shape, list the parameters, write activate() and touch() (or step()),
-/// and name the class in HAPTICD_SHAPES(...). The C ABI behind it is shape.h; plugins/template shows a whole plugin.
+/// For a shape plugin in C++: derive from hapticd::Shape, list the parameters, write activate() and touch() (or
+/// step()), name the class in HAPTICD_SHAPES(...). shape.h says what each call must do; plugins/template is an example.
 #pragma once
 #if __cplusplus < 202002L
 #error "hapticd/shape.hpp needs C++20: compile with -std=c++20"
@@ -14,43 +14,43 @@
 
 namespace hapticd {
 
-/// What a class says of itself before any instance exists.
+/// Describes a class before any instance exists. All texts have static storage.
 struct ShapeInfo {
   const char* id;    ///< reverse DNS, "org.example.shape.sphere"
-  const char* name;  ///< as scenes write it, "sphere"
+  const char* name;  ///< as scenes name it, "sphere"
   const char* version;
   const char* license;
   const char* doc;     ///< one or two sentences
   uint32_t flags = 0;  ///< HSP_C_*
 };
 
-/// [main] The force [N] up to which a claim of stiffness must hold: what an arm lets through to the hand at most.
-/// @param activation of the model  @param unknown what holds where the host, or an older one, does not say
+/// [main] Returns the force [N] up to which a claimed stiffness must hold: the most that an arm lets reach the hand.
+/// @param activation of the model  @param unknown [N] returned where the host does not tell that force
 inline double forceToClaimFor(const hsp_activation& activation, double unknown) {
   return HSP_HAS(&activation, max_arm_force) && activation.max_arm_force > 0 ? activation.max_arm_force : unknown;
 }
 
-/// [main] Reports that the force jumps on purpose, by so many `newtons` at most. An older host is told nothing.
+/// [main] Reports that the force jumps on purpose, by at most `newtons`. It does nothing if the host is too old.
 inline void reportJumps(hsp_report& report, double newtons) {
   if (!HSP_HAS(&report, max_jump)) return;
   report.flags |= HSP_R_JUMPS;
   report.max_jump = newtons;
 }
 
-/// Base of shapes. A derived class T has
+/// Base class of shapes. The host creates and destroys instances. A derived class T has
 ///   static constexpr ShapeInfo kInfo;
-///   static constexpr auto fields();                            std::array<Field<T>, N>, one line a parameter
-///   void activate(const hsp_activation&, hsp_report&);         [main] may allocate, and throw std::exception
+///   static constexpr auto fields();                            std::array<Field<T>, N>, one line per parameter
+///   void activate(const hsp_activation&, hsp_report&);         [main] may allocate and throw
 ///   hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact&) noexcept HSP_RT;   [rt] one probe, or
 ///   hsp_status step(const hsp_step&) noexcept HSP_RT;                                    [rt] all of them
-/// and may hide the functions below.
+/// and may hide the functions below. The text of an exception becomes the error that the user reads.
 class Shape {
  public:
-  void deactivate() {}                                             ///< [main] gives back what activate() took
-  void reset() noexcept HSP_RT {}                                  ///< [rt] forgets history
-  const void* extension(const char* /*name*/) { return nullptr; }  ///< [main]
-  void changed() noexcept HSP_RT {}                                ///< [rt] live parameters have new values
-  const hsp_host* host() const { return host_; }
+  void deactivate() {}                                             ///< [main] frees what activate() took
+  void reset() noexcept HSP_RT {}                                  ///< [rt] forgets what was tracked
+  const void* extension(const char* /*name*/) { return nullptr; }  ///< [main] nullptr: it has none of that name
+  void changed() noexcept HSP_RT {}               ///< [rt] live parameters have new values; step() follows
+  const hsp_host* host() const { return host_; }  ///< [any] not in the constructor
 
  private:
   template <class T>
@@ -59,7 +59,7 @@ class Shape {
   bool active_ = false;
 };
 
-/// The C functions of class T, and its description as constant data.
+/// Makes the C functions of class T, and its description as constant data. A call in a wrong state gets HSP_E_STATE.
 template <class T>
 struct ShapeClass {
   static constexpr auto kFields = T::fields();
@@ -178,7 +178,7 @@ inline constexpr std::array<const hsp_class*, sizeof...(T)> kShapeClasses = {&Sh
 
 }  // namespace hapticd
 
-/// Exports the shapes of this plugin: HAPTICD_SHAPES(Sphere, Box)
+/// Exports the shapes of this plugin; once per shared object, at file scope: HAPTICD_SHAPES(Sphere, Box)
 #define HAPTICD_SHAPES(...)                                                                            \
   extern "C" {                                                                                         \
   constinit const hsp_entry hsp_plugin_entry = {HSP_MAGIC, HSP_ABI_MAJOR, HSP_ABI_MINOR,               \
