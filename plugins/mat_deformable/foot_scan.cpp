@@ -16,6 +16,9 @@ constexpr double kAside = 0.87;       ///< cosine to the foot's direction: sampl
 constexpr double kParting = 0.05;     ///< [rad] directions of two feet that differ by less are one
 constexpr double kParted = 0.15;      ///< [rad] those that differ by more are two
 constexpr double kMayBeNearer = 0.1;  ///< of the radius: a foot between samples is nearer than they are
+constexpr uint32_t kGroup = 8;        ///< samples that are ruled out together; kATick is a multiple
+constexpr float kAside2 = kAside * kAside;
+constexpr float kRounding = 2e-5F;  ///< of the size squared: more than single numbers err by
 
 std::vector<double> between(const std::vector<double>& t, int per_interval) {
   std::vector<double> all;
@@ -46,6 +49,18 @@ int perInterval(const medial::Skeleton& skeleton, std::size_t axis) {
 
 }  // namespace
 
+/// Whether the sphere of a sample reaches over p by more than `deepest`, which it then sets.
+bool FootScan::nearer(const Sample& sample, const Vector3d& p, const medial::SkeletonFoot& foot,
+                      double& deepest) noexcept {
+  const Vector3d away = p - sample.center;
+  const double reach = sample.radius - deepest, distance2 = away.squaredNorm();
+  if (!(reach > 0) || !(distance2 < reach * reach)) return false;  // most: no root is taken
+  const double distance = std::sqrt(distance2);
+  if (away.dot(foot.normal) > kAside * distance) return false;
+  deepest = sample.radius - distance;
+  return true;
+}
+
 FootScan::FootScan(const medial::Skeleton& skeleton) {
   const auto& [us, vs] = skeleton.parameters();
   const std::vector<double> u_all =
@@ -59,26 +74,57 @@ FootScan::FootScan(const medial::Skeleton& skeleton) {
       samples_.push_back({s.S, skeleton.radius().evaluate(u, v).f, u, v});
     }
   }
+  scale();
 }
 
+void FootScan::scale() {
+  Eigen::AlignedBox3d box;
+  double greatest = 0;
+  for (const Sample& sample : samples_) {
+    box.extend(sample.center);
+    greatest = std::max(greatest, sample.radius);
+  }
+  middle_ = box.center();
+  size_ = std::max(0.5 * box.diagonal().norm() + greatest, 1e-300);
+  for (std::vector<float>* all : {&x_, &y_, &z_, &radius_}) all->reserve(samples_.size() + kATick);
+  for (std::size_t i = 0; i < samples_.size() + kATick; ++i) {
+    const Sample& sample = samples_[i % samples_.size()];
+    const Vector3d place = (sample.center - middle_) / size_;
+    x_.push_back(static_cast<float>(place.x()));
+    y_.push_back(static_cast<float>(place.y()));
+    z_.push_back(static_cast<float>(place.z()));
+    radius_.push_back(static_cast<float>(sample.radius / size_));
+  }
+}
+
+/// Most samples are ruled out by the group, in single numbers; what the rest are is found to the last bit.
 std::optional<std::array<double, 2>> FootScan::rival(const Vector3d& p, const medial::SkeletonFoot& foot,
                                                      uint32_t& next) const noexcept {
-  const auto count = static_cast<uint32_t>(samples_.size());
+  const auto count = static_cast<uint32_t>(samples_.size()), looks = std::min(kATick, count);
   const Sample* best = nullptr;
   double deepest = foot.depth - kMayBeNearer * foot.radius;
-  for (uint32_t k = std::min(kATick, count); k > 0; --k) {
-    next = next + 1 < count ? next + 1 : 0;
-    const Sample& sample = samples_[next];
-    const Vector3d away = p - sample.center;
-    const double reach = sample.radius - deepest, distance2 = away.squaredNorm();
-    if (!(reach > 0) || !(distance2 < reach * reach)) continue;  // most: no root is taken
-    const double distance = std::sqrt(distance2);
-    if (away.dot(foot.normal) > kAside * distance) continue;
-    deepest = sample.radius - distance;
-    best = &sample;
+  const Probe probe{((p - middle_) / size_).cast<float>(), foot.normal.cast<float>(),
+                    static_cast<float>(deepest / size_)};
+  const uint32_t first = next + 1 < count ? next + 1 : 0;
+  for (uint32_t k = 0; k < looks; k += kGroup) {
+    if (ruledOut(probe, first + k)) continue;
+    for (uint32_t i = k; i < std::min(k + kGroup, looks); ++i)
+      if (const Sample& sample = samples_[(first + i) % count]; nearer(sample, p, foot, deepest)) best = &sample;
   }
+  next = (first + looks - 1) % count;
   if (best == nullptr) return std::nullopt;
   return std::array{best->u, best->v};
+}
+
+/// Whether each sample of a group is too far, |p - c|^2 > (r - deepest)^2, or surely in the direction of the foot.
+bool FootScan::ruledOut(const Probe& probe, uint32_t first) const noexcept {
+  using Group = Eigen::Array<float, kGroup, 1>;
+  const auto at = [first](const std::vector<float>& all) { return Eigen::Map<const Group>(all.data() + first); };
+  const Group x = probe.p.x() - at(x_), y = probe.p.y() - at(y_), z = probe.p.z() - at(z_);
+  const Group distance2 = x * x + y * y + z * z, reach = at(radius_) - probe.deepest;
+  const Group along = probe.normal.x() * x + probe.normal.y() * y + probe.normal.z() * z;
+  const Group far = distance2 - reach * reach, beside = along * along.abs() - kAside2 * distance2;
+  return far.max(beside).minCoeff() > kRounding;
 }
 
 double FootScan::apart(const medial::SkeletonFoot& a, const medial::SkeletonFoot& b) noexcept {

@@ -20,14 +20,30 @@ class FootScan {
                                              uint32_t& next) const noexcept;
   /// [rt] 0: two feet are of one place of the skeleton; 1: of two.
   static double apart(const medial::SkeletonFoot& a, const medial::SkeletonFoot& b) noexcept;
-  std::size_t bytes() const noexcept { return samples_.capacity() * sizeof(Sample); }
+  std::size_t bytes() const noexcept {
+    return samples_.capacity() * sizeof(Sample) + 4 * x_.capacity() * sizeof(float);
+  }
 
  private:
   struct Sample {
     Eigen::Vector3d center;
     double radius, u, v;
   };
+  /// A probe and what is asked of samples, likewise.
+  struct Probe {
+    Eigen::Vector3f p, normal;
+    float deepest;
+  };
+  void scale();
+  bool ruledOut(const Probe& probe, uint32_t first) const noexcept;
+  static bool nearer(const Sample& sample, const Eigen::Vector3d& p, const medial::SkeletonFoot& foot,
+                     double& deepest) noexcept;
+
   std::vector<Sample> samples_;
+  // The same about `middle_`, in lengths of `size_`, and once more from the beginning behind the end.
+  std::vector<float> x_, y_, z_, radius_;
+  Eigen::Vector3d middle_{0, 0, 0};
+  double size_ = 1;  ///< [m]
 };
 
 }  // namespace hapticd

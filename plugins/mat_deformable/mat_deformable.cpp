@@ -111,6 +111,8 @@ void MatDeformable::activate(const hsp_activation& activation, hsp_report& repor
     throw std::invalid_argument(geometry_ + ": the state that was loaded is of another body");
   if (viscosity_ > 0 || (surface == nullptr && (file.swings || file.damps))) report.flags |= HSP_R_VELOCITY;
   report.max_stiffness = body_->greatestStiffness() * (surface != nullptr ? surface->contactRatio() : 1);
+  // A surface that is felt comes up at a hand that holds still: it swings back, or another hand lets go of it.
+  if (surface != nullptr) reportJumps(report, report.max_stiffness * kDeepPress);
   report.size_m = body_->bounds().diagonal().norm();
   report.locked_bytes = body_->bytes() + displaced_->bytes() + volume_bytes + probes * sizeof(Track) + sizeof *this +
                         (frames_ ? frames_->bytes() : 0);

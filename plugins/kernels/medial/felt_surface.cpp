@@ -132,10 +132,9 @@ double FeltSurface::give(const FeltPlace& a, const FeltPlace& b, double dt) noex
   return a.scale * b.scale * along * sum;
 }
 
-bool FeltSurface::wake(uint32_t node) noexcept {
-  nodes_->wake(node);
+void FeltSurface::wake(uint32_t node) noexcept {
+  if (nodes_->is_awake_[node] == 0) nodes_->wake(node);
   touched_[node] = tick_;
-  return true;
 }
 
 /// The surface as it is under a press that has been held for long.
@@ -212,9 +211,10 @@ void FeltSurface::push(const FeltContact& contact) noexcept {
     if (part.weight == 0) continue;
     const ViscoelasticStep& s = materialOf(part.node).step;
     wake(part.node);
+    Nodes::Node& node = nodes_->nodes_[part.node];
     const Vector4d force = part.weight * compliance_[part.node] * pushed;
-    nodes_->nodes_[part.node].x += s.xf * force;
-    nodes_->nodes_[part.node].v += s.vf * force;
+    node.x += s.xf * force;
+    node.v += s.vf * force;
     if (!branch_.empty()) branch_[part.node] += s.yf * force;
   }
 }

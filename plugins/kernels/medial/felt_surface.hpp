@@ -98,7 +98,7 @@ class FeltSurface {
   void keepAwake(std::span<const FeltContact> contacts) noexcept;
   bool letSleep() noexcept;
   Eigen::Vector3d slopeAt(const FeltPlace& place) const noexcept;
-  bool wake(uint32_t node) noexcept;
+  void wake(uint32_t node) noexcept;
 
   Nodes* nodes_;
   std::vector<Material> materials_;  ///< the distinct ones

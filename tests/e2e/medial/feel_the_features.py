@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The scenes of config/scenes/soft show what their first lines say, in virtual time.
+"""The scenes of config/scenes/soft show what their first lines say, in virtual time, and a heavy body may swing.
 
 Usage: feel_the_features.py HAPTICD CONFIG     prints one line per case; exit 1 when one is off.
 """
+import csv
 import math
 import os
 import subprocess
 import sys
+import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 import soft_runs
@@ -63,9 +65,42 @@ def mesh():
     check("no tick changes the force by a fifth of the greatest", jump < 0.2 * max(map(size, rows)), jump)
 
 
+BODY = """format: hapticd-model/2
+medial:
+  points: [[[-0.03, -0.03, 0], [-0.03, 0.03, 0]], [[0.03, -0.03, 0], [0.03, 0.03, 0]]]
+  radius: 0.01
+  stiffness: 3000
+  damping: 0.5
+  mass: 0.5
+"""
+SCENE = """hapticd: 1
+models:
+  - {name: heavy, plugin: mat_deformable, parameters: {geometry: body.yaml, dynamics: felt}}
+"""
+
+
+def swingsBack():
+    """The force grows at a hand that holds still. The daemon took that for a fault of the plugin and silenced it."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = lambda name: os.path.join(folder, name)
+        depth = lambda t: 0.004 * min(1, max(0, (t - 0.1) / 0.04))
+        path = "".join(f"{0.001 * i:.3f},0,0,{0.0101 - depth(0.001 * i):.9f}\n" for i in range(1000))
+        for name, text in (("body.yaml", BODY), ("scene.yaml", SCENE), ("path.csv", "t,x,y,z\n" + path)):
+            with open(file(name), "w", encoding="utf-8") as out:
+                out.write(text)
+        told = subprocess.run([HAPTICD, "trace", file("scene.yaml"), "--probe", file("path.csv"), "--out", file("out.csv")],
+                              capture_output=True, text=True, timeout=120)
+        check("a heavy body that swings back is not silenced", told.returncode == 0, told.stderr)
+        with open(file("out.csv"), encoding="utf-8") as out:
+            force = [float(row["fz"]) for row in csv.DictReader(out)]
+        least, most = min(force[150:]), max(force[500:])
+        check("it left the hand and came back", most > 5 and least < 0.3 * most, (least, most))
+
+
 relaxation()
 twoHands()
 mesh()
+swingsBack()
 for name in ("relaxation.yaml", "two-hands.yaml", "mesh.yaml"):
     told = subprocess.run([HAPTICD, "check", scene(name)], capture_output=True, text=True, timeout=60)
     check(f"{name} is checked without a warning", told.returncode == 0 and "warning" not in told.stdout, told.stdout)

@@ -57,6 +57,17 @@ TEST(FeltBody, AHeldPressFeelsWhatABodyWithoutDynamicsDoes) {
   }
 }
 
+/// The host silences a plugin whose force grows at a probe that holds still, unless it says so.
+TEST(FeltBody, SaysThatItsSurfaceComesUpByItself) {
+  FeltBody felt;
+  EXPECT_NE(felt.report.flags & HSP_R_JUMPS, 0u);
+  EXPECT_NEAR(felt.report.max_jump, 5e-3 * felt.report.max_stiffness, 1e-9);
+  Plugin seen;
+  seen.set("dynamics", 2.0);
+  ASSERT_EQ(seen.activate(), HSP_OK);
+  EXPECT_EQ(seen.report.flags & HSP_R_JUMPS, 0u);
+}
+
 TEST(FeltBody, PushesHarderWhenPressedFastAndLosesAProbeThatIsPulledAway) {
   FeltBody body;
   for (int i = 0; i <= 40; ++i) body.touch({0, 0, .0102 - 1e-4 * i});  // 0.1 m/s
