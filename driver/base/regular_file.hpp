@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Files that somebody names. None that is read can wait: a pipe without a writer would hold the thread for ever.
+/// Reads and writes files that a user names. Pipes are refused: one without a writer would block the thread for ever.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -9,13 +9,13 @@
 
 namespace hapticd {
 
-/// [any] "is a pipe, expected a file" and the like for what else a name may stand for; "" for a regular file.
+/// [any] Says what is wrong with a file that is not a regular one, "is a pipe, expected a file"; "" if it is one.
 std::string notAFile(std::filesystem::file_type type);
 
 /// [main] Opens a regular file for reading. The error is meant to follow the file's name.
 Result<int> openRegular(const std::string& file);
 
-/// [main] A regular file's bytes, with the same errors. @param max_bytes more is an error
+/// [main] Reads the bytes of a regular file, with the same errors. @param max_bytes more is an error
 Result<std::string> readRegular(const std::string& file, size_t max_bytes);
 
 /// [main] Writes a file whole or not at all; into what is none (a device, a pipe, a link) it writes straight. The error

@@ -24,7 +24,7 @@ CLI::Validator within(double low, double high);
 /// Prints "error: MESSAGE" and gives back the exit code.
 int fail(int exit_code, const std::string& message);
 
-/// Messages of plugins and modules, one a line, on standard error.
+/// Messages of plugins and modules, one per line, on standard error.
 void logToTerminal(int level, const std::string& who, const std::string& text);
 
 /// While one lives, errors of plugins and modules wait: a set-up that fails because of them tells them itself, in its

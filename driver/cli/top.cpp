@@ -119,9 +119,8 @@ void sortModels(std::vector<ModelLine>& models, const std::string& by) {
   });
 }
 
-Json toJson(const View& view) {
-  const auto three = [](const double* q) { return Json{{"p50", q[0]}, {"p99", q[1]}, {"max", q[2]}}; };
-  Json devices = Json::array(), models = Json::array(), clients = Json::array();
+Json jsonOfClients(const View& view) {
+  Json clients = Json::array();
   for (const diagnostics::ClientNow& client : view.clients)
     clients.push_back({{"device", client.report.device},
                        {"program", client.report.program},
@@ -132,6 +131,12 @@ Json toJson(const View& view) {
                        {"silences", client.report.silences},
                        {"force_n", client.force},
                        {"largest_n", client.report.largest_n}});
+  return clients;
+}
+
+Json toJson(const View& view) {
+  const auto three = [](const double* q) { return Json{{"p50", q[0]}, {"p99", q[1]}, {"max", q[2]}}; };
+  Json devices = Json::array(), models = Json::array();
   for (const ArmLine& arm : view.arms)
     devices.push_back({{"name", arm.name},
                        {"module", arm.module},
@@ -160,7 +165,7 @@ Json toJson(const View& view) {
           {"compute_us", three(view.compute)},
           {"devices", devices},
           {"models", models},
-          {"clients", clients}};
+          {"clients", jsonOfClients(view)}};
 }
 
 /// Programs that push; "": none does.

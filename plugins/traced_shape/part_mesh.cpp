@@ -51,7 +51,7 @@ class FaceMesh {
   }
 
  private:
-  /// A piece of a loop, upward.
+  /// A piece of a loop from a to b, where b has the larger v.
   struct Segment {
     Vector2d a, b;
     double at(double v) const { return a[0] + (v - a[1]) / (b[1] - a[1]) * (b[0] - a[0]); }

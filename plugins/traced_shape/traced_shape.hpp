@@ -142,9 +142,9 @@ class TracedShape : public Shape {
   bool takes_parts_ = false;
   std::string instance_;
   std::unique_ptr<brep::Model> part_;
-  std::vector<brep::Tracer> part_tracers_;  ///< one a probe
+  std::vector<brep::Tracer> part_tracers_;  ///< one per probe
   std::unique_ptr<trace::Model> model_;
-  std::vector<trace::Tracer> tracers_;      ///< one a probe
+  std::vector<trace::Tracer> tracers_;      ///< one per probe
   std::vector<Offers> offers_;              ///< by probe
   std::vector<char> searched_;              ///< by probe: a search has answered since the last jump
   mutable std::array<Search, 4> searches_;  ///< [sim] newest ones, for some fingers

@@ -119,6 +119,30 @@ bool isValue(const Field& field, const Raw& raw) noexcept {
   return field.type == Type::kFloat ? raw.number == field.value : raw.code == field.code;
 }
 
+/// Takes a button, a fault or a mark of calibration. A fault in any field is one of the report.
+void takeFlag(const Field& field, bool set, State& state) noexcept {
+  if (field.role == Role::kButton && set) state.buttons |= 1u << field.index;
+  if (field.role == Role::kFault && set) state.fault = true;
+  if (field.role == Role::kCalibrated) state.calibrated = set;
+}
+
+/// Takes a sequence number. All of one report are equal, or the report was torn.
+Verdict takeSequence(const Field& field, uint64_t code, State& state) noexcept {
+  const auto sequence = static_cast<uint32_t>(code);
+  if (field.modulo != 0 && code >= field.modulo) return Verdict::kCorrupt;
+  if (state.has_sequence && sequence != state.sequence) return Verdict::kTorn;
+  state.sequence = sequence;
+  state.has_sequence = true;
+  return Verdict::kGood;
+}
+
+/// Judges a field of known content: a firmware number, a constant, a checksum.
+Verdict judge(const Field& field, const Raw& raw, const uint8_t* bytes) noexcept {
+  const bool good = field.role == Role::kChecksum ? raw.code == sumOf(field, bytes) : isValue(field, raw);
+  if (good) return Verdict::kGood;
+  return field.role == Role::kFirmware ? Verdict::kWrongFirmware : Verdict::kCorrupt;
+}
+
 Verdict take(const Field& field, const uint8_t* bytes, State& state) noexcept {
   const Raw raw = rawOf(field, bytes);
   const double value = raw.number * field.scale + field.offset;
@@ -133,33 +157,21 @@ Verdict take(const Field& field, const uint8_t* bytes, State& state) noexcept {
     case Role::kTorque:
       state.torque[field.index] = value;
       break;
-    case Role::kButton:
-      if (isSet(field, raw)) state.buttons |= 1u << field.index;
-      break;
-    case Role::kSequence: {
-      const auto sequence = static_cast<uint32_t>(raw.code);
-      if (field.modulo != 0 && raw.code >= field.modulo) return Verdict::kCorrupt;
-      if (state.has_sequence && sequence != state.sequence) return Verdict::kTorn;
-      state.sequence = sequence;
-      state.has_sequence = true;
-      break;
-    }
+    case Role::kSequence:
+      return takeSequence(field, raw.code, state);
     case Role::kStarts:
       state.starts = static_cast<uint32_t>(raw.code);
       state.has_starts = true;
       break;
+    case Role::kButton:
     case Role::kFault:
-      state.fault = state.fault || isSet(field, raw);
-      break;
     case Role::kCalibrated:
-      state.calibrated = isSet(field, raw);
+      takeFlag(field, isSet(field, raw), state);
       break;
     case Role::kFirmware:
-      return isValue(field, raw) ? Verdict::kGood : Verdict::kWrongFirmware;
     case Role::kConstant:
-      return isValue(field, raw) ? Verdict::kGood : Verdict::kCorrupt;
     case Role::kChecksum:
-      return raw.code == sumOf(field, bytes) ? Verdict::kGood : Verdict::kCorrupt;
+      return judge(field, raw, bytes);
     case Role::kEnable:
     case Role::kCalibrate:
     case Role::kReference:

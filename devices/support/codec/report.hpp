@@ -104,10 +104,10 @@ uint64_t codeAt(const Field& field, std::span<const uint8_t> body) noexcept;
 uint64_t checksumAt(const Field& field, std::span<const uint8_t> body) noexcept;
 
 /// [any] Writes one report, with its id in front if it has one; numbers beyond the limits of their field are clamped, a
-/// torque that is no number becomes none. @param bytes at least report.bytes() @return bytes written
+/// torque that is not a number becomes none. @param bytes at least report.bytes() @return bytes written
 size_t encode(const Report& report, const Order& order, std::span<uint8_t> bytes) noexcept;
 
-/// [any] Writes a report as the arm would: the opposite of decode(), for captures that are invented.
+/// [any] Writes a report as the arm would: the opposite of decode(), for tests that make up captures.
 size_t encode(const Report& report, const State& state, std::span<uint8_t> bytes) noexcept;
 
 }  // namespace hapticd::codec

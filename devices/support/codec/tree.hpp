@@ -45,7 +45,7 @@ class Document {
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
   Tree root() const;
-  /// Throws std::invalid_argument with all that was noted, a line each.
+  /// Throws std::invalid_argument with all that was noted, one line each.
   void check() const;
 
  private:

@@ -44,7 +44,7 @@ class Chain : public Arm {
   /// Position only; redundant joints stay near where they start and away from their limits.
   bool inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept override;
   JointVector neutral() const noexcept override;
-  std::span<const int32_t> parents() const noexcept override;  ///< one a joint, and the tool
+  std::span<const int32_t> parents() const noexcept override;  ///< one per joint, and the tool
   Eigen::Vector3d base() const noexcept override { return base_; }
   bool links(const JointVector& q, std::span<Pose> ends) const noexcept override;
 

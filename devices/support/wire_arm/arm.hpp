@@ -158,7 +158,7 @@ class Arm : public Device, public Parameters {
  private:
   size_t joints() const { return static_cast<size_t>(arm_->jointCount()); }
 
-  /// From the parameters alone; throws std::invalid_argument with all that is wrong, a line each.
+  /// From the parameters alone; throws std::invalid_argument with all that is wrong, one line each.
   void prepare() {
     std::string wrong;
     const auto attempt = [&wrong](const auto& part) {

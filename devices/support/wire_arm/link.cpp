@@ -66,8 +66,8 @@ Result<Identity> Link::bringUp() {
   return opened;
 }
 
-/// The report that switches the motors off, as it would be if the host wished for nothing. Its number is far from those
-/// that commands have: a device that takes no number twice takes it.
+/// Prepares the report that switches the motors off. Its sequence number is far from those of commands, so that a
+/// device that ignores repeated numbers does not ignore it.
 void Link::prepareSilence() {
   constexpr uint32_t kFar = 0x5a5a5a5a;
   std::array<uint8_t, codec::kMaxReportBytes> report{};

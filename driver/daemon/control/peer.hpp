@@ -28,7 +28,7 @@ struct Reply {
   Descriptor descriptor;
 };
 
-/// What a connection is for, beside its requests.
+/// Why a connection is kept, beside its requests.
 struct Standing {
   bool stays = false;    ///< something lives as long as it does: it is never dropped for being silent
   bool listens = false;  ///< it gets news

@@ -21,7 +21,7 @@ const Extension* extensionOf(const hsp_class& shape_class, hsp_shape* shape, con
 constexpr uint32_t kMostSurfaces = 1'000'000;  ///< the search keeps tables of so many for each probe
 constexpr uint32_t kMostVertices = 1'000'000;  ///< of a drawing; three times 12 MB are kept for them
 
-/// Claims are bounds that the host works with: one that is no number would switch its checks off.
+/// Claims are bounds that the host works with: one that is not a number would switch its checks off.
 std::string wrongIn(const hsp_report& report) {
   for (const double claim : {report.max_stiffness, report.max_force, report.size_m, report.max_jump})
     if (!std::isfinite(claim) || claim < 0)

@@ -60,7 +60,7 @@ class ShapeInstance {
   }
   /// [main] Triangles in the current shape, checked: every number is finite and every corner a vertex.
   hsp_status tessellate(double chord_error_m, hsp_mesh& mesh) const;
-  /// [main] A box around it in the model frame. False: it does not say, or answers what is no box.
+  /// [main] A box around it in the model frame. False: it does not say, or answers what is not a box.
   bool bounds(double min[3], double max[3]) const;
 
   const std::string& name() const { return name_; }

@@ -83,7 +83,8 @@ Json schemaOf(const Table& table) {
   return json;
 }
 
-Json schemaOf(const host::ParamInfo& param) {
+/// The type of a parameter, without its bounds, default and description.
+Json typeOf(const host::ParamInfo& param) {
   Json json = Json::object();
   switch (param.kind) {
     case HSP_REAL:
@@ -112,6 +113,11 @@ Json schemaOf(const host::ParamInfo& param) {
     default:
       break;
   }
+  return json;
+}
+
+Json schemaOf(const host::ParamInfo& param) {
+  Json json = typeOf(param);
   if (param.kind == HSP_REAL || param.kind == HSP_INT) {
     addBounds(json, param.min, param.max);
     json["default"] = param.def;

@@ -7,7 +7,7 @@
 
 namespace hapticd::servo {
 
-/// [any] The peer has rights of its own, so that what the daemon may read is none of its business.
+/// [any] The peer has rights of its own, so that what the daemon may read is not meant for it.
 bool isForeign(const control::Peer& peer);
 
 /// [main] The model with its files' paths as a plugin can open them: copies of what was passed.

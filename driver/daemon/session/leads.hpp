@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Who leads what: hands out the memory of leads, one leader a target, and ends a lead with the connection that asked
+/// Who leads what: hands out the memory of leads, one leader per target, and ends a lead with the connection that asked
 /// for it. Control thread only.
 #pragma once
 #include <functional>

@@ -30,11 +30,11 @@ class RequestHandler {
   /// [any] One thread at a time. A line of JSON for a line of JSON. @param files the descriptors that the line names
   control::Reply answer(const control::Peer& peer, const std::string& line, std::vector<Descriptor> files = {});
   /// [any] Any thread, at any time: holds arms or ends the run at once, behind no other request.
-  /// @return the answer; nothing: the line is no such request
+  /// @return the answer; nothing: the line is not such a request
   std::optional<control::Reply> urgent(const control::Peer& peer, const std::string& line);
   /// [any] The same thread. What the peer's connection holds.
   control::Standing standing(const control::Peer& peer) const { return {stays(peer), listeners_.count(peer.id) > 0}; }
-  /// [any] The same thread. Events for one that subscribed, a line each; "": none.
+  /// [any] The same thread. Events for one that subscribed, one line each; "": none.
   std::string news(const control::Peer& peer);
   /// [any] The same thread. The connection is gone, and with it what it held.
   void left(const control::Peer& peer);

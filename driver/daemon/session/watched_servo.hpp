@@ -12,7 +12,7 @@ namespace hapticd::servo {
 
 class WatchedServo final : public watch::Watched {
  public:
-  /// [main] All of them outlive it.
+  /// [main] The arguments must outlive this object.
   WatchedServo(Loop& loop, std::vector<std::unique_ptr<Arm>>& arms, const Telemetry& telemetry);
 
   uint64_t ticks() const noexcept override { return loop_.ticks(); }

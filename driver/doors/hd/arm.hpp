@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// An opened arm: its frames, its capabilities, and the force that goes out. Who calls holds the library's lock.
+/// An opened arm: its frames, its capabilities, and the force that goes out. The caller holds the library's lock.
 #pragma once
 #include <cstdint>
 #include <memory>

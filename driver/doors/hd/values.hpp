@@ -18,7 +18,7 @@ struct Asked {
 /// @return how many numbers `out` got; 0: there is no such parameter, -1: it is a text
 int numbersOf(const Asked& asked, HDenum name, double out[kMostNumbers]);
 
-/// nullptr: it is no text.
+/// nullptr: it is not a text.
 const std::string* textOf(const Facts& facts, HDenum name);
 
 /// How many numbers setting takes; 0: it cannot be set.

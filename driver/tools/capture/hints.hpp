@@ -7,7 +7,7 @@
 
 namespace hapticd::capture {
 
-/// [main] A sentence a line, "" where there is nothing to say: a report id that the file does not give, several reports
+/// [main] One line each, "" where there is nothing to say: a report id that the file does not give, several reports
 /// in one line, a checksum of another method.
 std::string hintsOf(const codec::Wire& wire, const Decoded& decoded);
 

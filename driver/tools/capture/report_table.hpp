@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// A capture as numbers: what a wire format makes of it, report by report, and why some of it is no report.
+/// A capture as numbers: what a wire format makes of it, report by report, and why some of it is not a report.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -57,7 +57,7 @@ bool follows(const std::string& key, const document::Problems& known) {
   });
 }
 
-/// A module tells all that is wrong with its parameters, a line each.
+/// A module tells all that is wrong with its parameters, one line each.
 std::vector<std::string> linesOf(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream in(text);

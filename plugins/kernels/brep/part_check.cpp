@@ -31,6 +31,13 @@ Vector cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
+/// All records of a kind belong to one body each.
+void heldOnce(std::uint64_t held, std::size_t all, const char* what) {
+  if (held == all) return;
+  throw PartError("bodies: they hold " + std::to_string(held) + " " + what + ", expected all " + std::to_string(all) +
+                  ", once each");
+}
+
 /// The record that is being checked, for messages.
 struct Where {
   const char* kind;
@@ -252,7 +259,8 @@ class Checker {
       coedge = part_.coedges[coedge].next;
     }
     if (met != e.coedge_count)
-      at.fail("its list has other than the stated " + std::to_string(e.coedge_count) + " coedges");
+      at.fail(std::string("its list has ") + (met > e.coedge_count ? "more" : "fewer") + " than the " +
+              std::to_string(e.coedge_count) + " coedges that it states");
   }
 
   void coedge(const Where& at, const Coedge& c) const {
@@ -352,8 +360,8 @@ class Checker {
         if (part_.faces[body.first_face + i].body != b)
           Where{"body", b}.fail("face " + std::to_string(body.first_face + i) + " is of another body");
     }
-    if (faces != part_.faces.size()) throw PartError("bodies: they hold other than all faces");
-    if (triangles != part_.triangles.size()) throw PartError("bodies: they hold other than all triangles, once each");
+    heldOnce(faces, part_.faces.size(), "faces");
+    heldOnce(triangles, part_.triangles.size(), "triangles");
   }
 
   const Part& part_;

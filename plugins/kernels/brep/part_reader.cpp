@@ -145,7 +145,7 @@ Part readBytes(std::span<const std::byte> bytes) {
     const Section* wanted = nullptr;
     for (const Section& section : sections) {
       if (section.name != name) continue;
-      if (wanted != nullptr) throw PartError("section " + section.name + ": stands twice, expected once");
+      if (wanted != nullptr) throw PartError("section " + section.name + ": is there twice, expected once");
       wanted = &section;
     }
     if (wanted != nullptr) readRecords(*wanted, bytes.subspan(begin), records);

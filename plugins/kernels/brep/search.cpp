@@ -50,6 +50,31 @@ struct OfFace {
   }
 };
 
+/// A vertex at which an edge has no length. Returns the squared distance; `hit` is replaced where it is nearer.
+inline double poleFoot(const Part& part, std::uint32_t edge, const Vector3d& p, Hit& hit) noexcept {
+  const Vector3d q = vec(part.vertices[part.edges[edge].first_vertex].point);
+  const double d2 = (p - q).squaredNorm();
+  if (!(d2 < hit.d2)) return d2;
+  hit.d2 = d2;
+  hit.point = q;
+  return d2;
+}
+
+/// The same for a triangle of a mesh.
+inline double meshFoot(const Part& part, std::uint32_t triangle, const Vector3d& p, Hit& hit) noexcept {
+  const Triangle& t = part.triangles[triangle];
+  const TriangleFoot foot =
+      triangleFoot(p, vec(part.points[t.corner[0]]), vec(part.points[t.corner[1]]), vec(part.points[t.corner[2]]));
+  const double d2 = (p - foot.point).squaredNorm();
+  if (!(d2 < hit.d2)) return d2;
+  hit.d2 = d2;
+  hit.point = foot.point;
+  hit.u = foot.s;
+  hit.v = foot.t;
+  hit.region = static_cast<std::uint8_t>(foot.region);
+  return d2;
+}
+
 /// Sorts the four children of a node by their bounds, farthest first. Returns how many are within `limit`; `beyond`
 /// falls to the least bound of the others.
 template <class Entry>
@@ -113,28 +138,10 @@ double Search::evaluate(Element element, const Vector3d& p, const Hit* start, Hi
       alone = answer.alone;
       return answer.d2;
     }
-    case ElementKind::kPole: {
-      const Vector3d q = vec(model_.part().vertices[model_.part().edges[i].first_vertex].point);
-      const double d2 = (p - q).squaredNorm();
-      if (!(d2 < hit.d2)) return d2;
-      hit.d2 = d2;
-      hit.point = q;
-      return d2;
-    }
-    case ElementKind::kTriangle: {
-      const Part& part = model_.part();
-      const Triangle& t = part.triangles[i];
-      const TriangleFoot foot =
-          triangleFoot(p, vec(part.points[t.corner[0]]), vec(part.points[t.corner[1]]), vec(part.points[t.corner[2]]));
-      const double d2 = (p - foot.point).squaredNorm();
-      if (!(d2 < hit.d2)) return d2;
-      hit.d2 = d2;
-      hit.point = foot.point;
-      hit.u = foot.s;
-      hit.v = foot.t;
-      hit.region = static_cast<std::uint8_t>(foot.region);
-      return d2;
-    }
+    case ElementKind::kPole:
+      return poleFoot(model_.part(), i, p, hit);
+    case ElementKind::kTriangle:
+      return meshFoot(model_.part(), i, p, hit);
     default:
       return kInfinity;
   }

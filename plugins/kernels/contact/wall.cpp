@@ -8,8 +8,8 @@ namespace hapticd::contact {
 
 namespace {
 
-/// (x/x0)^n, with the exponents in common use exact and cheap; the roots are taken apart so that the smallest depths
-/// do not lose their digits in the quotient.
+/// Returns (x/x0)^n. The exponents in common use are exact and cheap. Two roots are divided, not the root of a quotient
+/// taken, so that the smallest depths do not lose their digits.
 double shape(const WallLaw& law, double depth) noexcept {
   if (law.exponent == 1) return depth / law.depth_scale;
   if (law.exponent == 0.5) return std::sqrt(depth) / std::sqrt(law.depth_scale);

@@ -13,7 +13,7 @@ struct CurveData {
   int degree = 1;
   std::vector<double> knots;            ///< points + degree + 1, non-decreasing
   std::vector<Eigen::Vector3d> points;  ///< [m]
-  std::vector<double> weights;          ///< one a point; empty: polynomial
+  std::vector<double> weights;          ///< one per point; empty: polynomial
   std::string name;                     ///< for messages
 
   /// [any] The parameter range [lo, hi]. Only for valid data.

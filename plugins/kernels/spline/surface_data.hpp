@@ -22,7 +22,7 @@ struct SurfaceData {
   std::array<int, 2> degree{1, 1};
   std::array<std::vector<double>, 2> knots;  ///< count + degree + 1 each, non-decreasing
   std::vector<Eigen::Vector3d> points;       ///< [m] u-major: index = i * count(1) + j
-  std::vector<double> weights;               ///< one a point; empty: polynomial
+  std::vector<double> weights;               ///< one per point; empty: polynomial
   bool reversed = false;                     ///< outward normal = -(Su x Sv)
   std::string name;                          ///< for messages
 
@@ -46,7 +46,7 @@ void validate(const SurfaceData& data);
 /// @throws std::invalid_argument
 void validateKnots(const std::vector<double>& knots, int degree, std::size_t count, const std::string& what);
 
-/// [main] Checks that points are finite and that weights, where there are any, are positive, finite, one a point.
+/// [main] Checks that points are finite and that weights, where there are any, are positive, finite, one per point.
 /// @throws std::invalid_argument
 void validatePoints(const std::vector<Eigen::Vector3d>& points, const std::vector<double>& weights,
                     const std::string& what);

@@ -244,6 +244,54 @@ void prepare(const Patch& patch, Iterate& at) noexcept {
   at.known = Iterate::Known::kAll;
 }
 
+/// From the probe to the point of an iterate, and half its square, which Newton makes least.
+struct Gap {
+  Vector3d r;
+  double f;
+};
+
+Gap gapOf(const Iterate& at, const Vector3d& p) noexcept {
+  const Vector3d r = at.E.S - p;
+  return {r, 0.5 * r.squaredNorm()};
+}
+
+/// Where this share of a step leads. A whole step ends exactly on the bounds that it names.
+Array2d targetOf(const Patch& patch, const Iterate& at, const Step& step, double share) noexcept {
+  Array2d target = at.uv + share * step.d.array();
+  if (share == 1)
+    for (int axis = 0; axis < 2; ++axis) {
+      if (step.sides & bit(2 * axis)) target[axis] = patch.lo[axis];
+      if (step.sides & bit(2 * axis + 1)) target[axis] = patch.hi[axis];
+    }
+  return target;
+}
+
+/// Goes along a step as far as the point comes nearer to the probe, within `rounding` [m] of its place.
+/// @return the share of the step that was taken; 0: none, after max_evaluations
+double advance(const Patch& patch, const Vector3d& p, Step& step, int max_evaluations, double rounding, Iterate& at,
+               Gap& gap, LocalFoot& foot) noexcept {
+  double share = 1;
+  while (foot.evaluations < max_evaluations) {
+    Iterate trial;
+    trial.E.span = at.E.span;
+    evaluate(patch, targetOf(patch, at, step, share), trial);
+    ++foot.evaluations;
+    const Gap tried = gapOf(trial, p);
+    if (tried.f <= gap.f + rounding * std::sqrt(2 * gap.f)) {
+      at = trial;
+      gap = tried;
+      return share;
+    }
+    if (step.d != step.straight) {
+      step.d = step.straight;
+      continue;
+    }
+    const double slope = share * Vector2d(gap.r.dot(at.E.Su), gap.r.dot(at.E.Sv)).dot(step.d);
+    share *= std::clamp(-0.5 * slope / (tried.f - gap.f - slope), 0.1, 0.5);
+  }
+  return 0;
+}
+
 }  // namespace
 
 void startNewton(const Patch& patch, Iterate& at, LocalFoot& foot) noexcept {
@@ -266,15 +314,14 @@ bool mayStepAgain(const Patch& patch, QuickResult result, Iterate& at, LocalFoot
 void descend(const Patch& patch, const Vector3d& p, Iterate& at, double tolerance, int max_evaluations,
              LocalFoot& foot) noexcept {
   foot.converged = false;
-  Vector3d r = at.E.S - p;
-  double f = 0.5 * r.squaredNorm();
+  Gap gap = gapOf(at, p);
   const double rounding = kRounding * (p.norm() + at.E.S.norm());
   const double enough = std::max(tolerance, rounding);
   double last_length = 0;  // of the step that led to this point, 0: none
   Step step;
   double length = 0;
   for (;;) {
-    step = stepFrom(patch, at.uv, at.E, r);
+    step = stepFrom(patch, at.uv, at.E, gap.r);
     length = (at.E.Su * step.d[0] + at.E.Sv * step.d[1]).norm();
     // Newton squares the error: the next step would be about length * (length / last_length)^2.
     const double ratio = length / last_length;
@@ -282,37 +329,9 @@ void descend(const Patch& patch, const Vector3d& p, Iterate& at, double toleranc
       foot.converged = true;
       break;
     }
-    bool accepted = false;
-    double shrink = 1;
-    while (foot.evaluations < max_evaluations) {
-      Iterate trial;
-      trial.E.span = at.E.span;
-      Array2d target = at.uv + shrink * step.d.array();
-      if (shrink == 1)
-        for (int axis = 0; axis < 2; ++axis) {
-          if (step.sides & bit(2 * axis)) target[axis] = patch.lo[axis];
-          if (step.sides & bit(2 * axis + 1)) target[axis] = patch.hi[axis];
-        }
-      evaluate(patch, target, trial);
-      ++foot.evaluations;
-      const Vector3d r_trial = trial.E.S - p;
-      const double f_trial = 0.5 * r_trial.squaredNorm();
-      if (f_trial <= f + rounding * std::sqrt(2 * f)) {
-        at = trial;
-        r = r_trial;
-        f = f_trial;
-        accepted = true;
-        break;
-      }
-      if (step.d != step.straight) {
-        step.d = step.straight;
-        continue;
-      }
-      const double slope = shrink * Vector2d(r.dot(at.E.Su), r.dot(at.E.Sv)).dot(step.d);
-      shrink *= std::clamp(-0.5 * slope / (f_trial - f - slope), 0.1, 0.5);
-    }
-    if (!accepted) break;
-    last_length = shrink * length;
+    const double share = advance(patch, p, step, max_evaluations, rounding, at, gap, foot);
+    if (share == 0) break;
+    last_length = share * length;
   }
   if (foot.converged) {
     moveTo(foot, patch, p, at, step);

@@ -228,8 +228,8 @@ void Sewing::reportTJunctions() {
     }
 }
 
-/// Seen from outside, a surface lies to the left of its boundary: two that agree run along their common edge in
-/// opposite directions.
+/// Warns of neighbours whose normals disagree. Seen from outside, a surface lies to the left of its boundary: two
+/// surfaces that agree run along their common edge in opposite directions.
 void Sewing::reportDisagreement() {
   constexpr std::array<int, kSides> kCounterClockwise{-1, 1, 1, -1};  // along the parameter of the side, or against it
   for (int i = 0; i < model_.patchCount(); ++i)

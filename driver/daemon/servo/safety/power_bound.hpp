@@ -20,7 +20,7 @@ class PowerBound {
     mass_ = mass;
   }
 
-  /// [rt] A new estimate [m/s]; one that is no number counts as rest.
+  /// [rt] A new estimate [m/s]; one that is not a number counts as rest.
   void watch(const Eigen::Vector3d& velocity) noexcept HSP_RT;
 
   /// [rt] Once a tick. @param dt [s] since the last tick, taken for the time to the next too

@@ -24,7 +24,7 @@ struct Kept {
   double error = 0;  ///< [m] of curves in space and of surfaces; in parameters for pcurves
 };
 
-/// [main] Appends a curve; what is no line, circle, ellipse or spline is approximated over [t0, t1]. @throws Unkept
+/// [main] Appends a curve; what is not a line, circle, ellipse or spline is approximated over [t0, t1]. @throws Unkept
 Kept addCurve(const Handle(Geom_Curve) & curve, double t0, double t1, brep::Part& part);
 
 /// [main] The same in the parameters of a surface. @throws Unkept

@@ -267,6 +267,43 @@ double Unfolding::angleAt(const gp_Pnt2d& uv) const {
   return u;
 }
 
+namespace {
+
+constexpr int kSpans = 64;  ///< of the spline in the parameters that follows an edge
+
+/// The line in the parameters that is at `a` where t is t0, and at `b` where t is t1.
+brep::Curve2 lineBetween(const Vector2& a, const Vector2& b, double t0, double t1) {
+  brep::Curve2 line;
+  for (std::size_t k = 0; k < 2; ++k) {
+    line.x[k] = (b[k] - a[k]) / (t1 - t0);
+    line.o[k] = a[k] - t0 * line.x[k];
+  }
+  return line;
+}
+
+/// Cubics with the slopes of the edge: off by h^4 / 384 of its fourth derivative.
+template <class Sample>
+brep::Curve2 cubicsThrough(const std::vector<Sample>& samples, double t0, double t1, brep::Part& part) {
+  brep::Curve2 spline;
+  spline.kind = brep::CurveKind::kSpline;
+  spline.degree = 3;
+  spline.count = 2 * (kSpans + 1);
+  spline.data = part.reals.size();
+  part.reals.insert(part.reals.end(), 2, t0);
+  for (const Sample& s : samples) part.reals.insert(part.reals.end(), 2, s.t);
+  part.reals.insert(part.reals.end(), 2, samples.back().t);
+  const double third = (t1 - t0) / kSpans / 3;
+  for (int i = 0; i <= kSpans; ++i) {
+    const Sample& s = samples[static_cast<std::size_t>(i)];
+    const double before = i == 0 ? 0 : -third, after = i == kSpans ? 0 : third;
+    for (const double step : {before, after})
+      for (std::size_t k = 0; k < 2; ++k) part.reals.push_back(s.uv[k] + step * s.slope[k]);
+  }
+  return spline;
+}
+
+}  // namespace
+
 Unfolding::Sample Unfolding::sampleAt(const Handle(Geom_Curve) & curve, double t, double near_u, double within) const {
   gp_Pnt p;
   gp_Vec d;
@@ -280,9 +317,9 @@ Unfolding::Sample Unfolding::sampleAt(const Handle(Geom_Curve) & curve, double t
   return {t, {uv[0], uv[1]}, {way.dot(at.u) / uu, way.dot(at.v) / vv}};  // the tangents are at right angles
 }
 
-std::uint32_t Unfolding::addPlaneCurve(const Handle(Geom_Curve) & curve, const brep::Curve3& record, double t0,
-                                       double t1, const gp_Pnt2d& uv, double t, double within, brep::Part& part) {
-  constexpr int kSpans = 64;
+/// Samples an edge over [t0, t1]; u is followed from `uv`, the point at t, to both ends.
+std::vector<Unfolding::Sample> Unfolding::samplesAlong(const Handle(Geom_Curve) & curve, double t0, double t1,
+                                                       const gp_Pnt2d& uv, double t, double within) const {
   std::vector<Sample> samples(kSpans + 1);
   const auto at = [&](int i) { return t0 + (t1 - t0) * i / kSpans; };
   const int anchor = std::clamp(static_cast<int>(std::lround((t - t0) / (t1 - t0) * kSpans)), 0, kSpans);
@@ -292,43 +329,29 @@ std::uint32_t Unfolding::addPlaneCurve(const Handle(Geom_Curve) & curve, const b
   u = samples[static_cast<std::size_t>(anchor)].uv[0];
   for (int i = anchor - 1; i >= 0; --i)
     u = (samples[static_cast<std::size_t>(i)] = sampleAt(curve, at(i), u, within)).uv[0];
+  return samples;
+}
+
+/// Whether a line in the parameters stays on the edge.
+bool Unfolding::follows(const brep::Curve2& line, const std::vector<Sample>& samples) const {
+  return std::all_of(samples.begin(), samples.end(), [&](const Sample& s) {
+    const Tangents there = tangentsAt(shape_, Vector2d(s.uv[0], s.uv[1]));
+    const Vector2d off(s.uv[0] - line.o[0] - s.t * line.x[0], s.uv[1] - line.o[1] - s.t * line.x[1]);
+    return (off[0] * there.u + off[1] * there.v).norm() <= 1e-12;
+  });
+}
+
+std::uint32_t Unfolding::addPlaneCurve(const Handle(Geom_Curve) & curve, const brep::Curve3& record, double t0,
+                                       double t1, const gp_Pnt2d& uv, double t, double within, brep::Part& part) {
+  const std::vector<Sample> samples = samplesAlong(curve, t0, t1, uv, t, within);
   for (const Sample& s : samples) widen(s.uv);
   const auto index = static_cast<std::uint32_t>(part.curves2.size());
   if (shape_.kind == SurfaceKind::kPlane) {
     part.curves2.push_back(projected(record, shape_, part));
     return index;
   }
-  brep::Curve2 flat;
-  const Vector2 a = samples.front().uv, b = samples.back().uv;
-  for (std::size_t k = 0; k < 2; ++k) {
-    flat.x[k] = (b[k] - a[k]) / (t1 - t0);
-    flat.o[k] = a[k] - t0 * flat.x[k];
-  }
-  const auto straight = [&](const Sample& s) {
-    const Tangents there = tangentsAt(shape_, Vector2d(s.uv[0], s.uv[1]));
-    const Vector2d off(s.uv[0] - flat.o[0] - s.t * flat.x[0], s.uv[1] - flat.o[1] - s.t * flat.x[1]);
-    return (off[0] * there.u + off[1] * there.v).norm() <= 1e-12;
-  };
-  if (std::all_of(samples.begin(), samples.end(), straight)) {
-    part.curves2.push_back(flat);
-    return index;
-  }
-  flat = brep::Curve2{};  // cubics with the slopes of the edge: off by h^4 / 384 of its fourth derivative
-  flat.kind = brep::CurveKind::kSpline;
-  flat.degree = 3;
-  flat.count = 2 * (kSpans + 1);
-  flat.data = part.reals.size();
-  part.reals.insert(part.reals.end(), 2, t0);
-  for (const Sample& s : samples) part.reals.insert(part.reals.end(), 2, s.t);
-  part.reals.insert(part.reals.end(), 2, samples.back().t);
-  const double third = (t1 - t0) / kSpans / 3;
-  for (int i = 0; i <= kSpans; ++i) {
-    const Sample& s = samples[static_cast<std::size_t>(i)];
-    const double before = i == 0 ? 0 : -third, after = i == kSpans ? 0 : third;
-    for (const double step : {before, after})
-      for (std::size_t k = 0; k < 2; ++k) part.reals.push_back(s.uv[k] + step * s.slope[k]);
-  }
-  part.curves2.push_back(flat);
+  const brep::Curve2 line = lineBetween(samples.front().uv, samples.back().uv, t0, t1);
+  part.curves2.push_back(follows(line, samples) ? line : cubicsThrough(samples, t0, t1, part));
   return index;
 }
 

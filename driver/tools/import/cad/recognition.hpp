@@ -3,6 +3,7 @@
 #pragma once
 #include <Geom_Surface.hxx>
 #include <optional>
+#include <vector>
 
 #include "cad_import/curves.hpp"
 
@@ -38,6 +39,9 @@ class Unfolding {
   };
   double angleAt(const gp_Pnt2d& uv) const;
   Sample sampleAt(const Handle(Geom_Curve) & curve, double t, double near_u, double within) const;
+  std::vector<Sample> samplesAlong(const Handle(Geom_Curve) & curve, double t0, double t1, const gp_Pnt2d& uv, double t,
+                                   double within) const;
+  bool follows(const brep::Curve2& line, const std::vector<Sample>& samples) const;
   void widen(const brep::Vector2& uv);
 
   Handle(Geom_Surface) surface_;

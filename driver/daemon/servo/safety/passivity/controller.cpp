@@ -41,7 +41,7 @@ Eigen::Vector3d PassivityController::update(const Eigen::Vector3d& position, con
     held_ = force.allFinite() ? force : Eigen::Vector3d::Zero();
     added_.setZero();
     started_ = position.allFinite();
-    return force;  // also one that is no number: the limiter knows how to end that
+    return force;  // also one that is not a number: the limiter knows how to end that
   }
   const Eigen::Vector3d way = started_ ? Eigen::Vector3d(position - position_) : Eigen::Vector3d::Zero();
   position_ = position;

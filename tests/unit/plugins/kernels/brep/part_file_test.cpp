@@ -89,12 +89,14 @@ TEST(PartCheck, NamesTheRecordThatBreaksARule) {
             "loop 1: coedges 4 to 4294967284, expected within 6");
   EXPECT_EQ(spoilt([](Part& p) { p.edges[0].t1 = p.edges[0].t0; }),
             "edge 0: parameters from 0 to 0, expected finite and ascending");
-  EXPECT_EQ(spoilt([](Part& p) { p.coedges[0].next = 0; }), "edge 0: its list has other than the stated 2 coedges");
+  EXPECT_EQ(spoilt([](Part& p) { p.coedges[0].next = 0; }),
+            "edge 0: its list has more than the 2 coedges that it states");
   EXPECT_EQ(spoilt([](Part& p) { p.instances[0].pose[0] = -1; }),
             "instance 0: the pose mirrors, expected a rotation (a mirrored body is a body of its own)");
   EXPECT_EQ(spoilt([](Part& p) { p.instances[0].parent = 0; }), "instance 0: parent 0, expected less than 0");
   EXPECT_EQ(spoilt([](Part& p) { p.instances.clear(); }), "no instances, expected at least one");
-  EXPECT_EQ(spoilt([](Part& p) { p.bodies[0].face_count = 2; }), "bodies: they hold other than all faces");
+  EXPECT_EQ(spoilt([](Part& p) { p.bodies[0].face_count = 2; }),
+            "bodies: they hold 2 faces, expected all 3, once each");
 }
 
 /// Whatever single word of a record is spoilt: the reader answers, with an error or a part that passes the check again.
