@@ -39,7 +39,10 @@ hsp_status MatDeformable::stepFelt(const hsp_step& step) noexcept HSP_RT {
 hsp_status MatDeformable::meet(const hsp_probe& probe, const hsp_step& step, uint32_t index,
                                hsp_contact& contact) noexcept HSP_RT {
   const Located located = locate(probe, step, index, contact);
-  if (!located.found) return located.status;
+  if (!located.found) {
+    if (index < tracks_.size()) tracks_[index].near = false;
+    return located.status;
+  }
   Track& track = tracks_[index];
   const double depth = located.surface.depth;
   const bool near = depth > 0 || (body_->nodes().awake() > 0 && depth > -kSwingsOut);
@@ -50,6 +53,7 @@ hsp_status MatDeformable::meet(const hsp_probe& probe, const hsp_step& step, uin
     met.before = track.inside;
     met.known = track.counted;
     met.placed = !track.met || track.hopped;
+    met.fresh = !track.near;
     const medial::Envelope envelope = searchOptions().newton.envelope;
     body_->placeOf(Vector3d(probe.position), track.foot, located.surface, envelope, met.place);
     if (located.surface.share > 0) {
@@ -64,6 +68,7 @@ hsp_status MatDeformable::meet(const hsp_probe& probe, const hsp_step& step, uin
     track.friction.reset();
   }
   track.met = true;
+  track.near = near;
   return located.status;
 }
 

@@ -131,7 +131,7 @@ void MatDeformable::deactivate() {
 
 void MatDeformable::reset() noexcept HSP_RT {
   for (Track& track : tracks_) {
-    track.known = track.offered = track.met = track.counted = false;
+    track.known = track.offered = track.met = track.counted = track.near = false;
     track.side = 0;
     track.apart = 0;
     track.pushed.setZero();

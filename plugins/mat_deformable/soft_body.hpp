@@ -37,6 +37,7 @@ struct Track {
   // On a surface that is felt:
   bool met = false;            ///< the probe has been at the surface since it came near; else it may have begun inside
   bool counted = false;        ///< `inside` is that of the last tick
+  bool near = false;           ///< the probe was within reach of the swinging surface in the last tick
   medial::SkeletonFoot rival;  ///< another part of the surface that is nearly as deep over the probe, in a valley
   double apart = 0;            ///< 0: there is none, or it is the foot's own place; 1: it is another
   bool swapped = false;        ///< the foot is the rival of the last tick

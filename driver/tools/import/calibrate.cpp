@@ -238,9 +238,6 @@ Result<std::vector<double>> fitStiffness(const Body& body, const std::vector<Ans
 /// Makes `fitted.reach` right, and tells how well the dents are met.
 Result<void> fitShear(const Body& body, const std::vector<Dent>& dents, const Calibration& options,
                       host::Catalog& catalog, Fitted& fitted) {
-  if (body.columns == 0)
-    return Error{options.body +
-                 ": has vertices, expected a grid of points: the dents of a mesh are those of its rings"};
   Fitted tried{fitted.stiffness, 0, true};
   const auto write = [&](double reach) {
     tried.reach = reach;
@@ -256,6 +253,10 @@ Result<void> fitShear(const Body& body, const std::vector<Dent>& dents, const Ca
     worst = std::max(worst, std::fabs(error));
     squares += error * error / static_cast<double>(dents.size());
     wider += error / static_cast<double>(dents.size());
+    if (std::fabs(error) > kGood)
+      std::fprintf(stderr,
+                   "warning: at (%.4g, %.4g, %.4g) m the dent of the body is %.3f of the depth, the answer %.3f\n",
+                   dents[i].beside.x(), dents[i].beside.y(), dents[i].beside.z(), fit->shares[i], dents[i].share);
   }
   if (worst > kGood && wider > 0 && fit->reach < kNoReach * spacing)
     std::fprintf(stderr,
@@ -277,6 +278,9 @@ Result<void> calibrate(const Calibration& options, host::Catalog& catalog) {
   if (!body) return Error{body.error()};
   std::vector<Dent> dents;
   if (!options.dents.empty()) {
+    if (body->columns == 0)
+      return Error{options.body +
+                   ": has vertices, expected a grid of points: the dents of a mesh are those of its rings"};
     auto read = readDents(options.dents);
     if (!read) return Error{read.error()};
     dents = std::move(*read);

@@ -137,11 +137,11 @@ void FeltSurface::wake(uint32_t node) noexcept {
   touched_[node] = tick_;
 }
 
-/// The surface as it is under a press that has been held for long.
-void FeltSurface::hold(FeltContact& contact) noexcept {
-  const FeltPlace& place = contact.place;
+/// Moves the surface inward to a displacement [m], where it is less, as a press that has been held for long does.
+/// Toward rest this takes energy away.
+void FeltSurface::bring(const FeltPlace& place, double displacement) noexcept {
   const double ratio = contactRatio();
-  const double lag = contact.depth * (1 - 1 / ratio) - shift(place);
+  const double lag = displacement - shift(place);
   if (!(lag > 0) || !(place.scale > 0)) return;
   const double force = lag * place.stiffness * ratio / (ratio - 1);
   const Vector4d push = place.scale * force * shares_.cwiseProduct(inwardOf(place.normal));
@@ -278,7 +278,10 @@ void FeltSurface::advance(double dt, std::span<FeltContact> contacts) noexcept {
   ++tick_;
   for (FeltContact& contact : contacts) {
     fit(contact.place);
-    if (contact.placed) hold(contact);
+    if (contact.placed)
+      bring(contact.place, contact.depth * (1 - 1 / contactRatio()));
+    else if (contact.fresh)
+      bring(contact.place, std::min(contact.depth, 0.0));
     if (!contact.known || contact.placed) contact.before = contact.depth - shift(contact.place);
   }
   if (dt > 0) {

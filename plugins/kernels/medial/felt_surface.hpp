@@ -48,6 +48,7 @@ struct FeltContact {
   double before = 0;    ///< [m] by how much it was inside the present surface at the last tick
   bool known = false;   ///< `before` is known
   bool placed = false;  ///< the probe did not come here by a motion: the surface is taken as held by it already
+  bool fresh = false;   ///< the probe comes from afar: a surface that has swung out beyond it is taken as beside it
 
   double inside = 0;               ///< out: [m] inside the present surface
   double force = 0;                ///< out: [N] of the contact spring now
@@ -91,7 +92,7 @@ class FeltSurface {
   const Material& materialOf(std::size_t node) const noexcept { return materials_[which_.empty() ? 0 : which_[node]]; }
   double shift(const FeltPlace& place) const noexcept;
   double give(const FeltPlace& a, const FeltPlace& b, double dt) noexcept;
-  void hold(FeltContact& contact) noexcept;
+  void bring(const FeltPlace& place, double displacement) noexcept;
   void swing(double dt) noexcept;
   void solve(double dt, std::span<FeltContact> contacts) noexcept;
   void push(const FeltContact& contact) noexcept;

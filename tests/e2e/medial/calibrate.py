@@ -92,6 +92,17 @@ with tempfile.TemporaryDirectory() as work:
     with open(out, encoding="utf-8") as file:
         lines = file.read()
     check("the file has it, and its mass still", "shear_reach: " in lines and "  mass: 0.01" in lines, lines[:400])
+    with open(dents, "a", encoding="utf-8") as file:
+        file.write("0,0,0.013,0.2,0,0.013,0.5\n")
+    code, text = hapticd("import", "--calibrate", told, "--dents", dents, given, out)
+    check("a dent beside the body is named", code == 0 and "(0.2, 0, 0.013) m" in text, text)
+    mesh, unwritten = os.path.join(work, "mesh.yaml"), os.path.join(work, "unwritten.yaml")
+    with open(mesh, "w", encoding="utf-8") as file:
+        file.write("format: hapticd-model/1\nmedial:\n  vertices: [[-0.03, 0, 0, 0.01], [0.03, 0, 0, 0.01]]\n  edges: [[0, 1]]\n"
+                   "  stiffness: 100\n")
+    code, text = hapticd("import", "--calibrate", told, "--dents", dents, mesh, unwritten)
+    check("dents of a mesh are refused before anything is written", code == 2 and "rings" in text and not
+          os.path.exists(unwritten), (code, text))
     with open(dents, "w", encoding="utf-8") as file:
         file.write("x,y,z,x2,y2,z2,dent\n0,0,0,0,0,0,1.5\n")
     code, text = hapticd("import", "--calibrate", told, "--dents", dents, given, out)

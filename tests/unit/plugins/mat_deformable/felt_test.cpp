@@ -87,6 +87,39 @@ TEST(FeltBody, AProbeThatBeginsInsideFeelsAHeldPressAtOnce) {
   EXPECT_NEAR(body.step({Vector3d(.03, .02, .005)}, Vector3d::Zero(), 1e-3, HSP_IN_JUMP)[0].force[2], 1.0, .02);
 }
 
+/// An undamped body whose dent of 8 mm swings out to 8 mm.
+class Heavy : private TemporaryFile, public Plugin {
+ public:
+  Heavy()
+      : TemporaryFile("heavy.yaml",
+                      "format: hapticd-model/2\nmedial:\n  points: [[[-0.03, -0.03, 0], [-0.03, 0.03, 0]], [[0.03, "
+                      "-0.03, 0], [0.03, 0.03, 0]]]\n  radius: 0.02\n  stiffness: 200\n  mass: 1\n"),
+        Plugin(path()) {
+    set("dynamics", 3.0);
+    set("contact_ratio", 20.0);
+    EXPECT_EQ(activate(), HSP_OK);
+    search({0, 0, .03});
+  }
+};
+
+/// A probe is at the surface from 5 mm outside on. It met at once what had swung out farther: 15 N within 0.1 mm.
+TEST(FeltBody, ASurfaceThatSwingsFarOutDoesNotKickAProbeThatComes) {
+  Heavy body;
+  for (int i = 0; i <= 1000; ++i) body.touch({0, 0, .021 - 9.5e-6 * i});
+  for (int i = 0; i <= 1000; ++i) body.touch({0, 0, .0115});
+  const double half_swing = M_PI / std::sqrt(200 * 20.0 / 19);
+  double before = 0, jump = 0, most = 0;
+  for (int i = 0; 1e-3 * i < half_swing + .1; ++i) {
+    const double left = std::clamp((half_swing + .02 - 1e-3 * i) / .04, 0.0, 1.0);  // from 8 mm to 4 mm outside
+    const double force = forceOf(body.touch({0, 0, .024 + .004 * left})).norm();
+    jump = std::max(jump, std::fabs(force - before));
+    most = std::max(most, force);
+    before = force;
+  }
+  EXPECT_GT(most, .1);
+  EXPECT_LT(jump, 1);
+}
+
 TEST(FeltBody, ASecondProbeMeetsTheSurfaceThatTheFirstHasPressed) {
   FeltBody body("soft-plate.yaml", 2);
   for (int i = 0; i <= 50; ++i) body.step({Vector3d(0, 0, .0102 - 1e-4 * i), Vector3d(.002, 0, .0102)});
