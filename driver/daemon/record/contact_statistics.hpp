@@ -31,16 +31,24 @@ class ContactStatistics {
     addToWindow(depth_m, dt);
   }
 
+  /// [rt] A tick in which it pushed though it traced no surface: no contact can be told of it.
+  void addUntraced(double force_n) noexcept HSP_RT {
+    ++untraced_ticks_;
+    max_untraced_ = std::max(max_untraced_, force_n);
+  }
+
   /// [rt] What is known of the foot of a tick. Not called in ticks without one.
   void addFoot(bool held, bool degraded) noexcept HSP_RT {
     ++(degraded ? degraded_feet_ : held ? held_feet_ : nearest_feet_);
   }
 
   uint64_t contactTicks() const noexcept { return ticks_; }
-  uint64_t nearestFeet() const noexcept { return nearest_feet_; }    ///< ticks whose foot is the nearest point
-  uint64_t heldFeet() const noexcept { return held_feet_; }          ///< of a held contact; another point is nearer
-  uint64_t degradedFeet() const noexcept { return degraded_feet_; }  ///< neither proved nor held
-  double meanDepth() const noexcept { return mean_; }                ///< [m]
+  uint64_t untracedTicks() const noexcept { return untraced_ticks_; }  ///< with a force and no surface
+  double maxUntraced() const noexcept { return max_untraced_; }        ///< [N] in those
+  uint64_t nearestFeet() const noexcept { return nearest_feet_; }      ///< ticks whose foot is the nearest point
+  uint64_t heldFeet() const noexcept { return held_feet_; }            ///< of a held contact; another point is nearer
+  uint64_t degradedFeet() const noexcept { return degraded_feet_; }    ///< neither proved nor held
+  double meanDepth() const noexcept { return mean_; }                  ///< [m]
   double stdDepth() const noexcept { return ticks_ > 1 ? std::sqrt(spread_ / static_cast<double>(ticks_ - 1)) : 0; }
   double maxDepth() const noexcept { return max_depth_; }
   double meanForce() const noexcept { return ticks_ > 0 ? force_sum_ / static_cast<double>(ticks_) : 0; }  ///< [N]
@@ -66,8 +74,8 @@ class ContactStatistics {
     window_ticks_ = window_mean_ = window_spread_ = window_time_ = 0;
   }
 
-  uint64_t ticks_ = 0, buzz_ticks_ = 0, nearest_feet_ = 0, held_feet_ = 0, degraded_feet_ = 0;
-  double mean_ = 0, spread_ = 0, max_depth_ = 0, force_sum_ = 0, max_force_ = 0, buzz_sum_ = 0;
+  uint64_t ticks_ = 0, buzz_ticks_ = 0, nearest_feet_ = 0, held_feet_ = 0, degraded_feet_ = 0, untraced_ticks_ = 0;
+  double mean_ = 0, spread_ = 0, max_depth_ = 0, force_sum_ = 0, max_force_ = 0, buzz_sum_ = 0, max_untraced_ = 0;
   double window_ticks_ = 0, window_mean_ = 0, window_spread_ = 0, window_time_ = 0;
   Histogram step_us_;
 };

@@ -36,6 +36,7 @@ Json modelJson(const ModelReport& model) {
   json["feet"] = {{"nearest", model.contact.nearestFeet()},
                   {"held", model.contact.heldFeet()},
                   {"degraded", model.contact.degradedFeet()}};
+  json["untraced"] = {{"ticks", model.contact.untracedTicks()}, {"force_max_n", model.contact.maxUntraced()}};
   json["step_ns"] = {{"p50", step.quantile(0.5) * kNs}, {"p99", step.quantile(0.99) * kNs}, {"max", step.max() * kNs}};
   for (const ArmContact& arm : model.arms) json["arms"][arm.device] = contactJson(arm.contact);
   return json;
@@ -57,11 +58,21 @@ std::string contactText(const ContactStatistics& c, const RunReport& report, con
   return text;
 }
 
+/// A field has no surface. A shape with one that forgets the flag is felt, and everything here says that it is not.
+std::string untracedText(const ModelReport& model) {
+  const ContactStatistics& c = model.contact;
+  if (c.untracedTicks() == 0) return "";
+  return fmt::format(
+      "  warning   {} pushed in {} ticks without HSP_OUT_TRACED, with up to {:.2f} N: no contact is told of these\n",
+      model.name, c.untracedTicks(), c.maxUntraced());
+}
+
 std::string modelText(const ModelReport& model, const RunReport& report) {
   const ContactStatistics& c = model.contact;
   std::string text = fmt::format("{} ({})\n", model.name, model.plugin);
   if (model.arms.empty()) text += contactText(c, report, "");
   for (const ArmContact& arm : model.arms) text += contactText(arm.contact, report, " by " + arm.device);
+  text += untracedText(model);
   if (model.degraded_ticks > 0)
     text += fmt::format(
         "  degraded  {} ticks, to level {} of 3, so that the tick's budget holds; residual up to {:.3g} um\n",
@@ -89,10 +100,14 @@ std::string degradedText(const RunReport& report) {
       report.models.size(), 100.0 * static_cast<double>(most) / static_cast<double>(report.ticks));
 }
 
+bool felt(const ContactStatistics& contact) {
+  return contact.contactTicks() > 0 || contact.untracedTicks() > 0;
+}
+
 /// For whoever wonders why nothing was felt.
 std::string untouchedText(const RunReport& report) {
   const bool touched = std::any_of(report.models.begin(), report.models.end(),
-                                   [](const ModelReport& model) { return model.contact.contactTicks() > 0; });
+                                   [](const ModelReport& model) { return felt(model.contact); });
   if (touched || report.ticks == 0) return "";
   return "  contact   none: the tip touched no model\n";
 }
@@ -175,7 +190,7 @@ std::string summary(const RunReport& report) {
   constexpr size_t kMostModels = 12;
   size_t shown = 0;
   for (const ModelReport& model : report.models)
-    if ((model.contact.contactTicks() > 0 || report.models.size() <= kMostModels) && shown++ < kMostModels)
+    if ((felt(model.contact) || report.models.size() <= kMostModels) && shown++ < kMostModels)
       text += modelText(model, report);
   for (const LimitReport& device : report.limits) text += limitText(device, report.ticks);
   for (const ClientReport& client : report.clients) text += clientText(client, report.answer_time);

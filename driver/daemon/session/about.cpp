@@ -176,6 +176,7 @@ record::About aboutRun(const scene::Scene& scene, const World& world, const std:
                {"period_ns", facts.period_ns},
                {"ticks", facts.ticks},
                {"virtual_time", facts.virtual_time},
+               {"enable_released_first", !facts.found_pressed},
                {"models", std::move(models)},
                {"devices", std::move(devices)},
                {"files", filesJson(scene)}};
@@ -195,6 +196,7 @@ Result<RecordedRun> readAbout(const std::string& json_text) {
     run.facts.period_ns = json.at("period_ns");
     run.facts.ticks = json.at("ticks");
     run.facts.virtual_time = json.at("virtual_time");
+    run.facts.found_pressed = !json.value("enable_released_first", false);
     run.version = json.at("hapticd");
     run.started = json.at("started");
     run.instructions = json.value("instructions", "");

@@ -18,6 +18,7 @@ struct RunFacts {
   double rate = 1000;  ///< [Hz]
   uint64_t period_ns = 1'000'000, ticks = 0;
   bool virtual_time = false;
+  bool found_pressed = false;  ///< a hold button that was down before the run enabled, as it did once
 };
 
 /// [main] @param streams of flightStreams

@@ -238,9 +238,7 @@ std::string eventText(const Session& session, const hapticd_event& event) {
   json["code"] = event.code;
   json["value"] = event.value;
   if (event.kind == HAPTICD_FAULT) json["why"] = describe(static_cast<Fault>(event.code));
-  if (event.kind == HAPTICD_SILENCED)
-    json["why"] =
-        silenceReason(json.value("model", ""), static_cast<Trouble>(event.code), static_cast<int32_t>(event.value));
+  if (event.kind == HAPTICD_SILENCED) json["why"] = silenceReason(event, json.value("model", ""));
   return text(json);
 }
 

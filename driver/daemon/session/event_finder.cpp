@@ -74,7 +74,8 @@ void EventFinder::look(double t, uint32_t index, const Core& core) noexcept HSP_
   }
   if (model.guard.quarantined() && note.trouble != model.guard.trouble()) {
     note.trouble = model.guard.trouble();
-    add(HAPTICD_SILENCED, number, -1, static_cast<uint32_t>(note.trouble), model.failed_status);
+    const double value = note.trouble == Trouble::kPulls ? model.pull.force : model.failed_status;
+    add(HAPTICD_SILENCED, number, -1, static_cast<uint32_t>(note.trouble), value);
   }
   if (model.level != note.level) {
     add(model.level > 0 ? HAPTICD_DEGRADED : HAPTICD_RESTORED, number, -1, 0, model.level);

@@ -29,6 +29,7 @@ void EventLog::name(uint32_t place, const std::string& model) {
 }
 
 void EventLog::tell(const Flight& flight) {
+  tellOfSwitches();
   for (;;) {
     const std::vector<hapticd_event> events = flight.events(next_, kAtOnce);
     for (const hapticd_event& event : events) {
@@ -38,6 +39,22 @@ void EventLog::tell(const Flight& flight) {
     next_ += events.size();
     if (events.size() < kAtOnce) return;
   }
+}
+
+void EventLog::tellOfSwitches() {
+  told_of_switch_.resize(arms_.size());
+  for (size_t i = 0; i < arms_.size(); ++i) {
+    if (told_of_switch_[i] || !arms_[i]->foundPressed()) continue;
+    told_of_switch_[i] = true;
+    const Message message = messageOfSwitch(i);
+    log::write(message.level, message.who, message.text);
+  }
+}
+
+EventLog::Message EventLog::messageOfSwitch(size_t arm) const {
+  return {
+      HSP_LOG_WARNING, arm < devices_.size() ? devices_[arm] : "",
+      "the button of limits.enable was down when the run began, so it enables nothing; let it go once, then press it"};
 }
 
 std::string EventLog::model(const hapticd_event& event) const {
@@ -78,8 +95,7 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
                     "the model, the arm (mount) or the hand (hand)"};
       return {HSP_LOG_DEBUG, who, fmt::format("{} touches it at {:.4f} s", device(event), event.t)};
     case HAPTICD_SILENCED:
-      return {HSP_LOG_ERROR, "",
-              silenceReason(who, static_cast<Trouble>(event.code), static_cast<int32_t>(event.value))};
+      return {HSP_LOG_ERROR, "", silenceReason(event, who)};
     case HAPTICD_DEGRADED:
       return {HSP_LOG_WARNING, who,
               fmt::format("answers coarser (level {:.0f}), since the ticks took too long", event.value)};

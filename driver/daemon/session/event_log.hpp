@@ -35,8 +35,11 @@ class EventLog {
   };
   /// [main] What an event means, in words.
   Message messageOf(const hapticd_event& event) const;
+  /// [main] Of an arm whose enable switch was found pressed, in words.
+  Message messageOfSwitch(size_t arm) const;
 
  private:
+  void tellOfSwitches();
   std::string model(const hapticd_event& event) const;
   std::string device(const hapticd_event& event) const;
   Message messageOfModel(const hapticd_event& event) const;
@@ -46,6 +49,7 @@ class EventLog {
   mutable std::mutex mutex_;  // a model comes on the thread of the control socket
   std::vector<std::string> models_, devices_;
   const Arms& arms_;
+  std::vector<bool> told_of_switch_;
   uint64_t next_ = 0;
 };
 

@@ -1,16 +1,40 @@
 // SPDX-License-Identifier: MIT
 #include "session/silence_reason.hpp"
 
+#include <fmt/format.h>
+
 #include "servo/core/core.hpp"
 
 namespace hapticd::servo {
 
+namespace {
+
+/// ", at 1.234 s with 0.42 N at a depth of 0.525 mm": as far as it is known.
+std::string placeOf(const Pull& pull) {
+  if (pull.t < 0) return "";
+  std::string text = fmt::format(", at {:.3f} s with {:.3g} N", pull.t, pull.force);
+  if (pull.depth >= 0) text += fmt::format(" at a depth of {:.3g} mm", pull.depth * 1e3);
+  return text;
+}
+
+}  // namespace
+
 std::string silenceReason(const ModelState& model) {
   if (model.shape == nullptr) return "";
-  return silenceReason(model.shape->name(), model.guard.trouble(), model.failed_status);
+  return silenceReason(model.shape->name(), model.guard.trouble(), model.failed_status, model.pull);
+}
+
+std::string silenceReason(const hapticd_event& event, const std::string& model) {
+  const auto trouble = static_cast<Trouble>(event.code);
+  if (trouble != Trouble::kPulls) return silenceReason(model, trouble, static_cast<int32_t>(event.value));
+  return silenceReason(model, trouble, 0, {event.t, -1, event.value});
 }
 
 std::string silenceReason(const std::string& model, Trouble trouble, int32_t failed_status) {
+  return silenceReason(model, trouble, failed_status, Pull());
+}
+
+std::string silenceReason(const std::string& model, Trouble trouble, int32_t failed_status, const Pull& pull) {
   const std::string who = "model " + model + ": its plugin ";
   switch (trouble) {
     case Trouble::kNone:
@@ -32,11 +56,9 @@ std::string silenceReason(const std::string& model, Trouble trouble, int32_t fai
     case Trouble::kNotUnit:
       return who + "gave a pose whose quaternion is not of unit length; it was silenced";
     case Trouble::kPulls:
-      return who +
-             "pulled the probe into its surface: its force has the wrong sign, since it reports to push only "
-             "(HSP_R_PUSHES); it was silenced; test it with: hapticd plugin check FILE.so, which tells place, depth "
-             "and "
-             "force";
+      return who + "pulled the probe into its surface" + placeOf(pull) +
+             ": its force has the wrong sign, since it reports to push only (HSP_R_PUSHES); it was silenced; test it "
+             "with: hapticd plugin check FILE.so, which tells the place as well";
   }
   return "";
 }

@@ -4,14 +4,21 @@
 #include <cstdint>
 #include <string>
 
+#include "hapticd/client.h"
+
 namespace hapticd::servo {
 
 struct ModelState;
+struct Pull;
 enum class Trouble : uint8_t;
 
 /// [main] Why the model was silenced and what to do; "" if it was not.
 std::string silenceReason(const ModelState& model);
 /// [main] The same. @param failed_status the first status that was no status of a step
 std::string silenceReason(const std::string& model, Trouble trouble, int32_t failed_status);
+/// [main] The same. @param pull what it did, where it pulled
+std::string silenceReason(const std::string& model, Trouble trouble, int32_t failed_status, const Pull& pull);
+/// [main] The same of an event HAPTICD_SILENCED.
+std::string silenceReason(const hapticd_event& event, const std::string& model);
 
 }  // namespace hapticd::servo

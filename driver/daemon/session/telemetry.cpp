@@ -89,17 +89,23 @@ void Telemetry::bookModels(double dt, const Core& core, BlackBoxRow& row) noexce
   for (const uint32_t index : core.live()) {
     const ModelState& model = core.models()[index];
     if (model.status < row.status) row.status = model.status;
-    double depth = -HUGE_VAL, force = 0;
+    double depth = -HUGE_VAL, force = 0, untraced = 0;
     bool held = false;
     for (uint32_t probe = 0; probe < core.probeCount(); ++probe) {
       const Contact& contact = core.contact(index, probe);
-      if (!contact.traced) continue;
+      if (!contact.traced) {
+        untraced = std::max(untraced, Eigen::Map<const Vector3d>(contact.world.force).squaredNorm());
+        continue;
+      }
       if (contact.world.depth_m > depth) held = (contact.world.flags & HSP_OUT_HELD) != 0;
       depth = std::max(depth, contact.world.depth_m);
       force = std::max(force, Eigen::Map<const Vector3d>(contact.world.force).norm());
     }
     models_[index].add(depth > 0, depth, force, dt, model.step_ns);
     if (depth > -HUGE_VAL && model.status >= HSP_OK) models_[index].addFoot(held, model.status == HSP_DEGRADED);
+    // What a model in trouble fades out with is no answer of it.
+    if (untraced > 0 && model.status >= HSP_OK && !model.guard.quarantined())
+      models_[index].addUntraced(std::sqrt(untraced));
     bookArms(index, dt, core);
     if (depth > -HUGE_VAL && (row.model == UINT32_MAX || depth > row.depth_m)) {
       row.depth_m = static_cast<float>(depth);

@@ -39,6 +39,10 @@ struct Answer {
 
 /// The answers of `hapticd trace`. @param hapticd the program @throws std::exception
 std::vector<Answer> traceThroughDoor(const Case& c, const std::filesystem::path& hapticd);
+/// The answers that a session recorded, in virtual time and over an arm that follows the path to the last bit; what it
+/// recorded must replay. @param modules folder of the test arm `walker` @throws std::exception
+std::vector<Answer> traceInSession(const Case& c, const std::filesystem::path& hapticd,
+                                   const std::filesystem::path& modules);
 /// The answers of the kernel, with a search beside it as in a session.
 std::vector<Answer> traceAlone(const Case& c);
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// Traces extreme surfaces and probe paths with `hapticd trace`, and prints what came of each. The cases of a folder
-/// are traced where they are, and in 12 rigid motions. Exit code 1 if any case is not ok.
-///   extremes HAPTICD [--random TICKS] [FOLDER...]   without a folder: tests/cases/extremes, closed forms, walks
+/// are traced where they are, and in 12 rigid motions, and the same in sessions that are recorded and replayed. Exit
+/// code 1 if any case is not ok.
+///   extremes HAPTICD [--random TICKS] [--sessions MOTIONS] [FOLDER...]
+/// Without a folder: tests/cases/extremes, closed forms, walks. --sessions: rigid motions of each case in sessions.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,6 +29,7 @@ constexpr int kDefaultRandomTicks = 50'000;
 constexpr int kMotions = 12;
 
 fs::path hapticd_program;
+int session_motions = 1;  // of each case, in sessions; a test has less time than a report
 
 struct Outcome {
   double worst_excess = 0;  // [m]
@@ -50,8 +53,16 @@ struct Outcome {
   }
 };
 
-Outcome run(const Case& c) {
-  const std::vector<Answer> answers = c.alone ? traceAlone(c) : traceThroughDoor(c, hapticd_program);
+/// The ways in which a case is traced.
+std::vector<Answer> byTrace(const Case& c) {
+  return c.alone ? traceAlone(c) : traceThroughDoor(c, hapticd_program);
+}
+std::vector<Answer> inSession(const Case& c) {
+  return traceInSession(c, hapticd_program, HAPTICD_TEST_DEVICES);
+}
+
+Outcome run(const Case& c, std::vector<Answer> (*trace)(const Case&) = byTrace) {
+  const std::vector<Answer> answers = trace(c);
   Outcome out;
   int bad = 0;
   for (std::size_t i = 0; i < c.probe.size(); ++i) {
@@ -71,11 +82,11 @@ Outcome run(const Case& c) {
   return out;
 }
 
-/// All rigid motions of a case together.
-Outcome runMoved(const Case& c) {
+/// Rigid motions of a case together.
+Outcome runMoved(const Case& c, int motions, std::vector<Answer> (*trace)(const Case&) = byTrace) {
   std::mt19937 random(16);
   Outcome all;
-  for (int i = 0; i < kMotions; ++i) all.add(run(moved(c, random)));
+  for (int i = 0; i < motions; ++i) all.add(run(moved(c, random), trace));
   return all;
 }
 
@@ -101,10 +112,15 @@ bool runFolder(const fs::path& folder) {
   for (const fs::path& file : files) {
     try {
       Case c = hapticd::extremes::readCase(file);
+      const std::string name = c.name;
       all_ok = print(c, run(c)) && all_ok;
-      const Outcome in_motions = runMoved(c);
-      c.name += fmt::format(", {} rigid motions", kMotions);
+      const Outcome in_motions = runMoved(c, kMotions);
+      c.name = fmt::format("{}, {} rigid motions", name, kMotions);
       all_ok = print(c, in_motions) && all_ok;
+      Outcome in_sessions = run(c, inSession);
+      in_sessions.add(runMoved(c, session_motions, inSession));
+      c.name = fmt::format("{}, in {} sessions", name, session_motions + 1);
+      all_ok = print(c, in_sessions) && all_ok;
     } catch (const std::exception& e) {
       fmt::print("| {} | | | | | FAILED: {} |\n", file.filename().string(), e.what());
       all_ok = false;
@@ -145,6 +161,8 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     if (std::string(argv[i]) == "--random" && i + 1 < argc) {
       random_ticks = std::atoi(argv[++i]);
+    } else if (std::string(argv[i]) == "--sessions" && i + 1 < argc) {
+      session_motions = std::atoi(argv[++i]);
     } else if (hapticd_program.empty()) {
       hapticd_program = argv[i];
     } else {
@@ -152,7 +170,7 @@ int main(int argc, char** argv) {
     }
   }
   if (hapticd_program.empty()) {
-    fmt::print(stderr, "usage: extremes HAPTICD [--random TICKS] [FOLDER...]\n");
+    fmt::print(stderr, "usage: extremes HAPTICD [--random TICKS] [--sessions MOTIONS] [FOLDER...]\n");
     return 2;
   }
   const bool all = folders.empty();

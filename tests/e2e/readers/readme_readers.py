@@ -54,6 +54,12 @@ def own_shape(folder):
     code, said = run(HAPTICD, "run", file, "--for", "2", "--virtual-time", "--report", report, environment=environment)
     pulled = json.load(open(report))["models"]["ground"]["force_n"]["max"]
     check("and the run silences it before it pulls with 2 N", "wrong sign" in said and pulled < 2, (pulled, said))
+    check("and says when, with what force and how deep", re.search(r"at \d+\.\d+ s with [\d.]+ N at a depth of [\d.]+ mm", said), said)
+    open(os.path.join(folder, "floor.cpp"), "w").write(code_of_floor().replace("out.flags = HSP_OUT_TRACED;", ""))
+    subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
+    code, said = run(HAPTICD, "run", file, "--for", "5", "--virtual-time", environment=environment)
+    check("a floor that forgets HSP_OUT_TRACED is felt, and the run says so",
+          re.search(r"ground pushed in \d+ ticks without HSP_OUT_TRACED", said) and "touched no model" not in said, said)
     line = re.search(r"^    (gcc .* -o my-plugins/c_ball.so -lm)$", README, re.M)[1].replace("my-plugins", os.path.join(folder, "my-plugins"))
     done = subprocess.run(line.replace("gcc", "cc", 1), shell=True, cwd=SOURCE, capture_output=True, text=True, timeout=200)
     check("the README's shape in C compiles with its line", done.returncode == 0, done.stderr[-800:])

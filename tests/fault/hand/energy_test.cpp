@@ -104,8 +104,8 @@ TEST_P(Energy, OfAnySingleFaultIsSmall) {
   Scenario scenario({.rate = single.rate, .models = {failing}, .limit = [](scene::Limits& limits) {
                        limits.enable = {0, scene::EnableMode::kHold};
                      }});
-  scenario.wishes().buttons = 1;
   const auto sent = scenario.run(0.4, [&](double t) {
+    scenario.wishes().buttons = t > 0 ? 1 : 0;
     if (t >= kAt - 1e-6 && single.inject != nullptr) single.inject(scenario.wishes());
     return Nanoseconds{0};
   });

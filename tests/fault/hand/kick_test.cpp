@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scenario.hpp"
+#include "session/silence_reason.hpp"
 
 namespace hapticd::servo {
 namespace {
@@ -100,12 +101,37 @@ TEST(SurfaceThatOnlyPushes, IsSilencedAndNamedWhenItPulls) {
   Scenario scenario({.models = {hostile("pulling", {value(1, HSP_BOOL, 1)})}, .limit = bare});
   EXPECT_LE(largest(press(scenario)), 0.1) << "found with the first newton";
   EXPECT_EQ(scenario.trouble(), Trouble::kPulls);
+  const Pull& pull = scenario.core().models()[0].pull;
+  EXPECT_NEAR(pull.t, 0.101, 1e-9) << "the first tick inside: 0.1 m/s, from 10 mm above";
+  EXPECT_NEAR(pull.depth, 1e-4, 1e-9);
+  EXPECT_NEAR(pull.force, 800 * 1e-4, 1e-6);
+  const std::string why = silenceReason(scenario.core().models()[0]);
+  EXPECT_NE(why.find("into its surface, at 0.101 s with 0.08 N at a depth of 0.1 mm: its force has the wrong sign"),
+            std::string::npos)
+      << why;
 }
 
 TEST(SurfaceThatOnlyPushes, IsAClaimThatNobodyMustMake) {
   Scenario scenario({.models = {hostile("pulling", {value(1, HSP_BOOL, 0)})}, .limit = bare});
   EXPECT_GT(largest(press(scenario)), 3);
   EXPECT_EQ(scenario.trouble(), Trouble::kNone);
+}
+
+/// A shape that forgets HSP_OUT_TRACED is felt, and the report must not say that nothing was touched.
+TEST(ForceWithoutASurface, IsCountedAndSaid) {
+  Scenario scenario({.models = {hostile("failing", {value(1, HSP_INT, 1000)}), hostile("still")}, .limit = bare});
+  scenario.run(0.3);
+  const record::RunReport report = scenario.telemetry().report({});
+  EXPECT_GT(report.models[0].contact.untracedTicks(), 250u);
+  EXPECT_DOUBLE_EQ(report.models[0].contact.maxUntraced(), 8);
+  EXPECT_EQ(report.models[1].contact.untracedTicks(), 0u);
+}
+
+/// What a silenced model fades out with is not its answer.
+TEST(ForceWithoutASurface, IsNotCountedWhileAModelFadesOut) {
+  Scenario scenario({.models = {hostile("pulling", {value(1, HSP_BOOL, 1)})}, .limit = bare});
+  press(scenario);
+  EXPECT_EQ(scenario.telemetry().report({}).models[0].contact.untracedTicks(), 0u);
 }
 
 }  // namespace

@@ -31,6 +31,26 @@ struct Jumping {
   std::vector<Sent> sent;
 };
 
+/// Before its first report an arm says of no button that it is up.
+TEST(EnableSwitch, IsNotLetGoByAnArmThatHasReportedNothing) {
+  Scenario scenario({.models = {hostile("failing", {value(1, HSP_INT, 100000)})},
+                     .limit = [](scene::Limits& limits) { limits.enable = {0, scene::EnableMode::kHold}; }});
+  bool found = false;
+  const auto sent = scenario.run(0.4, [&](double t) {
+    scenario.wishes().faults = t < 0.0095 ? rig::kSilent : 0u;
+    scenario.wishes().buttons = t < 0.0095 || (t > 0.2 && t < 0.21) ? 0 : 1;
+    if (t > 0.1 && t < 0.2) found |= scenario.arm().foundPressed();
+    return Nanoseconds{0};
+  });
+  EXPECT_TRUE(found) << "and a person is told";
+  for (const Sent& s : sent) {
+    if (s.t < 0.2) {
+      EXPECT_EQ(s.force.norm(), 0) << s.t;
+    }
+  }
+  EXPECT_GT(sent.back().force.norm(), 3) << "let go and pressed";
+}
+
 /// It was 8.5 N, and no fault.
 TEST(EncoderJump, OfThirtyNineMillimetresInATenthOfAMillisecondEndsTheForce) {
   const Jumping jumping(10000, 0.039);

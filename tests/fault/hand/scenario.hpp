@@ -95,6 +95,7 @@ class Scenario {
   void moveTo(const Eigen::Vector3d& position) { Eigen::Map<Eigen::Vector3d>(wishes().position) = position; }
   Arm& arm() { return *arms_[0]; }
   Core& core() { return world_->core(); }
+  Telemetry& telemetry() { return *telemetry_; }
   Loop& loop() { return *loop_; }
   bool motorsOn() const { return page_->motors.on.load() != 0; }                      ///< as of now
   double motorForce() const { return Eigen::Vector3d(page_->motors.torque).norm(); }  ///< [N] the same

@@ -64,6 +64,8 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   if (auto opened = (*device)->open(); !opened) return Error{opened.error()};
   const Limiter limiter(described.limits, (*device)->info().max_force);
   std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter, options));
+  arm->as_found_ = options.found_pressed;
+  if (options.found_pressed) arm->limiter_.enableByFoundPressed();
   arm->watchSamples(described.limits);
   const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
   arm->limiter_.expectMotion(delayOf(servo.velocity, options.rate), mass);

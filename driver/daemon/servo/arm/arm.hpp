@@ -31,6 +31,7 @@ struct ArmOptions {
   bool needs_velocity = false;               ///< run the estimator
   const host::Playback* playback = nullptr;  ///< samples from a recording instead of the hardware
   scene::Clients clients = {};               ///< whether programs may push on it
+  bool found_pressed = false;                ///< a hold button that was down before the run enables, as it did once
 };
 
 class Arm {
@@ -75,6 +76,8 @@ class Arm {
   const hdv_info& info() const { return device_->info(); }
   host::DeviceInstance& device() { return *device_; }
   Limiter& limiter() noexcept { return limiter_; }
+  /// [any] Its enable switch was down when the run began, and was not let go since: no force flows.
+  bool foundPressed() const noexcept { return found_pressed_.load(std::memory_order_relaxed); }
   /// [any] What the device said of its last fault, "cause; cure"; nullptr: nothing.
   const char* trouble() const noexcept { return trouble_.load(std::memory_order_acquire); }
   /// [any] The same for a fault that only the device can explain; nullptr for every other.
@@ -155,6 +158,8 @@ class Arm {
   Weight weight_;
   std::atomic<bool> cut_{false}, taken_{false};  // taken: a thread is inside the module
   std::atomic<double> cut_after_{0};
+  std::atomic<bool> found_pressed_{false};
+  bool as_found_ = false;  // ArmOptions::found_pressed
   CutFound cut_found_ = CutFound::kNo;
   bool cut_known_ = false, cut_in_write_ = false;
   hdv_sample sample_{};

@@ -40,7 +40,9 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
   read_status_ = device_->read(now, sample_);
   taken_.store(false);
   const bool sampled = read_status_ >= 0 && (sample_.flags & HDV_S_LOST) == 0;
-  limiter_.watchButtons(sampled ? std::optional(sample_.buttons) : std::nullopt);
+  const bool told = sampled && (sample_.sequence > 0 || as_found_);  // before the first report no button is known
+  limiter_.watchButtons(told ? std::optional(sample_.buttons) : std::nullopt);
+  found_pressed_.store(limiter_.foundPressed(), std::memory_order_relaxed);
   probe_.valid = judge(read_status_, now) && locate();
   if (!probe_.valid) {
     tip_known_ = false;

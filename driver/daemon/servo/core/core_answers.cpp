@@ -67,8 +67,12 @@ Trouble Core::holdToClaims(ModelState& model, uint32_t index, double dt) noexcep
     trouble = model.guard.strike(Trouble::kJump, kJumps);
   }
   if ((model.shape->report().flags & HSP_R_PUSHES) != 0)
-    for (uint32_t i = 0; i < probe_count_; ++i)
-      if (pullsIn(outputs_[i], model.frame.pointToModel(last_position_[i]))) return model.guard.enter(Trouble::kPulls);
+    for (uint32_t i = 0; i < probe_count_; ++i) {
+      if (!pullsIn(outputs_[i], model.frame.pointToModel(last_position_[i]))) continue;
+      model.pull.depth = outputs_[i].depth_m;
+      model.pull.force = ConstMap(outputs_[i].force).norm();
+      return model.guard.enter(Trouble::kPulls);
+    }
   return trouble == Trouble::kNone ? holdToTime(model) : trouble;
 }
 

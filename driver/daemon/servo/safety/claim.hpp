@@ -68,6 +68,13 @@ class Claim {
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
 };
 
+/// A pull of a surface that reports to push only.
+struct Pull {
+  double t = -1;      ///< [s] since the start of the run; negative: unknown
+  double depth = -1;  ///< [m] as the shape told it; negative: unknown, or outside
+  double force = 0;   ///< [N]
+};
+
 /// [rt] True if the force of a contact pulls the probe deeper in, or toward the surface from outside, by more than
 /// rounding. Model frame. @param p where the probe is. The foot tells the way out, not the normal that the shape names.
 bool pullsIn(const hsp_contact& contact, const Eigen::Vector3d& p) noexcept HSP_RT;

@@ -169,8 +169,10 @@ void Limiter::watchButtons(std::optional<uint32_t> buttons) noexcept HSP_RT {
     return;
   }
   const bool down = ((*buttons >> *limits_.enable.button) & 1u) != 0;
+  released_ |= !down;
+  found_pressed_ = !released_;
   if (limits_.enable.mode == scene::EnableMode::kHold) {
-    enabled_ = down;
+    enabled_ = down && released_;
   } else if (down && !button_was_down_) {
     enabled_ = !enabled_;
   }

@@ -52,6 +52,8 @@ class Limiter {
   void watchVelocity(const Eigen::Vector3d& velocity) noexcept HSP_RT;
   /// [rt] The buttons of the newest sample, for the enable switch; nullopt: there is no good one.
   void watchButtons(std::optional<uint32_t> buttons) noexcept HSP_RT;
+  /// [main] A hold button that was down before the run enables: in recordings of versions that let it.
+  void enableByFoundPressed() { released_ = true; }
   /// [main] What limits.power must reckon with. @param lag [s] of the velocity that watchVelocity() gets
   /// @param mass [kg] of the arm at its tip, 0: unknown
   void expectMotion(double lag, double mass) { power_.expect(lag, mass); }
@@ -84,6 +86,7 @@ class Limiter {
   Fault recovered() const noexcept { return recovered_.get(); }  ///< [any] the last one that ended by itself
   double measured() const noexcept { return measured_; }         ///< [main] at the fault
   bool enabled() const noexcept { return enabled_; }             ///< by the enable switch, if there is one
+  bool foundPressed() const noexcept { return found_pressed_; }  ///< the enable switch, and not let go since
   double rampOut() const noexcept { return limits_.ramp_out; }   ///< [s] from full force to none, at a planned end
   const Clips& clips() const noexcept { return clips_; }         ///< [main] after the run
   double maxForce() const noexcept { return max_force_; }        ///< [N] 0: none
@@ -107,9 +110,10 @@ class Limiter {
   double fade_ = 0;  // from the force at a fault to none
   LatchedFault fault_, recovered_;
   double measured_ = 0;
-  bool enabled_ = true, button_was_down_ = true;  // a toggle must be pressed, not be found pressed
-  bool clipped_ = false;                          // in this tick
-  bool cleared_ = false;                          // by the user, while the force was still on its way down
+  // A switch must be pressed, not be found pressed: who sets up an arm with a button taped down holds nothing.
+  bool enabled_ = true, button_was_down_ = true, released_ = false, found_pressed_ = false;
+  bool clipped_ = false;  // in this tick
+  bool cleared_ = false;  // by the user, while the force was still on its way down
   double heat_factor_ = 1, impulse_ = 0;
   double trusted_ = 1, fresh_ = 1;  // by the age of the sample: now, and as it grows again
   Clips clips_;

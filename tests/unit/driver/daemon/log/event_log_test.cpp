@@ -44,6 +44,20 @@ TEST_F(EventWords, NameTheModel) {
   EXPECT_NE(silenced.text.find("model door: its plugin gave"), std::string::npos) << silenced.text;
 }
 
+TEST_F(EventWords, TellTimeAndForceOfAPull) {
+  const std::string pulled = of(HAPTICD_SILENCED, static_cast<uint32_t>(Trouble::kPulls), 0.42).text;
+  EXPECT_NE(pulled.find("into its surface, at 0.000 s with 0.42 N: its force has the wrong sign"), std::string::npos)
+      << pulled;
+  const std::string status = of(HAPTICD_SILENCED, static_cast<uint32_t>(Trouble::kBadStatus), -77).text;
+  EXPECT_NE(status.find("status -77"), std::string::npos) << status;
+}
+
+TEST_F(EventWords, SayThatASwitchWasFoundPressed) {
+  EXPECT_EQ(log_.messageOfSwitch(0).who, "phantom");
+  EXPECT_EQ(log_.messageOfSwitch(0).level, HSP_LOG_WARNING);
+  EXPECT_NE(log_.messageOfSwitch(0).text.find("let it go once"), std::string::npos);
+}
+
 TEST_F(EventWords, NameTheProcessThatLeads) {
   EXPECT_EQ(of(HAPTICD_JOINED, 0, 4711).text, "process 4711 leads it");
   EXPECT_EQ(of(HAPTICD_LOST, 0, 4711).text, "process 4711 leads it no more");

@@ -141,6 +141,22 @@ TEST_F(Report, TellsPeopleThatNothingWasTouched) {
   EXPECT_NE(summary(report).find("touched no model"), std::string::npos);
 }
 
+TEST_F(Report, TellsPeopleOfForceWithoutASurface) {
+  RunReport report = sample();
+  EXPECT_EQ(summary(report).find("HSP_OUT_TRACED"), std::string::npos);
+  report.models[0].contact = {};
+  report.models[0].contact.addUntraced(0.5);
+  report.models[0].contact.addUntraced(1.12);
+  const std::string text = summary(report);
+  EXPECT_NE(text.find("warning   ball pushed in 2 ticks without HSP_OUT_TRACED, with up to 1.12 N"), std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("touched no model"), std::string::npos) << text;
+  ASSERT_TRUE(writeJson(report, file("r.json")));
+  const auto ball = nlohmann::json::parse(read(file("r.json"))).at("models").at("ball");
+  EXPECT_EQ(ball.at("untraced").at("ticks"), 2);
+  EXPECT_DOUBLE_EQ(ball.at("untraced").at("force_max_n"), 1.12);
+}
+
 TEST_F(Report, DrawsEveryPeakAndEscapesNames) {
   std::vector<Sample> samples(5000);
   for (size_t i = 0; i < samples.size(); ++i) samples[i].t = static_cast<double>(i) * 1e-3;

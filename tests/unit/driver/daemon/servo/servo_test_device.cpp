@@ -65,7 +65,7 @@ struct Gantry : hapticd::Device {
     if (failed && failure == 4) sample.flags |= HDV_S_FAULT;
     if (failed && failure == 7) sample.position[0] = speed * (t - fail_at);
     if (failed && failure == 8) sample.position[0] = 0.3;
-    sample.buttons = failed && failure == 9 ? 0 : 1;
+    sample.buttons = failure == 9 && (failed || t == 0) ? 0 : 1;  // a switch is not found pressed
     if (failure == 6) return failAtRandom(sample);
     if (!failed || failure != 3) ++sample.sequence;
     ++log.reads;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "session/replay.hpp"
 
+#include <nlohmann/json.hpp>
 #include <random>
 
 #include "session/watched_servo.hpp"
@@ -17,10 +18,15 @@ struct Recorded : Rig {
   static constexpr uint64_t kTicks = 200;
 
   Recorded(const char* shape, std::vector<scene::Value> values, const std::vector<scene::Value>& device = {},
-           const std::vector<scene::Model>& more = {}, const scene::Clients& clients = {})
+           const std::vector<scene::Model>& more = {}, const scene::Clients& clients = {},
+           const scene::Enable& enable = {})
       : Rig(
             0, [this](Nanoseconds now) { return every(now), Nanoseconds{0}; }, kTicks, shape, std::move(values), more,
-            device, [&](scene::Limits& limits) { limits.force = clients.mode != scene::ClientMode::kOff ? 5 : 0; },
+            device,
+            [&](scene::Limits& limits) {
+              limits.force = clients.mode != scene::ClientMode::kOff ? 5 : 0;
+              limits.enable = enable;
+            },
             clients) {}
   std::function<void(Nanoseconds)> every = [](Nanoseconds) {};  ///< before each tick
 
@@ -33,9 +39,16 @@ struct Recorded : Rig {
     loop = std::make_unique<Loop>(world->core(), world->lockstep(), arms, clock, settings, *telemetry);
   }
 
+  /// As in versions in which a hold button that was down before the run enabled.
+  void enableByFoundPressed() {
+    found_pressed = true;
+    arms[0] = std::move(*Arm::open(scene.devices[0], scene.servo, {1000, false, nullptr, {}, true}, quiet));
+    ASSERT_TRUE(arms[0]->start(0, Eigen::Vector3d(0, -9.81, 0)));
+  }
+
   void record() {
     const auto streams = flightStreams(scene, arms, 1000, 1, 0);
-    const RunFacts facts{1000, settings.period_ns, settings.ticks, true};
+    const RunFacts facts{1000, settings.period_ns, settings.ticks, true, found_pressed};
     about = aboutRun(scene, *world, arms, facts, streams);
     telemetry->attach(std::make_unique<Flight>(std::move(*record::FlightRing::create(streams, about)), arms, 8));
     loop->run();
@@ -53,6 +66,7 @@ struct Recorded : Rig {
   }
 
   record::About about;
+  bool found_pressed = false;
 };
 
 void expectSame(const ReplayOutcome& outcome) {
@@ -96,6 +110,31 @@ TEST(Replay, IsTheSameThroughEveryFailureOfTheDevice) {
     EXPECT_NE(rig.arms[0]->limiter().fault(), Fault::kNone);
     expectSame(rig.replay());
   }
+}
+
+TEST(Replay, IsTheSameWhereAHoldButtonWasFoundPressed) {
+  Recorded rig("wall", {}, {}, {}, {}, {0, scene::EnableMode::kHold});
+  double most = 0;
+  rig.every = [&](Nanoseconds) { most = std::max(most, rig.arms[0]->force().norm()); };
+  rig.record();
+  EXPECT_EQ(most, 0) << "the gantry's button is down from the beginning";
+  EXPECT_TRUE(rig.arms[0]->foundPressed());
+  expectSame(rig.replay());
+}
+
+/// A recording that says nothing of the rule was made before there was one.
+TEST(Replay, LetsAButtonThatWasFoundPressedEnableAsItDidOnce) {
+  Recorded rig("wall", {}, {}, {}, {}, {0, scene::EnableMode::kHold});
+  rig.enableByFoundPressed();
+  double most = 0;
+  rig.every = [&](Nanoseconds) { most = std::max(most, rig.arms[0]->force().norm()); };
+  rig.record();
+  EXPECT_GT(most, 1);
+  auto about = nlohmann::json::parse(rig.about.json);
+  ASSERT_EQ(about.at("enable_released_first"), false);
+  about.erase("enable_released_first");
+  rig.about.json = about.dump();
+  expectSame(rig.replay());
 }
 
 /// A wall that a program leads into the hand, and the program's memory as it was then.

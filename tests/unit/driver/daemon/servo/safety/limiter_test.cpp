@@ -210,6 +210,7 @@ TEST(Limiter, ForcesFlowOnlyWhileTheDeadManSwitchIsHeld) {
   limits.enable = {1, scene::EnableMode::kHold};
   Limiter limiter(limits, 8.5);
   EXPECT_EQ(limited(limiter, {4, 0, 0}).norm(), 0);
+  limiter.watchButtons(0);
   limiter.watchButtons(2);
   EXPECT_EQ(limited(limiter, {4, 0, 0}).norm(), 4);
   limiter.watchButtons(1);  // another button
@@ -221,6 +222,28 @@ TEST(Limiter, ForcesFlowOnlyWhileTheDeadManSwitchIsHeld) {
   }
   EXPECT_EQ(last, 0) << "20 ms after it was let go";
   EXPECT_EQ(limiter.fault(), Fault::kNone) << "letting go is no fault";
+}
+
+/// A button that is taped down, or a cup on it: nobody holds it.
+TEST(Limiter, ADeadManSwitchIsNotFoundPressed) {
+  scene::Limits limits = generous();
+  limits.enable = {1, scene::EnableMode::kHold};
+  Limiter limiter(limits, 8.5);
+  EXPECT_FALSE(limiter.foundPressed()) << "nothing is known yet";
+  for (int i = 0; i < 5; ++i) {
+    limiter.watchButtons(i == 3 ? std::nullopt : std::optional(2u));  // a lost sample is no release
+    EXPECT_EQ(limited(limiter, {4, 0, 0}).norm(), 0) << i;
+    EXPECT_TRUE(limiter.foundPressed());
+  }
+  limiter.watchButtons(1);  // another button
+  EXPECT_FALSE(limiter.foundPressed());
+  EXPECT_EQ(limited(limiter, {4, 0, 0}).norm(), 0);
+  limiter.watchButtons(2);
+  EXPECT_EQ(limited(limiter, {4, 0, 0}).norm(), 4);
+  Limiter former(limits, 8.5);
+  former.enableByFoundPressed();
+  former.watchButtons(2);
+  EXPECT_EQ(limited(former, {4, 0, 0}).norm(), 4) << "as in recordings of versions that let it";
 }
 
 TEST(Limiter, AToggleMustBePressedAndIsNotFoundPressed) {
@@ -252,6 +275,7 @@ TEST(Limiter, AButtonHeldThroughALostSampleIsNotPressedAnew) {
   }
   limits.enable = {0, scene::EnableMode::kHold};
   Limiter held(limits, 8.5);
+  held.watchButtons(0);
   held.watchButtons(1);
   held.watchButtons(std::nullopt);
   EXPECT_FALSE(held.enabled()) << "nobody knows that it is held";

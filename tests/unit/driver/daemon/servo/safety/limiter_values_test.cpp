@@ -157,6 +157,7 @@ TEST(Limiter, ALetGoSwitchTakesTheForceAwayWithinTwoMilliseconds) {
     limits.enable.button = 0;
     limits.enable.mode = scene::EnableMode::kHold;
     Limiter limiter(limits, 8.5);
+    limiter.watchButtons(0);
     limiter.watchButtons(1);
     EXPECT_EQ(applied(limiter, {4, 0, 0}).force.x(), 4);
     limiter.watchButtons(0);
