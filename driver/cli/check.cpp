@@ -17,6 +17,7 @@
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
 #include "tune/stability.hpp"
+#include "watch/quarantine.hpp"
 
 namespace hapticd::cli {
 
@@ -93,6 +94,21 @@ document::Problems farModels(const scene::Scene& scene) {
   return warnings;
 }
 
+/// What `run` leaves out: a scene that seems to be in order would miss a model.
+document::Problems quarantinedModels(const scene::Scene& scene) {
+  document::Problems warnings;
+  const auto dir = watch::stateFolder();
+  if (dir.empty()) return warnings;
+  for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir))
+    for (size_t i = 0; i < scene.models.size(); ++i)
+      if (scene.models[i].plugin == entry.plugin)
+        document::report(warnings, scene.models[i].place, "models[" + std::to_string(i) + "].plugin",
+                         entry.plugin + " is in quarantine, as it ended an earlier run by " + entry.reason +
+                             "; runs leave " + scene.models[i].name +
+                             " out; once the plugin is repaired: hapticd plugin clear " + entry.plugin);
+  return warnings;
+}
+
 /// What one file is told.
 struct Verdict {
   std::string file;
@@ -116,7 +132,8 @@ Verdict checkOne(const std::string& file, const Options& options) {
   if (!scene || !found.empty()) return verdict;
   const scene::Scene full = withArm(*scene);
   document::Problems more = unstable(full, trial.stiffness);
-  for (const document::Problem& far : farModels(full)) more.push_back(far);
+  for (const auto& found_by : {&farModels, &quarantinedModels})
+    for (const document::Problem& one : found_by(full)) more.push_back(one);
   document::Problems unread;
   if (const auto root = document::parseFile(file, unread)) adviseZeros(*root, file, more);
   if (!options.files_only)

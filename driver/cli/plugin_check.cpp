@@ -2,8 +2,10 @@
 /// `hapticd plugin check FILE.so`: the conformance tests, each in a child process of its own.
 #include <cstdio>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +16,7 @@
 #include "cli/set_option.hpp"
 #include "conformance/conformance.hpp"
 #include "conformance/conformance_parts.hpp"
+#include "conformance/step_watch.hpp"
 #include "host/child.hpp"
 #include "host/describe.hpp"
 
@@ -33,7 +36,8 @@ struct Options {
 
 struct Outcome {
   std::string plugin, name, why;
-  bool passed = false, skipped = false, hung = false;
+  bool passed = false, skipped = false, hung = false, warned = false;
+  std::string end;  ///< how its process ended, when that was no answer
 };
 
 /// A plugin of ours that must be given a model gets one of ours, and says so.
@@ -86,13 +90,16 @@ Result<Touch> lookForContact(const Recipe& recipe, const Options& options) {
 }
 
 Outcome tryOne(const Recipe& recipe, const ConformanceTest& test, const Options& options) {
-  Outcome outcome{recipe.class_name, test.name, "", false, false, false};
+  Outcome outcome{recipe.class_name, test.name, "", false, false, false, false, ""};
+  shareLastStep();
   const auto said = host::runInChild([&] { return "=" + test.run(recipe, options.seed); }, options.limitMs());
-  outcome.why = said ? said->substr(1) : "it " + said.error();
+  if (!said) outcome.end = said.error();
+  outcome.why = said ? said->substr(1) : "it " + said.error() + whereItEnded();
   outcome.hung = !said && said.error().rfind("took longer", 0) == 0;
   outcome.skipped = outcome.why.rfind("skip: ", 0) == 0;
-  outcome.passed = outcome.why.empty() || outcome.skipped;
-  if (outcome.skipped) outcome.why.erase(0, 6);
+  outcome.warned = outcome.why.rfind("warn: ", 0) == 0;
+  outcome.passed = outcome.why.empty() || outcome.skipped || outcome.warned;
+  if (outcome.skipped || outcome.warned) outcome.why.erase(0, 6);
   return outcome;
 }
 
@@ -112,7 +119,7 @@ Result<std::string> fuzzSome(const Recipe& recipe, const Options& options, uint6
 Outcome fuzz(const Recipe& recipe, const Options& options) {
   constexpr int kRunsAChild = 20;
   const Nanoseconds end = monotonicNow() + static_cast<Nanoseconds>(options.fuzz * 1e9);
-  Outcome outcome{recipe.class_name, "fuzz", "", true, false, false};
+  Outcome outcome{recipe.class_name, "fuzz", "", true, false, false, false, ""};
   uint64_t seed = options.seed;
   for (; monotonicNow() < end && outcome.passed; seed += kRunsAChild) {
     const auto said = fuzzSome(recipe, options, seed, kRunsAChild);
@@ -131,8 +138,9 @@ Outcome fuzz(const Recipe& recipe, const Options& options) {
 }
 
 void print(const Outcome& outcome) {
-  const std::string word = outcome.skipped ? "skip" : outcome.passed ? "ok" : "FAIL";
-  const Colour colour = outcome.skipped ? Colour::kWarning : outcome.passed ? Colour::kGood : Colour::kBad;
+  const bool remark = outcome.skipped || outcome.warned;
+  const std::string word = outcome.skipped ? "skip" : outcome.warned ? "warn" : outcome.passed ? "ok" : "FAIL";
+  const Colour colour = remark ? Colour::kWarning : outcome.passed ? Colour::kGood : Colour::kBad;
   std::printf("%s%-*s %-31s %s\n", coloured(word, colour).c_str(), static_cast<int>(5 - word.size()), "",
               outcome.name.c_str(), outcome.why.c_str());
   std::fflush(stdout);
@@ -141,37 +149,89 @@ void print(const Outcome& outcome) {
 /// A file that cannot even be described fails by the name of the test that says so.
 std::vector<Outcome> unusable(const std::string& why) {
   const bool slow = why.find("took longer") != std::string::npos;
-  return {{"", slow ? "scan-time-limit" : "descriptor-complete", why, false, false}};
+  return {{"", slow ? "scan-time-limit" : "descriptor-complete", why, false, false, false, false, ""}};
 }
 
 /// A shape that its parameters do not activate fails once, not by every test.
 size_t notActive(const Recipe& recipe, const std::string& why, const Options& options, std::vector<Outcome>& outcomes) {
   const size_t left = conformanceTests().size();
-  outcomes.push_back({recipe.class_name, "activate", why, false, false, false});
+  outcomes.push_back({recipe.class_name, "activate", why, false, false, false, false, ""});
   if (options.json) return left;
   print(outcomes.back());
   std::printf("the other tests were not run: give it parameters that it accepts with --set ID=VALUE\n");
   return left;
 }
 
-/// All tests of one class, up to the first that hangs: those after it would hang too. @return how many were not run
+/// The tests of one class that failed, or were not run: others may need them.
+class Lacking {
+ public:
+  bool lacks(const ConformanceTest& test) {
+    if (test.needs == nullptr || names_.count(test.needs) == 0) return false;
+    names_.insert(test.name);
+    if (cause_.empty()) cause_ = test.needs;
+    ++not_run_;
+    return true;
+  }
+  void add(const Outcome& failed) { names_.insert(failed.name); }
+  size_t notRun() const { return not_run_; }
+  const std::string& cause() const { return cause_; }
+
+ private:
+  std::set<std::string> names_;
+  std::string cause_;
+  size_t not_run_ = 0;
+};
+
+/// Tests whose process ends in the same way have one cause: told once, and the others by number.
+class SameEnd {
+ public:
+  bool known(const Outcome& outcome) {
+    if (outcome.end.empty()) return false;
+    std::vector<std::string>& names = tests_[outcome.end];
+    names.push_back(outcome.name);
+    return names.size() > 1;
+  }
+  void print() const {
+    for (const auto& [end, names] : tests_) {
+      if (names.size() < 2) continue;
+      std::printf("and %zu other %s: it %s:", names.size() - 1, names.size() == 2 ? "test" : "tests", end.c_str());
+      for (size_t i = 1; i < names.size(); ++i) std::printf("%s %s", i > 1 ? "," : "", names[i].c_str());
+      std::printf("\n");
+    }
+  }
+
+ private:
+  std::map<std::string, std::vector<std::string>> tests_;
+};
+
+/// All tests of one class, up to the first that hangs: those after it would hang too. A test that needs one that failed
+/// would only repeat it. @return how many were not run
 size_t testClass(const Recipe& recipe, const Options& options, std::vector<Outcome>& outcomes) {
   const auto& tests = conformanceTests();
-  for (size_t i = 0; i < tests.size(); ++i) {
+  Lacking lacking;
+  SameEnd same;
+  size_t left = 0;
+  for (size_t i = 0; i < tests.size() && left == 0; ++i) {
+    if (lacking.lacks(tests[i])) continue;
     outcomes.push_back(tryOne(recipe, tests[i], options));
-    if (!options.json) print(outcomes.back());
-    if (!outcomes.back().hung) continue;
-    const size_t left = tests.size() - i - 1;
-    if (!options.json)
+    if (!outcomes.back().passed) lacking.add(outcomes.back());
+    if (!same.known(outcomes.back()) && !options.json) print(outcomes.back());
+    if (outcomes.back().hung) left = tests.size() - i - 1;
+  }
+  if (!options.json) {
+    same.print();
+    if (left > 0)
       std::printf("stopped at the first hang: %zu tests were not run; for a plugin that is slow: --timeout SECONDS\n",
                   left);
-    return left;
+    if (lacking.notRun() > 0)
+      std::printf("%zu other %s not run: first mend %s\n", lacking.notRun(),
+                  lacking.notRun() == 1 ? "test was" : "tests were", lacking.cause().c_str());
   }
-  if (options.fuzz > 0) {
+  if (options.fuzz > 0 && left + lacking.notRun() == 0) {
     outcomes.push_back(fuzz(recipe, options));
     if (!options.json) print(outcomes.back());
   }
-  return 0;
+  return left + lacking.notRun();
 }
 
 int sum(const std::vector<Outcome>& outcomes, size_t not_run, const Options& options) {
@@ -179,7 +239,7 @@ int sum(const std::vector<Outcome>& outcomes, size_t not_run, const Options& opt
   auto tests = nlohmann::ordered_json::array();
   for (const Outcome& o : outcomes) {
     failed += o.passed ? 0 : 1;
-    const char* result = o.skipped ? "skip" : o.passed ? "pass" : "fail";
+    const char* result = o.skipped ? "skip" : o.warned ? "warn" : o.passed ? "pass" : "fail";
     tests.push_back({{"plugin", o.plugin}, {"name", o.name}, {"result", result}, {"why", o.why}});
   }
   const nlohmann::ordered_json all{

@@ -19,6 +19,7 @@
 #include "diagnostics/enable_button.hpp"
 #include "document/node.hpp"
 #include "log/log.hpp"
+#include "record/pace_report.hpp"
 #include "record/picture.hpp"
 #include "record/report.hpp"
 #include "session/run_files.hpp"
@@ -164,7 +165,9 @@ int conclude(const Options& options, servo::Runner& runner, const std::vector<st
   report.answer_time = runner.scene().clients.answer_time;
   for (size_t i = 0; i < runner.arms().size(); ++i)
     report.limits.push_back(limitsOf(runner.scene().devices[i].name, runner.arms()[i]->limiter()));
-  std::fputs(record::summary(report).c_str(), stdout);
+  std::fputs(
+      (record::summary(report) + record::paceText(report, options.rate.value_or(runner.scene().servo.rate))).c_str(),
+      stdout);
   warnOfHeat(runner, report.rate_hz);
   if (const record::Recorder* recorder = runner.recorder())
     std::printf("  recorded  %s: %llu ticks, %llu rows lost\n", options.record.c_str(),

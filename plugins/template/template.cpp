@@ -47,7 +47,10 @@ struct TemplateBall : hapticd::Shape {
     if (!profile_file.empty()) profile = readTable(profile_file);
     grips_.assign(activation.max_probes, Grip{});
     report.max_stiffness = law == 0 ? stiffness : steepest();
-    if (friction == 0) report.flags = HSP_R_PUSHES;  // a force that pulls inward is then found to be a mistake
+    // Without friction it only pushes, and a run finds a pull to be a mistake. With friction nothing but `hapticd
+    // plugin check` finds a wrong sign. A shape that reads probe.velocity adds HSP_R_VELOCITY here: without it, it is
+    // zero.
+    if (friction == 0) report.flags |= HSP_R_PUSHES;
     report.size_m = 2 * radius;
     report.typical_ns = 50;
     report.worst_ns = 2000;

@@ -36,16 +36,30 @@ bool writeAll(int fd, const std::string& bytes) {
   return true;
 }
 
+int answer_fd = -1;  ///< of a child; a terminate handler takes no argument
+
+/// Ends the child by the exception at hand, whose words take the place of the answer.
+[[noreturn]] void endByException() {
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::exception& e) {
+    writeAll(answer_fd, e.what());
+  } catch (...) {  // nothing of it can be told
+  }
+  _exit(kThrew);
+}
+
 /// The child's work: no core file, and never back into other code.
 [[noreturn]] void answer(const std::function<std::string()>& work, int fd) {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
+  answer_fd = fd;
   // An exception out of a constructor comes through dlopen() or ends there, as the compilers of plugin and host will.
-  std::set_terminate([] { _exit(kThrew); });
+  std::set_terminate(&endByException);
   try {
     _exit(writeAll(fd, work()) ? 0 : 1);
   } catch (...) {
-    _exit(kThrew);
+    endByException();
   }
 }
 
@@ -137,7 +151,7 @@ Result<std::string> hear(pid_t child, int fd, int limit_ms) {
   const int status = waitFor(child, end, in_time);
   if (!in_time) return Error{"took longer than " + std::to_string(limit_ms / 1000.0).substr(0, 4) + " s"};
   if (WIFSIGNALED(status)) return Error{std::string("crashed: ") + strsignal(WTERMSIG(status))};
-  if (WEXITSTATUS(status) == kThrew) return Error{"threw an exception"};
+  if (WEXITSTATUS(status) == kThrew) return Error{"threw an exception" + (told->empty() ? "" : ": " + *told)};
   if (WEXITSTATUS(status) != 0 || told->empty())
     return Error{"ended the process with code " + std::to_string(WEXITSTATUS(status))};
   return *std::move(told);

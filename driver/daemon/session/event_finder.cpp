@@ -27,6 +27,10 @@ void EventFinder::order(const Order& order) noexcept HSP_RT {
       const uint32_t kind = order.kind == Order::Kind::kLead ? HAPTICD_JOINED : HAPTICD_LOST;
       return add(kind, of_model ? target : -1, of_model ? -1 : target, order.param, order.value);
     }
+    case Order::Kind::kHold:
+      if (order.target >= arms_.size() || arms_[order.target].fault != Fault::kNone) return;
+      arms_[order.target].fault = Fault::kStopped;
+      return add(HAPTICD_FAULT, -1, target, static_cast<uint32_t>(Fault::kStopped), 0);
     default:
       return;
   }
@@ -90,8 +94,9 @@ void EventFinder::look(double t, uint32_t index, const Arm& arm) noexcept HSP_RT
   const auto number = static_cast<int32_t>(index);
   if (const Fault fault = arm.limiter().fault(); fault != note.fault) {
     note.fault = fault;
-    add(fault != Fault::kNone ? HAPTICD_FAULT : HAPTICD_CLEARED, -1, number, static_cast<uint32_t>(fault),
-        fault != Fault::kNone ? arm.limiter().measured() : 0);
+    if (fault != Fault::kStopped)  // else nobody held it: the run ends as it shall
+      add(fault != Fault::kNone ? HAPTICD_FAULT : HAPTICD_CLEARED, -1, number, static_cast<uint32_t>(fault),
+          fault != Fault::kNone ? arm.limiter().measured() : 0);
   }
   if (const uint64_t count = arm.hand().refused(); refused(t, count, note))
     add(HAPTICD_REFUSED, -1, number, static_cast<uint32_t>(Order::Led::kHand), static_cast<double>(count));

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 const std::vector<ConformanceTest>& conformanceTests() {
   static const std::vector<ConformanceTest> kTests = [] {
     std::vector<ConformanceTest> all = lifeTests();
-    for (const auto& more : {contactTests(), stepTests(), memoryTests()})
+    for (const auto& more : {costTests(), stepTests(), contactTests(), memoryTests()})
       all.insert(all.end(), more.begin(), more.end());
     return all;
   }();
@@ -55,7 +55,7 @@ std::string fuzzOnce(const Recipe& recipe, uint64_t seed) {
     q += 2e-3 * Vector3d(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5);
     const double dt = dice > 0.98 ? 0.05 : kConformanceDt;
     if (std::string wrong = wrongStatus((*made)->step({q}, dt, flags)); !wrong.empty())
-      return wrong + " at step " + std::to_string(i);
+      return "at step " + std::to_string(i) + ", " + placed(wrong, q);
   }
   return "";
 }

@@ -11,12 +11,14 @@ namespace hapticd::conformance {
 struct ConformanceTest {
   const char* name;
   const char* doc;
-  /// "": passed; "skip: why": does not apply; otherwise what was wrong.
+  /// "": passed; "skip: why": does not apply; "warn: what": passed with a remark; otherwise what was wrong.
   std::string (*run)(const Recipe& recipe, uint64_t seed);
+  const char* needs = nullptr;  ///< the test without whose success this one would only repeat its failure
 };
 
 std::vector<ConformanceTest> lifeTests();     ///< descriptors, parameters, creation and activation
-std::vector<ConformanceTest> stepTests();     ///< what every step owes: time, memory, finite and continuous answers
+std::vector<ConformanceTest> costTests();     ///< what a step may cost: time, memory, locks, system calls
+std::vector<ConformanceTest> stepTests();     ///< what every step owes: finite and continuous answers
 std::vector<ConformanceTest> contactTests();  ///< what a shape owes where it is touched
 std::vector<ConformanceTest> memoryTests();   ///< what an instance remembers, and what it must not
 

@@ -45,12 +45,13 @@ std::string contactFound(const Recipe& recipe, uint64_t) {
 /// normal, which may have the wrong sign as well.
 std::string forceOutward(const Recipe& recipe, uint64_t) {
   return atEachPlace(recipe, [](Subject& subject, const Place& place) {
-    double outward = 0, most = 0, depth = 0;
+    double outward = 0, most = 0, depth = 0, normal = 0;
     press(subject, place, [&](const Answer& answer, const PressStep&) {
       const hsp_contact& c = answer.contacts[0];
       if ((c.flags & HSP_OUT_TRACED) == 0 || !(c.depth_m > 0)) return std::string();
       const double force = Vector3d(c.force).dot(place.out);
       outward += force;
+      normal += Vector3d(c.normal).dot(place.out);
       if (force < most) most = force, depth = c.depth_m;
       return std::string();
     });
@@ -58,7 +59,9 @@ std::string forceOutward(const Recipe& recipe, uint64_t) {
     const Vector3d& f = place.foot;
     return "the sign is wrong: pressed at " + text(f.x()) + ", " + text(f.y()) + ", " + text(f.z()) +
            " m, the forces pull the hand in, with " + text(-most) + " N at a depth of " + text(depth * 1e3) +
-           " mm; expected a force that points out of the shape, as its normal does: turn the sign of force";
+           " mm; expected a force that points out of the shape" +
+           (normal < 0 ? ": its normal points into the shape as well, so turn the sign of normal first"
+                       : ", as its normal does: turn the sign of force");
   });
 }
 
@@ -144,11 +147,11 @@ std::string noStep(const Recipe& recipe, uint64_t) {
 
 std::vector<ConformanceTest> contactTests() {
   return {
-      {"contact-found", "the shape can be found and touched", &contactFound},
-      {"force-outward", "forces in contact push out of the shape", &forceOutward},
-      {"contact-flags", "HSP_OUT_TRACED and HSP_OUT_CONTACT agree with depth and normal", &contactFlags},
-      {"force-from-zero", "the force grows from zero where the surface is met", &noStep},
-      {"stiffness-vs-claim", "forces are no steeper than claimed", &stiffnessClaim},
+      {"contact-found", "the shape can be found and touched", &contactFound, kFinite},
+      {"force-outward", "forces in contact push out of the shape", &forceOutward, kFinite},
+      {"contact-flags", "HSP_OUT_TRACED and HSP_OUT_CONTACT agree with depth and normal", &contactFlags, kFinite},
+      {"force-from-zero", "the force grows from zero where the surface is met", &noStep, kFinite},
+      {"stiffness-vs-claim", "forces are no steeper than claimed", &stiffnessClaim, kFinite},
   };
 }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "base/clock.hpp"
 #include "conformance/conformance_parts.hpp"
 
 namespace hapticd::conformance {
@@ -26,7 +29,9 @@ std::vector<Answer> answersOf(Subject& subject, int steps, double phase = 0) {
 
 std::string firstDifference(const std::vector<Answer>& a, const std::vector<Answer>& b) {
   for (size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    if (!sameBits(a[i], b[i])) return "answers differ from step " + std::to_string(i) + " on";
+    if (!sameBits(a[i], b[i]))
+      return "the same probes get other answers from step " + std::to_string(i) +
+             " on; look for static or global variables, memory that is not set, time and random numbers";
   return "";
 }
 
@@ -151,18 +156,89 @@ std::string twoInstances(const Recipe& recipe, uint64_t) {
   return firstDifference(expected, mixed);
 }
 
+std::string createDestroyLeak(const Recipe& recipe, uint64_t) {
+  constexpr int kMost = 60;
+  constexpr Nanoseconds kEnough = 3 * kNanosecondsPerSecond;
+  const Nanoseconds begun = monotonicNow();
+  double before = 0;
+  std::vector<double> grown;  // [bytes] of each life
+  for (int i = 0; i < kMost && monotonicNow() - begun < kEnough; ++i) {
+    const Made made(recipe);
+    if (!made.error.empty()) return made.error;
+    for (int k = 0; k < 20; ++k) made.subject->step({onPath(*made.subject, k / 40.0)}, kConformanceDt);
+    const auto used = static_cast<double>(mallinfo2().uordblks);
+    if (i > 4) grown.push_back(used - before);
+    before = used;
+  }
+  constexpr size_t kFew = 8;  // over fewer lives what is allocated once, and late, would count as a leak
+  if (grown.size() < kFew) return "skip: activation takes too long to repeat it";
+  // The median: what the allocator keeps for later comes and goes, a leak is there in every life.
+  std::nth_element(grown.begin(), grown.begin() + static_cast<long>(grown.size() / 2), grown.end());
+  const double leak = grown[grown.size() / 2];
+  return leak < 256 ? "" : text(leak) + " bytes leak in each life";
+}
+
+std::string layoutGolden(const Recipe& recipe, uint64_t) {
+  const Made made(recipe), wide(recipe);
+  if (!made.error.empty()) return made.error;
+  const hsp_class& c = made.subject->description();
+  if (c.struct_size < offsetof(hsp_class, extension)) return "hsp_class is smaller than that of version 1.0";
+  if (c.param_count > 0 && c.params[0].struct_size < sizeof(hsp_param))
+    return "hsp_param is smaller than that of version 1.0";
+  if (made.subject->report().struct_size != sizeof(hsp_report)) return "activate() changed report.struct_size";
+  wide.subject->widen(32);  // as a later host does, whose records are larger
+  for (int i = 0; i < kConformanceSteps / 4; ++i) {
+    const Vector3d p = onPath(*made.subject, static_cast<double>(i) / kConformanceSteps);
+    const Answer expected = made.subject->step({p}, kConformanceDt);
+    if (!sameBits(expected, wide.subject->step({p}, kConformanceDt)))
+      return "answers change with larger records: use HSP_AT";
+    if (!wide.subject->roomUntouched()) return "it wrote beyond hsp_contact";
+  }
+  return "";
+}
+
+/// What the host only fills in for those who ask must not change the answers of one who did not.
+std::string asksForWhatItReads(const Recipe& recipe, uint64_t) {
+  struct Asked {
+    uint32_t flag;
+    const char *member, *name;
+  };
+  for (const Asked& asked : {Asked{HSP_R_VELOCITY, "velocity", "HSP_R_VELOCITY"},
+                             Asked{HSP_R_ORIENTATION, "orientation", "HSP_R_ORIENTATION"}}) {
+    const Made without(recipe), with(recipe);
+    if (!without.error.empty()) return without.error;
+    if ((without.subject->report().flags & asked.flag) != 0) continue;
+    with.subject->give(asked.flag);
+    const auto a = answersOf(*without.subject, kConformanceSteps / 2),
+               b = answersOf(*with.subject, kConformanceSteps / 2);
+    for (size_t i = 0; i < a.size(); ++i) {
+      const Vector3d one(a[i].contacts[0].force), other(b[i].contacts[0].force);
+      if (!((one - other).norm() > 1e-9 * (1 + one.norm()))) continue;
+      return std::string("it reads probe.") + asked.member + ", which changes its force by " +
+             text((one - other).norm()) + " N, but does not ask for it: the host gives " +
+             (asked.flag == HSP_R_VELOCITY ? "zero" : "identity") + "; expected report.flags |= " + asked.name +
+             " in activate()";
+    }
+  }
+  return "";
+}
+
 }  // namespace
 
 std::vector<ConformanceTest> memoryTests() {
   return {
-      {"reset-equals-fresh", "reset() forgets", &resetEqualsFresh},
-      {"batch-equals-single", "probes of one step do not mix", &batchEqualsSingle},
-      {"determinism-bitwise", "same input, same bits", &determinism},
-      {"jump-flag", "after a jump the nearest foot is found", &jumpFlag},
-      {"state-roundtrip", "a saved state can be loaded", &stateRoundtrip},
+      {"determinism-bitwise", "same input, same bits", &determinism, kFinite},
+      {"layout-golden", "structs have at least their size of version 1.0, and strides are used", &layoutGolden, kSame},
+      {"create-destroy-leak", "create() to destroy() leaks no memory", &createDestroyLeak, kInTime},
+      {"asks-for-what-it-reads", "velocity and orientation are read by those who ask for them", &asksForWhatItReads,
+       kSame},
+      {"reset-equals-fresh", "reset() forgets", &resetEqualsFresh, kSame},
+      {"batch-equals-single", "probes of one step do not mix", &batchEqualsSingle, kSame},
+      {"jump-flag", "after a jump the nearest foot is found", &jumpFlag, kSame},
+      {"state-roundtrip", "a saved state can be loaded", &stateRoundtrip, kFinite},
       {"state-garbage-rejected", "garbage is refused as a state", &stateGarbage},
-      {"denormals", "tiny numbers give finite answers", &denormals},
-      {"two-instances-independent", "instances do not influence each other", &twoInstances},
+      {"denormals", "tiny numbers give finite answers", &denormals, kFinite},
+      {"two-instances-independent", "instances do not influence each other", &twoInstances, kSame},
   };
 }
 

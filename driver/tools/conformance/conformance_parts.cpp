@@ -24,6 +24,15 @@ std::string text(double value) {
   return words;
 }
 
+std::string text(const Vector3d& p) {
+  const auto rounded = [](double v) { return text(std::abs(v) < 1e-9 ? 0 : v); };
+  return rounded(p.x()) + ", " + rounded(p.y()) + ", " + rounded(p.z()) + " m";
+}
+
+std::string placed(const std::string& objection, const Vector3d& p) {
+  return "at " + text(p) + ": " + objection;
+}
+
 Vector3d onPath(const Subject& subject, double part, double phase) {
   const auto [low, high] = subject.bounds();
   const Vector3d half = 0.65 * (high - low).cwiseMax(1e-3), middle = (low + high) / 2;
@@ -36,7 +45,7 @@ std::string along(Subject& subject, const std::function<std::string(const Answer
   for (int i = 0; i <= steps; ++i) {
     const Vector3d p = onPath(subject, static_cast<double>(i) / steps);
     const Answer& answer = subject.step({p}, kConformanceDt);
-    if (std::string objection = look(answer, p); !objection.empty()) return objection + " at step " + std::to_string(i);
+    if (std::string objection = look(answer, p); !objection.empty()) return placed(objection, p);
   }
   for (const Place& place : subject.places())
     if (std::string objection =

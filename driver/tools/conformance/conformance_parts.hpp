@@ -13,6 +13,9 @@ namespace hapticd::conformance {
 constexpr double kConformanceDt = 1e-3;  ///< [s] of every step
 constexpr int kConformanceSteps = 2000;  ///< once around the path
 
+/// Tests without which others mean nothing.
+constexpr const char *kInTime = "steps-end-in-time", *kFinite = "finite-outputs", *kSame = "determinism-bitwise";
+
 /// Gives an active instance, or is why there is none.
 struct Made {
   std::unique_ptr<Subject> subject;
@@ -21,6 +24,10 @@ struct Made {
 };
 
 std::string text(double value);
+std::string text(const Eigen::Vector3d& p);  ///< "X, Y, Z m"
+
+/// An objection with the place where it was found in front: what follows is often an advice.
+std::string placed(const std::string& objection, const Eigen::Vector3d& p);
 
 /// A smooth closed path through and around the shape, from a corner outside its box and back to it.
 Eigen::Vector3d onPath(const Subject& subject, double part, double phase = 0);
@@ -29,6 +36,9 @@ Eigen::Vector3d onPath(const Subject& subject, double part, double phase = 0);
 /// objection ends the run.
 std::string along(Subject& subject, const std::function<std::string(const Answer&, const Eigen::Vector3d&)>& look,
                   int steps = kConformanceSteps);
+
+/// "warn: ..." for parameters whose units are not SI.
+std::string unitsSi(const Recipe& recipe, uint64_t);
 
 /// "": a status that a step may have, and an answer that is finite.
 std::string wrongStatus(const Answer& answer);

@@ -4,7 +4,6 @@
 #include <random>
 
 #include "conformance/conformance_parts.hpp"
-#include "conformance/lock_count.hpp"
 #include "servo/safety/claim.hpp"
 #include "servo/safety/guard.hpp"
 
@@ -12,45 +11,6 @@ namespace hapticd::conformance {
 namespace {
 
 using Eigen::Vector3d;
-
-std::string noAllocation(const Recipe& recipe, uint64_t) {
-  const Made made(recipe);
-  if (!made.error.empty()) return made.error;
-  along(*made.subject, [](const Answer&, const Vector3d&) { return ""; });
-  const uint64_t count = made.subject->allocations();
-  return count == 0 ? "" : std::to_string(count) + " allocations in " + std::to_string(kConformanceSteps) + " steps";
-}
-
-std::string noLock(const Recipe& recipe, uint64_t) {
-  const Made made(recipe);
-  if (!made.error.empty()) return made.error;
-  if (!countLocksOf(recipe.file)) return "skip: the file imports no lock function, or cannot be read";
-  uint64_t locks = 0;
-  for (int i = 0; i < kConformanceSteps; ++i) {
-    const Vector3d p = onPath(*made.subject, static_cast<double>(i) / kConformanceSteps);
-    const uint64_t before = locksCounted();
-    made.subject->step({p}, kConformanceDt);
-    locks += i % 5 != 0 ? locksCounted() - before : 0;  // searches belong to another thread, which may lock
-  }
-  return locks == 0 ? "" : std::to_string(locks) + " locks in " + std::to_string(kConformanceSteps) + " steps";
-}
-
-std::string stepCost(const Recipe& recipe, uint64_t) {
-  const Made made(recipe);
-  if (!made.error.empty()) return made.error;
-  const uint64_t claim = std::max(made.subject->report().worst_ns, made.subject->report().typical_ns);
-  if (claim == 0) return "skip: the plugin claims no cost";
-  std::vector<uint64_t> spent;
-  along(*made.subject, [&](const Answer&, const Vector3d&) {
-    spent.push_back(made.subject->stepNs());
-    return "";
-  });
-  std::nth_element(spent.begin(), spent.begin() + static_cast<long>(spent.size() / 2), spent.end());
-  const uint64_t p50 = spent[spent.size() / 2];
-  return p50 <= claim
-             ? ""
-             : "a step takes " + std::to_string(p50) + " ns (median); the claimed worst is " + std::to_string(claim);
-}
 
 std::string finiteOutputs(const Recipe& recipe, uint64_t seed) {
   const Made made(recipe);
@@ -63,18 +23,39 @@ std::string finiteOutputs(const Recipe& recipe, uint64_t seed) {
   for (int i = 0; i < kConformanceSteps; ++i) {
     p += Vector3d(step(random), step(random), step(random));
     if (std::string wrong = wrongStatus(made.subject->step({p}, kConformanceDt)); !wrong.empty())
-      return wrong + " on a random walk";
+      return "on a random walk, " + placed(wrong, p);
   }
-  hsp_probe bad{};
-  for (double& x : bad.position) x = std::nan("");
-  bad.orientation[0] = 1;
-  bad.flags = HSP_IN_INVALID;
-  const Answer& answer = made.subject->stepRaw(bad, kConformanceDt);
-  if (!finite(answer)) return "the answer to a bad sample is not finite";
-  if (Vector3d(answer.contacts[0].force).norm() > 0) return "the answer to a bad sample has a force";
-  if (std::string wrong = wrongStatus(made.subject->step({p}, kConformanceDt)); !wrong.empty())
-    return wrong + " after a bad sample";
   return "";
+}
+
+/// Asks in contact, where a shape that does not look at the flag pushes on.
+std::string badSample(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  return along(*made.subject, [&](const Answer& good, const Vector3d& p) -> std::string {
+    if (Vector3d(good.contacts[0].force).isZero(0) && made.subject->places().size() > 0) return "";
+    hsp_probe bad{};
+    Eigen::Map<Vector3d>(bad.position) = p;
+    bad.orientation[0] = 1;
+    bad.flags = HSP_IN_INVALID;
+    const Answer& answer = made.subject->stepRaw(bad, kConformanceDt);
+    const std::string wrong = wrongStatus(answer);
+    const double force = Vector3d(answer.contacts[0].force).norm();
+    if (wrong.empty() && !(force > 0)) return "";
+    return (wrong.empty() ? "a force of " + text(force) + " N" : wrong) +
+           " was the answer to a probe with HSP_IN_INVALID (no good sample; its position is the last good one); "
+           "expected "
+           "no force: if ((probe.flags & HSP_IN_INVALID) != 0) return HSP_OK";
+  });
+}
+
+std::string jumped(double newtons, double metres, double stiffness) {
+  return "the force jumped by " + text(newtons) + " N while the probe moved " + text(metres) +
+         " m: the claimed stiffness (report.max_stiffness, " + text(stiffness) + " N/m) explains " +
+         text(stiffness * metres) +
+         " N of it, and it is the third such jump; look for a length that is not in m, a gap in the law of the force, "
+         "or "
+         "a claim that is too small";
 }
 
 std::string forceContinuous(const Recipe& recipe, uint64_t) {
@@ -88,22 +69,23 @@ std::string forceContinuous(const Recipe& recipe, uint64_t) {
   bounds.jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
   servo::Claim claim;
   int jumps = 0;
-  Vector3d last = Vector3d::Zero();
+  Vector3d last = Vector3d::Zero(), force = Vector3d::Zero();
   return along(*made.subject, [&](const Answer& answer, const Vector3d& p) {
     const hsp_contact& contact = answer.contacts[0];
     servo::ClaimStep step;
     step.force = Vector3d(contact.force);
     step.normal = Vector3d(contact.normal);
     step.p_world = step.p_model = p;
+    const double way = (p - last).norm(), jump = (step.force - force).norm();
     step.velocity = (p - last) / kConformanceDt;
     step.out = contact.flags;
     step.in = answer.jumped ? HSP_IN_JUMP : 0;
     if (answer.jumped) step.velocity.setZero();
-    last = p;
+    last = p, force = step.force;
     bool held = false;
     claim.judge(step, bounds, kConformanceDt, held);
     jumps += held ? 1 : 0;
-    return std::string(jumps >= 3 ? "the force jumped beyond the claimed stiffness three times" : "");
+    return jumps >= 3 ? jumped(jump, way, bounds.stiffness) : std::string();
   });
 }
 
@@ -172,14 +154,12 @@ std::string energyNonIncreasing(const Recipe& recipe, uint64_t) {
 
 std::vector<ConformanceTest> stepTests() {
   return {
-      {"no-allocation-in-step", "steps do not allocate", &noAllocation},
-      {"no-lock-in-step", "steps do not lock", &noLock},
-      {"step-cost-vs-claim", "steps take no longer than claimed", &stepCost},
-      {"finite-outputs", "every answer is finite, whatever the probe does", &finiteOutputs},
-      {"force-continuous", "forces follow the claimed stiffness", &forceContinuous},
-      {"normal-unit-length", "normals are unit vectors", &normalUnit},
-      {"depth-falls-outward", "depth falls where the probe moves along the outward normal", &depthOutward},
-      {"energy-non-increasing", "a closed path gives no energy", &energyNonIncreasing},
+      {"finite-outputs", "every answer is finite, whatever the probe does", &finiteOutputs, kInTime},
+      {"bad-sample", "a bad sample gets no force", &badSample, kFinite},
+      {"force-continuous", "forces follow the claimed stiffness", &forceContinuous, kFinite},
+      {"normal-unit-length", "normals are unit vectors", &normalUnit, kFinite},
+      {"depth-falls-outward", "depth falls where the probe moves along the outward normal", &depthOutward, kFinite},
+      {"energy-non-increasing", "a closed path gives no energy", &energyNonIncreasing, kFinite},
   };
 }
 

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "conformance/conformance_subject.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
 #include "base/allocation_count.hpp"
 #include "base/clock.hpp"
+#include "base/thread_usage.hpp"
+#include "conformance/step_watch.hpp"
 #include "host/class_table.hpp"
 
 namespace hapticd::conformance {
@@ -15,9 +19,21 @@ namespace {
 
 using Eigen::Vector3d;
 constexpr uint8_t kUntouched = 0xA5;
+constexpr double kTurned[4] = {0.8, 0.36, 0.48, 0};  // any rotation but the identity
 
 const hsp_param& paramAt(const hsp_class& c, uint32_t index) {
   return *HSP_AT(const hsp_param, c.params, c.params[0].struct_size, index);
+}
+
+struct Usage {
+  uint64_t cpu_ns = 0;
+  long waits = 0;
+};
+
+Usage usageOfThread() {
+  rusage use{};
+  getrusage(RUSAGE_THREAD, &use);
+  return {os::cpuTimeOfThread(), use.ru_nvcsw};
 }
 
 }  // namespace
@@ -152,8 +168,9 @@ const Answer& Subject::step(const std::vector<Vector3d>& positions, double dt, u
     probes[i].flags = flags;
     probes[i].time_ns = steps_ * 1'000'000;
     const bool moved = dt > 0 && i < last_.size() && (flags & HSP_IN_JUMP) == 0;
-    if (moved && (report_.flags & HSP_R_VELOCITY) != 0)
+    if (moved && ((report_.flags | given_) & HSP_R_VELOCITY) != 0)
       Eigen::Map<Vector3d>(probes[i].velocity) = (positions[i] - last_[i]) / dt;
+    if ((given_ & HSP_R_ORIENTATION) != 0) std::copy_n(kTurned, 4, probes[i].orientation);
   }
   last_ = positions;
   if (steps_ % 5 == 0 || (flags & HSP_IN_JUMP) != 0) search(probes);
@@ -181,11 +198,7 @@ const Answer& Subject::run(const std::vector<hsp_probe>& probes, double dt) {
   step.out_stride = static_cast<uint32_t>(out_stride);
   step.dt_s = steps_ == 0 ? 0 : dt;
   step.pose = &pose_;
-  const uint64_t before = allocationsOfThread();
-  const Nanoseconds begun = monotonicNow();
-  answer_.status = class_->step(shape_, &step);
-  step_ns_ = monotonicNow() - begun;
-  allocations_ += allocationsOfThread() - before;
+  call(step, probes[0]);
   answer_.contacts.resize(probes.size());
   for (size_t i = 0; i < probes.size(); ++i)
     std::memcpy(&answer_.contacts[i], &out_[i * out_stride], sizeof(hsp_contact));
@@ -194,6 +207,21 @@ const Answer& Subject::run(const std::vector<hsp_probe>& probes, double dt) {
       std::any_of(probes.begin(), probes.end(), [](const hsp_probe& p) { return (p.flags & HSP_IN_JUMP) != 0; });
   ++steps_;
   return answer_;
+}
+
+void Subject::call(const hsp_step& step, const hsp_probe& first) {
+  const Usage used = measured_ ? usageOfThread() : Usage{};
+  const uint64_t before = allocationsOfThread();
+  const Nanoseconds begun = monotonicNow();
+  {
+    const StepWatch watch(first);
+    answer_.status = class_->step(shape_, &step);
+  }
+  step_ns_ = monotonicNow() - begun;
+  allocations_ += allocationsOfThread() - before;
+  if (!measured_) return;
+  const Usage now = usageOfThread();
+  cost_ = {step_ns_, now.cpu_ns - used.cpu_ns, now.waits != used.waits};
 }
 
 bool Subject::roomUntouched() const {

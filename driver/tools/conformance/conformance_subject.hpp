@@ -36,6 +36,12 @@ struct Answer {
 bool sameBits(const Answer& a, const Answer& b);
 bool finite(const Answer& answer);
 
+/// What one step took.
+struct StepCost {
+  uint64_t wall_ns = 0, cpu_ns = 0;
+  bool waited = false;  ///< it gave the processor away by itself
+};
+
 class Subject {
  public:
   /// Loads, creates, sets; the error is in the plugin's own words.
@@ -53,6 +59,11 @@ class Subject {
   const Answer& step(const std::vector<Eigen::Vector3d>& positions, double dt, uint32_t flags = 0);
   /// As `step` with one probe, exactly as given.
   const Answer& stepRaw(const hsp_probe& probe, double dt);
+  /// From now on the steps get what these flags ask for, HSP_R_VELOCITY and HSP_R_ORIENTATION, asked for or not.
+  void give(uint32_t flags) { given_ = flags; }
+  /// From now on `cost` is that of the last step.
+  void measureCost() { measured_ = true; }
+  const StepCost& cost() const { return cost_; }
   /// Room between the records of a step, to see that the strides are used.
   void widen(size_t bytes) { room_ = bytes; }
   bool roomUntouched() const;
@@ -74,6 +85,7 @@ class Subject {
  private:
   Subject() = default;
   void search(const std::vector<hsp_probe>& probes);
+  void call(const hsp_step& step, const hsp_probe& first);
   const Answer& run(const std::vector<hsp_probe>& probes, double dt);
 
   std::shared_ptr<host::Library> library_;
@@ -91,6 +103,9 @@ class Subject {
   std::vector<uint8_t> in_, out_;             // records with room between them
   size_t room_ = 0;
   uint64_t steps_ = 0, step_ns_ = 0, allocations_ = 0;
+  uint32_t given_ = 0;
+  bool measured_ = false;
+  StepCost cost_;
 };
 
 }  // namespace hapticd::conformance

@@ -113,8 +113,7 @@ std::string press(Subject& subject, const Place& place, const PressLook& look) {
   for (const PressStep& step : pressAt(place, pressDepth(subject))) {
     const Answer& answer = subject.step({step.p}, kConformanceDt, flags);
     flags = 0;
-    if (std::string objection = look(answer, step); !objection.empty())
-      return objection + " at " + text(step.p.x()) + ", " + text(step.p.y()) + ", " + text(step.p.z()) + " m";
+    if (std::string objection = look(answer, step); !objection.empty()) return placed(objection, step.p);
   }
   return "";
 }

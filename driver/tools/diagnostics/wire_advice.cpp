@@ -85,6 +85,29 @@ void adviseGaps(const Node& fields, const codec::Report& report, const scene::De
   }
 }
 
+/// The start-up sequence goes out before every limit, and while forces are off: as a command it must not push.
+void adviseStartup(const Node& steps, const codec::Wire& wire, const scene::Device& device,
+                   document::Problems& warnings) {
+  codec::Report torques = wire.output;
+  std::erase_if(torques.fields, [](const Field& field) { return field.role != Role::kTorque; });
+  for (size_t i = 0; i < wire.startup.size() && i < steps.items.size(); ++i) {
+    codec::State sent;
+    const std::vector<uint8_t>& bytes = wire.startup[i].send;
+    if (bytes.size() != torques.bytes() || decode(torques, bytes, sent) != codec::Verdict::kGood) continue;
+    for (const Field& field : torques.fields) {
+      const double torque = sent.torque[field.index];
+      if (std::abs(torque) <= std::abs(field.scale)) continue;  // as near to none as it can be sent
+      document::report(
+          warnings, device.file.string(), steps.items[i].line, steps.items[i].column,
+          fmt::format("parameters.wire.startup[{}].send", i),
+          fmt::format("as wire.output has it, these bytes are a torque of {:.3g} N m at joint {}, which goes "
+                      "out before every limit; expected torques of 0",
+                      torque, field.index + 1));
+      break;
+    }
+  }
+}
+
 }  // namespace
 
 void adviseWire(const Node& root, const scene::Device& device, size_t joints, document::Problems& warnings) {
@@ -94,6 +117,8 @@ void adviseWire(const Node& root, const scene::Device& device, size_t joints, do
   if (!wire || in == nullptr || out == nullptr) return;
   adviseTorques(*out, wire->output, device, warnings);
   adviseGaps(*in, wire->input, device, warnings);
+  if (const Node* startup = find(root, {"parameters", "wire", "startup"}))
+    adviseStartup(*startup, *wire, device, warnings);
 }
 
 }  // namespace hapticd::diagnostics

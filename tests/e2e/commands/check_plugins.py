@@ -6,6 +6,7 @@ Usage: check_plugins.py HAPTICD SOURCE_DIR SHIPPED_FOLDER BROKEN_FOLDER TEST_SHA
 import glob
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -66,6 +67,47 @@ check("a plugin that hangs fails", done.returncode == 1 and "took longer than 1.
 check("only once, and the rest is not run", done.stdout.count("took longer") == 1 and "stopped at the first hang" in done.stdout, done.stdout)
 code, tests, failed, err = examined(os.path.join(BROKEN, "hanging.so"), "--timeout", "1")
 check("as JSON too", code == 1 and len(failed) == 1, failed)
+
+# Slow steps are told by their time, not by a test of something else that takes too long for it.
+for microseconds, least in ((100, 0.1), (5000, 5)):
+    file = os.path.join(BROKEN, f"sleeping_{microseconds}.so")
+    code, tests, failed, err = examined(file)
+    why = [t["why"] for t in tests if t["result"] == "fail"]
+    check(f"usleep({microseconds}) fails by its time alone", code == 1 and [t for _, t in failed] == ["steps-end-in-time"], (failed, why))
+    took = float(re.search(r"takes about ([0-9.e+]+) ms a step", why[0])[1])
+    check("and says how long, and that it waits", took >= least and "waits in" in why[0], why)
+
+# One slip each, told by the test that names it, with the place, the amount, and the cure.
+code, tests, failed, err = examined(os.path.join(BROKEN, "slips.so"), "--timeout", "15")
+SLIPS = {"prints": ("no-system-call-in-step", "it prints in"), "asks": ("no-system-call-in-step", "system calls (number"),
+         "reads_velocity": ("asks-for-what-it-reads", "report.flags |= HSP_R_VELOCITY in activate()"),
+         "millimetres": ("force-continuous", "look for a length that is not in m"),
+         "throws": ("steps-end-in-time", "it threw an exception: vector::_M_range_check"),
+         "crashes": ("steps-end-in-time", "Segmentation fault, in step() with the probe at "),
+         "nan": ("finite-outputs", "an answer that is not finite"),
+         "shares": ("determinism-bitwise", "static or global variables"),
+         "no_invalid": ("bad-sample", "return HSP_OK"), "computes": ("steps-end-in-time", "all of it computing")}
+for shape, (test, words) in SLIPS.items():
+    mine = [t for t in tests if t["plugin"] == shape and t["result"] == "fail"]
+    check(f"{shape} fails by {test} first", mine and mine[0]["name"] == test and words in mine[0]["why"], mine)
+for shape in ("throws", "crashes", "nan", "shares", "computes", "asks", "no_invalid", "reads_velocity"):
+    mine = [t["name"] for t in tests if t["plugin"] == shape and t["result"] == "fail"]
+    check(f"{shape} fails by one test alone", len(mine) == 1, mine)
+inward = {t["name"]: t["why"] for t in tests if t["plugin"] == "normal_inward" and t["result"] == "fail"}
+check("a normal that points inward is told, not the force that follows it", "turn the sign of normal first" in inward.get("force-outward", ""), inward)
+for shape in ("right", "unit"):
+    check(f"{shape} passes", not [t for p, t in failed if p == shape], failed)
+unit = [t for t in tests if t["plugin"] == "unit" and t["result"] == "warn"]
+check("a unit that is not SI is warned of", len(unit) == 1 and 'the unit is "N/mm", expected m for mm' in unit[0]["why"], unit)
+check("no other shape is warned of", {t["plugin"] for t in tests if t["result"] == "warn"} == {"unit"})
+jump = [t["why"] for t in tests if (t["plugin"], t["name"]) == ("millimetres", "force-continuous")][0]
+check("a jump has its place in m and its size in N", re.search(r"^at [-0-9.e, ]+ m: the force jumped by [0-9.e+]+ N while", jump), jump)
+for shape in ("throws", "no_invalid"):
+    why = [t["why"] for t in tests if t["plugin"] == shape and t["result"] == "fail"][0]
+    check(f"{shape}: the place of the probe is told", re.search(r"at [-0-9.e]+, [-0-9.e]+, [-0-9.e]+ m", why), why)
+said = subprocess.run([HAPTICD, "plugin", "check", os.path.join(BROKEN, "slips.so"), "--timeout", "15"], capture_output=True, text=True, timeout=280).stdout
+check("an exception is told once, and the rest is counted", said.count("vector::_M_range_check") == 1 and "tests were not run: first mend steps-end-in-time" in said, said)
+check("a number that is not one is told alone", "nan J" not in said and "-0 N at" not in said, said)
 
 # Parameters are checked as those of a scene, before any test runs, and all of them at once.
 NEEDY = os.path.join(BROKEN, "needy.so")

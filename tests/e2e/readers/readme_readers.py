@@ -94,6 +94,18 @@ def other_lines(folder):
     check("the README's other lines of a table compile", done.returncode == 0, done.stderr[:1500])
 
 
+def twin_of_an_arm(folder):
+    """The twin by a chain that the guide to devices shows presses the sphere."""
+    page = open(os.path.join(SOURCE, "driver/docs/devices.md")).read()
+    file, report = os.path.join(folder, "twin.yaml"), os.path.join(folder, "twin.json")
+    open(file, "w").write(re.search(r"### A twin of.*?```yaml\n(.*?)```", page, re.S)[1])
+    code, said = run(HAPTICD, "check", file)
+    check("the twin of the guide is in order", code == 0 and "warning" not in said, said)
+    code, said = run(HAPTICD, "run", os.path.join(SOURCE, "config/scenes/sphere.yaml"), "--device", file, "--for", "3", "--virtual-time", "--report", report)
+    touched = os.path.exists(report) and json.load(open(report))["models"]["sphere"]["contact_ticks"]
+    check("and presses the sphere", code == 0 and touched and touched > 100, (touched, said))
+
+
 CLIENT = r"""
 set -eu
 until hapticd ctl --name reader status >/dev/null 2>&1; do sleep 0.2; done
@@ -149,5 +161,6 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
     own_shape(folder)
     own_arm(folder)
     other_lines(folder)
+    twin_of_an_arm(folder)
     own_client(folder)
 finish()

@@ -14,6 +14,7 @@ from e2e import check, finish, program
 
 HAPTICD, SCENES = sys.argv[1], sys.argv[2]
 hapticd = program(HAPTICD, together=True)
+FAULT = 3  # HAPTICD_FAULT
 
 
 def replayIsExact(folder, scene):
@@ -35,6 +36,25 @@ def theManualReadsIt(file):
     ticks = names["ticks"]
     check("the manual's Python reads a recording",
           len(ticks) == 1000 and ticks["arm0_fx"].shape == (1000,) and "columns" in names["about"], ticks.dtype)
+    check("a planned end is no event of a fault", FAULT not in names["file"]["events"]["kind"], names["file"]["events"][:])
+
+
+def aHoldIsAFault(folder, environment):
+    """What takes the forces away before the end is told, and once."""
+    import h5py
+    file = os.path.join(folder, "held.h5")
+    command = [HAPTICD, "run", os.path.join(SCENES, "teapot.yaml"), "--for", "60", "--name", "held", "--record", file]
+    with subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as run:
+        ask = program(HAPTICD, environment, together=True)
+        end = time.monotonic() + 30
+        while time.monotonic() < end and ask("ctl", "--name", "held", "hold")[0] != 0:
+            time.sleep(0.2)
+        time.sleep(0.3)
+        code, told = ask("ctl", "--name", "held", "stop")
+        check("the run that is held ends", code == 0 and run.wait(60) == 0, told)
+    events = h5py.File(file)["events"][:]
+    faults = events[events["kind"] == FAULT]
+    check("a hold is an event of a fault, once", len(faults) == 1 and faults["code"][0] == 8, faults)
 
 
 def killLeavesAReadableFile(folder, environment):
@@ -74,5 +94,7 @@ with tempfile.TemporaryDirectory() as scratch:
     check("a picture that cannot be written is bad input, as it is to run", status == 2 and "cannot be written" in text, text)
     status, text = hapticd("replay", teapot, "--set", "teapot.stiffness=900")
     check("a changed stiffness is found", status == 1 and "differ" in text, text)
-    killLeavesAReadableFile(scratch, dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch))
+    environment = dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch)
+    aHoldIsAFault(scratch, environment)
+    killLeavesAReadableFile(scratch, environment)
 finish()

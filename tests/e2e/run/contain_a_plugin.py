@@ -47,10 +47,14 @@ def crash(folder, environment, how, reasons):
     models = json.load(open(os.path.join(folder, "report.json")))["models"]
     check(f"{how}: the next start leaves it out, says so, and runs the rest",
           list(models) == ["good"] and "model bad: plugin 'deadly'" in err and any(reason in err for reason in reasons), (code, err, list(models)))
+    code, out, err = hapticd(environment, "check", "--files-only", scene)
+    check(f"{how}: check of the scene says that the plugin is in quarantine, why, and how to clear it",
+          code == 0 and ":4:" in out and all(word in out for word in ("deadly is in quarantine", "plugin clear deadly")) and any(reason in out for reason in reasons), (out, err))
     code, out, _ = hapticd(environment, "doctor", "--json", "--seconds", "0")
     line = next(c for c in json.loads(out)["checks"] if c["name"] == "quarantine")
     check(f"{how}: doctor warns of it", line["verdict"] == "warn" and "deadly" in line["state"], line)
     check(f"{how}: clear frees it", hapticd(environment, "plugin", "clear", "deadly")[0] == 0)
+    check(f"{how}: then check is silent", "quarantine" not in hapticd(environment, "check", "--files-only", scene)[1])
     code, _, err = hapticd(environment, "run", scene, "--for", "0.5")
     check(f"{how}: and it is trusted again", code == 1 and "'deadly'" in err, (code, err))
     hapticd(environment, "plugin", "clear", "deadly")

@@ -58,6 +58,22 @@ TEST(Program, DescribesAFileAsAForkDoesAndTellsHowABadOneEnds) {
   }
 }
 
+std::string fails() {
+  throw std::runtime_error("no way out");
+}
+
+TEST(Child, ThatThrowsTellsTheWordsOfItsException) {
+  const auto thrown = runInChild([]() -> std::string { throw std::runtime_error("the coffee is cold"); }, 5000);
+  ASSERT_FALSE(thrown);
+  EXPECT_EQ(thrown.error(), "threw an exception: the coffee is cold");
+  const auto ended = runInChild([]() noexcept { return fails(); }, 5000);
+  ASSERT_FALSE(ended);
+  EXPECT_EQ(ended.error(), "threw an exception: no way out");
+  const auto silent = runInChild([]() -> std::string { throw 7; }, 5000);
+  ASSERT_FALSE(silent);
+  EXPECT_EQ(silent.error(), "threw an exception");
+}
+
 TEST(Program, ThatClosesItsDescriptorsAndHangsIsEndedInTime) {
   const auto hangs = runProgram({"/bin/sh", "-c", "exec 3>&-; exec sleep 60"}, 300);
   ASSERT_FALSE(hangs);

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "record/pace_report.hpp"
 #include "record/picture.hpp"
 
 namespace hapticd::record {
@@ -132,6 +133,42 @@ TEST_F(Report, TellsPeopleOfModelsThatAnsweredCoarserWithoutContact) {
   report.models.push_back({"far", "sphere", {}});
   report.models[1].degraded_ticks = 500;
   EXPECT_NE(summary(report).find("lowered for 1 of 2 models, in up to 50 % of the ticks"), std::string::npos);
+}
+
+TEST_F(Report, NamesAModelWhoseStepsTakeLongerThanThePeriod) {
+  RunReport report = sample();
+  for (int i = 0; i < 1000; ++i) {
+    report.compute_us.add(i < 220 ? 5150 : 12);
+    report.models[0].contact.add(true, 0.002, 1.5, 1e-3, i < 220 ? 5'100'000 : 400);
+  }
+  EXPECT_EQ(paceText(report, 1000),
+            "slow: ball took 5.1 ms in 220 ticks; the period is 1 ms: see hapticd plugin check\n");
+  report.virtual_time = true;
+  const std::string text = paceText(report, 1000);
+  EXPECT_NE(
+      text.find("220 of 1000 ticks took longer than their period of 1 ms: at this cost 1000 Hz would not be held"),
+      std::string::npos)
+      << text;
+  EXPECT_EQ(paceText(report, 100), "") << "a period of 10 ms is enough";
+}
+
+TEST_F(Report, NamesAModelThatSleepsByItsLongestStep) {
+  RunReport report = sample();
+  for (int i = 0; i < 1000; ++i) report.compute_us.add(i < 200 ? 5060 : 12);
+  report.models[0].contact.add(true, 0.002, 1.5, 1e-3, 5'030'000);
+  const std::string text = paceText(report, 1000);
+  EXPECT_NE(text.find("200 of 1000 ticks took longer than the period of 1 ms, and ball up to 5 ms"), std::string::npos)
+      << text;
+}
+
+TEST_F(Report, SaysNothingOfAFewTicksThatABusyMachineWasLateIn) {
+  RunReport report = sample();
+  report.virtual_time = true;
+  for (int i = 0; i < 1000; ++i) {
+    report.compute_us.add(i < 9 ? 8000 : 12);
+    report.models[0].contact.add(true, 0.002, 1.5, 1e-3, i < 9 ? 7'000'000 : 400);
+  }
+  EXPECT_EQ(paceText(report, 1000), "");
 }
 
 TEST_F(Report, TellsPeopleThatNothingWasTouched) {

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "record/pace_report.hpp"
+
+#include <fmt/format.h>
+
+namespace hapticd::record {
+namespace {
+
+constexpr uint64_t kFew = 10;  ///< ticks that any machine is late in
+
+/// Values above a bound; those of the bucket that the bound lies in do not count.
+uint64_t above(const Histogram& h, double bound) {
+  uint64_t count = 0;
+  for (int i = Histogram::bucketOf(bound) + 1; i < Histogram::kBuckets; ++i) count += h.count(i);
+  return count;
+}
+
+/// A model whose steps compute longer than a period. Of the servo thread only time of the processor is taken, once a
+/// step was slow: a shape that sleeps shows by its longest step alone.
+std::string slowText(const ModelReport& model, double period_us) {
+  const Histogram& step = model.contact.stepUs();
+  const uint64_t slow = above(step, period_us);
+  if (slow < kFew || slow * 1000 < step.total()) return "";
+  const double typical = step.quantile(1 - 0.5 * static_cast<double>(slow) / static_cast<double>(step.total()));
+  return fmt::format("slow: {} took {:.2g} ms in {} ticks; the period is {:.2g} ms: see hapticd plugin check\n",
+                     model.name, typical * 1e-3, slow, period_us * 1e-3);
+}
+
+}  // namespace
+
+std::string paceText(const RunReport& report, double asked_hz) {
+  if (!(asked_hz > 0)) return "";
+  const double period_us = 1e6 / asked_hz;
+  const uint64_t late = above(report.compute_us, period_us), all = report.compute_us.total();
+  std::string text;
+  for (const ModelReport& model : report.models) text += slowText(model, period_us);
+  if (report.virtual_time && late >= kFew && late * 100 >= all)
+    text += fmt::format(
+        "slow: {} of {} ticks took longer than their period of {:.2g} ms: at this cost {:.0f} Hz would not be held on "
+        "a "
+        "real clock\n",
+        late, all, period_us * 1e-3, asked_hz);
+  if (text.empty() && late >= kFew && late * 20 >= all)
+    for (const ModelReport& model : report.models)
+      if (const double most = model.contact.stepUs().max(); most > period_us)
+        text += fmt::format(
+            "slow: {} of {} ticks took longer than the period of {:.2g} ms, and {} up to {:.2g} ms, though it computes "
+            "little: hapticd plugin check tells whether it waits\n",
+            late, all, period_us * 1e-3, model.name, most * 1e-3);
+  return text;
+}
+
+}  // namespace hapticd::record

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+/// What a step may cost: it ends within a period, does not wait, and makes no system call, allocation or lock.
+#include <algorithm>
+#include <cstdio>
+
+#include "base/clock.hpp"
+#include "conformance/conformance_parts.hpp"
+#include "conformance/lock_count.hpp"
+#include "conformance/step_watch.hpp"
+
+namespace hapticd::conformance {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr uint64_t kPeriodNs = 1'000'000;  ///< of a servo at 1 kHz
+
+/// What some steps took.
+struct Spent {
+  std::vector<uint64_t> wall_ns, cpu_ns;
+  size_t waited = 0;
+
+  void add(const StepCost& cost) {
+    wall_ns.push_back(cost.wall_ns);
+    cpu_ns.push_back(cost.cpu_ns);
+    waited += cost.waited ? 1 : 0;
+  }
+};
+
+uint64_t median(std::vector<uint64_t> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+std::string milliseconds(uint64_t ns) {
+  char words[32];
+  std::snprintf(words, sizeof words, "%.2g ms", static_cast<double>(ns) * 1e-6);
+  return words;
+}
+
+/// "" or why steps like these keep the servo from its period. A busy machine makes no step wait, nor compute more.
+std::string tooSlow(const Spent& spent, const char* where, uint64_t claim_ns) {
+  const size_t count = spent.wall_ns.size();
+  const std::string of = " (median of " + std::to_string(count) + " steps " + where + ")";
+  if (spent.waited >= 3 && spent.waited * 10 >= count)
+    return "takes about " + milliseconds(median(spent.wall_ns)) + " a step" + of + ", and waits in " +
+           std::to_string(spent.waited) + " of them: it sleeps, or waits for a lock or a file; a step only computes";
+  const uint64_t computes = median(spent.cpu_ns);
+  if (computes <= std::max(kPeriodNs, claim_ns)) return "";
+  return "takes about " + milliseconds(computes) + " a step" + of +
+         ", all of it computing; a servo at 1000 Hz has 1 ms for everything (a shape that is meant to be as slow "
+         "claims it: report.worst_ns)";
+}
+
+/// Free steps and touched ones apart: a law of contact may be all that is slow.
+std::string stepsEndInTime(const Recipe& recipe, uint64_t) {
+  constexpr Nanoseconds kLong = kNanosecondsPerSecond / 2;  // a hundred steps of 5 ms are enough to judge
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  made.subject->measureCost();
+  Spent free, touched;
+  const Nanoseconds end = monotonicNow() + kLong;
+  const auto look = [&](const Answer& answer, const Vector3d&) {
+    const hsp_contact& c = answer.contacts[0];
+    const bool touches = c.depth_m > 0 || !Vector3d(c.force).isZero(0);
+    (touches ? touched : free).add(made.subject->cost());
+    return std::string(monotonicNow() < end ? "" : "enough");
+  };
+  std::string enough;
+  for (const Place& place : recipe.touch.places)
+    if (enough.empty())
+      enough = press(*made.subject, place, [&](const Answer& a, const PressStep& step) { return look(a, step.p); });
+  if (enough.empty()) along(*made.subject, look);
+  const uint64_t claim = made.subject->report().worst_ns;
+  const std::string wrong = tooSlow(touched, "in contact", claim);
+  return wrong.empty() ? tooSlow(free, "without contact", claim) : wrong;
+}
+
+std::string noAllocation(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  along(*made.subject, [](const Answer&, const Vector3d&) { return ""; });
+  const uint64_t count = made.subject->allocations();
+  return count == 0 ? "" : std::to_string(count) + " allocations in " + std::to_string(kConformanceSteps) + " steps";
+}
+
+std::string noLock(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  if (!countLocksOf(recipe.file)) return "skip: the file imports no lock function, or cannot be read";
+  uint64_t locks = 0;
+  for (int i = 0; i < kConformanceSteps; ++i) {
+    const Vector3d p = onPath(*made.subject, static_cast<double>(i) / kConformanceSteps);
+    const uint64_t before = locksCounted();
+    made.subject->step({p}, kConformanceDt);
+    locks += i % 5 != 0 ? locksCounted() - before : 0;  // searches belong to another thread, which may lock
+  }
+  return locks == 0 ? "" : std::to_string(locks) + " locks in " + std::to_string(kConformanceSteps) + " steps";
+}
+
+/// Output to the terminal is the commonest one: without a buffer each line shows.
+std::string noSystemCall(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  std::setvbuf(stdout, nullptr, _IONBF, 0);
+  if (!watchSystemCalls()) return "skip: this kernel does not tell (it takes Linux 5.11 on x86-64)";
+  uint64_t steps = 0;
+  Vector3d first = Vector3d::Zero();
+  along(*made.subject, [&](const Answer&, const Vector3d& p) {
+    if (steps++ == 0 || systemCalls().steps == 0) first = p;
+    return "";
+  });
+  const SystemCalls calls = systemCalls();
+  if (calls.steps == 0) return "";
+  const std::string what = calls.prints ? "it prints" : "it makes system calls (" + systemCallName(calls.number) + ")";
+  return what + " in " + std::to_string(calls.steps) + " of " + std::to_string(steps) +
+         " steps, first with the probe at " + text(first) +
+         "; a step only computes: write, read and wait outside of touch() and step()";
+}
+
+std::string stepCost(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  const uint64_t claim = std::max(made.subject->report().worst_ns, made.subject->report().typical_ns);
+  std::vector<uint64_t> spent;
+  along(*made.subject, [&](const Answer&, const Vector3d&) {
+    spent.push_back(made.subject->stepNs());
+    return "";
+  });
+  const std::string takes = "a step takes " + std::to_string(median(spent)) + " ns (median)";
+  if (claim == 0) return "skip: it claims no cost (report.worst_ns); " + takes;
+  return median(spent) <= claim ? "" : takes + "; the claimed worst is " + std::to_string(claim);
+}
+
+}  // namespace
+
+std::vector<ConformanceTest> costTests() {
+  return {
+      {"steps-end-in-time", "every step comes back, and soon", &stepsEndInTime},
+      {"no-system-call-in-step", "steps make no system call", &noSystemCall, kInTime},
+      {"no-allocation-in-step", "steps do not allocate", &noAllocation, kInTime},
+      {"no-lock-in-step", "steps do not lock", &noLock, kInTime},
+      {"step-cost-vs-claim", "steps take no longer than claimed", &stepCost, kInTime},
+  };
+}
+
+}  // namespace hapticd::conformance

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+/// Units of parameters: a scene is in SI throughout, and a number in mm that stands among metres is read as metres.
+#include <cctype>
+#include <string_view>
+
+#include "conformance/conformance_parts.hpp"
+
+namespace hapticd::conformance {
+namespace {
+
+struct Foreign {
+  std::string_view unit, si;
+};
+
+/// Units that authors write, and what a scene has in their place.
+constexpr Foreign kForeign[] = {
+    {"mm", "m"},       {"cm", "m"},   {"um", "m"},          {"nm", "m"},    {"km", "m"},       {"in", "m"},
+    {"inch", "m"},     {"g", "kg"},   {"mg", "kg"},         {"t", "kg"},    {"ms", "s"},       {"us", "s"},
+    {"ns", "s"},       {"min", "s"},  {"h", "s"},           {"kHz", "Hz"},  {"MHz", "Hz"},     {"rpm", "rad/s"},
+    {"mN", "N"},       {"kN", "N"},   {"kgf", "N"},         {"deg", "rad"}, {"degree", "rad"}, {"degrees", "rad"},
+    {"\u00b0", "rad"}, {"kPa", "Pa"}, {"MPa", "Pa"},        {"GPa", "Pa"},  {"bar", "Pa"},     {"psi", "Pa"},
+    {"mV", "V"},       {"mA", "A"},   {"%", "a part of 1"}, {"mJ", "J"},    {"mW", "W"},
+};
+
+/// The first part of a unit, such as "mm" of "N/mm", that is not SI; nullptr: none is known to be.
+const Foreign* foreignPart(std::string_view unit) {
+  const auto letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '%' || c < 0; };
+  for (size_t i = 0; i < unit.size();) {
+    size_t end = i;
+    while (end < unit.size() && letter(unit[end])) ++end;
+    for (const Foreign& foreign : kForeign)
+      if (unit.substr(i, end - i) == foreign.unit) return &foreign;
+    i = end + 1;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::string unitsSi(const Recipe& recipe, uint64_t) {
+  auto made = Subject::make(recipe);
+  if (!made) return made.error();
+  const hsp_class& c = (*made)->description();
+  std::string found;
+  for (uint32_t i = 0; i < c.param_count; ++i) {
+    const hsp_param& p = paramAt(c, i);
+    const Foreign* foreign = p.unit != nullptr ? foreignPart(p.unit) : nullptr;
+    if (foreign == nullptr) continue;
+    found += (found.empty() ? "" : "; ") + std::string(p.id) + ": the unit is \"" + p.unit + "\", expected " +
+             std::string(foreign->si) + " for " + std::string(foreign->unit);
+  }
+  return found.empty() ? "" : "warn: " + found + ": scenes are in SI units throughout";
+}
+
+}  // namespace hapticd::conformance
