@@ -71,6 +71,9 @@ TEST_F(ImportCommands, CheckSaysWhatAPartCannotDo) {
 
 TEST_F(ImportCommands, NamesInstanceAndFaceOfAFeature) {
   const std::string part = HAPTICD_SOURCE_DIR "/config/models/as1.hpart";
+  EXPECT_TRUE(has(run("part info " + part).text, "instance 'rod_1': body 1, features 16 to 19"));
+  EXPECT_EQ(run("part info " + part + " --feature 17").text, "as1/rod-assembly_1/rod_1: face 1\n");
+  EXPECT_EQ(run("part info " + part + " --feature 160").exit_code, 2);
   const std::string scene =
       put("rod.yaml", "hapticd: 1\nmodels:\n  - {name: rod, plugin: nurbs_rigid, parameters: {geometry: " + part +
                           ", instance: rod-assembly_1}}\n");
