@@ -96,6 +96,14 @@ std::string listed(const Json& counts) {
   return text;
 }
 
+/// An importer leaves it to whoever loads the part to tell smooth, convex and concave edges apart.
+std::string edgesOf(const Json& info) {
+  Json told = info["edge_kinds"];
+  told.erase(kEdgeNames[0]);
+  const std::string all = std::to_string(info["edges"].get<std::size_t>()), kinds = listed(told);
+  return kinds.empty() ? all : all + ", of these " + kinds;
+}
+
 void printBodies(const Json& info) {
   for (const Json& body : info["bodies"]) {
     const std::string name = body["name"].get<std::string>();
@@ -121,6 +129,13 @@ void printInstances(const Json& info) {
   }
 }
 
+std::string sizeOf(const Json& loss) {
+  const double size = loss["size_m"].get<double>();
+  char text[32] = "";
+  if (size > 0) std::snprintf(text, sizeof text, " (%.3g m)", size);
+  return text;
+}
+
 void print(const std::string& file, const Json& info) {
   std::printf("%s: %s, %zu bytes\n", file.c_str(), info["format"].get<std::string>().c_str(),
               info["bytes"].get<std::size_t>());
@@ -129,13 +144,13 @@ void print(const std::string& file, const Json& info) {
               source["unit"].get<std::string>().c_str(), info["tolerance_m"].get<double>());
   if (info["faces"].get<std::size_t>() > 0) {
     std::printf("  faces: %s\n", listed(info["face_kinds"]).c_str());
-    std::printf("  edges: %s\n", listed(info["edge_kinds"]).c_str());
+    std::printf("  edges: %s\n", edgesOf(info).c_str());
   }
   printBodies(info);
   printInstances(info);
   for (const Json& loss : info["losses"])
-    std::printf("  lost: %s: %s (%.3g m)\n", loss["what"].get<std::string>().c_str(),
-                loss["reason"].get<std::string>().c_str(), loss["size_m"].get<double>());
+    std::printf("  lost: %s: %s%s\n", loss["what"].get<std::string>().c_str(),
+                loss["reason"].get<std::string>().c_str(), sizeOf(loss).c_str());
   for (const Json& warning : info["warnings"]) std::printf("  %s\n", warning.get<std::string>().c_str());
 }
 

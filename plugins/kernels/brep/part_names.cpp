@@ -3,6 +3,16 @@
 
 namespace hapticd::brep {
 
+std::string plainText(std::string text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0;
+    if (byte < ' ' || byte == 0x7f) text[i] = ' ';
+    if (byte == 0xc2 && next >= 0x80 && next < 0xa0) text[i] = text[i + 1] = ' ';  // U+0080 to U+009F
+  }
+  return text;
+}
+
 std::string instanceName(const Part& part, std::uint32_t index) {
   const Instance& instance = part.instances[index];
   if (instance.name != kNone && !part.names[instance.name].empty()) return part.names[instance.name];

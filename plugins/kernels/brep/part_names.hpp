@@ -7,6 +7,10 @@
 
 namespace hapticd::brep {
 
+/// [main] UTF-8 text whose control characters became spaces: names of foreign files are shown in terminals, which would
+/// obey them.
+std::string plainText(std::string text);
+
 /// [main] The name of an instance, else of its body, else its number as "#3".
 std::string instanceName(const Part& part, std::uint32_t instance);
 
