@@ -18,6 +18,7 @@
 #include "host/device_instance.hpp"
 #include "tune/stability.hpp"
 #include "watch/quarantine.hpp"
+#include "world/arm_force.hpp"
 
 namespace hapticd::cli {
 
@@ -120,7 +121,7 @@ Verdict checkOne(const std::string& file, const Options& options) {
   Verdict verdict{file, scene::checkFile(file, catalog(), &scene), {}};
   document::Problems& found = verdict.problems;
   ModelTrial trial;
-  if (scene && !options.files_only) trial = tryModels(*scene);
+  if (scene && !options.files_only) trial = tryModels(*scene, servo::maxForceOf(withArm(*scene)));
   found.insert(found.end(), trial.problems.begin(), trial.problems.end());
   if (!scene) {
     const document::Problems more = tryDevice(file, catalog(), found);

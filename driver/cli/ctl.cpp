@@ -26,6 +26,7 @@ struct Options {
   std::vector<double> position, orientation;
   std::optional<double> seconds;
   double value = 0, tolerance = 0, hold = 1;
+  uint32_t number = 0;
   bool consent = false, follow = false;
 };
 
@@ -129,6 +130,7 @@ std::string exampleOf(const std::string& word) {
       {"reload", "reload config/scenes/teapot.yaml"},
       {"hold", "hold"},
       {"clear", "clear"},
+      {"feature", "feature engine 12"},
       {"geometry", "geometry teapot --obj teapot.obj"},
       {"events", "events --follow"},
       {"dump", "dump"},
@@ -169,6 +171,16 @@ void addGeometryRequest(CLI::App& ctl, const std::shared_ptr<Options>& options, 
                  "print every new frame of vertices (about 60 per second), one line of JSON each")
       ->excludes("--obj")
       ->excludes("--tolerance");
+}
+
+void addFeatureRequest(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
+  CLI::App* feature = addRequest(ctl, "feature", "Print what a feature of a model's contacts is called.", options,
+                                 exit_code, [options](Json& json) {
+                                   json["model"] = options->model;
+                                   json["number"] = options->number;
+                                 });
+  feature->add_option("model", options->model, "name of the model")->required();
+  feature->add_option("number", options->number, "feature of a trace or recording, counted from 0")->required();
 }
 
 /// Prints what happened, a line of JSON each; with `follow` also what happens from now on, until the daemon ends.
@@ -309,6 +321,7 @@ void addCtl(CLI::App& app, int& exit_code) {
   addSceneRequests(*ctl, options, exit_code);
   addDeviceRequests(*ctl, options, exit_code);
   addGeometryRequest(*ctl, options, exit_code);
+  addFeatureRequest(*ctl, options, exit_code);
   addLead(*ctl, options, exit_code);
   addEvents(*ctl, options, exit_code);
   addRequest(*ctl, "dump", "Write the black box to disk: every tick of the last 10 s.", options, exit_code, nothing);

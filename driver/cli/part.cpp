@@ -4,10 +4,12 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "base/regular_file.hpp"
 #include "cli/command.hpp"
 #include "kernels/brep/part_file.hpp"
+#include "kernels/brep/part_names.hpp"
 
 namespace hapticd::cli {
 namespace {
@@ -56,6 +58,7 @@ Json instancesOf(const Part& part) {
       entry["body"] = instance.body;
       entry["first_feature"] = feature;
       feature += std::size_t{body.face_count} + body.triangle_count;
+      entry["last_feature"] = feature - std::min<std::size_t>(feature, 1);
     }
     entry["position_m"] = {instance.pose[3], instance.pose[7], instance.pose[11]};
     instances.push_back(std::move(entry));
@@ -93,6 +96,14 @@ std::string listed(const Json& counts) {
   return text;
 }
 
+/// An importer leaves it to whoever loads the part to tell smooth, convex and concave edges apart.
+std::string edgesOf(const Json& info) {
+  Json told = info["edge_kinds"];
+  told.erase(kEdgeNames[0]);
+  const std::string all = std::to_string(info["edges"].get<std::size_t>()), kinds = listed(told);
+  return kinds.empty() ? all : all + ", of these " + kinds;
+}
+
 void printBodies(const Json& info) {
   for (const Json& body : info["bodies"]) {
     const std::string name = body["name"].get<std::string>();
@@ -112,10 +123,17 @@ void printInstances(const Json& info) {
     const std::string name = instance["name"].get<std::string>();
     std::printf("  %*sinstance %s", 2 * depth.back(), "", name.empty() ? "unnamed" : ("'" + name + "'").c_str());
     if (instance.contains("body"))
-      std::printf(": body %zu, features from %zu", instance["body"].get<std::size_t>(),
-                  instance["first_feature"].get<std::size_t>());
+      std::printf(": body %zu, features %zu to %zu", instance["body"].get<std::size_t>(),
+                  instance["first_feature"].get<std::size_t>(), instance["last_feature"].get<std::size_t>());
     std::printf("\n");
   }
+}
+
+std::string sizeOf(const Json& loss) {
+  const double size = loss["size_m"].get<double>();
+  char text[32] = "";
+  if (size > 0) std::snprintf(text, sizeof text, " (%.3g m)", size);
+  return text;
 }
 
 void print(const std::string& file, const Json& info) {
@@ -126,21 +144,30 @@ void print(const std::string& file, const Json& info) {
               source["unit"].get<std::string>().c_str(), info["tolerance_m"].get<double>());
   if (info["faces"].get<std::size_t>() > 0) {
     std::printf("  faces: %s\n", listed(info["face_kinds"]).c_str());
-    std::printf("  edges: %s\n", listed(info["edge_kinds"]).c_str());
+    std::printf("  edges: %s\n", edgesOf(info).c_str());
   }
   printBodies(info);
   printInstances(info);
   for (const Json& loss : info["losses"])
-    std::printf("  lost: %s: %s (%.3g m)\n", loss["what"].get<std::string>().c_str(),
-                loss["reason"].get<std::string>().c_str(), loss["size_m"].get<double>());
+    std::printf("  lost: %s: %s%s\n", loss["what"].get<std::string>().c_str(),
+                loss["reason"].get<std::string>().c_str(), sizeOf(loss).c_str());
   for (const Json& warning : info["warnings"]) std::printf("  %s\n", warning.get<std::string>().c_str());
 }
 
-int partInfo(const std::string& file, bool json) {
+int printFeature(const std::string& file, const Part& part, std::uint32_t feature) {
+  const std::string name = brep::featureName(part, feature);
+  if (name.empty())
+    return fail(kBadInput, file + ": has no feature " + std::to_string(feature) + "; hapticd part info lists them");
+  std::printf("%s\n", name.c_str());
+  return kWorked;
+}
+
+int partInfo(const std::string& file, bool json, std::optional<std::uint32_t> feature) {
   const auto bytes = readRegular(file, kMaxPartBytes);
   if (!bytes) return fail(kBadInput, file + ": " + bytes.error());
   try {
     const Part part = brep::readPart(std::as_bytes(std::span(*bytes)), file);
+    if (feature) return printFeature(file, part, *feature);
     const Json info = describe(part, bytes->size());
     if (json)
       std::printf("%s\n", info.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
@@ -164,8 +191,11 @@ void addPart(CLI::App& app, int& exit_code) {
   CLI::App* info = command->add_subcommand("info", "Show what a part file holds: bodies, instances, faces, losses.");
   info->add_option("part", *file, "a part file (.hpart)")->required();
   info->add_flag("--json", *json, "print JSON");
+  auto feature = std::make_shared<std::optional<std::uint32_t>>();
+  info->add_option("--feature", *feature, "print instance and face of this number alone, as it stands in a trace")
+      ->excludes("--json");
   info->footer("Example:\n  hapticd part info bracket.hpart");
-  info->callback([file, json, &exit_code] { exit_code = partInfo(*file, *json); });
+  info->callback([file, json, feature, &exit_code] { exit_code = partInfo(*file, *json, *feature); });
 }
 
 }  // namespace hapticd::cli

@@ -103,13 +103,15 @@ class RecordedModelsImpl final : public RecordedModels {
     const auto request = control::parseRequest(at ? json.dump(-1, ' ', false, Json::error_handler_t::replace) : line);
     if (!request) return control::refusal(request.error());
     if (request->kind == Request::Kind::kList) return list();
-    if (request->kind != Request::Kind::kGeometry) return control::refusal("a recording cannot be changed");
+    const bool names = request->kind == Request::Kind::kFeature;
+    if (!names && request->kind != Request::Kind::kGeometry) return control::refusal("a recording cannot be changed");
     const auto model =
         std::find_if(models_.begin(), models_.end(), [&](const Built& built) { return built.name == request->model; });
     if (model == models_.end()) return control::refusal("the recording has no model \"" + request->model + "\"");
     if (!model->world) return control::refusal(model->error);
     if (at && model->rerun) model->rerun->goTo(*at);
     const host::ShapeInstance& shape = *model->world->shapes()[0];
+    if (names) return servo::featureAnswer(shape, request->number);
     auto drawn = request->as_memory ? servo::geometryInMemory(shape, request->tolerance, memory)
                                     : servo::geometryAnswer(shape, request->tolerance);
     return drawn ? *drawn : control::refusal(drawn.error());

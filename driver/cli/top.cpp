@@ -38,6 +38,7 @@ struct Options {
 struct ModelLine {
   std::string name, plugin;
   status::ModelNow now;
+  status::ModelFeet feet;
   std::string silenced;              ///< why it is not felt any more; "": it is
   double p50 = 0, p99 = 0, max = 0;  ///< [us] of a step
   bool traced = false;
@@ -88,6 +89,7 @@ View look(const status::Page& page) {
     ModelLine line{textOf(name.text, sizeof name.text),
                    textOf(name.kind, sizeof name.kind),
                    page.model[i].now.read().value_or(status::ModelNow{}),
+                   page.feet[i].read().value_or(status::ModelFeet{}),
                    "",
                    0,
                    0,
@@ -153,6 +155,7 @@ Json toJson(const View& view) {
                       {"depth_mm", m.traced ? Json(m.now.depth * 1e3) : Json()},
                       {"iterations", m.now.iterations},
                       {"gain", m.now.gain},
+                      {"feet", {{"nearest", m.feet.nearest}, {"held", m.feet.held}, {"degraded", m.feet.degraded}}},
                       {"status", m.now.status},
                       {"silenced", m.silenced.empty() ? Json() : Json(m.silenced)}});
   return {{"seconds", view.now.t},
@@ -184,6 +187,14 @@ std::string clientsTable(const View& view) {
   return text;
 }
 
+/// Share of the ticks with a foot in which it was known: the nearest point, or held by a contact.
+std::string knownShare(const status::ModelFeet& feet) {
+  const uint64_t known = feet.nearest + feet.held, all = known + feet.degraded;
+  if (all == 0) return "-";
+  const double percent = std::floor(1000.0 * static_cast<double>(known) / static_cast<double>(all)) / 10;
+  return fmt::format("{:.1f}%", percent);  // rounded down: 100 % means all
+}
+
 std::string table(const View& view, size_t rows) {
   std::string text = fmt::format(
       "{:10.1f} s   {:.0f} Hz asked, {:.0f} held   {} missed   late {:.1f} / {:.1f} / {:.0f} us   tick {:.1f} / {:.1f} "
@@ -198,13 +209,13 @@ std::string table(const View& view, size_t rows) {
                         arm.force(), 1e3 * arm.now.position[0], 1e3 * arm.now.position[1], 1e3 * arm.now.position[2],
                         arm.now.sequence, arm.fault());
   text += clientsTable(view);
-  text += fmt::format("\n{:<28} {:<16} {:>9} {:>9} {:>8} {:>8} {:>8} {:>5}  {}\n", "MODEL", "PLUGIN", "FORCE N",
-                      "DEPTH mm", "p50 us", "p99 us", "max us", "ITER", "STATUS");
+  text += fmt::format("\n{:<28} {:<16} {:>9} {:>9} {:>8} {:>8} {:>8} {:>5} {:>7}  {}\n", "MODEL", "PLUGIN", "FORCE N",
+                      "DEPTH mm", "p50 us", "p99 us", "max us", "ITER", "KNOWN", "STATUS");
   for (size_t i = 0; i < std::min(rows, view.models.size()); ++i) {
     const ModelLine& m = view.models[i];
     const std::string depth = m.traced ? fmt::format("{:.3f}", m.now.depth * 1e3) : "-";
-    text += fmt::format("{:<28.28} {:<16.16} {:9.3f} {:>9} {:8.2f} {:8.2f} {:8.1f} {:5}  {}\n", m.name, m.plugin,
-                        m.now.force, depth, m.p50, m.p99, m.max, m.now.iterations,
+    text += fmt::format("{:<28.28} {:<16.16} {:9.3f} {:>9} {:8.2f} {:8.2f} {:8.1f} {:5} {:>7}  {}\n", m.name, m.plugin,
+                        m.now.force, depth, m.p50, m.p99, m.max, m.now.iterations, knownShare(m.feet),
                         m.silenced.empty() ? host::statusText(m.now.status) : "SILENCED");
   }
   if (view.models.size() > rows) text += fmt::format("... and {} more\n", view.models.size() - rows);

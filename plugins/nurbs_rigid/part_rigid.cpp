@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// What a rigid model needs to know of a part: lengths of its faces for bumps, and its mass.
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "nurbs_rigid.hpp"
 #include "traced_shape/part_mesh.hpp"
+#include "traced_shape/thin_walls.hpp"
 
 namespace hapticd {
 
@@ -33,6 +36,24 @@ std::vector<NurbsRigid::Extent> NurbsRigid::extentsOf(const brep::Model& part) {
     }
   }
   return extents;
+}
+
+/// A press that comes out behind is felt all the same, since the contact is held; but the tip is seen on the other
+/// side, and from there it is in front of the next face.
+void NurbsRigid::warnOfThinWalls(const hsp_activation& activation) const {
+  constexpr double kFirmPress = 2;  // [N] of a finger tip that explores [assumption]; the arm's limit is for moments
+  const double force = std::min(forceToClaimFor(activation, kFirmPress), kFirmPress);
+  if (!(stiffness_ > 0) || host() == nullptr || host()->log == nullptr) return;
+  const double depth = contact::wallDepthAt({stiffness_, damping_, exponent_, depth_scale_}, force);
+  const std::optional<ThinWall> wall = thinnestWall(*part(), depth);
+  if (!wall) return;
+  char text[256];
+  std::snprintf(
+      text, sizeof text,
+      ": a wall is %.3g mm thick, and a press of %.3g N goes %.3g mm deep at this stiffness: the tip comes out "
+      "behind; expected a greater stiffness",
+      1e3 * wall->thickness, force, 1e3 * depth);
+  host()->log(host(), HSP_LOG_WARNING, (part()->featureName(wall->feature) + text).c_str());
 }
 
 dynamics::MassProperties massProperties(const brep::Model& part, bool& bounded) {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kernels/brep/part_file.hpp"
-#include "kernels/brep/placements.hpp"
+#include "kernels/brep/part_names.hpp"
 #include "traced_shape.hpp"
 
 namespace hapticd {

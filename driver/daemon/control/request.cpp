@@ -30,8 +30,8 @@ struct Form {
   std::set<std::string> needs, may;
 };
 
-const std::array<Form, 23>& forms() {
-  static const std::array<Form, 23> all = {{{"status", Kind::kStatus, {}, {}},
+const std::array<Form, 24>& forms() {
+  static const std::array<Form, 24> all = {{{"status", Kind::kStatus, {}, {}},
                                             {"list", Kind::kList, {}, {}},
                                             {"snapshot", Kind::kSnapshot, {}, {}},
                                             {"events", Kind::kEvents, {}, {"after"}},
@@ -49,6 +49,7 @@ const std::array<Form, 23>& forms() {
                                             {"dump", Kind::kDump, {}, {}},
                                             {"geometry", Kind::kGeometry, {"model"}, {"tolerance", "as"}},
                                             {"vertices", Kind::kVertices, {"model"}, {"after"}},
+                                            {"feature", Kind::kFeature, {"model", "number"}, {}},
                                             {"lead", Kind::kLead, {}, {"model", "hand", "force"}},
                                             {"unlead", Kind::kUnlead, {}, {"model", "hand", "force"}},
                                             {"state", Kind::kState, {}, {}},
@@ -226,6 +227,9 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
   take.number("tolerance", kFinestDrawing, 1, request.tolerance);
   take.word("as", "memory", request.as_memory);
   take.number("after", 0, kMostFrames, request.after);
+  double number = 0;
+  take.number("number", 0, 4294967295.0, number);
+  request.number = static_cast<uint32_t>(number);
   take.flag("consent", request.consent);
   take.numbers("position", kMaxPlace, request.position);
   readOrientation(take, request);

@@ -33,6 +33,7 @@ struct Request {
     kDump,
     kGeometry,
     kVertices,
+    kFeature,
     kLead,
     kUnlead,
     kState,
@@ -48,6 +49,7 @@ struct Request {
   double tolerance = 0;                           ///< [m] kGeometry: chord error; 0: as the daemon chooses
   bool as_memory = false;                         ///< kGeometry: a descriptor of memory instead of lists in the answer
   double after = 0;                               ///< kVertices: frame that is known; kEvents: the first that is wanted
+  uint32_t number = 0;                            ///< kFeature: of a contact
   bool consent = false;                           ///< kSet: the operator agrees to change what is felt
   std::array<double, 3> position{};               ///< [m] kMove, world frame
   std::array<double, 4> orientation{1, 0, 0, 0};  ///< kMove: unit quaternion w,x,y,z

@@ -7,9 +7,11 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "base/sealed_memory.hpp"
 #include "control/server.hpp"
+#include "hapticd/shape_names.h"
 
 namespace hapticd::servo {
 namespace {
@@ -55,6 +57,21 @@ Error tooMany(const hsp_mesh& mesh, std::size_t most, double tolerance) {
       fmt::format("{} vertices and {} triangles are more than the {} bytes of an answer\n"
                   "  fix: a tolerance coarser than {:g} m",
                   mesh.vertex_count, mesh.triangle_count, most, tolerance)};
+}
+
+std::string featureName(const host::ShapeInstance& shape, uint32_t feature) {
+  constexpr uint64_t kLongest = 256;  // longer names are cut off
+  const hsp_class& plugin = shape.description();
+  if (!shape.active() || !HSP_HAS(&plugin, extension) || plugin.extension == nullptr) return "";
+  const Calling calling(shape.owner());
+  const auto* names = static_cast<const hsp_ext_names*>(plugin.extension(shape.handle(), HSP_EXT_NAMES));
+  if (names == nullptr || names->struct_size < sizeof *names || names->feature == nullptr) return "";
+  std::string text(kLongest, '\0');
+  const int64_t needed = names->feature(shape.handle(), feature, text.data(), text.size());
+  text.resize(std::min<uint64_t>(needed > 0 ? static_cast<uint64_t>(needed) : 0, kLongest));
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';  // it goes to terminals
+  return text;
 }
 
 }  // namespace
@@ -114,6 +131,13 @@ Result<std::string> verticesAnswer(const host::ShapeInstance& shape, double afte
     text += "]";
   }
   return text + "}";
+}
+
+std::string featureAnswer(const host::ShapeInstance& shape, uint32_t feature) {
+  using Json = nlohmann::ordered_json;
+  const std::string name = featureName(shape, feature);
+  return Json({{"ok", true}, {"name", name.empty() ? Json() : Json(name)}})
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace hapticd::servo

@@ -24,4 +24,7 @@ Result<std::string> geometryInMemory(const host::ShapeInstance& shape, double to
 /// not newer than `after`. More are written for a second after each call. Fails where the model's steps write none.
 Result<std::string> verticesAnswer(const host::ShapeInstance& shape, double after);
 
+/// [main] The name of a feature of an active model's contacts, one line of JSON; null where it has none.
+std::string featureAnswer(const host::ShapeInstance& shape, uint32_t feature);
+
 }  // namespace hapticd::servo

@@ -99,6 +99,11 @@ Result<std::string> RequestHandler::tell(const control::Peer& peer, const Reques
       if (!place) return Error{place.error()};
       return verticesAnswer(*runner_.world().shapes()[*place], request.after);
     }
+    case Request::Kind::kFeature: {
+      const auto place = placeOf(request.model);
+      if (!place) return Error{place.error()};
+      return featureAnswer(*runner_.world().shapes()[*place], request.number);
+    }
     default:
       return Error{"this request asks for nothing"};
   }

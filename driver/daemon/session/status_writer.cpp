@@ -36,11 +36,13 @@ void StatusWriter::name(uint32_t place, const std::string& name, const std::stri
   if (place >= status::kMaxModels) return;
   auto& model = file_->page().model[place];
   model.step_us.clear();  // of the one before
+  file_->page().feet[place].write({});
   model.name.write(named(name, plugin));
 }
 
 void StatusWriter::tick(const status::Now& now, Nanoseconds late, Nanoseconds spent, const Core& core,
-                        const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+                        const std::vector<std::unique_ptr<Arm>>& arms,
+                        std::span<const record::ContactStatistics> books) noexcept HSP_RT {
   status::Page& page = file_->page();
   page.now.write(now);
   page.lateness_us.add(static_cast<double>(late) * 1e-3);
@@ -57,7 +59,7 @@ void StatusWriter::tick(const status::Now& now, Nanoseconds late, Nanoseconds sp
     page.arm[i].now.write(arm);
     if (arms[i]->clients().present()) pushers(i, arms[i]->clients());
   }
-  models(now.tick, core);
+  models(now.tick, core, books);
 }
 
 void StatusWriter::pusher(uint32_t arm, uint32_t place, uint64_t pid, const std::string& program) {
@@ -80,7 +82,8 @@ void StatusWriter::pushers(uint32_t index, const ClientForces& clients) noexcept
   }
 }
 
-void StatusWriter::models(uint64_t tick, const Core& core) noexcept HSP_RT {
+void StatusWriter::models(uint64_t tick, const Core& core,
+                          std::span<const record::ContactStatistics> books) noexcept HSP_RT {
   status::Page& page = file_->page();
   for (const uint32_t place : core.live()) {
     if (place >= status::kMaxModels) break;  // in the order of the scene: all others come later
@@ -99,6 +102,8 @@ void StatusWriter::models(uint64_t tick, const Core& core) noexcept HSP_RT {
     now.trouble = static_cast<uint32_t>(model.guard.trouble());
     now.failed_status = model.failed_status;
     page.model[place].now.write(now);
+    if (place < books.size())
+      page.feet[place].write({books[place].nearestFeet(), books[place].heldFeet(), books[place].degradedFeet()});
     if (model.step_ns > 0) page.model[place].step_us.add(static_cast<double>(model.step_ns) * 1e-3);
   }
 }

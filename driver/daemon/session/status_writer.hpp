@@ -2,8 +2,10 @@
 /// Puts each tick onto the status page.
 #pragma once
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "record/contact_statistics.hpp"
 #include "servo/arm/arm.hpp"
 #include "servo/core/core.hpp"
 #include "status/page_file.hpp"
@@ -23,14 +25,16 @@ class StatusWriter {
   void pusher(uint32_t arm, uint32_t place, uint64_t pid, const std::string& program);
 
   /// [rt] After a tick. Copies what lives alone: its cost does not grow with models that are far away.
+  /// @param books by the place of a model
   void tick(const status::Now& now, Nanoseconds late, Nanoseconds spent, const Core& core,
-            const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+            const std::vector<std::unique_ptr<Arm>>& arms,
+            std::span<const record::ContactStatistics> books) noexcept HSP_RT;
 
   const status::Page& page() const { return file_->page(); }
 
  private:
   void pushers(uint32_t index, const ClientForces& clients) noexcept HSP_RT;
-  void models(uint64_t tick, const Core& core) noexcept HSP_RT;
+  void models(uint64_t tick, const Core& core, std::span<const record::ContactStatistics> books) noexcept HSP_RT;
   std::unique_ptr<status::PageFile> file_;
 };
 

@@ -56,7 +56,7 @@ void Telemetry::tick(double t, double dt, Nanoseconds late, const Spent& spent, 
   arms_us_.add(static_cast<double>(spent.in_arms) * 1e-3);
   bookModels(dt, core, row);
   if (flight_) flight_->tick(t, dt, late, spent.total, core, arms);
-  if (status_) status_->tick({booked_, overruns_, missed_, t}, late, spent.total, core, arms);
+  if (status_) status_->tick({booked_, overruns_, missed_, t}, late, spent.total, core, arms, models_);
   ++booked_;
   if (!arms.empty()) {
     const Arm& arm = *arms.front();

@@ -73,6 +73,11 @@ struct ModelNow {
   int32_t failed_status = 0;  ///< the first status that was no status of a step
 };
 
+/// Ticks since a model came whose foot was proved the nearest, held by a contact, or neither.
+struct ModelFeet {
+  uint64_t nearest = 0, held = 0, degraded = 0;
+};
+
 /// A program that pushes on an arm.
 struct Pusher {
   char program[56] = {};
@@ -108,6 +113,7 @@ struct Page {
     Slot<Pusher> who;
     Slot<PusherNow> now;
   } pusher[kMaxArms * kPushersOfArm];  ///< of arm i from i * kPushersOfArm on
+  Slot<ModelFeet> feet[kMaxModels];    ///< by the place of a model
 };
 
 }  // namespace hapticd::status

@@ -19,7 +19,7 @@ namespace {
 constexpr uint64_t kBacklogBytes = 4u << 20;  ///< of rows that a new page gets: 10 s of one arm at 1 kHz
 constexpr uint64_t kAtOnceBytes = 1u << 20;   ///< of one stream in one message
 constexpr double kBacklogSeconds = 10;
-constexpr std::array<std::string_view, 3> kReads = {"status", "list", "geometry"};
+constexpr std::array<std::string_view, 4> kReads = {"status", "list", "geometry", "feature"};
 constexpr std::array<std::string_view, 14> kControls = {"enable", "disable", "move", "set",  "add", "remove", "reload",
                                                         "hold",   "clear",   "dump", "stop", "get", "lead",   "unlead"};
 constexpr size_t kMostLeads = 4;  ///< of one page

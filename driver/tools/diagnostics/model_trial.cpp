@@ -12,12 +12,13 @@ namespace {
 
 constexpr int kLimitMs = 300'000;  ///< thousands of models may need minutes; a hang needs an end
 
-hsp_activation activationOf(const scene::Scene& scene, const scene::Model& model) {
+hsp_activation activationOf(const scene::Scene& scene, const scene::Model& model, double max_force) {
   hsp_activation activation{};
   activation.struct_size = sizeof activation;
   activation.max_probes = 1;
   activation.rate_hz = scene.servo.rate;
   activation.max_probe_speed = 2;
+  activation.max_arm_force = max_force;
   Eigen::Map<Eigen::Vector3d>(activation.gravity) = scene.servo.gravity;
   Eigen::Map<Eigen::Vector3d>(activation.pose.position) = model.pose.position;
   const Eigen::Quaterniond& q = model.pose.orientation;
@@ -55,7 +56,7 @@ class Remarks {
   host::Packer list_;
 };
 
-std::string tryAll(const scene::Scene& scene) {
+std::string tryAll(const scene::Scene& scene, double max_force) {
   Remarks problems, warnings;
   host::Packer claims;
   for (size_t i = 0; i < scene.models.size(); ++i) {
@@ -65,7 +66,7 @@ std::string tryAll(const scene::Scene& scene) {
     };
     if (auto shape = host::ShapeInstance::create(scene.models[i], log); !shape) {
       problems.add(i, shape.error());
-    } else if (const auto activated = (*shape)->activate(activationOf(scene, scene.models[i])); !activated) {
+    } else if (const auto activated = (*shape)->activate(activationOf(scene, scene.models[i], max_force)); !activated) {
       problems.add(i, activated.error());
     } else {
       stiffness = (*shape)->report().max_stiffness;
@@ -77,10 +78,10 @@ std::string tryAll(const scene::Scene& scene) {
 
 }  // namespace
 
-ModelTrial tryModels(const scene::Scene& scene) {
+ModelTrial tryModels(const scene::Scene& scene, double max_force) {
   ModelTrial trial;
   if (scene.models.empty()) return trial;
-  const auto told = host::runInChild([&] { return tryAll(scene); }, kLimitMs);
+  const auto told = host::runInChild([&] { return tryAll(scene, max_force); }, kLimitMs);
   if (!told) {
     document::report(trial.problems, scene.file.string(), 1, 1, "models", "setting them up " + told.error());
     return trial;

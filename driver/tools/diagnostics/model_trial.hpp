@@ -16,6 +16,7 @@ struct ModelTrial {
 
 /// [main] Creates and activates every model in a child process, one after the other, and collects what the plugins
 /// object to. A crash or a hang becomes a problem too.
-ModelTrial tryModels(const scene::Scene& scene);
+/// @param max_force [N] that any arm of the run lets through to the hand (servo::maxForceOf); 0: unknown
+ModelTrial tryModels(const scene::Scene& scene, double max_force);
 
 }  // namespace hapticd::diagnostics

@@ -7,6 +7,7 @@
 
 #include "kernels/brep/feet.hpp"
 #include "kernels/brep/part_bounds.hpp"
+#include "kernels/brep/part_names.hpp"
 #include "kernels/brep/pieces.hpp"
 #include "kernels/brep/placements.hpp"
 #include "kernels/brep/topology.hpp"

@@ -6,6 +6,7 @@
 
 #include "kernels/brep/crc32c.hpp"
 #include "kernels/brep/part_file.hpp"
+#include "kernels/brep/part_names.hpp"
 #include "kernels/brep/part_sections.hpp"
 
 namespace hapticd::brep {
@@ -32,7 +33,7 @@ std::uint64_t wholeNumber(const Json& object, const char* key, const std::string
 
 std::string textAt(const Json& object, const char* key) {
   const auto found = object.is_object() ? object.find(key) : object.end();
-  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
+  return found != object.end() && found->is_string() ? plainText(found->get<std::string>()) : "";
 }
 
 std::vector<std::string> textsAt(const Json& object, const char* key) {
@@ -42,7 +43,7 @@ std::vector<std::string> textsAt(const Json& object, const char* key) {
   if (!found->is_array()) throw PartError(std::string("header: ") + key + " is not a list, expected texts");
   for (const Json& text : *found) {
     if (!text.is_string()) throw PartError(std::string("header: ") + key + " holds something else than texts");
-    texts.push_back(text.get<std::string>());
+    texts.push_back(plainText(text.get<std::string>()));
   }
   return texts;
 }

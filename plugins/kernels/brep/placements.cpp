@@ -4,20 +4,14 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "kernels/brep/part_names.hpp"
+
 namespace hapticd::brep {
 namespace {
 
-std::string nameOf(const Part& part, std::uint32_t index) {
-  const Instance& instance = part.instances[index];
-  if (instance.name != kNone && !part.names[instance.name].empty()) return part.names[instance.name];
-  if (instance.body != kNone && part.bodies[instance.body].name != kNone)
-    return part.names[part.bodies[instance.body].name];
-  return "#" + std::to_string(index);
-}
-
 /// Whether `wanted` names the instance itself, by its name or its path.
 bool isNamed(const Part& part, std::uint32_t index, const std::string& wanted) {
-  return nameOf(part, index) == wanted || instancePath(part, index) == wanted;
+  return instanceName(part, index) == wanted || instancePath(part, index) == wanted;
 }
 
 /// Whether `wanted` names it or an assembly around it.
@@ -54,32 +48,6 @@ Placement placementOf(const Part& part, std::uint32_t index) {
 }
 
 }  // namespace
-
-std::string instancePath(const Part& part, std::uint32_t instance) {
-  std::string path = nameOf(part, instance);
-  for (std::uint32_t i = part.instances[instance].parent; i != kNone; i = part.instances[i].parent)
-    path = nameOf(part, i) + "/" + path;
-  return path;
-}
-
-std::string featureName(const Part& part, std::uint32_t feature) {
-  std::uint64_t first = 0;
-  for (std::uint32_t i = 0; i < part.instances.size(); ++i) {
-    if (part.instances[i].body == kNone) continue;
-    const Body& body = part.bodies[part.instances[i].body];
-    const std::uint64_t count = std::uint64_t{body.face_count} + body.triangle_count;
-    if (feature >= first + count) {
-      first += count;
-      continue;
-    }
-    const auto at = static_cast<std::uint32_t>(feature - first);
-    const std::string path = instancePath(part, i);
-    if (at >= body.face_count) return path + ": triangle " + std::to_string(at - body.face_count);
-    const std::uint32_t name = part.faces[body.first_face + at].name;
-    return path + ": face " + std::to_string(at) + (name == kNone ? "" : " '" + part.names[name] + "'");
-  }
-  return "";
-}
 
 std::vector<Placement> placementsOf(const Part& part, const std::string& wanted, std::uint32_t& feature_count) {
   std::vector<Placement> placements;

@@ -33,6 +33,11 @@ double wallSlopeAt(const WallLaw& law, double force) noexcept {
   return law.exponent * law.stiffness * std::pow(share, 1 - 1 / law.exponent);
 }
 
+double wallDepthAt(const WallLaw& law, double force) noexcept {
+  if (!(force > 0)) return 0;
+  return law.depth_scale * std::pow(force / (law.stiffness * law.depth_scale), 1 / law.exponent);
+}
+
 double wallEnergy(const WallLaw& law, double depth) noexcept {
   if (!(depth > 0)) return 0;
   const double elastic = law.stiffness * law.depth_scale * shape(law, depth);

@@ -29,6 +29,9 @@ WallForce wallForce(const WallLaw& law, double depth, double closing_speed) noex
 /// there for n >= 1. For n < 1 the law is steepest at depth 0, beyond bounds: the slope at depth x0 is the answer.
 double wallSlopeAt(const WallLaw& law, double force) noexcept;
 
+/// [any] Depth [m] at which the elastic part pushes back with `force` [N]; infinite where it never does.
+double wallDepthAt(const WallLaw& law, double force) noexcept;
+
 /// [any] Energy [J] stored at `depth`: the integral of the elastic part.
 double wallEnergy(const WallLaw& law, double depth) noexcept;
 

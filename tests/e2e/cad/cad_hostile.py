@@ -57,6 +57,13 @@ refused("STEP without shapes", put("bare.step", re.sub(rb"(?s)DATA;.*ENDSEC;", b
 refused("an IGES file that is called .step", put("other.step", iges))
 refused("too little memory", put("large.step", step), "--memory", "64")
 
+refused("an IGES file that ends too early", put("short.iges", iges[:int(0.9 * len(iges))]))
+for share in (0.3, 0.6, 0.9, 0.97):  # these waited for words that never came
+    refused(f"a BREP file that ends after {share:.0%}", put("short.brep", brep[:int(share * len(brep))]), "--time", "20")
+face = re.search(rb"(?s)(#\d+) = ADVANCED_FACE.*?;", step)
+code, out, err = run("import", put("faceless.step", step.replace(face[0], b"")), "-o", part)
+check("a face that a STEP file refers to and does not have is lost", code == 0 and "nothing was lost" not in out and f"lost: entity {face[1].decode()}:" in out, out + err)
+
 for name, whole in (("step", step), ("iges", iges), ("brep", brep)):
     for share in (0.3, 0.6, 0.9):
         survived(f"a .{name} that ends after {share:.0%}", put(f"cut.{name}", whole[:int(share * len(whole))]))

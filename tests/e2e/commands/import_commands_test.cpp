@@ -71,12 +71,33 @@ TEST_F(ImportCommands, CheckSaysWhatAPartCannotDo) {
 
 TEST_F(ImportCommands, NamesInstanceAndFaceOfAFeature) {
   const std::string part = HAPTICD_SOURCE_DIR "/config/models/as1.hpart";
+  EXPECT_TRUE(has(run("part info " + part).text, "instance 'rod_1': body 1, features 16 to 19"));
+  EXPECT_EQ(run("part info " + part + " --feature 17").text, "as1/rod-assembly_1/rod_1: face 1\n");
+  EXPECT_EQ(run("part info " + part + " --feature 160").exit_code, 2);
   const std::string scene =
       put("rod.yaml", "hapticd: 1\nmodels:\n  - {name: rod, plugin: nurbs_rigid, parameters: {geometry: " + part +
                           ", instance: rod-assembly_1}}\n");
   const Outcome told = run("explain " + scene, kShipped);
   EXPECT_TRUE(has(told.text, "features 16 to 19: as1/rod-assembly_1/rod_1, faces")) << told.text;
   EXPECT_FALSE(has(told.text, "plate_1")) << told.text;
+}
+
+TEST_F(ImportCommands, CheckWarnsOfAWallThatAPressGoesThrough) {
+  const std::string box =
+      "v 0 0 0\nv 60 0 0\nv 60 40 0\nv 0 40 0\nv 0 0 2\nv 60 0 2\nv 60 40 2\nv 0 40 2\n"
+      "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  const std::string part = (dir_ / "plate.hpart").string();
+  ASSERT_EQ(run("import " + put("plate.obj", box) + " --scale 0.001 -o " + part).exit_code, 0);
+  const auto check = [&](const char* stiffness) {
+    return run("check " + put("scene.yaml", std::string("hapticd: 1\nmodels:\n  - {name: plate, plugin: nurbs_rigid, "
+                                                        "parameters: {geometry: plate.hpart, stiffness: ") +
+                                                stiffness + "}}\n"),
+               kShipped);
+  };
+  const Outcome soft = check("800");
+  EXPECT_EQ(soft.exit_code, 0) << soft.text;
+  EXPECT_TRUE(has(soft.text, "a wall is 2 mm thick")) << soft.text;
+  EXPECT_FALSE(has(check("6000").text, "thick"));
 }
 
 }  // namespace

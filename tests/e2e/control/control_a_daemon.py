@@ -68,6 +68,8 @@ def commands(daemon):
     check("top tells of the model", "teapot" in daemon.ask("top", "--once", "--json")[1])
     check("list tells of the model", "teapot" in daemon.models())
     check("the hand comes to touch it", daemon.until(lambda: json.loads(daemon.ask("top", "--once", "--json")[1])["models"][0]["force_n"] > 0.3))
+    feet = json.loads(daemon.ask("top", "--once", "--json")[1])["models"][0]["feet"]
+    check("top counts what is known of its feet", set(feet) == {"nearest", "held", "degraded"} and feet["nearest"] + feet["held"] > 100, feet)
     daemon.expect(0, "disable", "teapot")
     check("a disabled model is listed so", daemon.until(lambda: not daemon.models()["teapot"]["enabled"]))
     daemon.expect(0, "enable", "teapot")

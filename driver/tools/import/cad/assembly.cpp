@@ -12,6 +12,9 @@
 #include <XCAFDoc_Location.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <cmath>
+#include <utility>
+
+#include "kernels/brep/part_names.hpp"
 
 namespace hapticd::cad {
 namespace {
@@ -30,7 +33,7 @@ std::string nameOf(const TDF_Label& label) {
   if (text.rfind("=>[", 0) == 0) return "";  // what a reference without a name is called
   for (const char* kind : {"COMPOUND", "COMPSOLID", "SOLID", "SHELL", "FACE"})  // and shapes without one
     if (text == kind) return "";
-  return text;
+  return brep::plainText(std::move(text));
 }
 
 std::uint32_t packed(const Quantity_ColorRGBA& colour) {
@@ -123,7 +126,7 @@ void addShape(const TopoDS_Shape& shape, Node node, CadFile& file) {
   const std::vector<TopoDS_Shape> pieces = piecesOf(shape);
   if (file.nodes.size() + pieces.size() >= kMostNodes) throw CadError("more than 1,000,000 instances");
   const gp_Trsf pose = node.pose;
-  const std::string name = node.name, body_name = node.body_name;
+  const std::string name = node.name, body_name = node.body_name.empty() ? name : node.body_name;
   if (pieces.size() > 1) {
     const int parent = static_cast<int>(file.nodes.size());
     file.nodes.push_back(node);
@@ -136,7 +139,7 @@ void addShape(const TopoDS_Shape& shape, Node node, CadFile& file) {
     Node& added = file.nodes.emplace_back(node);
     if (own != file.colours.end()) added.colour = own->second;
     if (pieces.size() == 1) continue;
-    added.name = added.body_name = (body_name.empty() ? name : body_name) + " " + std::to_string(i + 1);
+    added.name = added.body_name = body_name.empty() ? "" : body_name + " " + std::to_string(i + 1);
   }
 }
 

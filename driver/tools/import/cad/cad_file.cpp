@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
 
 #include "cad_import/assembly.hpp"
 #include "cad_import/losses.hpp"
@@ -54,6 +55,7 @@ void readStep(const std::string& file, CadFile& cad) {
   reader.SetLayerMode(true);
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone)
     throw CadError("it is not a STEP file, or it is damaged (expected ISO-10303-21 with shapes in it)");
+  findMissingEntities(reader.ChangeReader().WS(), cad.losses);
   TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
   reader.ChangeReader().FileUnits(lengths, angles, solid_angles);
   cad.unit = lengths.IsEmpty() ? "mm" : shortUnit(lengths.First().ToCString());
@@ -64,12 +66,23 @@ void readStep(const std::string& file, CadFile& cad) {
   findLostFaces(reader.ChangeReader().WS(), millimetresIn(cad.unit), cad.losses);
 }
 
+/// The last section of an IGES file is one line with a T in column 73; its reader does not miss it.
+bool endsAsIges(const std::string& file) {
+  constexpr std::size_t kSection = 72;
+  std::ifstream in(file);
+  std::string line, last;
+  while (std::getline(in, line))
+    if (line.size() > kSection) last = line;
+  return last.size() > kSection && last[kSection] == 'T';
+}
+
 void readIges(const std::string& file, CadFile& cad) {
   IGESCAFControl_Reader reader;
   reader.SetNameMode(true);
   reader.SetColorMode(true);
   reader.SetLayerMode(true);
   if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) throw CadError("it is not an IGES file, or it is damaged");
+  if (!endsAsIges(file)) throw CadError("it ends too early: the line of section T is missing; expected a whole file");
   const auto model = Handle(IGESData_IGESModel)::DownCast(reader.Model());
   if (!model.IsNull() && !model->GlobalSection().UnitName().IsNull())
     cad.unit = shortUnit(model->GlobalSection().UnitName()->ToCString());
@@ -84,8 +97,17 @@ void readBrep(const std::string& file, CadFile& cad) {
   TopoDS_Shape shape;
   const BRep_Builder builder;
   const Handle(Progress) progress = new Progress("reading shapes");
-  if (!BRepTools::Read(shape, file.c_str(), builder, progress->Start()) || shape.IsNull())
-    throw CadError("it is not a BREP file of Open CASCADE, or it is damaged");
+  // Its reader goes on for ever where a word is missing: let the stream throw.
+  std::ifstream in(file);
+  try {
+    in.exceptions(std::ios::failbit | std::ios::badbit);
+    BRepTools::Read(shape, in, builder, progress->Start());
+  } catch (const std::ios::failure&) {
+    throw CadError(
+        "it is not a BREP file of Open CASCADE, or it is damaged: it ends too early, or has words where numbers "
+        "belong");
+  }
+  if (shape.IsNull()) throw CadError("it is not a BREP file of Open CASCADE, or it is damaged");
   cad.unit = "mm";
   Node node;
   node.name = node.body_name = std::filesystem::path(file).stem().string();

@@ -69,6 +69,19 @@ std::string nameOf(const Handle(Interface_InterfaceModel) & model, const Entity&
 
 }  // namespace
 
+void findMissingEntities(const Handle(XSControl_WorkSession) & session, std::vector<brep::Loss>& losses) {
+  constexpr std::size_t kMost = 100;
+  if (session->Model().IsNull()) return;
+  const Handle(Interface_Check) check = session->Model()->GlobalCheck(Standard_True);
+  for (Standard_Integer i = 1; i <= check->NbFails() && losses.size() < kMost; ++i) {
+    const std::string text = check->CFail(i);  // "Unresolved Reference, Ent.Id.#16 Param.n0 4 (Id.#284)"
+    if (text.rfind("Unresolved", 0) != 0) continue;
+    const std::size_t from = text.rfind('#'), to = text.find(')', from);
+    const std::string what = from < to && to != std::string::npos ? "entity " + text.substr(from, to - from) : text;
+    losses.push_back({what, "others refer to it, and it does not stand in the file", 0, brep::kNone});
+  }
+}
+
 void findLostFaces(const Handle(XSControl_WorkSession) & session, double to_mm, std::vector<brep::Loss>& losses) {
   const Handle(Interface_InterfaceModel) model = session->Model();
   const Handle(Transfer_TransientProcess) made = session->TransferReader()->TransientProcess();

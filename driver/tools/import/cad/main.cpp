@@ -11,6 +11,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <iostream>
 #include <new>
 
 #include "base/regular_file.hpp"
@@ -95,5 +96,6 @@ int main(int argc, char** argv) {
   hapticd::cad::setLimits(options);
   // What Open CASCADE tells goes nowhere: the report has what matters.
   Message::DefaultMessenger()->ChangePrinters().Clear();
+  std::cout.rdbuf(nullptr);
   return hapticd::cad::guarded(options);
 }

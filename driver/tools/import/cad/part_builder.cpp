@@ -31,9 +31,12 @@ class PartBuilder {
       scope.Next();
     }
     if (part_.faces.empty())
-      throw CadError(part_.losses.empty() ? "there are no faces in it"
-                                          : "none of its faces can be kept; the first: " + part_.losses.front().what +
-                                                ": " + part_.losses.front().reason);
+      throw CadError(
+          part_.losses.empty()
+              ? "there are no faces in it; expected solids, shells or faces: curves, and parts that stand in files of "
+                "their own, are not taken"
+              : "none of its faces can be kept; the first: " + part_.losses.front().what + ": " +
+                    part_.losses.front().reason);
     brep::linkCoedges(part_);
     return std::move(part_);
   }

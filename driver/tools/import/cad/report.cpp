@@ -63,7 +63,7 @@ std::string textOf(const Part& part, const Report& report, const std::string& ou
   for (const std::string& step : report.steps) add(step);
   for (const std::string& warning : part.warnings) add(warning);
   for (const brep::Loss& loss : part.losses)
-    add("lost: " + loss.what + ": " + loss.reason + " (" + metresText(loss.size) + ")");
+    add("lost: " + loss.what + ": " + loss.reason + (loss.size > 0 ? " (" + metresText(loss.size) + ")" : ""));
   if (lines > kMostLines) text += "  and " + std::to_string(lines - kMostLines) + " lines more: --json has them all\n";
   if (part.losses.empty()) text += "  nothing was lost\n";
   return text;

@@ -3,6 +3,7 @@
 import {ArmModel} from './arm.js';
 import {Connection} from './connection.js';
 import {Events} from './events.js';
+import {Features} from './features.js';
 import {element, fileName, norm, save, short, themeColor} from './format.js';
 import {Hand} from './hand.js';
 import {Panel} from './panel.js';
@@ -40,6 +41,7 @@ class Page {
     if (location.search) history.replaceState(null, '', location.pathname);
     this.connection = new Connection(`ws://${location.host}/`);
     this.ask = (request) => this.connection.ask(request);
+    this.features = new Features(this.ask);
     this.panel = new Panel(this.ask);
     this.panel.onRefused = (error) => this.notice(error);
     this.timeline = new Timeline(this.ask);
@@ -130,6 +132,7 @@ class Page {
       this.sound.play(kind);
     });
     this.view.models.clear();
+    this.features.clear();
     this.drawn.clear();
     this.view.arms(this.now.arms.length);
     this.armModels = this.now.arms.map((_, i) => new ArmModel(about.scene?.devices?.[i], about.devices?.[i]?.info));
@@ -184,6 +187,7 @@ class Page {
       if (!models.some((m) => m.name === name && m.index === index)) {
         if (this.view.models.byIndex.get(index)?.name === name) this.view.models.remove(index);
         this.drawn.delete(name);
+        this.features.clear(); // another part may come under its name
       }
     for (const model of models) {
       this.events.names[model.index] = model.name;
@@ -245,8 +249,17 @@ class Page {
     now.arms.forEach((arm, i) => { this.readForces[i].value = short(arm.now ? norm(arm.now.sent) : NaN); });
     $('read-depth').value = short(now.tick.depth > 0 ? now.tick.depth * 1e3 : 0);
     $('read-speed').value = short(this.#speed(first) * 1e3);
+    this.#showFoot(contacts);
     this.timeline.at(now.tick.t);
     if (this.hand.leads) $('hint').hidden = true;
+  }
+
+  /** Which instance and face the deepest contact is on, where the plugin has names. */
+  #showFoot(contacts) {
+    const deepest = contacts.reduce((a, b) => (b.depth > (a?.depth ?? 0) ? b : a), null);
+    const name = deepest ? this.features.name(this.events.names[deepest.model], deepest.feature) : '';
+    $('foot').textContent = name;
+    $('foot').hidden = name === '';
   }
 
   /** [m/s] Of the tip: from its places, since the daemon estimates a velocity only where a model needs one. */

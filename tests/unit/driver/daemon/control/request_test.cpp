@@ -13,7 +13,7 @@ TEST(Request, TakesWhatTheManualSays) {
         R"({"do":"add","file":"/a.yaml"})", R"({"do":"add","file":"/a.yaml","model":"b"})", R"({"do":"hold"})",
         R"({"do":"clear","device":"arm"})", R"({"do":"geometry","model":"a"})",
         R"({"do":"geometry","model":"a","tolerance":0.001})", R"({"do":"vertices","model":"a"})",
-        R"({"do":"vertices","model":"a","after":3})"})
+        R"({"do":"vertices","model":"a","after":3})", R"({"do":"feature","model":"a","number":7})"})
     EXPECT_TRUE(parseRequest(line)) << line;
   const auto set = parseRequest(R"({"do":"set","model":"a","parameter":"k","value":600,"consent":true})");
   ASSERT_TRUE(set);
@@ -50,6 +50,9 @@ TEST(Request, SaysWhatIsWrongAndWhatWasExpected) {
       {R"({"do":"geometry"})", "\"model\" is missing"},
       {R"({"do":"geometry","model":"a","tolerance":0})", "\"tolerance\": expected a number"},
       {R"({"do":"vertices"})", "\"model\" is missing"},
+      {R"({"do":"feature","model":"a"})", "\"number\" is missing"},
+      {R"({"do":"feature","model":"a","number":-1})", "\"number\": expected a number"},
+      {R"({"do":"feature","model":"a","number":5e9})", "\"number\": expected a number"},
       {R"({"do":"vertices","model":"a","after":-1})", "\"after\": expected a number"},
       {R"({"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":{"a":1}}}}}}}}}})", "JSON object"}};
   for (const auto& [line, part] : wrong) {

@@ -51,6 +51,19 @@ TEST(PartFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(back.source.unit, "mm");
 }
 
+/// Names come from foreign files and go to terminals.
+TEST(PartFile, ControlCharactersOfNamesBecomeSpaces) {
+  Part part = samples::cappedCylinder(10, 20);
+  part.names = {"a\x1b[2Jb\n\x7f",
+                "caf\xc3\xa9 \xc2\x9b"
+                "2J \xc2\xb0"};
+  part.losses = {{"face\r2", "no\tpcurve", 0.25, 2}};
+  const std::string file = writePart(part);
+  const Part back = readPart(bytesOf(file), "can.hpart");
+  EXPECT_EQ(back.names, (std::vector<std::string>{"a [2Jb  ", "caf\xc3\xa9   2J \xc2\xb0"}));
+  EXPECT_EQ(back.losses[0].what + back.losses[0].reason, "face 2no pcurve");
+}
+
 TEST(PartFile, SaysWhatIsWrongWithOtherFiles) {
   const std::string file = writePart(samples::cappedCylinder(10, 20));
   const auto error = [](const std::string& bytes) {

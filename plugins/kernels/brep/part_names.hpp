@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+/// What instances and features of a part are called.
+#pragma once
+#include <string>
+
+#include "kernels/brep/part.hpp"
+
+namespace hapticd::brep {
+
+/// [main] UTF-8 text whose control characters became spaces: names of foreign files are shown in terminals, which would
+/// obey them.
+std::string plainText(std::string text);
+
+/// [main] The name of an instance, else of its body, else its number as "#3".
+std::string instanceName(const Part& part, std::uint32_t instance);
+
+/// [main] The names from the outermost assembly down to an instance, with slashes; its number where it has none.
+std::string instancePath(const Part& part, std::uint32_t instance);
+
+/// [main] Instance and face of a feature in words, as "bolt: face 3 'head'"; features count over all instances of the
+/// file. "": there is no such feature.
+std::string featureName(const Part& part, std::uint32_t feature);
+
+}  // namespace hapticd::brep

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "traced_shape/thin_walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/brep/tracer.hpp"
+#include "traced_shape/other_solids.hpp"
+
+namespace hapticd {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::uint32_t kPoints = 2000;    ///< that are looked at
+constexpr std::uint32_t kMostOfFace = 32;  ///< of these on one face
+constexpr double kOnSurface = 1e-7;        ///< [m] farther from the part, a point is outside its face's loops
+constexpr double kAbove = 1e-6;            ///< [m] where the tip is before it presses
+constexpr double kOpposite = -0.7;         ///< cosine: of faces that bound a wall, not a wedge
+constexpr int kHalvings = 20;
+
+/// Points that fill a square evenly (Roberts' sequence R2), the i-th.
+Eigen::Array2d evenly(std::uint32_t i) {
+  const double u = 0.7548776662466927 * (i + 0.5), v = 0.5698402909980532 * (i + 0.5);
+  return {u - std::floor(u), v - std::floor(v)};
+}
+
+class Presser {
+ public:
+  Presser(const brep::Model& part, double depth) : tracer_(part), others_(part), depth_(depth) {}
+
+  /// Presses at a point of a body's frame, if it is on the surface of the part.
+  void press(const brep::Placement& place, const Vector3d& in_body) {
+    const Vector3d point = place.rotation * in_body + place.position;
+    const contact::Foot foot = tracer_.nearest(point);
+    if (!contact::found(foot) || foot.distance > kOnSurface || foot.on_edge || !isOf(place, foot)) return;
+    if (others_.hold(foot.point + kAbove * foot.normal, place)) return;  // no tip comes there
+    const double deepest = wall_ ? wall_->thickness : depth_;
+    if (!comesOut(place, foot, deepest)) return;
+    double inside = 0, out = deepest;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = 0.5 * (inside + out);
+      (comesOut(place, foot, middle) ? out : inside) = middle;
+    }
+    wall_ = ThinWall{out, static_cast<std::uint32_t>(foot.surface)};
+  }
+
+  const std::optional<ThinWall>& wall() const { return wall_; }
+
+ private:
+  /// Of two faces that lie on each other, the foot may be on the other's.
+  bool isOf(const brep::Placement& place, const contact::Foot& foot) const {
+    const brep::Body& body = tracer_.model().part().bodies[place.body];
+    const auto feature = static_cast<std::uint32_t>(foot.surface);
+    return feature >= place.first_feature && feature - place.first_feature < body.face_count + body.triangle_count;
+  }
+
+  /// Whether a probe so deep below a foot is outside again, behind a face that looks the other way. Where another
+  /// solid lies close behind, a press goes on into that one.
+  bool comesOut(const brep::Placement& place, const contact::Foot& foot, double depth) {
+    const Vector3d probe = foot.point - depth * foot.normal;
+    const contact::Foot there = tracer_.nearest(probe);
+    return contact::found(there) && there.depth < 0 && there.normal.dot(foot.normal) < kOpposite &&
+           !others_.hold(probe, place);
+  }
+
+  brep::Tracer tracer_;
+  OtherSolids others_;
+  double depth_;
+  std::optional<ThinWall> wall_;
+};
+
+/// Faces of a placement, each at some points of its parameters; those outside its loops are passed over.
+void pressFaces(const brep::Model& part, const brep::Placement& place, std::uint32_t each, std::uint32_t stride,
+                Presser& presser) {
+  const brep::Body& body = part.part().bodies[place.body];
+  spline::SurfacePoint at;
+  for (std::uint32_t f = 0; f < body.face_count; f += stride) {
+    const brep::Face& face = part.part().faces[body.first_face + f];
+    const Eigen::Array2d lo = brep::vec(face.lo).array(), hi = brep::vec(face.hi).array();
+    for (std::uint32_t i = 0; i < each; ++i) {
+      const Eigen::Array2d uv = lo + evenly(i) * (hi - lo);
+      part.geometry().surface(face.surface, uv[0], uv[1], at);
+      presser.press(place, at.S);
+    }
+  }
+}
+
+void pressTriangles(const brep::Model& part, const brep::Placement& place, std::uint32_t stride, Presser& presser) {
+  const brep::Body& body = part.part().bodies[place.body];
+  for (std::uint32_t t = 0; t < body.triangle_count; t += stride) {
+    const brep::Triangle& triangle = part.part().triangles[body.first_triangle + t];
+    Vector3d middle = Vector3d::Zero();
+    for (const std::uint32_t corner : triangle.corner) middle += brep::vec(part.part().points[corner]) / 3;
+    presser.press(place, middle);
+  }
+}
+
+}  // namespace
+
+std::optional<ThinWall> thinnestWall(const brep::Model& part, double depth) {
+  if (!(depth > kOnSurface) || !std::isfinite(depth)) return std::nullopt;
+  std::uint64_t count = 0;
+  for (const brep::Placement& place : part.placements()) {
+    const brep::Body& body = part.part().bodies[place.body];
+    if (place.solid) count += std::uint64_t{body.face_count} + body.triangle_count;
+  }
+  if (count == 0) return std::nullopt;
+  const auto each = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kPoints / count, 1, kMostOfFace));
+  const auto stride = static_cast<std::uint32_t>((count + kPoints - 1) / kPoints);
+  Presser presser(part, depth);
+  for (const brep::Placement& place : part.placements()) {
+    if (!place.solid) continue;
+    pressFaces(part, place, each, stride, presser);
+    pressTriangles(part, place, stride, presser);
+  }
+  return presser.wall();
+}
+
+}  // namespace hapticd
