@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "kernels/brep/triangle_foot.hpp"
-
 #ifdef HAVE_EMBREE
 #include <embree3/rtcore.h>
 #endif
@@ -27,10 +25,26 @@ using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 using Eigen::Vector3d;
 
 #ifdef HAVE_EMBREE
-/// Point queries (single precision).
+/// Of a triangle to a point, in single precision (Ericson, Real-Time Collision Detection, 5.1.5).
+Eigen::Vector3f nearestOfTriangle(const Eigen::Vector3f& p, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
+                                  const Eigen::Vector3f& c) {
+  const Eigen::Vector3f ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+  const float d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d1 <= 0 && d2 <= 0) return a;
+  if (d3 >= 0 && d4 <= d3) return b;
+  if (d6 >= 0 && d5 <= d6) return c;
+  const float va = d3 * d6 - d5 * d4, vb = d5 * d2 - d1 * d6, vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  if (va <= 0 && d4 >= d3 && d5 >= d6) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+  return a + (vb * ab + vc * ac) / (va + vb + vc);
+}
+
+/// Point queries. Embree keeps its vertices and boxes in single precision and leaves the triangles to the caller, who
+/// has no better corners than those: all is in single precision.
 class Embree final : public Peer {
  public:
-  Embree(const Points& points, const Triangles& triangles) : points_(points), triangles_(triangles) {
+  Embree(const Points& points, const Triangles& triangles) : triangles_(triangles) {
     device_ = rtcNewDevice(nullptr);
     scene_ = rtcNewScene(device_);
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
@@ -39,6 +53,7 @@ class Embree final : public Peer {
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, points.size()));
     for (std::size_t i = 0; i < points.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k) v[3 * i + k] = static_cast<float>(points[i][k]);
+    corners_ = v;
     auto* t = static_cast<std::uint32_t*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, triangles.size()));
     for (std::size_t i = 0; i < triangles.size(); ++i)
@@ -52,8 +67,8 @@ class Embree final : public Peer {
     rtcReleaseDevice(device_);
   }
   double distance(const Vector3d& p, double bound, Vector3d& near) override {
-    p_ = p;
-    best_ = std::numeric_limits<double>::infinity();
+    p_ = p.cast<float>();
+    best_ = std::numeric_limits<float>::infinity();
     RTCPointQuery query{};
     query.x = static_cast<float>(p.x());
     query.y = static_cast<float>(p.y());
@@ -62,32 +77,30 @@ class Embree final : public Peer {
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(scene_, &query, &context, &Embree::look, this);
-    near = near_;
-    return std::sqrt(best_);
+    near = near_.cast<double>();
+    return static_cast<double>(std::sqrt(best_));
   }
-  std::string name() const override { return "Embree 3 point query"; }
+  std::string name() const override { return "Embree 3 point query (single)"; }
 
  private:
   static bool look(RTCPointQueryFunctionArguments* args) {
     auto& self = *static_cast<Embree*>(args->userPtr);
     const auto& t = self.triangles_[args->primID];
-    const auto at = [&](std::uint32_t i) {
-      return Vector3d(self.points_[i][0], self.points_[i][1], self.points_[i][2]);
-    };
-    const brep::TriangleFoot foot = brep::triangleFoot(self.p_, at(t[0]), at(t[1]), at(t[2]));
-    const double d2 = (foot.point - self.p_).squaredNorm();
+    const auto at = [&](std::uint32_t i) { return Eigen::Vector3f(self.corners_ + 3 * std::size_t{i}); };
+    const Eigen::Vector3f foot = nearestOfTriangle(self.p_, at(t[0]), at(t[1]), at(t[2]));
+    const float d2 = (foot - self.p_).squaredNorm();
     if (!(d2 < self.best_)) return false;
     self.best_ = d2;
-    self.near_ = foot.point;
-    args->query->radius = static_cast<float>(std::sqrt(d2));
+    self.near_ = foot;
+    args->query->radius = std::sqrt(d2);
     return true;
   }
-  const Points& points_;
   const Triangles& triangles_;
+  const float* corners_ = nullptr;  ///< of the geometry's buffer
   RTCDevice device_;
   RTCScene scene_;
-  Vector3d p_, near_;
-  double best_ = 0;
+  Eigen::Vector3f p_, near_;
+  float best_ = 0;
 };
 #endif
 
