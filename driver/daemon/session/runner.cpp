@@ -241,6 +241,7 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
     ready = true;
     if (guard_ && runs) guard_->arm(true);
     if (runs) loop_->run();
+    if (guard_ && loop_->silent()) guard_->arm(false);  // the last command was zero: that no tick follows is no fault
   });
   if (code) return Error{"cannot start the servo thread: " + code.message() + "\n  " + os::realTimeRights()};
   RealClock clock(0);

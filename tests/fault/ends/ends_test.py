@@ -110,6 +110,10 @@ check("SIGUSR1 of another process ends the run in order, is named, and the guard
 forces = [abs(entry.force[1]) for entry in run.arm.entries() if entry.kind == COMMAND and entry.on]
 check("the force ramps out", 0 < min(forces) < 0.1, min(forces))
 
+for code, said in [run.end() for run in [Daemon(HAPTICD, [MODULE, SHAPES], ["{name: bad, plugin: ending, parameters: {how: never}}"],
+                                                arguments=("--rate", "4000", "--for", length)) for length in ("0.41", "0.55", "0.6")]]:
+    check("a run that ends as planned: the guard rests", "guard:" not in said and code == 0, (code, said))
+
 run = run_of("never")
 check("Ctrl-Z: a force comes", run.arm.wait_for_force())
 run.process.send_signal(signal.SIGTSTP)
