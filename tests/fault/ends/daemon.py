@@ -86,15 +86,15 @@ def say(connection, **request):
 
 
 def hear(connection, timeout=30):
-    """The next answer; nothing: none came."""
+    """The next answer, a line; nothing: none came. Answers that came together wait for their turn."""
     connection.settimeout(timeout)
     text = b""
     try:
         while not text.endswith(b"\n"):
-            piece = connection.recv(65536)
-            if not piece:
+            waiting = connection.recv(65536, socket.MSG_PEEK)
+            if not waiting:
                 return None
-            text += piece
+            text += connection.recv(waiting.find(b"\n") + 1 or len(waiting))
     except OSError:
         return None
     return json.loads(text)
