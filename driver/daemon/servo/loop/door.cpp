@@ -56,8 +56,9 @@ void Door::write(std::byte* page, const TickTime& tick, const Arms& arms) noexce
   hapticd_jacobian jacobian;
   jacobian.tick = tick.number;
   for (size_t i = 0; i < arms.size(); ++i) {
-    slotAt(page, i).put(stateOf(tick, *arms[i]));
+    // Before the state: a program that looks without sleeping may answer as soon as that is there.
     if (arms[i]->clients().possible() && arms[i]->jacobian(jacobian.rows)) jacobianAt(page, i).put(jacobian);
+    slotAt(page, i).put(stateOf(tick, *arms[i]));
   }
 }
 
