@@ -105,6 +105,7 @@ def main(folder):
               until(lambda: pushed(far) == 0))
     near_run = daemon(folder, "near2", NEAR, HAPTICD_NAME="far")
     with hapticd.connect("near2", folder=folder) as near:
+        check("the near daemon ticks again", until(lambda: near.streams["ticks"].written > 100))  # it can be asked before
         far_run.send_signal(signal.SIGKILL)
         far_run.wait()
         check("the near daemon tells that the arm is lost", until(lambda: fault(near) == LOST), fault(near))
