@@ -98,12 +98,7 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
     end_ = false;
     if (const auto failed = thread_.start("hapticd-haply", [this] { run(); }))
       throw std::runtime_error("no thread can be had: " + failed.message());
-    constexpr int kTries = 200;
-    constexpr std::chrono::milliseconds kPause(10);
-    for (int i = 0; i < kTries; ++i) {
-      if (exchange_.begun()) return;
-      std::this_thread::sleep_for(kPause);
-    }
+    if (exchange_.awaitFirst()) return;
     stop();
     throw std::runtime_error("the Inverse Service gave no position for 2 s");
   }

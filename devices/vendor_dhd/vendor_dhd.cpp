@@ -66,12 +66,7 @@ class DhdArm : public vendor_arm::CartesianArm<DhdArm> {
     if (dhd_.enable_force(1, id()) < 0) throw std::runtime_error("the vendor's library gives no force: " + why());
     if (const auto failed = thread_.start("hapticd-dhd", [this] { run(); }))
       throw std::runtime_error("no thread can be had: " + failed.message());
-    constexpr int kTries = 200;
-    constexpr std::chrono::milliseconds kPause(10);
-    for (int i = 0; i < kTries; ++i) {
-      if (exchange_.begun()) return;
-      std::this_thread::sleep_for(kPause);
-    }
+    if (exchange_.awaitFirst()) return;
     stop();
     throw std::runtime_error("the vendor's library gave no position for 2 s: " + why());
   }

@@ -53,12 +53,7 @@ class VendorArm : public vendor_arm::CartesianArm<VendorArm> {
       servo_.stop();
       throw std::runtime_error("the vendor's library does not start its servo loop");
     }
-    constexpr int kTries = 200;
-    constexpr std::chrono::milliseconds kPause(10);
-    for (int i = 0; i < kTries; ++i) {
-      if (exchange_.begun()) return;
-      std::this_thread::sleep_for(kPause);
-    }
+    if (exchange_.awaitFirst()) return;
     servo_.stop();
     throw std::runtime_error("the vendor's servo loop gave no position for 2 s");
   }

@@ -4,8 +4,10 @@
 #pragma once
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <thread>
 
 #include "base/clock.hpp"
 #include "base/triple_buffer.hpp"
@@ -31,6 +33,18 @@ class Exchange {
     wanted_.back() = {}, wanted_.publish();
   }
 
+  /// [main] Waits for the first position, 2 s at most. @return there is one
+  bool awaitFirst() noexcept {
+    constexpr int kTries = 200;
+    constexpr std::chrono::milliseconds kPause(10);
+    for (int i = 0; i < kTries; ++i) {
+      seen_.update();
+      if (seen_.front().sequence > 0) return true;
+      std::this_thread::sleep_for(kPause);
+    }
+    return false;
+  }
+
   // ---- the vendor's side
   void show(const Seen& seen) noexcept {
     seen_.back() = seen;
@@ -52,10 +66,6 @@ class Exchange {
   }
 
   // ---- the servo's side
-  bool begun() noexcept HSP_RT {  ///< a position was seen
-    seen_.update();
-    return seen_.front().sequence > 0;
-  }
   hsp_status read(hdv_sample& sample) noexcept HSP_RT {
     seen_.update();
     const Seen& seen = seen_.front();
