@@ -23,7 +23,9 @@ class MatDeformable final : public Shape {
                                       "MIT",
                                       "A soft body made of spheres along a skeleton: it yields, swings and settles.",
                                       HSP_C_DEFORMS};
-  static constexpr auto fields() {
+
+ private:
+  static constexpr auto skeletonFields() {  // how the foot is found
     using T = MatDeformable;
     using F = Fields<T>;
     return std::array{
@@ -40,7 +42,12 @@ class MatDeformable final : public Shape {
                   HSP_P_ACCURACY),
         F::integer("degree", &T::degree_, "", 1, medial::kMaxSkeletonDegree, 3, "of the skeleton spline, at most"),
         F::choice("evaluation", &T::evaluation_, kEvaluationNames, 0, "fast: a table a span; small: control points",
-                  HSP_P_ACCURACY),
+                  HSP_P_ACCURACY)};
+  }
+  static constexpr auto dynamicsFields() {  // how the body yields and swings
+    using T = MatDeformable;
+    using F = Fields<T>;
+    return std::array{
         F::real("split", &T::split_, "", 0, 1, 0.5,
                 "g: share of the depth by which the skeleton moves; 0.5: the opposite side stays, 1: it follows"),
         F::array("influence", &T::influence_, "", 2, 2, 2, 1, medial::kMaxSkeletonDegree + 1, "[4, 4]",
@@ -58,15 +65,24 @@ class MatDeformable final : public Shape {
         F::real(
             "shear_offset", &T::shear_offset_, "", 0, 0.5, kUsualShearOffset,
             "distance of the four springs along the surface, as a share of the parameters; 0: none. They make a body "
-            "stiffer than its file says: shear_distance does not"),
-        F::real("damping_scale", &T::damping_scale_, "m", 1e-6, 1, 5e-3,
-                "depth at which the damping of the contact is whole"),
-        F::real("friction_static", &T::friction_static_, "", 0, 10, 0,
-                "mu_s: force along the surface over normal force that a stuck probe must overcome"),
-        F::real("friction_dynamic", &T::friction_dynamic_, "", 0, 10, 0, "mu_d: of a sliding probe"),
-        F::real("viscosity", &T::viscosity_, "N s/m", 0, 100, 0, "drag along the surface in contact"),
-        F::choice("volume", &T::volume_, kSwitchNames, 0,
-                  "on: what a press pushes in comes out all round, so that the volume stays"),
+            "stiffer than its file says: shear_distance does not")};
+  }
+  static constexpr auto contactFields() {  // what a probe feels besides
+    using T = MatDeformable;
+    using F = Fields<T>;
+    return std::array{F::real("damping_scale", &T::damping_scale_, "m", 1e-6, 1, 5e-3,
+                              "depth at which the damping of the contact is whole"),
+                      F::real("friction_static", &T::friction_static_, "", 0, 10, 0,
+                              "mu_s: force along the surface over normal force that a stuck probe must overcome"),
+                      F::real("friction_dynamic", &T::friction_dynamic_, "", 0, 10, 0, "mu_d: of a sliding probe"),
+                      F::real("viscosity", &T::viscosity_, "N s/m", 0, 100, 0, "drag along the surface in contact"),
+                      F::choice("volume", &T::volume_, kSwitchNames, 0,
+                                "on: what a press pushes in comes out all round, so that the volume stays")};
+  }
+  static constexpr auto materialFields() {  // what a file leaves open, and how its numbers are meant
+    using T = MatDeformable;
+    using F = Fields<T>;
+    return std::array{
         F::real("stiffness", &T::stiffness_, "N/m", 0, 1e6, 300, "of a medial mesh whose file has none (.ma)"),
         F::real("damping", &T::damping_, "N s/m", 0, 1e6, 0.5,
                 "likewise; a file may say up to ten times this, or 5, before it is refused"),
@@ -87,6 +103,10 @@ class MatDeformable final : public Shape {
         F::real("probe_radius", &T::probe_radius_, "m", 1e-4, 0.1, 5e-3,
                 "of the flat tip with which a file's young, poisson and thickness are felt")};
   }
+
+ public:
+  /// In the order of their indices, which recordings hold.
+  static constexpr auto fields() { return join(skeletonFields(), dynamicsFields(), contactFields(), materialFields()); }
 
   void activate(const hsp_activation& activation, hsp_report& report);
   void deactivate();
