@@ -19,7 +19,7 @@ class Pacer {
   /// Waits for a tick and shows its states to the arms. One thread after the other. @return CLOCK_MONOTONIC [ns] when
   /// it began
   uint64_t wait();
-  /// [servo] Looks for ticks without sleeping from so many microseconds before they are due; 0: it sleeps
+  /// [any] Looks for ticks without sleeping from so many microseconds before they are due; 0: it sleeps
   /// (hapticd_listen)
   void listen(unsigned microseconds) { listen_us_ = microseconds; }
   void endTick();  ///< [servo] every arm hears that the program lives
