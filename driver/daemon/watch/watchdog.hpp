@@ -21,7 +21,8 @@ class Watchdog {
   static constexpr Nanoseconds kStuckAfter = 2'500'000;
   /// A virtual machine charges a thread for time that its processor was somewhere else.
   static constexpr Nanoseconds kStuckInVirtualMachine = 10'000'000;
-  static constexpr Nanoseconds kStuckSimulated = 20'000'000;  ///< at least: no hand is hurt by a simulated arm
+  /// At least: no hand is hurt by a simulated arm, and a virtual machine that stands still charges the servo with it.
+  static constexpr Nanoseconds kStuckSimulated = 60'000'000;
   /// The tick to come is so late. A virtual machine has its processors paused one by one.
   static constexpr Nanoseconds kMissedAfter = 2'500'000, kMissedInVirtualMachine = 50'000'000;
   static constexpr Nanoseconds kHungAfter = 500'000'000;       ///< nothing comes back after that
