@@ -20,12 +20,12 @@ struct Code {
   std::atomic<const Owner*> owner{nullptr};
 };
 constexpr size_t kMostLibraries = 256;  // of more, the rest is blamed on nobody
-std::array<Code, kMostLibraries> code;
-std::atomic<size_t> code_count{0};
+std::array<Code, kMostLibraries> libraries;
+std::atomic<size_t> library_count{0};
 
-Code* codeAt(const void* address) noexcept {
-  for (size_t i = 0; i < code_count.load(); ++i)
-    if (address >= code[i].begin.load() && address < code[i].end.load()) return &code[i];
+Code* libraryAt(const void* address) noexcept {
+  for (size_t i = 0; i < library_count.load(); ++i)
+    if (address >= libraries[i].begin.load() && address < libraries[i].end.load()) return &libraries[i];
   return nullptr;
 }
 
@@ -62,19 +62,19 @@ bool isWorker() noexcept {
 void keepCode(const void* begin, const void* end) {
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
-  const size_t count = code_count.load();
-  if (count == code.size() || codeAt(begin) != nullptr) return;
-  code[count].begin.store(begin);
-  code[count].end.store(end);
-  code_count.store(count + 1);
+  const size_t count = library_count.load();
+  if (count == libraries.size() || libraryAt(begin) != nullptr) return;
+  libraries[count].begin.store(begin);
+  libraries[count].end.store(end);
+  library_count.store(count + 1);
 }
 
 void ownCode(const void* address, const Owner* owner) {
-  if (Code* found = codeAt(address)) found->owner.store(owner);
+  if (Code* found = libraryAt(address)) found->owner.store(owner);
 }
 
 const Owner* ownerOfCode(const void* address) noexcept {
-  const Code* found = codeAt(address);
+  const Code* found = libraryAt(address);
   return found != nullptr ? found->owner.load() : nullptr;
 }
 

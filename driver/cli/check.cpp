@@ -27,7 +27,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct CheckArguments {
   std::vector<std::string> files;
   std::string schema;
   bool quiet = false, files_only = false, json = false;
@@ -116,7 +116,7 @@ struct Verdict {
   document::Problems problems, warnings;
 };
 
-Verdict checkOne(const std::string& file, const Options& options) {
+Verdict checkOne(const std::string& file, const CheckArguments& options) {
   std::optional<scene::Scene> scene;
   Verdict verdict{file, scene::checkFile(file, catalog(), &scene), {}};
   document::Problems& found = verdict.problems;
@@ -161,7 +161,7 @@ Json toJson(const document::Problems& problems) {
   return list;
 }
 
-int check(const Options& options) {
+int check(const CheckArguments& options) {
   if (!options.schema.empty()) return printSchema(options.schema);
   if (options.files.empty()) return fail(kBadInput, "no file given, expected `hapticd check FILE...`");
   size_t problems = 0, bad_files = 0;
@@ -192,7 +192,7 @@ int check(const Options& options) {
 }  // namespace
 
 void addCheck(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CheckArguments>();
   CLI::App* command = app.add_subcommand("check", "Validate scene, device and daemon files; print every problem.");
   command->add_option("files", options->files, "files to check");
   command->add_option("--schema", options->schema, "print the JSON Schema of a format instead, for editors")

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ClientArguments {
   std::string name = "hapticd", scene;
   bool env = false;
 };
@@ -83,7 +83,7 @@ int endOf(pid_t child) {
 }
 
 /// Starts a daemon and waits until it can be asked.
-Result<pid_t> startDaemon(const Options& options) {
+Result<pid_t> startDaemon(const ClientArguments& options) {
   constexpr int kTries = 600;
   constexpr useconds_t kPauseUs = 50'000;
   std::string scene = options.scene;
@@ -107,7 +107,7 @@ Result<pid_t> startDaemon(const Options& options) {
   return Error{"the daemon cannot be asked after 30 s\n  fix: start it by itself (hapticd run) and see what it says"};
 }
 
-int runWithDaemon(const Options& options, const std::vector<std::string>& words) {
+int runWithDaemon(const ClientArguments& options, const std::vector<std::string>& words) {
   const auto daemon = startDaemon(options);
   if (!daemon) return fail(kFailed, daemon.error());
   os::onStopSignal(passOn);
@@ -118,7 +118,7 @@ int runWithDaemon(const Options& options, const std::vector<std::string>& words)
   return code;
 }
 
-int client(const Options& options, const std::vector<std::string>& words) {
+int client(const ClientArguments& options, const std::vector<std::string>& words) {
   const auto folder = libraryFolder();
   if (!folder) return fail(kFailed, folder.error());
   const std::string path = pathWith(*folder);
@@ -142,7 +142,7 @@ int client(const Options& options, const std::vector<std::string>& words) {
 }  // namespace
 
 void addClient(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ClientArguments>();
   CLI::App* command = app.add_subcommand("client", "Run an OpenHaptics (HDAPI) program on a daemon's arm.");
   command->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
   command->add_option("--scene", options->scene, "scene of the daemon that is started where none runs");
@@ -151,7 +151,8 @@ void addClient(CLI::App& app, int& exit_code) {
   command->fallthrough(false);  // the options after PROGRAM are its own
   command->footer(
       "The program finds hapticd's own libHD.so and the daemon of --name. Where none runs, one is started with the\n"
-      "simulated arm, and ends with the program. Options of this command stand before PROGRAM; its exit code is the "
+      "simulated arm, and ends with the program. ClientArguments of this command stand before PROGRAM; its exit code "
+      "is the "
       "program's.\n\n"
       "With real-time priority, the program's servo loop looks for each tick without sleeping from 100 us before it "
       "is\n"

@@ -21,7 +21,7 @@ struct Word {
 };
 
 /// A command of the tree: "" is the program itself, "plugin info" a command below a command.
-struct Node {
+struct CommandNode {
   std::string path;
   std::vector<Word> words;
   bool files = false;  ///< whether an argument is a file
@@ -43,8 +43,8 @@ std::vector<std::string> choicesOf(const CLI::Option& option) {
   return words;
 }
 
-void collect(const CLI::App& app, const std::string& path, std::vector<Node>& nodes) {
-  Node node{path, {}, false};
+void collect(const CLI::App& app, const std::string& path, std::vector<CommandNode>& nodes) {
+  CommandNode node{path, {}, false};
   for (const CLI::App* command : app.get_subcommands(nullptr))
     node.words.push_back({command->get_name(), command->get_description(), {}});
   for (const CLI::Option* option : app.get_options(nullptr)) {
@@ -78,7 +78,7 @@ std::string quoted(const std::string& text, bool zsh = false) {
 }
 
 /// Shell lines, the same in bash and zsh, that find the command in the words before the cursor.
-std::string findPath(const std::vector<Node>& nodes, const std::string& words) {
+std::string findPath(const std::vector<CommandNode>& nodes, const std::string& words) {
   std::string text = "  local path_='' word_\n  for word_ in " + words + "; do\n    case \"$path_ $word_\" in\n      ";
   for (size_t i = 1; i < nodes.size(); ++i) {
     const size_t space = nodes[i].path.rfind(' ');
@@ -113,16 +113,16 @@ std::string pattern(const Named& named) {
   return text;
 }
 
-std::string bash(const std::vector<Node>& nodes) {
+std::string bash(const std::vector<CommandNode>& nodes) {
   std::string text = "# bash completion of hapticd; made with `hapticd completion bash`\n_hapticd() {\n";
   text += findPath(nodes, "\"${COMP_WORDS[@]:1:COMP_CWORD-1}\"");
   text += "  local known_='' files_=''\n  case \"$path_ ${COMP_WORDS[COMP_CWORD-1]}\" in\n";
-  for (const Node& node : nodes)
+  for (const CommandNode& node : nodes)
     for (const Word& word : node.words)
       if (!word.choices.empty())
         text += "    '" + node.path + " " + word.text + "') known_='" + joined(word.choices) + "' ;;\n";
   text += "    *)\n      case \"$path_\" in\n";
-  for (const Node& node : nodes) {
+  for (const CommandNode& node : nodes) {
     std::vector<std::string> words;
     for (const Word& word : node.words) words.push_back(word.text);
     text += "        '" + node.path + "') known_='" + joined(words) + "'" + (node.files ? " files_=-f" : "") + " ;;\n";
@@ -139,17 +139,17 @@ std::string bash(const std::vector<Node>& nodes) {
   return text + "complete -o default -F _hapticd hapticd\n";
 }
 
-std::string zsh(const std::vector<Node>& nodes) {
+std::string zsh(const std::vector<CommandNode>& nodes) {
   std::string text =
       "#compdef hapticd\n# zsh completion of hapticd; made with `hapticd completion zsh`\n_hapticd() {\n";
   text += findPath(nodes, "${words[2,CURRENT-1]}");
   text += "  local -a known_\n  local files_=''\n  case \"$path_ ${words[CURRENT-1]}\" in\n";
-  for (const Node& node : nodes)
+  for (const CommandNode& node : nodes)
     for (const Word& word : node.words)
       if (!word.choices.empty())
         text += "    '" + node.path + " " + word.text + "') compadd -- " + joined(word.choices) + "; return ;;\n";
   text += "  esac\n  case \"$path_\" in\n";
-  for (const Node& node : nodes) {
+  for (const CommandNode& node : nodes) {
     text += "    '" + node.path + "') known_=(\n";
     for (const Word& word : node.words) text += "      '" + word.text + ":" + quoted(word.doc, true) + "'\n";
     text += node.files ? "    ); files_=1 ;;\n" : "    ) ;;\n";
@@ -170,13 +170,13 @@ std::string fishCondition(const std::string& path) {
   return condition;
 }
 
-std::string fish(const std::vector<Node>& nodes) {
+std::string fish(const std::vector<CommandNode>& nodes) {
   std::string text = "# fish completion of hapticd; made with `hapticd completion fish`\n";
   for (const Named& named : namedArguments())
     for (const char* path : named.paths)
       text += "complete -c hapticd -n '" + fishCondition(path) + "' -a '(hapticd completion --names " + named.kind +
               " 2>/dev/null)'\n";
-  for (const Node& node : nodes) {
+  for (const CommandNode& node : nodes) {
     const std::string condition = fishCondition(node.path);
     if (!node.files) text += "complete -c hapticd -n '" + condition + "' -f\n";
     for (const Word& word : node.words) {
@@ -237,7 +237,7 @@ void addCompletion(CLI::App& app, int& exit_code) {
   command->callback([shell, kind, &app, &exit_code] {
     if (!kind->empty()) return (void)(exit_code = printNames(*kind));
     if (shell->empty()) return (void)(exit_code = fail(kBadInput, "no shell given, expected bash, zsh or fish"));
-    std::vector<Node> nodes;
+    std::vector<CommandNode> nodes;
     collect(app, "", nodes);
     std::fputs((*shell == "bash" ? bash(nodes) : *shell == "zsh" ? zsh(nodes) : fish(nodes)).c_str(), stdout);
     exit_code = kWorked;

@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct CtlArguments {
   std::string name = "hapticd", model, device, hand, parameter, file, line, obj;
   std::vector<double> position, orientation;
   std::optional<double> seconds;
@@ -45,7 +45,7 @@ int saveObj(const Json& json, const std::string& file) {
   return kWorked;
 }
 
-std::string socketOf(const Options& options) {
+std::string socketOf(const CtlArguments& options) {
   return status::runtimeFolder(false) + "/" + options.name + ".sock";
 }
 
@@ -54,7 +54,7 @@ std::string lineOf(const Json& json) {
 }
 
 /// Prints an answer.
-int show(const Options& options, const Result<std::string>& answer) {
+int show(const CtlArguments& options, const Result<std::string>& answer) {
   if (!answer) return fail(kFailed, answer.error());
   const Json json = Json::parse(*answer, nullptr, false);
   if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
@@ -64,12 +64,12 @@ int show(const Options& options, const Result<std::string>& answer) {
   return kWorked;
 }
 
-int send(const Options& options, const std::string& line) {
+int send(const CtlArguments& options, const std::string& line) {
   return show(options, control::ask(socketOf(options), line));
 }
 
 /// `add` and `reload`: the scene and what it names are opened here, with the rights of whoever asks.
-int sendScene(const Options& options, Json request) {
+int sendScene(const CtlArguments& options, Json request) {
   auto client = control::Client::connect(socketOf(options));
   if (!client) return fail(kFailed, client.error());
   const bool again = !request.contains("file");
@@ -89,7 +89,7 @@ int sendScene(const Options& options, Json request) {
 
 /// Prints the triangles, and then each frame of vertices when it comes, a line of JSON each: until nobody reads them
 /// or the daemon ends.
-int follow(const Options& options) {
+int follow(const CtlArguments& options) {
   constexpr Nanoseconds kPause = 4'000'000;  // a quarter of what a frame lasts
   auto client = control::Client::connect(socketOf(options));
   if (!client) return fail(kFailed, client.error());
@@ -143,7 +143,7 @@ std::string exampleOf(const std::string& word) {
 
 /// A subcommand that sends what `build` makes of the options.
 template <class Build>
-CLI::App* addRequest(CLI::App& parent, const char* word, const char* doc, const std::shared_ptr<Options>& options,
+CLI::App* addRequest(CLI::App& parent, const char* word, const char* doc, const std::shared_ptr<CtlArguments>& options,
                      int& exit_code, Build build) {
   CLI::App* command = parent.add_subcommand(word, doc);
   command->footer(exampleOf(word));
@@ -156,7 +156,7 @@ CLI::App* addRequest(CLI::App& parent, const char* word, const char* doc, const 
   return command;
 }
 
-void addGeometryRequest(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
+void addGeometryRequest(CLI::App& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
   CLI::App* geometry = addRequest(ctl, "geometry", "Print the triangles of a model in its current shape.", options,
                                   exit_code, [options](Json& json) {
                                     json["model"] = options->model;
@@ -173,7 +173,7 @@ void addGeometryRequest(CLI::App& ctl, const std::shared_ptr<Options>& options, 
       ->excludes("--tolerance");
 }
 
-void addFeatureRequest(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
+void addFeatureRequest(CLI::App& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
   CLI::App* feature = addRequest(ctl, "feature", "Print what a feature of a model's contacts is called.", options,
                                  exit_code, [options](Json& json) {
                                    json["model"] = options->model;
@@ -184,7 +184,7 @@ void addFeatureRequest(CLI::App& ctl, const std::shared_ptr<Options>& options, i
 }
 
 /// Prints what happened, a line of JSON each; with `follow` also what happens from now on, until the daemon ends.
-int showEvents(const Options& options) {
+int showEvents(const CtlArguments& options) {
   auto client = control::Client::connect(socketOf(options));
   if (!client) return fail(kFailed, client.error());
   uint64_t end = UINT64_MAX;  // the first event that comes by itself
@@ -212,7 +212,7 @@ int showEvents(const Options& options) {
   return kWorked;
 }
 
-void addEvents(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
+void addEvents(CLI::App& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
   CLI::App* events = ctl.add_subcommand(
       "events", "Show what happened: clicks, touches, faults, models and programs that came and left.");
   events->add_flag("--follow", options->follow, "do not end; print each new event as one line of JSON");
@@ -220,7 +220,7 @@ void addEvents(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit
   events->callback([options, &exit_code] { exit_code = showEvents(*options); });
 }
 
-void addLead(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
+void addLead(CLI::App& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
   CLI::App* lead =
       ctl.add_subcommand("lead", "Move a kinematic model, or the simulated hand, by lines of standard input.");
   lead->add_option("model", options->model, "name of the model");
@@ -244,7 +244,7 @@ std::string absolute(const std::string& file) {
   return std::filesystem::absolute(file).lexically_normal().string();
 }
 
-void addModelRequests(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
+void addModelRequests(CLI::App& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
   const auto model = [options](Json& json) { json["model"] = options->model; };
   for (const auto& [word, doc] : {std::pair{"enable", "Enable a model; its force fades in."},
                                   std::pair{"disable", "Disable a model: its force fades out, tracing goes on."},
@@ -282,7 +282,7 @@ void addModelRequests(CLI::App& ctl, const std::shared_ptr<Options>& options, in
   move->add_option("--seconds", options->seconds, "shortest duration of the motion [s]; default: 0.2 m/s at most");
 }
 
-void addSceneRequests(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
+void addSceneRequests(CLI::App& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
   CLI::App* add = addRequest(ctl, "add", "Add the models of a scene file.", options, exit_code, [options](Json& json) {
     json["file"] = absolute(options->file);
     if (!options->model.empty()) json["model"] = options->model;
@@ -296,7 +296,7 @@ void addSceneRequests(CLI::App& ctl, const std::shared_ptr<Options>& options, in
   reload->add_option("file", options->file, "scene file with the same devices");
 }
 
-void addDeviceRequests(CLI::App& ctl, const std::shared_ptr<Options>& options, int& exit_code) {
+void addDeviceRequests(CLI::App& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
   const auto device = [options](Json& json) {
     if (!options->device.empty()) json["device"] = options->device;
   };
@@ -310,7 +310,7 @@ void addDeviceRequests(CLI::App& ctl, const std::shared_ptr<Options>& options, i
 }  // namespace
 
 void addCtl(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CtlArguments>();
   CLI::App* ctl = app.add_subcommand("ctl", "Control a running daemon: status, models, parameters, black box.");
   ctl->require_subcommand(1);
   ctl->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");

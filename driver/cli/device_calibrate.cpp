@@ -14,7 +14,7 @@
 namespace hapticd::cli {
 namespace {
 
-struct Options {
+struct CalibrationArguments {
   std::string file;
   bool yes = false;
 };
@@ -41,7 +41,7 @@ void printWhere(host::DeviceInstance& device) {
   std::printf("\n");
 }
 
-int calibrate(const Options& options) {
+int calibrate(const CalibrationArguments& options) {
   const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
   printProblems(loaded.problems, stderr);
   if (!loaded.device) return kBadInput;
@@ -73,7 +73,7 @@ int calibrate(const Options& options) {
 }  // namespace
 
 void addDeviceCalibrate(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CalibrationArguments>();
   CLI::App* command = app.get_subcommand("device")->add_subcommand(
       "calibrate", "Calibrate the encoders of an arm. The command says what you must do; no force is sent before.");
   command->add_option("file", options->file, "device file (YAML)")->required();

@@ -22,7 +22,7 @@
 namespace hapticd::cli {
 namespace {
 
-struct Options {
+struct DecodeArguments {
   std::string file, input = "-", out = "-";
   bool hex = false, raw = false, from_arm = false;
 };
@@ -69,7 +69,7 @@ int writeOut(const std::string& file, const std::string& text) {
   return written && closed ? kWorked : fail(kFailed, file + ": cannot be written");
 }
 
-int decode(const Options& options) {
+int decode(const DecodeArguments& options) {
   int exit_code = kWorked;
   const auto described = describedIn(options.file, exit_code);
   if (!described) return exit_code;
@@ -122,7 +122,7 @@ std::vector<std::string> namesIn(const std::string& text, const std::vector<std:
   return names;
 }
 
-int encode(const Options& options) {
+int encode(const DecodeArguments& options) {
   int exit_code = kWorked;
   const auto described = describedIn(options.file, exit_code);
   if (!described) return exit_code;
@@ -162,7 +162,7 @@ int encode(const Options& options) {
 }
 
 void addDecode(CLI::App& device, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DecodeArguments>();
   CLI::App* command =
       device.add_subcommand("decode", "Show a captured stream of an arm as numbers, as its device file reads it.");
   command->add_option("file", options->file, "device file (YAML)")->required();
@@ -184,7 +184,7 @@ void addDecode(CLI::App& device, int& exit_code) {
 }
 
 void addEncode(CLI::App& device, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DecodeArguments>();
   CLI::App* command = device.add_subcommand("encode", "Write numbers as the bytes of an arm's reports.");
   command->add_option("file", options->file, "device file (YAML)")->required();
   command->add_option("csv", options->input, "CSV file with the numbers; - for standard input")->capture_default_str();

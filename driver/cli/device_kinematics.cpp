@@ -14,7 +14,7 @@
 namespace hapticd::cli {
 namespace {
 
-struct Options {
+struct KinematicsArguments {
   std::string file, joints, out = "-";
 };
 
@@ -102,7 +102,7 @@ class Table {
   size_t outside_ = 0;
 };
 
-int kinematics(const Options& options) {
+int kinematics(const KinematicsArguments& options) {
   const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
   printProblems(loaded.problems, stderr);
   if (!loaded.device) return kBadInput;
@@ -132,7 +132,7 @@ int kinematics(const Options& options) {
 }  // namespace
 
 void addDeviceKinematics(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<KinematicsArguments>();
   CLI::App* command = app.get_subcommand("device")->add_subcommand(
       "kinematics", "Compute tip pose, Jacobian, gravity torques and J^T W for the joint positions of a CSV file.");
   command->add_option("file", options->file, "device file (YAML)")->required();

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct NewDeviceArguments {
   std::string name, out, bus = "hid", kind = "phantom", id = "1234:0006";
   std::vector<double> lengths;
   int joints = 3, bits = 16, buttons = 1;
@@ -30,7 +30,7 @@ struct Options {
   bool no_questions = false;
 };
 
-std::string wrongIn(const Options& o) {
+std::string wrongIn(const NewDeviceArguments& o) {
   const bool hid = o.bus == "hid", bulk = o.bus == "bulk";
   if (!hid && !bulk) return "--bus " + o.bus + ": expected hid or bulk";
   if (o.kind != "phantom" && o.kind != "delta" && o.kind != "chain")
@@ -88,7 +88,7 @@ class Questions {
 
   /// A list, such as 0.21, 0.17; no answer leaves the template's.
   template <class Wrong>
-  void askLengths(Options& options, const Wrong& wrong) {
+  void askLengths(NewDeviceArguments& options, const Wrong& wrong) {
     if (command_.count("--lengths") > 0) return;
     for (;; options.lengths.clear()) {
       std::cout << lengthsQuestion(options.kind) << ": " << std::flush;
@@ -105,7 +105,7 @@ class Questions {
   const CLI::App& command_;
 };
 
-void askAll(const CLI::App& command, Options& options) {
+void askAll(const CLI::App& command, NewDeviceArguments& options) {
   Questions questions(command);
   const auto wrong = [&options] { return wrongIn(options); };
   questions.ask("--bus", "Bus: hid, bulk (USB)", options.bus, wrong);
@@ -126,7 +126,7 @@ std::string listOf(const std::vector<double>& numbers) {
   return fmt::format("[{:g}]", fmt::join(numbers, ", "));
 }
 
-std::string armOf(const Options& o) {
+std::string armOf(const NewDeviceArguments& o) {
   std::string text = fmt::format("  arm:\n    kind: {}\n", o.kind);
   if (o.kind == "phantom") {
     std::vector<double> all = o.lengths.empty() ? std::vector<double>{0.2, 0.2} : o.lengths;
@@ -159,7 +159,7 @@ std::string armOf(const Options& o) {
   return text;
 }
 
-std::string wireOf(const Options& o) {
+std::string wireOf(const NewDeviceArguments& o) {
   const double scale = 2 * M_PI / (o.counts * o.gear);
   std::string text = fmt::format(
       "  wire:                           # driver/docs/devices.md has every key\n"
@@ -197,7 +197,7 @@ std::string wireOf(const Options& o) {
   return text;
 }
 
-std::string textOf(const Options& o) {
+std::string textOf(const NewDeviceArguments& o) {
   std::string pose;
   for (int i = 0; i < o.joints; ++i) pose += i > 0 ? ", 0" : "0";
   return fmt::format(
@@ -216,14 +216,14 @@ std::string textOf(const Options& o) {
                     : "");
 }
 
-bool usable(const std::string& name) {
+bool usableDeviceName(const std::string& name) {
   for (const char c : name)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-') return false;
   return !name.empty() && name.size() <= 40;
 }
 
-int makeNew(const CLI::App& command, Options options) {
-  if (!usable(options.name))
+int makeNew(const CLI::App& command, NewDeviceArguments options) {
+  if (!usableDeviceName(options.name))
     return fail(kBadInput,
                 "\"" + options.name + "\" is not a valid name of a device, expected letters, digits, _ and -");
   const fs::path file = options.out.empty() ? fs::path(options.name + ".yaml") : fs::path(options.out);
@@ -256,7 +256,7 @@ int makeNew(const CLI::App& command, Options options) {
 }  // namespace
 
 void addDeviceNew(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<NewDeviceArguments>();
   CLI::App* command = app.get_subcommand("device")->add_subcommand(
       "new", "Write a commented device file to start from; asks on a terminal for what no option gives.");
   command->add_option("name", options->name, "name of the arm: letters, digits, _ and -")->required();

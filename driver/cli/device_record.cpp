@@ -14,7 +14,7 @@
 namespace hapticd::cli {
 namespace {
 
-struct Options {
+struct CaptureArguments {
   std::string file, out = "-";
   double seconds = 10;
 };
@@ -39,7 +39,7 @@ int32_t take(void* who, uint64_t time_ns, uint32_t to_arm, const uint8_t* bytes,
   return log.full || g_stop.load() || time >= log.until ? 1 : 0;
 }
 
-int record(const Options& options) {
+int record(const CaptureArguments& options) {
   const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
   printProblems(loaded.problems, stderr);
   if (!loaded.device) return kBadInput;
@@ -74,7 +74,7 @@ int record(const Options& options) {
 }  // namespace
 
 void addDeviceRecord(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CaptureArguments>();
   CLI::App* command = app.get_subcommand("device")->add_subcommand(
       "record", "Write what an arm sends to a file, byte by byte, with its motors off.");
   command->add_option("file", options->file, "device file (YAML)")->required();

@@ -144,19 +144,19 @@ void explainFiles(const scene::Scene& scene) {
   }
 }
 
-struct Options {
+struct ExplainArguments {
   std::string scene;
   bool cost = false, json = false;
 };
 
-int explainCost(const Options& options, const scene::Scene& scene) {
+int explainCost(const ExplainArguments& options, const scene::Scene& scene) {
   const auto rows = costOf(scene);
   if (!rows) return fail(kBadInput, rows.error());
   std::fputs((options.json ? costJson(options.scene, *rows) : costTable(*rows)).c_str(), stdout);
   return kWorked;
 }
 
-int explain(const Options& options) {
+int explain(const ExplainArguments& options) {
   auto scene = loadSceneOrReport(options.scene);
   if (!scene) return kBadInput;
   if (options.cost || options.json) return explainCost(options, *scene);
@@ -182,7 +182,7 @@ int explain(const Options& options) {
 }  // namespace
 
 void addExplain(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExplainArguments>();
   CLI::App* command = app.add_subcommand(
       "explain", "Show what the daemon loads, starts and computes for a scene, why, and at what cost.");
   command->add_option("scene", options->scene, "scene file (YAML)")->required();

@@ -15,7 +15,7 @@ namespace hapticd::cli {
 
 namespace {
 
-struct Options {
+struct ExportArguments {
   std::string file, mcap, csv, stream;
 };
 
@@ -38,7 +38,7 @@ std::vector<std::string> namesOf(const record::Recording& recording) {
 }
 
 /// One file of one stream, or a folder with a file of each.
-int toCsv(const record::Recording& recording, const Options& options) {
+int toCsv(const record::Recording& recording, const ExportArguments& options) {
   const bool one = !options.stream.empty();
   if (one && recording.stream(options.stream) == nullptr)
     return fail(kBadInput, "--stream " + options.stream + ": the recording has no such stream, expected one of " +
@@ -64,7 +64,7 @@ bool sameFile(const std::string& a, const std::string& b) {
   return std::filesystem::equivalent(a, b, error);
 }
 
-int exportRecording(const Options& options) {
+int exportRecording(const ExportArguments& options) {
   if (options.mcap.empty() && options.csv.empty())
     return fail(kBadInput, "nothing to write, expected --mcap FILE or --csv FOLDER");
   for (const std::string& file : {options.mcap, options.csv})
@@ -79,7 +79,7 @@ int exportRecording(const Options& options) {
 }  // namespace
 
 void addExport(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportArguments>();
   CLI::App* command = app.add_subcommand("export", "Convert a recording for other tools: MCAP or CSV.");
   command->add_option("recording", options->file, "recording, dump, or black box of a crash")->required();
   command->add_option("--mcap", options->mcap, "MCAP file, for Foxglove, PlotJuggler and rosbag2");

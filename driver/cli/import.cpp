@@ -22,7 +22,7 @@ namespace hapticd::cli {
 using namespace importing;
 namespace {
 
-struct Options {
+struct ImportArguments {
   std::string file, out, up = "y", outward = "auto";
   Placement placement;
   bool medial = false;
@@ -50,7 +50,7 @@ std::string otherWay(const std::string& file) {
 }
 
 /// What the options of one format are worth with another one.
-std::string misplaced(const Options& options, bool cad) {
+std::string misplaced(const ImportArguments& options, bool cad) {
   const bool turned = options.placement.fit > 0 || options.placement.center || options.up != "y";
   if (cad && (turned || options.placement.scale != 1))
     return "--scale, --fit, --center and --up are not for CAD files, which state their unit: place the part by pose";
@@ -64,7 +64,7 @@ std::string misplaced(const Options& options, bool cad) {
   return "";
 }
 
-int importCadFile(const Options& options) {
+int importCadFile(const ImportArguments& options) {
   CadImport how = options.cad;
   how.file = options.file;
   how.out = options.out;
@@ -72,7 +72,7 @@ int importCadFile(const Options& options) {
   return importCad(how);
 }
 
-int importSoftBody(const Options& options) {
+int importSoftBody(const ImportArguments& options) {
   MedialImport body = options.body;
   body.file = options.file;
   body.out = options.out;
@@ -83,7 +83,7 @@ int importSoftBody(const Options& options) {
   return done ? kWorked : fail(kFailed, done.error());
 }
 
-int importPatches(const Options& options, const Placement& placement) {
+int importPatches(const ImportArguments& options, const Placement& placement) {
   document::Problems problems;
   const auto text = document::readFile(options.file, document::kMaxFileBytes, problems);
   printProblems(problems, stderr);
@@ -108,7 +108,7 @@ int importPatches(const Options& options, const Placement& placement) {
   return kWorked;
 }
 
-int importModel(const Options& options) {
+int importModel(const ImportArguments& options) {
   const bool from_cad = isCadFile(options.file) && !options.medial;
   if (const std::string wrong = misplaced(options, from_cad); !wrong.empty())
     return fail(kBadInput, options.file + ": " + wrong);
@@ -126,7 +126,7 @@ int importModel(const Options& options) {
   return importPatches(options, placement);
 }
 
-void addMedialOptions(CLI::App& command, Options& options) {
+void addMedialOptions(CLI::App& command, ImportArguments& options) {
   MedialImport& body = options.body;
   CLI::Option* medial = command.add_flag(
       "--medial", options.medial, "make a soft body of cones and slabs from the medial axis of a closed surface");
@@ -167,7 +167,7 @@ void addMedialOptions(CLI::App& command, Options& options) {
       ->needs(calibrate);
 }
 
-void addPlacementOptions(CLI::App& command, Options& options) {
+void addPlacementOptions(CLI::App& command, ImportArguments& options) {
   Placement& placement = options.placement;
   CLI::Option* scale =
       command.add_option("--scale", placement.scale, "metres per unit of the file")->check(within(1e-9, 1e9));
@@ -186,7 +186,7 @@ void addPlacementOptions(CLI::App& command, Options& options) {
 }  // namespace
 
 void addImport(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ImportArguments>();
   CLI::App* command = app.add_subcommand(
       "import",
       "Convert CAD files and triangle meshes into parts, Bezier patches (.bpt) into a model file, or a closed surface "

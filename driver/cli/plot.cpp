@@ -17,7 +17,7 @@ namespace hapticd::cli {
 
 namespace {
 
-struct Options {
+struct PlotArguments {
   std::string file, out;
   uint32_t arm = 0;
   std::optional<double> from, to;
@@ -82,7 +82,7 @@ record::RunNotes notesOf(const record::Recording& recording, uint32_t arm, bool&
   return notes;
 }
 
-int plot(const Options& options) {
+int plot(const PlotArguments& options) {
   const std::string out = options.out.empty() ? options.file + ".svg" : options.out;
   if (options.from && options.to && *options.from >= *options.to)
     return fail(kBadInput, "--from is not before --to, expected a time before it");
@@ -120,7 +120,7 @@ int plot(const Options& options) {
 }  // namespace
 
 void addPlot(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PlotArguments>();
   CLI::App* command = app.add_subcommand(
       "plot",
       "Draw a recording: depth, force, lateness and position over time, with faults, limits and models by name (SVG).");

@@ -26,19 +26,19 @@ std::map<std::string, std::string> quarantineNotes() {
   return notes;
 }
 
-int printJson(const Json& json) {
+int printAsJson(const Json& json) {
   std::printf("%s\n", json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
   return kWorked;
 }
 
-int listJson() {
+int listPluginsJson() {
   Json json = classesJson(catalog().files(host::Kind::kShape), host::Kind::kShape);
   const auto notes = quarantineNotes();
   for (Json& plugin : json["plugins"]) {
     const auto note = notes.find(plugin["name"].get<std::string>());
     plugin["quarantine"] = note != notes.end() ? Json(note->second) : Json();
   }
-  return printJson(json);
+  return printAsJson(json);
 }
 
 int list(bool details) {
@@ -57,7 +57,7 @@ int info(const std::string& name, bool json) {
   if (json) {
     Json facts = classJson(**found);
     facts["quarantine"] = note != notes.end() ? Json(note->second) : Json();
-    return printJson(facts);
+    return printAsJson(facts);
   }
   printClass(**found);
   if (note != notes.end()) std::printf("\n%s\n", note->second.c_str());
@@ -95,7 +95,7 @@ void addPlugin(CLI::App& app, int& exit_code) {
   list_command->footer("Example:\n  HAPTICD_PLUGIN_PATH=~/my-plugins/build hapticd plugin list --files");
   auto json = std::make_shared<bool>(false);
   list_command->add_flag("--json", *json, "print JSON, with the parameters of each");
-  list_command->callback([details, json, &exit_code] { exit_code = *json ? listJson() : list(*details); });
+  list_command->callback([details, json, &exit_code] { exit_code = *json ? listPluginsJson() : list(*details); });
 
   auto crashed = std::make_shared<std::string>();
   CLI::App* clear_command =

@@ -25,7 +25,7 @@ namespace hapticd::cli {
 using namespace conformance;
 namespace {
 
-struct Options {
+struct ConformanceArguments {
   std::string file;
   std::vector<std::string> set;
   bool json = false;
@@ -59,7 +59,7 @@ void addModelOfOurs(const host::ClassInfo& info, Recipe& recipe) {
 }
 
 /// What each class is tested with; `problems` has all that is wrong with it.
-std::vector<Recipe> recipesFor(const std::vector<host::ClassInfo>& classes, const Options& options,
+std::vector<Recipe> recipesFor(const std::vector<host::ClassInfo>& classes, const ConformanceArguments& options,
                                std::vector<std::string>& problems) {
   SetOption set(options.set, classes);
   std::vector<Recipe> recipes;
@@ -79,7 +79,7 @@ std::vector<Recipe> recipesFor(const std::vector<host::ClassInfo>& classes, cons
 
 /// Where it can be touched, looked for once and in a child. A search that crashes finds nothing, and the test that asks
 /// for a contact says how it ended. The error is that of a shape that refuses to be made or activated.
-Result<Touch> lookForContact(const Recipe& recipe, const Options& options) {
+Result<Touch> lookForContact(const Recipe& recipe, const ConformanceArguments& options) {
   const auto look = [&] {
     const Made made(recipe);
     return made.error.empty() ? "=" + toText(findTouch(recipe)) : made.error;
@@ -89,7 +89,7 @@ Result<Touch> lookForContact(const Recipe& recipe, const Options& options) {
   return said ? touchFromText(said->substr(1)) : Touch{};
 }
 
-Outcome tryOne(const Recipe& recipe, const ConformanceTest& test, const Options& options) {
+Outcome tryOne(const Recipe& recipe, const ConformanceTest& test, const ConformanceArguments& options) {
   Outcome outcome{recipe.class_name, test.name, "", false, false, false, false, ""};
   shareLastStep();
   const auto said = host::runInChild([&] { return "=" + test.run(recipe, options.seed); }, options.limitMs());
@@ -104,7 +104,7 @@ Outcome tryOne(const Recipe& recipe, const ConformanceTest& test, const Options&
 }
 
 /// Some runs of random input in one child. @return "=": nothing was wrong
-Result<std::string> fuzzSome(const Recipe& recipe, const Options& options, uint64_t first, int count) {
+Result<std::string> fuzzSome(const Recipe& recipe, const ConformanceArguments& options, uint64_t first, int count) {
   return host::runInChild(
       [&recipe, first, count] {
         for (uint64_t s = first; s < first + static_cast<uint64_t>(count); ++s)
@@ -116,7 +116,7 @@ Result<std::string> fuzzSome(const Recipe& recipe, const Options& options, uint6
 }
 
 /// Runs of random input until the time is over; the seed of a failure repeats it.
-Outcome fuzz(const Recipe& recipe, const Options& options) {
+Outcome fuzz(const Recipe& recipe, const ConformanceArguments& options) {
   constexpr int kRunsAChild = 20;
   const Nanoseconds end = monotonicNow() + static_cast<Nanoseconds>(options.fuzz * 1e9);
   Outcome outcome{recipe.class_name, "fuzz", "", true, false, false, false, ""};
@@ -153,7 +153,8 @@ std::vector<Outcome> unusable(const std::string& why) {
 }
 
 /// A shape that its parameters do not activate fails once, not by every test.
-size_t notActive(const Recipe& recipe, const std::string& why, const Options& options, std::vector<Outcome>& outcomes) {
+size_t notActive(const Recipe& recipe, const std::string& why, const ConformanceArguments& options,
+                 std::vector<Outcome>& outcomes) {
   const size_t left = conformanceTests().size();
   outcomes.push_back({recipe.class_name, "activate", why, false, false, false, false, ""});
   if (options.json) return left;
@@ -206,7 +207,7 @@ class SameEnd {
 
 /// All tests of one class, up to the first that hangs: those after it would hang too. A test that needs one that failed
 /// would only repeat it. @return how many were not run
-size_t testClass(const Recipe& recipe, const Options& options, std::vector<Outcome>& outcomes) {
+size_t testClass(const Recipe& recipe, const ConformanceArguments& options, std::vector<Outcome>& outcomes) {
   const auto& tests = conformanceTests();
   Lacking lacking;
   SameEnd same;
@@ -234,7 +235,7 @@ size_t testClass(const Recipe& recipe, const Options& options, std::vector<Outco
   return left + lacking.notRun();
 }
 
-int sum(const std::vector<Outcome>& outcomes, size_t not_run, const Options& options) {
+int sum(const std::vector<Outcome>& outcomes, size_t not_run, const ConformanceArguments& options) {
   size_t failed = 0;
   auto tests = nlohmann::ordered_json::array();
   for (const Outcome& o : outcomes) {
@@ -261,7 +262,7 @@ bool isSharedObject(const std::string& file) {
          "ELF";
 }
 
-int check(const Options& options) {
+int check(const ConformanceArguments& options) {
   if (!isSharedObject(options.file))
     return fail(kBadInput,
                 options.file +
@@ -292,7 +293,7 @@ int check(const Options& options) {
 }  // namespace
 
 void addPluginCheck(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ConformanceArguments>();
   CLI::App* command = app.get_subcommand("plugin")->add_subcommand(
       "check", "Run the conformance tests of a plugin file, each in its own process.");
   command->add_option("file", options->file, "plugin file (.so)")->required()->check(CLI::ExistingFile);

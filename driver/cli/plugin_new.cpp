@@ -13,12 +13,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct NewPluginArguments {
   std::string name, folder;
 };
 
 /// Names become files, C++ identifiers and CMake targets.
-bool usable(const std::string& name) {
+bool usablePluginName(const std::string& name) {
   if (name.empty() || name.size() > 40 || !std::islower(static_cast<unsigned char>(name[0]))) return false;
   for (const char c : name)
     if (!std::islower(static_cast<unsigned char>(c)) && !std::isdigit(static_cast<unsigned char>(c)) && c != '_')
@@ -78,8 +78,8 @@ void tellNextSteps(const std::string& folder, const std::string& name) {
               at);
 }
 
-int makeNew(const Options& options) {
-  if (!usable(options.name))
+int makeNew(const NewPluginArguments& options) {
+  if (!usablePluginName(options.name))
     return fail(kBadInput, "\"" + options.name +
                                "\" is not a valid name of a plugin, expected lower-case letters, digits and _, "
                                "beginning with a letter: my_shape");
@@ -109,7 +109,7 @@ int makeNew(const Options& options) {
 }  // namespace
 
 void addPluginNew(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<NewPluginArguments>();
   CLI::App* command = app.get_subcommand("plugin")->add_subcommand(
       "new", "Create a new plugin from the template: source, build file, scene.");
   command->add_option("name", options->name, "name of the plugin: lower-case letters, digits and _")->required();

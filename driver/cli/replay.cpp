@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kPartly = 3;  ///< exit code: what was replayed is the same, and not all can be
 
-struct Options {
+struct ReplayArguments {
   std::string file;
   std::vector<std::string> changes;
   bool json = false;
@@ -130,7 +130,7 @@ int printJson(const servo::ReplayOutcome& outcome) {
   return verdictOf(outcome);
 }
 
-int replay(const Options& options) {
+int replay(const ReplayArguments& options) {
   auto recording = record::Recording::open(options.file);
   if (!recording) return fail(kBadInput, recording.error());
   auto run = servo::readAbout((*recording)->aboutJson());
@@ -152,7 +152,7 @@ int replay(const Options& options) {
 }  // namespace
 
 void addReplay(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReplayArguments>();
   CLI::App* command = app.add_subcommand("replay", "Run a recording again and compare every force to the last bit.");
   command->add_option("file", options->file, "recording made by `hapticd run --record`")->required();
   command->add_option("--set", options->changes, "change a parameter: MODEL.PARAMETER=NUMBER; may be repeated");

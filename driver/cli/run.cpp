@@ -31,7 +31,7 @@ namespace hapticd::cli {
 
 namespace {
 
-struct Options {
+struct RunArguments {
   std::string scene, device, report, picture, record, name, log_level = "info";
   log::Settings log;
   std::optional<double> duration, rate;
@@ -45,7 +45,7 @@ const Nanoseconds program_start = monotonicNow();  ///< when the libraries were 
 std::atomic<servo::Runner*> running{nullptr};  ///< for the signal handler
 std::atomic<bool> told_to_stop{false};
 
-void onStop(int) {
+void stopRun(int) {
   told_to_stop = true;
   if (servo::Runner* runner = running.load()) runner->stop();
 }
@@ -78,7 +78,7 @@ bool writable(const std::string& file) {
 }
 
 /// Two that would overwrite each other; "" if each has a file of its own. Devices and pipes take any number.
-std::string writtenTwice(const Options& options) {
+std::string writtenTwice(const RunArguments& options) {
   namespace fs = std::filesystem;
   std::error_code error;
   std::set<fs::path> known{fs::weakly_canonical(options.scene, error)};
@@ -144,7 +144,7 @@ void warnOfHeat(const servo::Runner& runner, double rate) {
 }
 
 /// Writes what was asked for and prints the summary; the run's own exit code unless a file fails.
-int conclude(const Options& options, servo::Runner& runner, const std::vector<std::string>& left_out) {
+int conclude(const RunArguments& options, servo::Runner& runner, const std::vector<std::string>& left_out) {
   std::vector<std::string> faults = runner.faults();
   faults.insert(faults.end(), left_out.begin(), left_out.end());
   std::vector<std::string> told = faults;
@@ -214,7 +214,7 @@ void logOfRun(int level, const std::string& who, const std::string& text) {
 }
 
 /// A page for this run, by another process: started here, before this one takes rights that it must not inherit.
-Result<void> showPage(const Options& options, const servo::RunFiles* files, scene::Scene& scene) {
+Result<void> showPage(const RunArguments& options, const servo::RunFiles* files, scene::Scene& scene) {
   if (files == nullptr || files->name().empty())
     return Error{
         "--view: a run in virtual time has no black box, so there is nothing to show\n  fix: leave --virtual-time out"};
@@ -226,7 +226,7 @@ Result<void> showPage(const Options& options, const servo::RunFiles* files, scen
 }
 
 /// What is wrong with the files that the run shall write; "" if nothing is.
-std::string wrongFiles(const Options& options) {
+std::string wrongFiles(const RunArguments& options) {
   for (const std::string& file : {options.report, options.picture, options.record})
     if (!writable(file)) return file + ": cannot be written, expected a file in a folder that you may write to";
   if (const std::string file = writtenTwice(options); !file.empty())
@@ -234,7 +234,7 @@ std::string wrongFiles(const Options& options) {
   return "";
 }
 
-servo::RunOptions runOptions(const Options& options, const scene::Scene& scene) {
+servo::RunOptions runOptions(const RunArguments& options, const scene::Scene& scene) {
   servo::RunOptions how;
   how.rate = options.rate.value_or(scene.servo.rate);
   how.duration = options.duration;
@@ -269,7 +269,7 @@ Result<void> tickToTheEnd(servo::Runner& runner, servo::RunFiles* files) {
   return done;
 }
 
-int runScene(const Options& options, scene::Scene& scene) {
+int runScene(const RunArguments& options, scene::Scene& scene) {
   servo::RunOptions how = runOptions(options, scene);
   std::unique_ptr<servo::RunFiles> files;  // a virtual run is over before anybody looks, unless it was given a name
   if (!options.virtual_time || !options.name.empty()) {
@@ -284,7 +284,7 @@ int runScene(const Options& options, scene::Scene& scene) {
   const SetupErrors once;
   auto world = servo::Runner::buildWorld(scene, how, logOfRun);
   if (!world) return fail(kBadInput, world.error());
-  os::onStopSignal(onStop);  // from here on there are files to leave
+  os::onStopSignal(stopRun);  // from here on there are files to leave
   auto runner = servo::Runner::prepare(scene, how, std::move(*world), logOfRun);
   if (!runner) return fail(kFailed, runner.error());
   once.tell();
@@ -306,7 +306,7 @@ bool switchesAreThere(const scene::Scene& scene) {
   return wrong.empty();
 }
 
-int run(const Options& options) {
+int run(const RunArguments& options) {
   if (auto opened = log::open(options.log); !opened) return fail(kBadInput, opened.error());
   if (const std::string wrong = wrongFiles(options); !wrong.empty()) return fail(kBadInput, wrong);
   auto scene = loadSceneOrReport(options.scene, options.device);
@@ -325,7 +325,7 @@ std::string plainSeconds(const std::string& text) {
   return "\"" + text + "\" is not a number, expected seconds, such as --for 10";
 }
 
-void addTiming(CLI::App* command, Options& options) {
+void addTiming(CLI::App* command, RunArguments& options) {
   command->add_option("--device", options.device, "device file to use instead of the scene's");
   command->add_option("--for", options.duration, "duration of the run [s]; default: until it is stopped (Ctrl-C)")
       ->check(plainSeconds)
@@ -341,7 +341,7 @@ void addTiming(CLI::App* command, Options& options) {
       ->check(CLI::Range(1, 98));
 }
 
-void addOutputs(CLI::App* command, Options& options) {
+void addOutputs(CLI::App* command, RunArguments& options) {
   command->add_option("--report", options.report, "write a report (JSON)");
   command->add_option("--picture", options.picture, "write a picture of depth, force and lateness over time (SVG)");
   command->add_option("--name", options.name, "name of this daemon for top, ctl and view; default: hapticd")
@@ -365,7 +365,7 @@ void addOutputs(CLI::App* command, Options& options) {
 }  // namespace
 
 void addRun(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "Run the daemon: the servo loop on a scene and its device.");
   command->add_option("scene", options->scene, "scene file (YAML)")->required();
   addTiming(command, *options);

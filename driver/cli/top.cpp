@@ -29,7 +29,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct TopArguments {
   std::string name = "hapticd", sort = "step";
   double every = 0.5;
   bool once = false, json = false;
@@ -255,7 +255,7 @@ bool ended(const status::Page& page) {
   return kill(static_cast<pid_t>(page.pid), 0) != 0 && errno == ESRCH;
 }
 
-int watch(const Options& options, const status::Page& page) {
+int watch(const TopArguments& options, const status::Page& page) {
   const RawKeys keys;
   std::string sort = options.sort;
   constexpr size_t kRows = 30;
@@ -282,7 +282,7 @@ int watch(const Options& options, const status::Page& page) {
 }
 
 /// One line of JSON after the other, until nobody reads them or the daemon ends.
-int stream(const Options& options, const status::Page& page) {
+int stream(const TopArguments& options, const status::Page& page) {
   RealClock clock(0);
   status::Now before{};
   while (!ended(page)) {
@@ -297,7 +297,7 @@ int stream(const Options& options, const status::Page& page) {
   return kWorked;
 }
 
-int top(const Options& options) {
+int top(const TopArguments& options) {
   const std::string file = status::runtimeFolder(false) + "/" + options.name + ".status";
   auto opened = status::PageFile::open(file);
   if (!opened)
@@ -315,7 +315,7 @@ int top(const Options& options) {
 }  // namespace
 
 void addTop(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TopArguments>();
   CLI::App* command =
       app.add_subcommand("top", "Watch a running daemon: time, lateness, force and depth of each model and device.");
   command->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");

@@ -20,7 +20,7 @@ namespace hapticd::cli {
 
 namespace {
 
-struct Options {
+struct TraceArguments {
   std::string scene, probe, out, models;
 };
 
@@ -69,7 +69,7 @@ Result<void> traceRows(const scene::Scene& scene, servo::World& world, const std
   return writer.close();
 }
 
-int trace(const Options& options) {
+int trace(const TraceArguments& options) {
   auto scene = loadSceneOrReport(options.scene, "", false);
   if (!scene) return kBadInput;
   auto rows = readProbePath(options.probe);
@@ -91,7 +91,7 @@ int trace(const Options& options) {
 }  // namespace
 
 void addTrace(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TraceArguments>();
   CLI::App* command = app.add_subcommand("trace", "Run the servo core over a prescribed probe path, in virtual time.");
   command->add_option("scene", options->scene, "scene file (YAML)")->required();
   command

@@ -21,7 +21,7 @@
 namespace hapticd::cli {
 namespace {
 
-struct Options {
+struct TuneArguments {
   std::string scene, probe, motion, page, picture, json;
   std::optional<double> budget_us;
   double tolerance_um = 1, force_tolerance = 0.1, motion_seconds = 5, limit_seconds = 50;
@@ -30,7 +30,7 @@ struct Options {
 
 std::atomic<bool> stopped{false};
 
-void onStop(int) {
+void stopTuning(int) {
   stopped = true;
 }
 
@@ -82,13 +82,13 @@ void quiet(int level, const std::string& who, const std::string& text) {
 }
 
 /// What the user gave: a path file, a recording, or nothing.
-Result<tune::Motion> motionFor(const Options& options, const scene::Scene& scene) {
+Result<tune::Motion> motionFor(const TuneArguments& options, const scene::Scene& scene) {
   if (!options.probe.empty()) return motionOfFile(options.probe, scene.servo.rate);
   if (!options.motion.empty()) return motionOfRecording(options.motion, scene.servo.rate);
   return tune::motionOfHand(scene, options.motion_seconds, quiet);
 }
 
-std::string nameOfMotion(const Options& options) {
+std::string nameOfMotion(const TuneArguments& options) {
   const std::string file = options.probe + options.motion;
   return file.empty() ? "the motion of the scene's hand" : file;
 }
@@ -126,7 +126,7 @@ std::string tunedName(const std::string& scene) {
   return (path.parent_path() / (path.stem().string() + ".tuned.yaml")).string();
 }
 
-int report(const Options& options, const tune::Findings& findings) {
+int report(const TuneArguments& options, const tune::Findings& findings) {
   const bool to_program = options.json == "-";
   std::fputs(to_program ? tune::json(findings).c_str() : tune::table(findings).c_str(), stdout);
   bool saved = save(options.page, tune::page(findings));
@@ -157,7 +157,7 @@ Result<void> sweep(const scene::Scene& scene, const tune::Motion& motion, bool u
   return {};
 }
 
-int tuneScene(const Options& options) {
+int tuneScene(const TuneArguments& options) {
   auto scene = loadSceneOrReport(options.scene);
   if (!scene) return kBadInput;
   if (scene->models.empty()) return fail(kBadInput, options.scene + ": the scene has no model, expected one to tune");
@@ -180,7 +180,7 @@ int tuneScene(const Options& options) {
   findings.goal.force_tolerance_n = options.force_tolerance;
   findings.limit_seconds = options.limit_seconds;
 
-  os::onStopSignal(onStop);
+  os::onStopSignal(stopTuning);
   auto tuning =
       tune::search(*scene, *motion, findings.knobs, {findings.goal, options.limit_seconds, showProgress, quiet});
   if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
@@ -193,7 +193,7 @@ int tuneScene(const Options& options) {
 }
 
 /// What to aim at, and over which motion.
-void addGoal(CLI::App* command, const std::shared_ptr<Options>& options) {
+void addGoal(CLI::App* command, const std::shared_ptr<TuneArguments>& options) {
   auto* budget = command
                      ->add_option("--budget-us", options->budget_us,
                                   "choose the most accurate setting whose tick time (p99) is below this [us]")
@@ -220,7 +220,7 @@ void addGoal(CLI::App* command, const std::shared_ptr<Options>& options) {
       ->capture_default_str();
 }
 
-void addOutputs(CLI::App* command, const std::shared_ptr<Options>& options) {
+void addOutputs(CLI::App* command, const std::shared_ptr<TuneArguments>& options) {
   command->add_flag("--write", options->write,
                     "write SCENE.tuned.yaml beside the scene, with the chosen setting and the reason");
   command->add_option("--page", options->page, "write a report (one HTML file that needs no network)");
@@ -236,7 +236,7 @@ void addOutputs(CLI::App* command, const std::shared_ptr<Options>& options) {
 }  // namespace
 
 void addTune(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TuneArguments>();
   CLI::App* command = app.add_subcommand(
       "tune", "Measure the cost and the error of a scene's settings on this machine, and choose one.");
   command->add_option("scene", options->scene, "scene file (YAML)")->required();

@@ -17,13 +17,13 @@ namespace hapticd::cli {
 
 namespace {
 
-struct Options {
+struct ViewArguments {
   std::string name = "hapticd", file;
   int port = 0;
   bool control = false, open = false;
 };
 
-std::vector<std::string> argumentsOf(const Options& options) {
+std::vector<std::string> argumentsOf(const ViewArguments& options) {
   std::vector<std::string> arguments{"--name", options.name, "--port", std::to_string(options.port)};
   if (options.control) arguments.emplace_back("--control");
   if (options.open) arguments.emplace_back("--open");
@@ -32,12 +32,12 @@ std::vector<std::string> argumentsOf(const Options& options) {
 
 volatile sig_atomic_t viewer = 0;  ///< for the signal handler
 
-void passOn(int signal) {
+void passToView(int signal) {
   if (viewer > 0) kill(static_cast<pid_t>(viewer), signal);
 }
 
 /// This process draws the models, another serves the page.
-int viewRecording(const Options& options) {
+int viewRecording(const ViewArguments& options) {
   auto models = RecordedModels::serve(options.file);
   if (!models) return fail(kBadInput, models.error());
   std::vector<std::string> arguments = argumentsOf(options);
@@ -45,14 +45,14 @@ int viewRecording(const Options& options) {
   auto child = startView(arguments);
   if (!child) return fail(kFailed, child.error());
   viewer = *child;
-  os::onStopSignal(passOn);
+  os::onStopSignal(passToView);
   int status = 0;
   while (waitpid(*child, &status, 0) < 0 && errno == EINTR) {
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : kFailed;
 }
 
-int view(const Options& options) {
+int view(const ViewArguments& options) {
   if (!options.file.empty()) return viewRecording(options);
   return fail(kFailed, becomeView(argumentsOf(options)).error());
 }
@@ -60,7 +60,7 @@ int view(const Options& options) {
 }  // namespace
 
 void addView(CLI::App& app, int& exit_code) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ViewArguments>();
   CLI::App* command = app.add_subcommand("view", "Show a running daemon or a recording in a browser.");
   command->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
   command->add_option("--port", options->port, "port on 127.0.0.1; 0: a free one")->check(CLI::Range(0, 65535));

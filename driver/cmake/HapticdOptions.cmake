@@ -34,6 +34,8 @@ add_library(hapticd_options INTERFACE)
 target_compile_options(hapticd_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow $<$<BOOL:${HAPTICD_WERROR}>:-Werror>
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # g++ 12 sees overlaps in std::string operator+ that are not there (GCC 105651)
+  # in a unity build every file is included: its anonymous namespace is none of a header
+  $<$<AND:$<BOOL:${CMAKE_UNITY_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>
   # errno and traps are never read from mathematics here; both keep sqrt and fma out of line.
   -fno-math-errno -fno-trapping-math)
 if(HAPTICD_SANITIZE)

@@ -49,7 +49,7 @@ std::string rounded(double value) {
   return text;
 }
 
-std::string_view trimmed(std::string_view text) {
+std::string_view withoutBlanks(std::string_view text) {
   const size_t first = text.find_first_not_of(" \t\r\n");
   return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
@@ -116,7 +116,7 @@ std::string bare(std::string_view text) {
 }  // namespace
 
 std::string numberMeant(std::string_view given, std::string_view unit) {
-  const std::string_view text = trimmed(given);
+  const std::string_view text = withoutBlanks(given);
   if (text.empty() || text.size() > kLongest) return "";
   if (toNumber(text)) return "; write " + std::string(text) + ", without quotes or a tag";
   if (const std::string minus = replaced(replaced(text, "−", "-"), "–", "-"); minus != text && toNumber(minus))
@@ -129,7 +129,7 @@ std::string numberMeant(std::string_view given, std::string_view unit) {
   std::string point(text);
   if (decimal) point[comma] = '.';
   const size_t length = numberLength(point);
-  const std::string_view rest = trimmed(std::string_view(point).substr(length));
+  const std::string_view rest = withoutBlanks(std::string_view(point).substr(length));
   if (length == 0 || (decimal && length <= comma + 1)) return "";
   const std::string number = point.substr(0, length);
   if (decimal && rest.empty() && point.size() == comma + 4)  // a thousand, or one in three decimals
@@ -164,8 +164,8 @@ std::string mappingMeant(const Node& node) {
   if (!node.isScalar() || node.quoted || node.scalar.size() > kLongest) return "";
   const size_t sign = node.scalar.find_first_of(":=");
   if (sign == std::string::npos || sign == 0 || sign + 1 >= node.scalar.size()) return "";
-  const std::string key(trimmed(std::string_view(node.scalar).substr(0, sign)));
-  const std::string value(trimmed(std::string_view(node.scalar).substr(sign + 1)));
+  const std::string key(withoutBlanks(std::string_view(node.scalar).substr(0, sign)));
+  const std::string value(withoutBlanks(std::string_view(node.scalar).substr(sign + 1)));
   if (key.find_first_of(" /") != key.npos || value.empty() || value[0] == '/') return "";
   return "; write " + key + ": " + value + ", with a colon and a blank";
 }

@@ -18,9 +18,9 @@ using medial::SkeletonFoot;
 
 constexpr double kNewPlace = 0.25;     ///< a probe that moved by this share of a cell is looked for all over the body
 constexpr double kWithinReach = 0.02;  ///< [m] farther bodies wait for the search of the simulation side
-constexpr double kHullError = 0.005;   ///< of the greatest radius
-constexpr double kForget = 0.3;        ///< of the radius: a rival that is less deep by so much is left alone
-constexpr double kOtherFoot = 0.02;    ///< difference of parameters from which an offered foot is another one
+constexpr double kGridHullError = 0.005;  ///< of the greatest radius
+constexpr double kForget = 0.3;           ///< of the radius: a rival that is less deep by so much is left alone
+constexpr double kOtherFoot = 0.02;       ///< difference of parameters from which an offered foot is another one
 
 class GridBody final : public SoftBody {
  public:
@@ -81,7 +81,7 @@ class GridBody final : public SoftBody {
   std::unique_ptr<medial::MovingMesh> contour(double chord_error) const override {
     return std::make_unique<medial::Contour>(body_.skeleton(), chord_error);
   }
-  std::unique_ptr<medial::MovingMesh> hull() const override { return contour(kHullError * greatestRadius()); }
+  std::unique_ptr<medial::MovingMesh> hull() const override { return contour(kGridHullError * greatestRadius()); }
   std::size_t bytes() const noexcept override {
     return sizeof *this - sizeof body_ + body_.bytes() + (scan_ ? scan_->bytes() : 0);
   }

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 using medial::MedialMesh;
 using medial::SkeletonFoot;
 
-constexpr double kHullError = 0.05;  ///< of the greatest radius
+constexpr double kMeshHullError = 0.05;  ///< of the greatest radius
 
 class MeshSoftBody final : public SoftBody {
  public:
@@ -61,7 +61,7 @@ class MeshSoftBody final : public SoftBody {
   std::unique_ptr<medial::MovingMesh> contour(double chord_error) const override {
     return std::make_unique<medial::MeshContour>(body_.mesh(), chord_error);
   }
-  std::unique_ptr<medial::MovingMesh> hull() const override { return contour(kHullError * greatest_radius_); }
+  std::unique_ptr<medial::MovingMesh> hull() const override { return contour(kMeshHullError * greatest_radius_); }
   std::size_t bytes() const noexcept override { return sizeof *this - sizeof body_ + body_.bytes(); }
 
   std::vector<FeltMaterial> feltMaterial() const override {

@@ -12,7 +12,7 @@ using trace::Patch;
 
 /// Cells along u and v: a chord over a step h of a curve with second derivative C'' is off by |C''| h^2 / 8.
 std::array<int, 2> cellsOf(const Patch& patch, double chord_error) {
-  constexpr int kProbes = 9, kMostCells = 256;
+  constexpr int kProbes = 9, kMostSpans = 256;
   const Array2d range = patch.hi - patch.lo;
   double bend_u = 0, bend_v = 0;
   spline::SurfacePoint E;
@@ -26,8 +26,8 @@ std::array<int, 2> cellsOf(const Patch& patch, double chord_error) {
   const auto cells = [&](double bend, int axis) {
     const int spans = static_cast<int>(patch.surface.breaks(axis).size()) - 1;
     const double wanted = std::ceil(std::sqrt(bend / (8 * chord_error)));
-    return std::clamp(std::isfinite(wanted) ? static_cast<int>(std::min<double>(wanted, kMostCells)) : kMostCells,
-                      std::min(spans, kMostCells), kMostCells);
+    return std::clamp(std::isfinite(wanted) ? static_cast<int>(std::min<double>(wanted, kMostSpans)) : kMostSpans,
+                      std::min(spans, kMostSpans), kMostSpans);
   };
   return {cells(bend_u, 0), cells(bend_v, 1)};
 }

@@ -56,8 +56,18 @@ def flags_of(entry):
     return out
 
 
+def entries_of(build):
+    """What is compiled -> how. A unity build compiles files that include the sources."""
+    entries = {}
+    for entry in json.loads((build / "compile_commands.json").read_text()):
+        file = pathlib.Path(entry["file"])
+        included = re.findall(r'#include "(.+)"', file.read_text()) if "/Unity/" in entry["file"] else [file]
+        entries.update({pathlib.Path(one).resolve(): entry for one in included})
+    return entries
+
+
 def check_walls(source, build):
-    entries = {pathlib.Path(e["file"]).resolve(): e for e in json.loads((build / "compile_commands.json").read_text())}
+    entries = entries_of(build)
     wrong = []
     for file, allowed, forbidden in WALLS:
         entry = entries.get((source / file).resolve())

@@ -27,10 +27,6 @@ struct Raw {
   double number = kNotANumber;
 };
 
-bool isText(Type type) noexcept {
-  return type == Type::kNibble || type == Type::kNibbles;
-}
-
 /// How many bits of a number a type has: text has fewer than its bytes.
 unsigned digitsOf(const Field& field) noexcept {
   return field.type == Type::kNibble ? 4 : field.type == Type::kNibbles ? 16 : field.bits;

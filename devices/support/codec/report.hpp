@@ -25,6 +25,11 @@ enum class Type : uint8_t {
   kNibbles,   ///< four such characters, lowest four bits first: a signed 16-bit number
 };
 
+/// [any] Characters, not bits.
+constexpr bool isText(Type type) noexcept {
+  return type == Type::kNibble || type == Type::kNibbles;
+}
+
 enum class Role : uint8_t {
   kPosition,    ///< in: rad or m of joint `index`
   kVelocity,    ///< in: rad/s or m/s

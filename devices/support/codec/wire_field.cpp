@@ -31,10 +31,6 @@ constexpr const char* kKeys[] = {"is",     "joint",         "button",         "a
                                  "word",   "polynomial",    "initial",        "reflected", "final_xor",
                                  "negated"};
 
-bool isText(Type type) {
-  return type == Type::kNibble || type == Type::kNibbles;
-}
-
 bool readTarget(const Tree& tree, size_t joints, bool input, Field& field) {
   const size_t before = tree.problems();
   const Tree is = tree.at("is");

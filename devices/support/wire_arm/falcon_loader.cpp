@@ -17,7 +17,7 @@ constexpr Nanoseconds kAnswer = 20'000'000, kRunning = 50'000'000;
 constexpr int kHelloTries = 100;
 
 /// Requests of FTDI's chips: 0 reset and purge, 1 modem lines, 3 baud rate, 4 format, 9 latency timer.
-enum : uint8_t { kReset = 0, kLines = 1, kBaud = 3, kFormat = 4, kLatency = 9 };
+enum : uint8_t { kReset = 0, kLines = 1, kBaud = 3, kDataFormat = 4, kLatency = 9 };
 constexpr uint8_t kVendorOut = 0x40;
 
 class Loader {
@@ -45,7 +45,7 @@ class Loader {
   }
   bool slow() {  // 9600 8N1 (divisor 0x4138), RTS low, DTR low then high
     return set(kReset, 0) && set(kReset, 1) && set(kReset, 2) && set(kLatency, 16) && set(kBaud, 0x4138) &&
-           set(kFormat, 8) && set(kLines, 0x0200) && set(kLines, 0x0100) && set(kLines, 0x0101);
+           set(kDataFormat, 8) && set(kLines, 0x0200) && set(kLines, 0x0100) && set(kLines, 0x0101);
   }
   bool hello() { return answers({0x0a, 0x43, 0x0d}, {0x0a, 0x44, 0x2c, 0x0d}, kHelloTries); }
   bool fast() { return set(kLines, 0x0100) && set(kBaud, 0x15); }  // 140000 baud

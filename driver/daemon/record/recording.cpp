@@ -18,7 +18,7 @@ namespace hapticd::record {
 
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr uint64_t kMostAbout = 64u << 20;  ///< [bytes] a scene of ten thousand models is 2 MB
 

@@ -24,7 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using control::Request;
 
-std::string text(const Json& json) {
+std::string lineOf(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -110,7 +110,7 @@ Result<std::string> RequestHandler::tell(const control::Peer& peer, const Reques
 }
 
 Result<std::string> RequestHandler::obey(const control::Peer& peer, const Request& request) {
-  const std::string good = text({{"ok", true}});
+  const std::string good = lineOf({{"ok", true}});
   const auto plain = [&](Result<void> done) -> Result<std::string> {
     if (!done) return Error{done.error()};
     return good;
@@ -123,7 +123,7 @@ Result<std::string> RequestHandler::obey(const control::Peer& peer, const Reques
     case Request::Kind::kDump: {
       auto file = dump("asked for");
       if (!file) return Error{file.error()};
-      return text({{"ok", true}, {"file", *file}});
+      return lineOf({{"ok", true}, {"file", *file}});
     }
     case Request::Kind::kLead:
       return lead(peer, request);
@@ -164,7 +164,7 @@ Result<std::string> RequestHandler::obeyForModels(const control::Peer& peer, con
       return tell(peer, request);
   }
   if (!done) return Error{done.error()};
-  return text({{"ok", true}});
+  return lineOf({{"ok", true}});
 }
 
 Result<uint32_t> RequestHandler::placeOf(const std::string& model) const {
@@ -256,7 +256,7 @@ Result<std::string> RequestHandler::move(const Request& request) {
   order.seconds = request.seconds.value_or(0);
   if (auto given = give(order); !given) return Error{given.error()};
   // Obeyed, and nobody but this thread gives orders: the servo has no reason to change it.
-  return text({{"ok", true}, {"seconds", runner_.world().core().models()[*place].glide.seconds()}});
+  return lineOf({{"ok", true}, {"seconds", runner_.world().core().models()[*place].glide.seconds()}});
 }
 
 /// A hold that came while this waited for its turn is the newer wish.

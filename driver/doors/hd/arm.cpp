@@ -7,13 +7,13 @@
 
 #include "coordinates.hpp"
 #include "joint_torque.hpp"
+#include "units.hpp"
 
 namespace hapticd::hd {
 
 namespace {
 
 constexpr uint64_t kHoldNs = 100'000'000;  ///< a force holds for so long after the frame that set it
-constexpr double kNsPerSecond = 1e9, kMmPerMetre = 1000;
 
 constexpr HDenum kCapabilities[] = {HD_FORCE_OUTPUT, HD_MAX_FORCE_CLAMPING, HD_FORCE_RAMPING, HD_SOFTWARE_FORCE_LIMIT,
                                     HD_ONE_FRAME_LIMIT};

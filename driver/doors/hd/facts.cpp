@@ -8,6 +8,7 @@
 #include <set>
 
 #include "coordinates.hpp"
+#include "units.hpp"
 
 namespace hapticd::hd {
 
@@ -15,7 +16,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kMmPerMetre = 1000;
 constexpr size_t kFull = 6;  // degrees of freedom
 
 /// Arms that HDAPI programs know by name: usable workspace in mm, as their makers publish it.

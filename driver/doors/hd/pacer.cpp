@@ -12,13 +12,13 @@ namespace hapticd::hd {
 
 namespace {
 
-constexpr uint64_t kNsPerSecond = 1'000'000'000, kNsPerMs = 1'000'000;
-constexpr int kPatienceMs = 20;                 ///< then the library ticks by itself
-constexpr uint64_t kSilentNs = 500 * kNsPerMs;  ///< then the daemon counts as gone, although its process may live
-constexpr uint64_t kLookNs = 100 * kNsPerMs;    ///< between two looks whether the process lives
+constexpr uint64_t kSecond = 1'000'000'000, kMillisecond = 1'000'000;  // [ns]
+constexpr int kPatienceMs = 20;                                        ///< then the library ticks by itself
+constexpr uint64_t kSilentNs = 500 * kMillisecond;  ///< then the daemon counts as gone, although its process may live
+constexpr uint64_t kLookNs = 100 * kMillisecond;    ///< between two looks whether the process lives
 
 void sleepNs(uint64_t ns) {
-  const timespec time{static_cast<time_t>(ns / kNsPerSecond), static_cast<long>(ns % kNsPerSecond)};
+  const timespec time{static_cast<time_t>(ns / kSecond), static_cast<long>(ns % kSecond)};
   clock_nanosleep(CLOCK_MONOTONIC, 0, &time, nullptr);
 }
 
@@ -27,7 +27,7 @@ void sleepNs(uint64_t ns) {
 uint64_t nowNs() {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
-  return static_cast<uint64_t>(now.tv_sec) * kNsPerSecond + static_cast<uint64_t>(now.tv_nsec);
+  return static_cast<uint64_t>(now.tv_sec) * kSecond + static_cast<uint64_t>(now.tv_nsec);
 }
 
 double Pacer::rate() const {
@@ -63,7 +63,7 @@ uint64_t Pacer::wait() {
 }
 
 bool Pacer::waitFor(const Lead& lead, hapticd_state& state) {
-  const auto period = static_cast<uint64_t>(static_cast<double>(kNsPerSecond) / rate());
+  const auto period = static_cast<uint64_t>(static_cast<double>(kSecond) / rate());
   const bool alone = !lead.link || lost_ || silent_since_ns_ != 0;
   if (!alone) {
     lead.link->listen(listen_us_);

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "units.hpp"
+
 namespace hapticd::hd {
 
 namespace {
-
-constexpr double kMmPerMetre = 1000;
 
 double& at(double* transform, int row, int column) {
   return transform[4 * column + row];

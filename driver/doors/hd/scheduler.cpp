@@ -14,6 +14,7 @@
 
 #include "errors.hpp"
 #include "pacer.hpp"
+#include "units.hpp"
 
 namespace hapticd::hd {
 
@@ -21,7 +22,6 @@ namespace {
 
 constexpr size_t kMostTasks = 512;
 constexpr int kPriority = 70;  ///< below the daemon's servo at 80
-constexpr double kNsPerSecond = 1e9;
 
 thread_local int ticks_of_this_thread = 0;  ///< how deep the thread is in callbacks
 

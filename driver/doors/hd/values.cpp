@@ -7,13 +7,13 @@
 #include <algorithm>
 
 #include "rotation.hpp"
+#include "units.hpp"
 
 namespace hapticd::hd {
 
 namespace {
 
-constexpr double kMmPerMetre = 1000;  // also mN m of an N m
-constexpr size_t kTurnJoints = 3;     // the first three joints carry the tip, the next three turn it
+constexpr size_t kTurnJoints = 3;  // the first three joints carry the tip, the next three turn it
 
 void copy(const double* from, int count, double factor, double* out) {
   for (int i = 0; i < count; ++i) out[i] = factor * from[i];

@@ -13,8 +13,8 @@ namespace hapticd::view {
 
 namespace {
 
-constexpr uint64_t kAtOnceBytes = 1u << 20;  ///< of one stream in one tick of the view
-constexpr char kMessageData = 1;             ///< op code of a message to a subscription
+constexpr uint64_t kTickBytes = 1u << 20;  ///< of one stream in one tick of the view
+constexpr char kMessageData = 1;           ///< op code of a message to a subscription
 
 uint64_t wallNow() {
   return static_cast<uint64_t>(
@@ -150,7 +150,7 @@ void Foxglove::sendStream(size_t stream) {
   const uint64_t end = rows.end(stream);
   if (next_[stream] < rows.begin(stream)) next_[stream] = rows.begin(stream) + 1;  // one that reads too slowly
   if (subscription == 0 && !followed) next_[stream] = end;
-  const uint64_t count = std::min(end - std::min(end, next_[stream]), kAtOnceBytes / what.row_bytes);
+  const uint64_t count = std::min(end - std::min(end, next_[stream]), kTickBytes / what.row_bytes);
   if (count == 0) return;
   std::vector<std::byte> bytes(count * what.row_bytes);
   const uint64_t got = rows.copy(stream, next_[stream], count, bytes.data());

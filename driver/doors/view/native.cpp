@@ -17,7 +17,7 @@ namespace hapticd::view {
 namespace {
 
 constexpr uint64_t kBacklogBytes = 4u << 20;  ///< of rows that a new page gets: 10 s of one arm at 1 kHz
-constexpr uint64_t kAtOnceBytes = 1u << 20;   ///< of one stream in one message
+constexpr uint64_t kMessageBytes = 1u << 20;  ///< of one stream in one message
 constexpr double kBacklogSeconds = 10;
 constexpr std::array<std::string_view, 4> kReads = {"status", "list", "geometry", "feature"};
 constexpr std::array<std::string_view, 14> kControls = {"enable", "disable", "move", "set",  "add", "remove", "reload",
@@ -165,7 +165,7 @@ void Native::sendRows(size_t stream, uint64_t end) {
   uint64_t& next = next_[stream];
   if (what.name == "activations") return;  // of the search, thousands a second: no page draws them
   if (next < rows.begin(stream)) next = oldest(rows, stream);
-  const uint64_t most = kAtOnceBytes / what.row_bytes;
+  const uint64_t most = kMessageBytes / what.row_bytes;
   if (!playback_ && end > next + kBacklogBytes / what.row_bytes) next = end - most;
   if (next >= end) return;
   const uint64_t count = std::min(end - next, most);

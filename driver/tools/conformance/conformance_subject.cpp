@@ -10,6 +10,7 @@
 #include "base/allocation_count.hpp"
 #include "base/clock.hpp"
 #include "base/thread_usage.hpp"
+#include "conformance/conformance_parts.hpp"
 #include "conformance/step_watch.hpp"
 #include "host/class_table.hpp"
 
@@ -20,10 +21,6 @@ namespace {
 using Eigen::Vector3d;
 constexpr uint8_t kUntouched = 0xA5;
 constexpr double kTurned[4] = {0.8, 0.36, 0.48, 0};  // any rotation but the identity
-
-const hsp_param& paramAt(const hsp_class& c, uint32_t index) {
-  return *HSP_AT(const hsp_param, c.params, c.params[0].struct_size, index);
-}
 
 struct Usage {
   uint64_t cpu_ns = 0;

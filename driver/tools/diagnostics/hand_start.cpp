@@ -19,7 +19,7 @@ namespace hapticd::diagnostics {
 namespace {
 
 constexpr size_t kMostModels = 100;  ///< more take long to set up a second time
-constexpr int kLimitMs = 60'000;
+constexpr int kHandLimitMs = 60'000;
 
 /// Joints at the first tick.
 std::optional<std::array<double, HDV_MAX_JOINTS>> firstJoints(const scene::Scene& scene, const scene::Device& device,
@@ -85,7 +85,7 @@ std::string tryTips(const scene::Scene& scene) {
 document::Problems startsInside(const scene::Scene& scene) {
   document::Problems warnings;
   if (scene.models.empty() || scene.models.size() > kMostModels || scene.devices.empty()) return warnings;
-  const auto told = host::runInChild([&] { return tryTips(scene); }, kLimitMs);
+  const auto told = host::runInChild([&] { return tryTips(scene); }, kHandLimitMs);
   if (!told) return warnings;  // a model that crashes is told by who tried it alone
   host::Unpacker in(*told);
   for (uint32_t model = in.count(); in.good() && model < scene.models.size(); model = in.count()) {

@@ -10,7 +10,7 @@
 namespace hapticd::diagnostics {
 namespace {
 
-constexpr int kLimitMs = 300'000;  ///< thousands of models may need minutes; a hang needs an end
+constexpr int kTrialLimitMs = 300'000;  ///< thousands of models may need minutes; a hang needs an end
 
 hsp_activation activationOf(const scene::Scene& scene, const scene::Model& model, double max_force) {
   hsp_activation activation{};
@@ -81,7 +81,7 @@ std::string tryAll(const scene::Scene& scene, double max_force) {
 ModelTrial tryModels(const scene::Scene& scene, double max_force) {
   ModelTrial trial;
   if (scene.models.empty()) return trial;
-  const auto told = host::runInChild([&] { return tryAll(scene, max_force); }, kLimitMs);
+  const auto told = host::runInChild([&] { return tryAll(scene, max_force); }, kTrialLimitMs);
   if (!told) {
     document::report(trial.problems, scene.file.string(), 1, 1, "models", "setting them up " + told.error());
     return trial;

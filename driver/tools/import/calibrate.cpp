@@ -27,7 +27,6 @@ constexpr double kReach = 0.7;        ///< of the distance of neighbouring point
 constexpr double kFarthestReach = 2;  ///< of that distance: the largest shear reach that is tried
 constexpr double kNoReach = 0.05;     ///< likewise: as good as none
 constexpr double kStiffest = 1e6;     ///< [N/m] that a body may have
-constexpr std::size_t kMostBytes = std::size_t{1} << 26;
 
 struct Answer {
   Vector3d place;
@@ -56,7 +55,7 @@ Result<std::vector<Answer>> readAnswers(const std::string& file) {
   document::Problems problems;
   document::CsvRules rules;
   rules.headers = {"x,y,z,depth,force"};
-  const auto table = document::readCsv(file, kMostBytes, rules, problems);
+  const auto table = document::readCsv(file, kMostTableBytes, rules, problems);
   if (!table || table->rows() == 0) return first(problems, file);
   std::vector<Answer> answers;
   for (std::size_t i = 0; i < table->rows(); ++i) {

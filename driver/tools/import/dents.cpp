@@ -15,7 +15,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 26;
 constexpr double kPress = 1e-4;    ///< [m] deep, both probes
 constexpr double kTick = 1e-3;     ///< [s]
 constexpr int kMostTicks = 4000;   ///< for both forces to settle
@@ -90,7 +89,7 @@ Result<std::vector<Dent>> readDents(const std::string& file) {
   document::Problems problems;
   document::CsvRules rules;
   rules.headers = {"x,y,z,x2,y2,z2,dent"};
-  const auto table = document::readCsv(file, kMostBytes, rules, problems);
+  const auto table = document::readCsv(file, kMostTableBytes, rules, problems);
   if (!table || table->rows() == 0)
     return Error{problems.empty() ? file + ": no dents, expected x,y,z,x2,y2,z2,dent" : problems.front().text()};
   std::vector<Dent> dents;

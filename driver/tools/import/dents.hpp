@@ -2,6 +2,7 @@
 /// How far beside a press the surface of a soft body goes down, and the shear reach that makes it so.
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -10,6 +11,8 @@
 #include "host/catalog.hpp"
 
 namespace hapticd::importing {
+
+inline constexpr std::size_t kMostTableBytes = std::size_t{1} << 26;  ///< of a CSV file of presses or dents
 
 /// A press at one place and what another does.
 struct Dent {

@@ -26,10 +26,10 @@ Range waveRange(double a, double b, double t0, double t1) {
 }
 
 /// The extremes of radius and height of a face of revolution.
-struct Profile {
+struct ProfileBounds {
   Range radius, height;
 };
-Profile profileOf(const FaceShape& f, double v0, double v1) {
+ProfileBounds profileOf(const FaceShape& f, double v0, double v1) {
   switch (f.kind) {
     case SurfaceKind::kCone: {
       const double s0 = v0 / f.per_y, s1 = v1 / f.per_y;
@@ -59,7 +59,7 @@ AlignedBox3d faceBox(const FaceShape& f) {
       for (const double v : {lo[1], hi[1]}) box.extend(f.o + u / f.per_x * f.x + v / f.per_y * f.y);
     return box;
   }
-  const Profile profile = profileOf(f, lo[1], hi[1]);
+  const ProfileBounds profile = profileOf(f, lo[1], hi[1]);
   Vector3d least, most;
   for (int axis = 0; axis < 3; ++axis) {
     const Range wave = waveRange(f.x[axis], f.y[axis], lo[0], hi[0]);

@@ -11,8 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kBetween = 1.5;    ///< what is measured at samples may be larger by this between them
-constexpr double kRounding = 1e-9;  ///< of the terms that are compared
+constexpr double kBetweenSamples = 1.5;  ///< what is measured at samples may be larger by this between them
+constexpr double kTermRounding = 1e-9;   ///< of the terms that are compared
 
 struct Bend {
   Vector3d C, T, K;
@@ -47,17 +47,17 @@ PieceBow bowOf(const Geometry& geometry, std::uint32_t curve, double t0, double 
   double low = 1, high = -1;
   for (const Bend& b : bends) {
     const Vector3d dk = b.K - middle.K, dt = b.T - middle.T, from = b.C - bow.centre;
-    bow.bow_off = std::max(bow.bow_off, kBetween * dk.norm());
-    bow.bow_off_across = std::max(bow.bow_off_across, kBetween * std::abs(dk.dot(bow.across)));
-    bow.along_off = std::max(bow.along_off, kBetween * dt.norm());
-    bow.along_off_across = std::max(bow.along_off_across, kBetween * std::abs(dt.dot(bow.across)));
-    bow.slide = std::max(bow.slide, kBetween * std::abs(from.dot(b.T)));
+    bow.bow_off = std::max(bow.bow_off, kBetweenSamples * dk.norm());
+    bow.bow_off_across = std::max(bow.bow_off_across, kBetweenSamples * std::abs(dk.dot(bow.across)));
+    bow.along_off = std::max(bow.along_off, kBetweenSamples * dt.norm());
+    bow.along_off_across = std::max(bow.along_off_across, kBetweenSamples * std::abs(dt.dot(bow.across)));
+    bow.slide = std::max(bow.slide, kBetweenSamples * std::abs(from.dot(b.T)));
     const double turn = 1 + from.dot(b.K);
     low = &b == &bends.front() ? turn : std::min(low, turn);
     high = &b == &bends.front() ? turn : std::max(high, turn);
   }
-  bow.turn_low = low - (kBetween - 1) * (high - low) - kRounding;
-  bow.turn_high = high + (kBetween - 1) * (high - low) + kRounding;
+  bow.turn_low = low - (kBetweenSamples - 1) * (high - low) - kTermRounding;
+  bow.turn_high = high + (kBetweenSamples - 1) * (high - low) + kTermRounding;
   return bow;
 }
 
@@ -67,7 +67,7 @@ FeetOfPiece feetSeenFrom(const PieceBow& bow, const Vector3d& p) noexcept {
   const double curve = from.dot(bow.bow), off = flat * bow.bow_off + std::abs(aside) * bow.bow_off_across;
   if (bow.turn_low + curve - off > 0) return FeetOfPiece::kOne;
   const double slope = flat * bow.along_off + std::abs(aside) * bow.along_off_across + bow.slide;
-  if (std::abs(from.dot(bow.along)) * (1 - kRounding) > slope) return FeetOfPiece::kOne;
+  if (std::abs(from.dot(bow.along)) * (1 - kTermRounding) > slope) return FeetOfPiece::kOne;
   return bow.turn_high + curve + off < 0 ? FeetOfPiece::kAtAnEnd : FeetOfPiece::kUnknown;
 }
 

@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 using spline::CurvePoint;
 using spline::SurfacePoint;
 
-constexpr double kTurn = 0.44;    ///< [rad] of the normals of a leaf, 25 degrees; of the tangents of a curve's piece
-constexpr double kBetween = 1.5;  ///< what is measured at samples may be larger by this between them
+constexpr double kMostTurn = 0.44;  ///< [rad] of the normals of a leaf, 25 degrees; of the tangents of a curve's piece
+constexpr double kBetween = 1.5;    ///< what is measured at samples may be larger by this between them
 
 /// Principal curvatures at a point, toward Su x Sv positive; false where the tangents vanish.
 bool curvatures(const SurfacePoint& E, double& least, double& most) {
@@ -96,7 +96,7 @@ class FaceCutter {
       }
       widest = std::max(widest, turn);
     }
-    return std::clamp(static_cast<int>(std::ceil(widest / kTurn)) + 1, 2, kMost);
+    return std::clamp(static_cast<int>(std::ceil(widest / kMostTurn)) + 1, 2, kMost);
   }
 
   /// A chord over a cell is off by an eighth of its second differences.
@@ -212,7 +212,7 @@ class EdgeCutter {
       turn = std::max(turn, std::atan2(C.C1.cross(first).norm(), C.C1.dot(first)));
       bend = std::max(bend, C.C1.cross(C.C2).norm() / (speed * speed * speed));
     }
-    if (turn > kTurn && depth < kDeepest) {
+    if (turn > kMostTurn && depth < kDeepest) {
       halve(t0, 0.5 * (t0 + t1), depth + 1);
       halve(0.5 * (t0 + t1), t1, depth + 1);
       return;

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Of a squared distance: so little beyond the best one, a box or another foot is not counted as farther.
-constexpr double kRounding = 1e-12;
+constexpr double kDistanceRounding = 1e-12;
 
 struct AllElements {
   bool operator()(Element) const noexcept { return true; }
@@ -240,7 +240,7 @@ bool Search::goesOn(const Vector3d& p) noexcept {
   hit.d2 = kInfinity;
   bool alone = true;
   evaluate(last_.hit.element, model_.placements()[last_.place].toBody(p), &last_.hit, hit, alone);
-  if (!alone || !(std::sqrt(hit.d2) * (1 + kRounding) < others)) return false;
+  if (!alone || !(std::sqrt(hit.d2) * (1 + kDistanceRounding) < others)) return false;
   hit.element = last_.hit.element;
   last_.hit = hit;
   last_.others = others;

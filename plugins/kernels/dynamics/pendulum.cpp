@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLargestPhase = 0.1;         // [rad] of the linear swing in a substep of freeStep
 constexpr double kLargestDampedPhase = 0.02;  // of the other two
-constexpr int kMaxSubsteps = 32;              // bounds the time of a tick
+constexpr int kPendulumSubsteps = 32;         // bounds the time of a tick
 constexpr double kWeak = 0.05;                // damping times substep, up to which Runge and Kutta resolve the decay
 
 /// Without damping: its energy errs by a bounded amount, however long it swings.
@@ -78,7 +78,8 @@ PendulumState advance(const PendulumLaw& law, PendulumState state, double torque
   const double lift = std::sin(state.angle / 2);
   const double fastest = std::sqrt(std::max(w2, state.rate * state.rate + 4 * w2 * lift * lift));
   const double largest = law.damping == 0 ? kLargestPhase : kLargestDampedPhase;
-  const int steps = std::clamp(static_cast<int>(std::ceil(std::min(fastest * dt / largest, 1e6))), 1, kMaxSubsteps);
+  const int steps =
+      std::clamp(static_cast<int>(std::ceil(std::min(fastest * dt / largest, 1e6))), 1, kPendulumSubsteps);
   const double h = dt / steps;
   for (int i = 0; i < steps; ++i) state = substep(w2, law.damping / law.inertia, drive, state, h);
   return state;

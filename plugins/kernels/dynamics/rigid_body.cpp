@@ -18,7 +18,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 constexpr double kLargestTurn = 0.15;  // [rad] of a substep
-constexpr int kMaxSubsteps = 4;        // bounds the time of a tick; faster bodies stay bounded but lose digits
+constexpr int kBodySubsteps = 4;       // bounds the time of a tick; faster bodies stay bounded but lose digits
 
 /// One coordinate under a constant force: x'' = (force - b x' - k x)/m, exactly.
 void drive(double mass, double damping, double stiffness, const Vector3d& force, double dt, Vector3d& x, Vector3d& v) {
@@ -198,7 +198,7 @@ void RigidBody::rotate(const Vector3d& torque, double dt) noexcept {
 /// Free of torque.
 void RigidBody::spin(double dt) noexcept {
   const double turn = top_.symmetric() ? 0 : top_.bodyRate() * l_.norm() * dt;
-  const int steps = turn < kMaxSubsteps * kLargestTurn ? 1 + static_cast<int>(turn / kLargestTurn) : kMaxSubsteps;
+  const int steps = turn < kBodySubsteps * kLargestTurn ? 1 + static_cast<int>(turn / kLargestTurn) : kBodySubsteps;
   for (int i = 0; i < steps; ++i) {
     turn_.turnBody(top_.bodyTurn(turn_.quaternion().conjugate() * l_, dt / steps));
   }

@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 constexpr int kLeastSegments = 2;  ///< between two points of the grid: a dent is as wide as they are apart
 constexpr int kMostSegments = 64;
-constexpr int kLeastArc = 2;        ///< segments from the top to the bottom round the rim
-constexpr double kSteepest = 0.99;  ///< slope of the radius beyond which spheres are nested
+constexpr int kLeastArc = 2;              ///< segments from the top to the bottom round the rim
+constexpr double kSteepestRadius = 0.99;  ///< slope of the radius beyond which spheres are nested
 
 Vector3d unit(const Vector3d& v, const Vector3d& fallback) {
   const double length = v.norm();
@@ -138,7 +138,7 @@ Contour::Place Contour::place(const Skeleton& skeleton, uint32_t i, uint32_t j) 
     p.slope = r.fv / s.Sv.squaredNorm() * s.Sv;
   }
   const double steep = p.slope.norm();
-  if (steep > kSteepest) p.slope *= kSteepest / steep;
+  if (steep > kSteepestRadius) p.slope *= kSteepestRadius / steep;
   return p;
 }
 

@@ -14,19 +14,14 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-constexpr double kAsleep = 1e-7;        ///< [m] amplitude below which no one sees or feels a node move
-constexpr double kSteepest = 1;         ///< slope of a dent: on the inside of a bend the foot runs as fast as it likes
+constexpr double kSteepestDent = 1;     ///< slope of a dent: on the inside of a bend the foot runs as fast as it likes
 constexpr uint32_t kLooksForSleep = 8;  ///< ticks between two looks for nodes that have come to rest
 constexpr double kNearby = 1e-6;        ///< [m] a probe so near to a surface touches it
-/// The step of an undamped node is a rotation: rounding may turn it into a growing spiral, by at most a few units in
-/// the last place a tick. So much is taken off.
-constexpr double kRoundingLoss = 4e-15;
-constexpr double kSameStep = 1e-9;  ///< relative difference of two dt for which one prepared step serves
-constexpr int kMostSweeps = 64;     ///< of several contacts over each other
-constexpr double kSettled = 1e-15;  ///< [N] change of a force that ends the sweeps, beside a share of it
+constexpr int kMostSweeps = 64;         ///< of several contacts over each other
+constexpr double kSettled = 1e-15;      ///< [N] change of a force that ends the sweeps, beside a share of it
 constexpr double kSameForce = 1e-13;
 
-bool same(const Tissue& a, const Tissue& b) {
+bool sameTissue(const Tissue& a, const Tissue& b) {
   return a.stiffness == b.stiffness && a.damping == b.damping && a.mass == b.mass &&
          a.relaxation_share == b.relaxation_share && a.relaxation_time == b.relaxation_time;
 }
@@ -57,7 +52,7 @@ void FeltSurface::take(const std::vector<Tissue>& tissue, double dt) {
   std::vector<Tissue> known;
   std::vector<uint16_t> which;
   for (const Tissue& t : tissue) {
-    auto found = std::find_if(known.begin(), known.end(), [&t](const Tissue& other) { return same(t, other); });
+    auto found = std::find_if(known.begin(), known.end(), [&t](const Tissue& other) { return sameTissue(t, other); });
     if (found == known.end()) {
       if (known.size() > UINT16_MAX) throw std::invalid_argument("more than 65536 materials");
       found = known.insert(known.end(), t);
@@ -270,7 +265,7 @@ Vector3d FeltSurface::slopeAt(const FeltPlace& place) const noexcept {
   sv += aside.dot(place.tangent_v);
   const Vector3d slope = place.scale * (su * place.toward_u + sv * place.toward_v - aside);
   const double steepness = slope.norm();
-  return steepness > kSteepest ? Vector3d(kSteepest / steepness * slope) : slope;
+  return steepness > kSteepestDent ? Vector3d(kSteepestDent / steepness * slope) : slope;
 }
 
 void FeltSurface::advance(double dt, std::span<FeltContact> contacts) noexcept {

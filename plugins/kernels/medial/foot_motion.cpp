@@ -10,13 +10,13 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kNear = 1e-4;      ///< [m] from so near the direction to the probe says little
-constexpr double kSingular = 1e-9;  ///< of the trace: a curvature that is none
+constexpr double kNear = 1e-4;  ///< [m] from so near the direction to the probe says little
+constexpr double kFlat = 1e-9;  ///< of the trace: a curvature that is none
 
 /// Solves h x = g for the parameters that are free.
 std::array<Vector3d, 2> solve(const Matrix2d& h, const std::array<Vector3d, 2>& g, const std::array<bool, 2>& held) {
   std::array<Vector3d, 2> x{Vector3d::Zero(), Vector3d::Zero()};
-  const double least = kSingular * (std::fabs(h(0, 0)) + std::fabs(h(1, 1)));
+  const double least = kFlat * (std::fabs(h(0, 0)) + std::fabs(h(1, 1)));
   if (held[0] || held[1]) {
     for (std::size_t a = 0; a < 2; ++a) {
       const double curvature = h(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(a));

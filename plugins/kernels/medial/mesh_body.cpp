@@ -16,9 +16,9 @@ using Eigen::Vector4d;
 constexpr int kMostRings = 8;
 constexpr double kOwnShare = 0.5;  ///< of its weight that a vertex keeps when it is spread; the rest goes to neighbours
 constexpr double kAside = 1e-6;    ///< [m] by which a probe is moved to see how its foot follows
-constexpr double kNear = 1e-4;     ///< [m] from so near the direction to the probe says little
-constexpr double kApart = 0.1;     ///< of the radius: feet on joined parts are two from so far on
-constexpr double kOpposite = 4;    ///< normals farther apart than acos(1 / this - 1) count less and less
+constexpr double kNearAxis = 1e-4;  ///< [m] from so near the direction to the probe says little
+constexpr double kApart = 0.1;      ///< of the radius: feet on joined parts are two from so far on
+constexpr double kOpposite = 4;     ///< normals farther apart than acos(1 / this - 1) count less and less
 
 /// One value for all stays one.
 std::vector<double> oneOrAll(const std::vector<double>& values, std::size_t vertices, const char* what) {
@@ -204,7 +204,7 @@ void MeshBody::placeOf(const Vector3d& p, const SkeletonFoot& foot, const Vector
   place.tangent_u = element.count > 1 ? Vector3d(center(1) - center(0)) : Vector3d(Vector3d::Zero());
   place.tangent_v = element.count > 2 ? Vector3d(center(2) - center(0)) : Vector3d(Vector3d::Zero());
   const double distance = (p - foot.center).norm();
-  place.turn = direct && distance > kNear ? 1 / distance : 0;
+  place.turn = direct && distance > kNearAxis ? 1 / distance : 0;
 }
 
 /// The foot on a cone or slab may lie on its end, where the next one begins: that is no part of its own, and a flat

@@ -13,13 +13,7 @@ namespace {
 
 using Eigen::Vector4d;
 
-constexpr double kAsleep = 1e-7;         ///< [m] amplitude below which no one sees or feels a node move
-constexpr double kLargest = 1.0;         ///< [m] amplitude from which settle times count
-constexpr double kLongestSettle = 3600;  ///< [s] an undamped body swings for ever: this is for ever
-/// The step of an undamped oscillator is a rotation: rounding may turn it into a growing spiral, by at most a few units
-/// in the last place a tick. So much is taken off.
-constexpr double kRoundingLoss = 4e-15;
-constexpr double kSameStep = 1e-9;  ///< relative difference of two dt for which one prepared step serves
+constexpr double kLargest = 1.0;  ///< [m] amplitude from which settle times count
 
 void requireMaterial(const Oscillator& o, std::size_t i) {
   const auto bad = [](double x) { return !(x >= 0) || !std::isfinite(x); };
@@ -52,7 +46,7 @@ double settleTimeOf(const Oscillator& o) noexcept {
   return time < kLongestSettle ? time : kLongestSettle;
 }
 
-bool same(const Oscillator& a, const Oscillator& b) {
+bool sameOscillator(const Oscillator& a, const Oscillator& b) {
   return a.mass == b.mass && a.damping == b.damping && a.stiffness == b.stiffness;
 }
 
@@ -70,7 +64,7 @@ Nodes::Nodes(std::size_t count, const std::vector<Oscillator>& material, const D
   for (std::size_t i = 0; i < material.size(); ++i) {
     requireMaterial(material[i], i);
     auto known = std::find_if(materials_.begin(), materials_.end(),
-                              [&](const Material& m) { return same(m.oscillator, material[i]); });
+                              [&](const Material& m) { return sameOscillator(m.oscillator, material[i]); });
     if (known == materials_.end()) {
       if (materials_.size() > UINT16_MAX) throw std::invalid_argument("more than 65536 materials");
       Material added;

@@ -12,6 +12,12 @@
 
 namespace hapticd::medial {
 
+inline constexpr double kAsleep = 1e-7;  ///< [m] amplitude below which no one sees or feels a node move
+/// The step of an undamped node is a rotation: rounding may turn it into a growing spiral, by at most a few units in
+/// the last place a tick. So much is taken off.
+inline constexpr double kRoundingLoss = 4e-15;
+inline constexpr double kSameStep = 1e-9;  ///< relative difference of two dt for which one prepared step serves
+
 struct DeformationOptions {
   double split = 0.5;                  ///< share of the depth that the skeleton moves; the radius shrinks by the rest
   std::array<int, 2> influence{4, 4};  ///< of a grid: control points that a contact moves, p' x q'

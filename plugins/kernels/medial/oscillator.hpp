@@ -4,6 +4,8 @@
 
 namespace hapticd::medial {
 
+inline constexpr double kLongestSettle = 3600;  ///< [s] an undamped body swings for ever: this is for ever
+
 /// Material of one degree of freedom.
 struct Oscillator {
   double mass = 1;       ///< m [kg], > 0

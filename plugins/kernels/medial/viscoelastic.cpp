@@ -10,9 +10,8 @@
 namespace hapticd::medial {
 namespace {
 
-constexpr double kLongestSettle = 3600;  ///< [s] an undamped body swings for ever: this is for ever
-constexpr int kSize = 4;                 ///< x, v, y and the force
-constexpr int kTerms = 20;               ///< of the exponential series of a matrix of norm 1/2: the rest is below 1e-24
+constexpr int kSize = 4;    ///< x, v, y and the force
+constexpr int kTerms = 20;  ///< of the exponential series of a matrix of norm 1/2: the rest is below 1e-24
 
 using Matrix = std::array<std::array<long double, kSize>, kSize>;
 

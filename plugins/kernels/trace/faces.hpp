@@ -5,6 +5,8 @@
 
 namespace hapticd::trace {
 
+inline constexpr int kMaxCrossings = 4;  ///< of sides in one tick
+
 class Tracer::Faces {
  public:
   /// @param part -1: of all parts together

@@ -15,7 +15,6 @@ using contact::Followed;
 using Eigen::Array2d;
 using Eigen::Vector3d;
 
-constexpr int kMaxCrossings = 4;    ///< of sides in one tick
 constexpr double kMet = 1e-8;       ///< [m] a point so near to a surface is on it
 constexpr int kMostCandidates = 8;  ///< surfaces that may be in the way
 constexpr double kBeyond = 1e-9;    ///< of the way: a crossing so little before or after it counts

@@ -15,8 +15,9 @@ Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOption
   split(surfaces, options.form);
   tree_.build();
   bounds_ = tree_.bounds();
-  constexpr double kFarthest = 1e60;  // [m] beyond it, products of four lengths overflow
-  if (!(bounds_.min().cwiseAbs().maxCoeff() <= kFarthest && bounds_.max().cwiseAbs().maxCoeff() <= kFarthest))
+  constexpr double kMostCoordinate = 1e60;  // [m] beyond it, products of four lengths overflow
+  if (!(bounds_.min().cwiseAbs().maxCoeff() <= kMostCoordinate &&
+        bounds_.max().cwiseAbs().maxCoeff() <= kMostCoordinate))
     throw std::invalid_argument("model: a coordinate beyond 1e60 m, expected smaller ones");
   Sewing(*this, options).run();
   bool complete = true;

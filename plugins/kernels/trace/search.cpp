@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// One search under way.
 class Search {
@@ -26,7 +26,7 @@ class Search {
         found_(found),
         slot_(static_cast<std::size_t>(model.surfaceCount()), -1),
         same_(1e-5 * model.bounds().diagonal().norm()),
-        nearest_(static_cast<std::size_t>(model.partCount()), kInfinity) {}
+        nearest_(static_cast<std::size_t>(model.partCount()), kUnbounded) {}
 
   void run(double radius) {
     std::vector<LeafHit> hits;
@@ -60,7 +60,7 @@ class Search {
     }
     if (!known) {
       at = static_cast<int>(found_.nearest.size());
-      found_.nearest.push_back({source, leaf.middle[0], leaf.middle[1], kInfinity});
+      found_.nearest.push_back({source, leaf.middle[0], leaf.middle[1], kUnbounded});
     }
     Near& near = found_.nearest[static_cast<std::size_t>(at)];
     if (bound > nearest + Model::kSoon) {  // cannot become the nearest soon: a bound will do, and most work falls away

@@ -14,7 +14,6 @@ using Eigen::Vector3d;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 1e150;       ///< [m] squares of coordinates beyond overflow
 constexpr double kNeighbourReach = 0.15;  ///< [m] a neighbour nobody asked for is dropped beyond
-constexpr int kMaxCrossings = 4;          ///< of sides in one tick
 
 /// Away from the common tick.
 [[gnu::cold, gnu::noinline]] Foot nothing(FootStatus status) noexcept {

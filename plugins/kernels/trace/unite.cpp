@@ -20,11 +20,11 @@ struct Wall {
 /// Shortest way out of all walls at once: the projection onto the intersection of their half-spaces (Zilles & Salisbury
 /// 1995), by Hildreth's method. A fixed number of sweeps of continuous functions is continuous in the walls, so the
 /// force is continuous wherever the feet are. Walls that face each other lead nowhere, or to where their planes no
-/// longer stand for the surfaces: the way is no longer than kFarthest times the deepest. `pushes`: what each wall
+/// longer stand for the surfaces: the way is no longer than kLongestWay times the deepest. `pushes`: what each wall
 /// contributes.
 Vector3d wayOut(const Wall* walls, int count, double deepest, double* pushes) noexcept {
-  constexpr double kFarthest = 2;  // reached where walls meet at 60 degrees
-  constexpr int kSweeps = 32;      // 10 % of the depth is left between walls that meet at 20 degrees
+  constexpr double kLongestWay = 2;  // reached where walls meet at 60 degrees
+  constexpr int kSweeps = 32;        // 10 % of the depth is left between walls that meet at 20 degrees
   Vector3d way = Vector3d::Zero();
   std::fill_n(pushes, count, 0.0);
   for (int sweep = 0; sweep < kSweeps; ++sweep)
@@ -34,7 +34,7 @@ Vector3d wayOut(const Wall* walls, int count, double deepest, double* pushes) no
       pushes[i] = push;
     }
   const double length = way.norm();
-  if (length > kFarthest * deepest) way *= kFarthest * deepest / length;
+  if (length > kLongestWay * deepest) way *= kLongestWay * deepest / length;
   return way;
 }
 

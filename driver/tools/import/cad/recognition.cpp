@@ -21,7 +21,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kNear = 1e-9;  ///< [m] farthest that a point of a recognised surface may be from it
-constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kFullTurn = 2 * std::numbers::pi;
 
 Vector3d inMetres(const gp_XYZ& v) {
   return Vector3d(v.X(), v.Y(), v.Z()) * kMetres;
@@ -124,7 +124,7 @@ std::optional<Surface> cylinderOf(const Cloud& cloud) {
   Surface s = frame(SurfaceKind::kCylinder, c, axis, cloud.middle - c, r < 0);
   s.z = plain(axis * kMetres);
   s.r[0] = std::abs(r);
-  s.period[0] = kTurn;
+  s.period[0] = kFullTurn;
   return s;
 }
 
@@ -137,7 +137,7 @@ std::optional<Surface> sphereOf(const Cloud& cloud) {
   const Vector3d toward = (cloud.middle - c).normalized();  // poles and seam as far from the face as can be
   Surface s = frame(SurfaceKind::kSphere, c, toward.unitOrthogonal(), toward, r < 0);
   s.r[0] = std::abs(r);
-  s.period[0] = kTurn;
+  s.period[0] = kFullTurn;
   return s;
 }
 
@@ -166,7 +166,7 @@ std::optional<Surface> coneOf(const Cloud& cloud) {
       frame(SurfaceKind::kCone, apex + height * axis, axis, way, out.dot(cloud.normals[cloud.normals.size() / 2]) < 0);
   s.z = plain(axis * (kMetres * ca));
   s.r = {wide, kMetres * sa};
-  s.period[0] = kTurn;
+  s.period[0] = kFullTurn;
   return s;
 }
 
@@ -175,7 +175,7 @@ Vector2d parametersOf(const Surface& s, const Vector3d& p, double near_u) {
   const Vector3d d = p - vec(s.o), x = vec(s.x), y = vec(s.y), z = vec(s.z);
   if (s.kind == SurfaceKind::kPlane) return {d.dot(x) / x.squaredNorm(), d.dot(y) / y.squaredNorm()};
   double u = std::atan2(d.dot(y), d.dot(x));
-  u += kTurn * std::round((near_u - u) / kTurn);
+  u += kFullTurn * std::round((near_u - u) / kFullTurn);
   if (s.kind == SurfaceKind::kSphere) return {u, std::atan2(d.dot(z), std::hypot(d.dot(x), d.dot(y)))};
   return {u, d.dot(z) / z.squaredNorm()};
 }
