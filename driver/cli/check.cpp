@@ -129,6 +129,8 @@ Verdict checkOne(const std::string& file, const Options& options) {
   ModelTrial trial;
   if (scene && !options.files_only) trial = tryModels(*scene, servo::maxForceOf(withArm(*scene)));
   found.insert(found.end(), trial.problems.begin(), trial.problems.end());
+  if (scene && !options.files_only)
+    for (const document::Problem& hand : unreachableHands(withArm(*scene))) found.push_back(hand);
   if (!scene) {
     const document::Problems more = tryDevice(file, catalog(), found);
     found.insert(found.end(), more.begin(), more.end());
