@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <stdexcept>
 
 #include "host/describe.hpp"
@@ -73,7 +74,12 @@ std::string workAmongOthers() {
 // It takes more than a second here, of which it stands ready, without a processor, for most.
 TEST(Child, IsNotBlamedForTheTimeThatOthersTook) {
   if (access("/proc/self/schedstat", R_OK) != 0) GTEST_SKIP() << "this kernel does not count it";
-  const auto told = runInChild(workAmongOthers, 500);
+  constexpr int kLimitMs = 500;
+  const auto begun = std::chrono::steady_clock::now();
+  const auto told = runInChild(workAmongOthers, kLimitMs);
+  const auto took = std::chrono::steady_clock::now() - begun;
+  if (!told && took >= 9 * std::chrono::milliseconds(kLimitMs))
+    GTEST_SKIP() << "even ten times the limit was too little here";
   ASSERT_TRUE(told) << told.error();
   EXPECT_EQ(*told, "done");
 }
