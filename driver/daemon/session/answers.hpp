@@ -43,6 +43,9 @@ std::string listAnswer(const Session& session);
 std::string snapshotAnswer(const Session& session);
 
 /// [main] The value of one parameter, or of all.
+/// [main] The words for a parameter that the plugin does not have, with those that it has.
+/// @param flags HSP_P_LIVE: only live ones were meant; 0: all
+std::string noSuchParameter(const hsp_class& plugin, const std::string& parameter, uint32_t flags);
 Result<std::string> valuesAnswer(const Session& session, uint32_t place, const std::string& parameter);
 
 /// [main] One event as an object of JSON, without the end of a line.

@@ -113,7 +113,8 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
 EventLog::Message EventLog::messageOfArm(const hapticd_event& event) const {
   if (event.kind == HAPTICD_CLEARED) return {HSP_LOG_INFO, device(event), "the fault is over; its forces come back"};
   const auto fault = static_cast<Fault>(event.code);
-  if (fault == Fault::kStopped) return {HSP_LOG_DEBUG, "", ""};  // the run itself says how it ends
+  if (fault == Fault::kStopped)  // a hold; the end of a run is no fault
+    return {HSP_LOG_INFO, device(event), "is held: no force reaches the hand until hapticd ctl clear"};
   const auto arm = static_cast<size_t>(event.probe);
   const char* trouble = event.probe >= 0 && arm < arms_.size() ? arms_[arm]->troubleOf(fault) : nullptr;
   return {HSP_LOG_ERROR, "", "fault: " + faultMessage(device(event), fault, event.value, trouble)};
@@ -123,7 +124,9 @@ EventLog::Message EventLog::messageOfLeader(const hapticd_event& event) const {
   const std::string what = event.model >= 0 ? model(event) : device(event);
   if (event.kind == HAPTICD_REFUSED)
     return {HSP_LOG_WARNING, what, fmt::format("{:.0f} records of its leader were refused so far", event.value)};
-  return {HSP_LOG_INFO, what, leaderOf(event) + (event.kind == HAPTICD_JOINED ? " leads it" : " leads it no more")};
+  return {HSP_LOG_INFO, what,
+          leaderOf(event) + (event.model >= 0 ? " leads it" : " leads or pushes it") +
+              (event.kind == HAPTICD_JOINED ? "" : " no more")};
 }
 
 }  // namespace hapticd::servo

@@ -85,7 +85,8 @@ Result<std::string> RequestHandler::tell(const control::Peer& peer, const Reques
     case Request::Kind::kGet: {
       const auto place = placeOf(request.model);
       if (!place) return Error{place.error()};
-      return valuesAnswer(session(), *place, request.parameter);
+      auto values = valuesAnswer(session(), *place, request.parameter);
+      return values ? values : refuse("unknown", values.error());
     }
     case Request::Kind::kGeometry: {
       const auto place = placeOf(request.model);
@@ -221,7 +222,7 @@ Result<void> RequestHandler::set(const Request& request) {
   order.value = request.value;
   const hsp_param* param = parameterOf(plugin, request.parameter, order.param);
   const std::string what = "parameter \"" + request.parameter.substr(0, 100) + "\" of " + plugin.name;
-  if (param == nullptr) return refuse("unknown", what + ": there is no live parameter of that name; see list");
+  if (param == nullptr) return refuse("unknown", noSuchParameter(plugin, request.parameter, HSP_P_LIVE));
   if ((param->flags & HSP_P_LIVE) == 0)
     return refuse("unsupported", what + ": cannot change while the model runs\n  fix: change the scene and reload it");
   const bool whole = param->kind == HSP_REAL || std::floor(request.value) == request.value;

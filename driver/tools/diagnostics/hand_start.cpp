@@ -80,7 +80,36 @@ std::string tryTips(const scene::Scene& scene) {
   return found.take();
 }
 
+/// Where the file says what the hand wants.
+document::Place placeOfHand(const scene::Device& device) {
+  for (const char* id : {"hand.path", "hand.center", "hand.radius", "hand.script"})
+    for (const scene::Value& value : device.parameters)
+      if (value.id == id) return value.place;
+  return device.place;
+}
+
+/// "=", or why the arm cannot begin where its hand does.
+std::string tryStart(const scene::Scene& scene, const scene::Device& device) {
+  auto arm = host::DeviceInstance::create(device, nullptr);
+  hdv_start how{};
+  how.struct_size = sizeof how;
+  how.rate_hz = scene.servo.rate;
+  if (!arm || !(*arm)->open()) return "=";  // told by who reads the device file
+  const auto started = (*arm)->start(how);
+  return started ? "=" : started.error();
+}
+
 }  // namespace
+
+document::Problems unreachableHands(const scene::Scene& scene) {
+  document::Problems problems;
+  for (const scene::Device& device : scene.devices) {
+    if (device.module != "simulated") continue;
+    const auto told = host::runInChild([&] { return tryStart(scene, device); }, kLimitMs);
+    if (told && *told != "=") document::report(problems, placeOfHand(device), "hand", *told);
+  }
+  return problems;
+}
 
 document::Problems startsInside(const scene::Scene& scene) {
   document::Problems warnings;

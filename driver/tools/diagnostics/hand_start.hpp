@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Where the tip of each arm is when a run begins: not within a model, or the hand is pushed at once.
+/// Where the tip of each arm is when a run begins: within its reach, and not within a model, or the hand is pushed at
+/// once.
 #pragma once
 #include "description/scene.hpp"
 #include "document/problem.hpp"
@@ -10,5 +11,10 @@ namespace hapticd::diagnostics {
 /// where their script begins, other arms in the pose of their calibration. The models are set up in a child process.
 /// @param scene with the devices that a run would take
 document::Problems startsInside(const scene::Scene& scene);
+
+/// [main] A problem for each simulated arm that cannot reach where its hand begins, in the module's words: `run` would
+/// refuse it. The arms are started in a child process.
+/// @param scene with the devices that a run would take
+document::Problems unreachableHands(const scene::Scene& scene);
 
 }  // namespace hapticd::diagnostics

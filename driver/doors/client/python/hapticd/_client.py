@@ -71,7 +71,11 @@ class _Line:
 
     def say(self, request: dict[str, Any]) -> None:
         try:
-            self._socket.sendall(json.dumps(request).encode() + b"\n")
+            line = json.dumps(request, allow_nan=False)
+        except ValueError:
+            raise ValueError(f"a number of the request is not finite: {request}") from None
+        try:
+            self._socket.sendall(line.encode() + b"\n")
         except OSError as error:
             raise HapticdError(f"the daemon is gone: {error.strerror}") from None
 
