@@ -151,7 +151,7 @@ class GridBody final : public SoftBody {
     track.apart = 0;
     if (!(track.foot.depth > 0)) return;
     if (known && isRival(p, track.rival.u, track.rival.v, options, track)) return;
-    if (const auto found = scan_->rival(p, track.foot, track.scanned))
+    if (const auto found = scan_->rival(p, track.foot, options.crease, track.scanned))
       isRival(p, (*found)[0], (*found)[1], options, track);
   }
 
