@@ -9,7 +9,6 @@ namespace {
 using medial::FeltPlace;
 using medial::PlaceNode;
 
-constexpr double kTurned = 0.9;    ///< cosine from which on a direction that is still turning is not that of the foot
 constexpr double kNoRival = 0.05;  ///< 1 + cosine of two normals below which they are those of a sheet's two sides
 
 }  // namespace
@@ -23,8 +22,7 @@ double rivalShare(const Track& track, double width) noexcept HSP_RT {
 }
 
 Felt feltInCrease(const Felt& felt, const Track& track, double width) noexcept HSP_RT {
-  const double same = (felt.normal.dot(track.foot.normal) - kTurned) / (kSameDirection - kTurned);
-  const double share = rivalShare(track, width) * std::clamp(same, 0.0, 1.0);
+  const double share = rivalShare(track, width) * directness(felt.normal.dot(track.foot.normal));
   if (!(share > 0)) return felt;
   const Eigen::Vector3d gradient = felt.normal + 0.5 * share * (track.rival.normal - felt.normal);
   const double length = gradient.norm();

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// What a person should know of a body before they touch it.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
+#include "kernels/medial/passive.hpp"
 #include "mat_deformable.hpp"
 
 namespace hapticd {
@@ -11,41 +13,81 @@ namespace {
 constexpr double kLarge = 1.5;           ///< [m] no arm reaches round a longer body
 constexpr double kNoticed = 1.1;         ///< felt over told stiffness from which a hint is due
 constexpr std::size_t kMostLines = 200;  ///< nobody reads more
-constexpr double kHalfMillisecond =
-    0.5e-3;  ///< [s] half a tick at 1 kHz: the damping that a spring needs whose force is held
+constexpr double kSwings = 2;            ///< times K T / 2: damping of an arm that only a swinging mass asks for
+constexpr int kGuesses = 30;             ///< at a damping that would do: from kLittle of the critical one, times kMore
+constexpr double kLittle = 1e-3, kMore = 1.3;
 constexpr double kSameStiffness = 1e-3;  ///< relative difference of places that are told together
 
-/// Places of one stiffness, in the order of the file.
+/// Places of one material, in the order of the file.
 struct Group {
   std::size_t count = 0;
   FeltMaterial first;
+  medial::Tissue tissue;
 };
 
+struct Place {
+  FeltMaterial felt;
+  medial::Tissue tissue;
+};
+
+bool alike(const Place& a, const Group& b) {
+  const auto near = [](double x, double y) { return std::abs(x - y) <= kSameStiffness * std::abs(y); };
+  return near(a.felt.told, b.first.told) && near(a.felt.felt, b.first.felt) && near(a.felt.deep, b.first.deep) &&
+         near(a.tissue.damping, b.tissue.damping) && near(a.tissue.mass, b.tissue.mass);
+}
+
 /// Stiffest first.
-std::vector<Group> grouped(std::vector<FeltMaterial> all) {
-  std::stable_sort(all.begin(), all.end(),
-                   [](const FeltMaterial& a, const FeltMaterial& b) { return a.told > b.told; });
+std::vector<Group> grouped(std::vector<Place> all) {
+  std::stable_sort(all.begin(), all.end(), [](const Place& a, const Place& b) { return a.felt.told > b.felt.told; });
   std::vector<Group> groups;
-  for (const FeltMaterial& one : all) {
-    const auto near = [](double a, double b) { return std::abs(a - b) <= kSameStiffness * std::abs(b); };
-    if (groups.empty() || !near(one.told, groups.back().first.told) || !near(one.felt, groups.back().first.felt) ||
-        !near(one.deep, groups.back().first.deep))
-      groups.push_back({0, one});
+  for (const Place& one : all) {
+    if (groups.empty() || !alike(one, groups.back())) groups.push_back({0, one.felt, one.tissue});
     ++groups.back().count;
   }
   return groups;
 }
 
-/// `contact`: contact spring over the stiffness of a surface that is felt; 0: it is not.
-std::string line(const Group& group, double contact) {
+/// What an arm must damp [N s/m] for a hand on it to be safe at a surface whose force is held for a tick.
+double neededDamping(const medial::Tissue& tissue, double ratio, double tick) {
+  return medial::passiveDamping(medial::dampedForTick(medial::elementOf(tissue, ratio), tick), tick);
+}
+
+/// How much of what an arm must damp is the mass's doing.
+struct Swing {
+  medial::Tissue tissue;
+  double need = 0, times = 0;  ///< [N s/m]; over what the contact spring alone needs
+};
+Swing swingOf(const medial::Tissue& tissue, double ratio, double tick) {
+  const double need = neededDamping(tissue, ratio, tick);
+  return {tissue, need, need / (0.5 * tick * medial::elementOf(tissue, ratio).contact)};
+}
+
+/// [N s/m] of the tissue itself, with which its mass asks for no more than kSwings times what the spring does.
+double enoughDamping(medial::Tissue tissue, double ratio, double tick) {
+  tissue.damping = std::max(tissue.damping, kLittle * std::sqrt(tissue.stiffness * tissue.mass));
+  for (int i = 0; i < kGuesses && swingOf(tissue, ratio, tick).times > kSwings; ++i) tissue.damping *= kMore;
+  const double unit = std::pow(10, std::floor(std::log10(tissue.damping)) - 1);  // two digits, as a person writes them
+  return unit * std::ceil(tissue.damping / unit);
+}
+
+std::string springText(const medial::Tissue& tissue, double ratio, double tick) {
+  const double contact = medial::elementOf(tissue, ratio).contact, need = neededDamping(tissue, ratio, tick);
+  char text[128];
+  if (std::isfinite(need))
+    std::snprintf(text, sizeof text, "; contact spring %.4g N/m, passive on an arm that damps %.3g N s/m", contact,
+                  need);
+  else
+    std::snprintf(text, sizeof text, "; contact spring %.4g N/m, passive on no arm: nothing damps the mass", contact);
+  return text;
+}
+
+/// @param spring what is to be said of the contact spring of a surface that is felt
+std::string line(const Group& group, const std::string& spring) {
   const FeltMaterial& one = group.first;
-  char text[320], spring[112] = "";
-  if (contact > 0)
-    std::snprintf(spring, sizeof spring, "; contact spring %.4g N/m, passive on an arm that damps %.3g N s/m",
-                  contact * one.told, kHalfMillisecond * contact * one.told);
+  char text[320];
   const int length = std::snprintf(text, sizeof text,
                                    "felt %.4g N/m 1 mm deep, %.4g N/m 5 mm deep; the file says %.4g N/m%s: ", one.felt,
-                                   one.deep, one.told, spring);
+                                   one.deep, one.told, spring.c_str());
   const auto left = sizeof text - static_cast<std::size_t>(length);
   const Eigen::Array3d mm = 0.01 * (1e5 * one.place.array()).round() + 0.0;  // no -0
   if (group.count == 1)
@@ -62,12 +104,12 @@ void MatDeformable::say(int level, const std::string& text) const {
   if (host() != nullptr && host()->log != nullptr) host()->log(host(), level, text.c_str());
 }
 
-void MatDeformable::describe(const MedialFile& file) const {
+void MatDeformable::describe(const MedialFile& file, double tick) const {
   if (host() == nullptr || host()->log == nullptr) return;
   const Description description = body_->describe(geometry_);
   say(description.warning ? HSP_LOG_WARNING : HSP_LOG_INFO, description.text);
   if (!(body_->greatestRadius() > 0)) say(HSP_LOG_WARNING, geometry_ + ": all radii are 0: nothing will be felt");
-  describeMaterial(file);
+  describeMaterial(file, tick);
   const double size = body_->bounds().sizes().maxCoeff();
   if (!(size > kLarge)) return;
   char text[128];
@@ -75,25 +117,29 @@ void MatDeformable::describe(const MedialFile& file) const {
   say(HSP_LOG_WARNING, geometry_ + text);
 }
 
-/// A line for each stiffness at level debug, for who asks, and a hint where it is not what the file says.
-void MatDeformable::describeMaterial(const MedialFile& file) const {
+medial::Tissue MatDeformable::tissueAt(const MedialFile& file, std::size_t point) const {
+  const auto at = [point](const std::vector<double>& all) {
+    return all.empty() ? 0 : all[all.size() == 1 ? 0 : point];
+  };
+  const auto of = [&](const auto& body) {
+    return medial::Tissue{at(body.stiffness), at(body.damping), at(body.mass), relaxation_share_, relaxation_time_};
+  };
+  return file.grid ? of(*file.grid) : of(*file.mesh);
+}
+
+/// A line for each material at level debug, for who asks, and a hint where it is not what the file says.
+void MatDeformable::describeMaterial(const MedialFile& file, double tick) const {
   double most = 1;
+  const bool felt = body_->feltSurface() != nullptr;
+  std::vector<Place> places;
+  for (const FeltMaterial& one : body_->feltMaterial()) places.push_back({one, tissueAt(file, places.size())});
   std::size_t lines = 0;
-  const medial::FeltSurface* const surface = body_->feltSurface();
-  const double ratio = surface != nullptr ? surface->contactRatio() : 0;
-  for (const Group& group : grouped(body_->feltMaterial())) {
-    if (++lines <= kMostLines) say(HSP_LOG_DEBUG, line(group, ratio));
+  for (const Group& group : grouped(std::move(places))) {
+    if (++lines <= kMostLines)
+      say(HSP_LOG_DEBUG, line(group, felt ? springText(group.tissue, contact_ratio_, tick) : ""));
     if (group.first.told > 0) most = std::max(most, group.first.deep / group.first.told);
   }
-  if (surface != nullptr) {
-    const double contact = body_->greatestStiffness() * ratio;
-    char text[192];
-    std::snprintf(text, sizeof text,
-                  "contact spring of the stiffest place %.4g N/m: passive by itself on an arm that damps %.3g N s/m at "
-                  "1 kHz (K / 2 / rate); else limits.passivity guards it",
-                  contact, kHalfMillisecond * contact);
-    say(HSP_LOG_DEBUG, text);
-  }
+  if (felt) describeContact(file, tick);
   if (file.grid && file.revision >= 2 && shear_offset_ != kUsualShearOffset)
     say(HSP_LOG_WARNING, geometry_ + ": shear_offset has no meaning for hapticd-model/2; use shear_distance");
   if (!(most > kNoticed)) return;
@@ -103,6 +149,48 @@ void MatDeformable::describeMaterial(const MedialFile& file) const {
                 "in its place the file is right",
                 most);
   say(HSP_LOG_INFO, text);
+}
+
+/// The material that a swinging mass makes worst for an arm, with a warning where it is so little damped that an arm
+/// can hardly make up for it.
+void MatDeformable::describeContact(const MedialFile& file, double tick) const {
+  double most = 0;
+  Swing worst;
+  for (const medial::Tissue& tissue : distinct(file)) {
+    const Swing swing = swingOf(tissue, contact_ratio_, tick);
+    most = std::max(most, swing.need);
+    if (swing.times > worst.times) worst = swing;
+  }
+  char text[320];
+  if (std::isfinite(most)) {
+    std::snprintf(text, sizeof text,
+                  "the whole body is passive by itself on an arm that damps %.3g N s/m at %.4g Hz; else "
+                  "limits.passivity guards it",
+                  most, 1 / tick);
+    say(HSP_LOG_DEBUG, text);
+  }
+  if (!(worst.times > kSwings)) return;
+  char arm[96] = "no arm is passive on it";
+  if (std::isfinite(worst.times))
+    std::snprintf(arm, sizeof arm, "an arm must damp %.3g times what the spring alone needs", worst.times);
+  std::snprintf(text, sizeof text,
+                ": a mass of %.3g kg swings almost undamped against the contact spring of %.4g N/m: at %.4g Hz %s; "
+                "expected a damping of at least %.2g N s/m",
+                worst.tissue.mass, medial::elementOf(worst.tissue, contact_ratio_).contact, 1 / tick, arm,
+                enoughDamping(worst.tissue, contact_ratio_, tick));
+  say(HSP_LOG_WARNING, geometry_ + text);
+}
+
+std::vector<medial::Tissue> MatDeformable::distinct(const MedialFile& file) const {
+  std::vector<medial::Tissue> all;
+  for (std::size_t i = 0, count = body_->feltMaterial().size(); i < count && all.size() < kMostLines; ++i) {
+    const medial::Tissue one = tissueAt(file, i);
+    const auto same = [&one](const medial::Tissue& t) {
+      return t.stiffness == one.stiffness && t.damping == one.damping && t.mass == one.mass;
+    };
+    if (one.stiffness > 0 && std::none_of(all.begin(), all.end(), same)) all.push_back(one);
+  }
+  return all;
 }
 
 }  // namespace hapticd

@@ -13,12 +13,13 @@ constexpr double kDense = 0.5;        ///< of the least radius: distance of neig
 constexpr int kMostPerInterval = 6;   ///< samples to an interval of the skeleton's points, each way
 constexpr uint32_t kATick = 64;       ///< samples that a tick looks at: some 0.2 us
 constexpr double kAside = 0.87;       ///< cosine to the foot's direction: samples within are of its own place
+constexpr double kFarAside = 0.7;     ///< likewise: those without are surely of another place
 constexpr double kParting = 0.05;     ///< [rad] directions of two feet that differ by less are one
 constexpr double kParted = 0.15;      ///< [rad] those that differ by more are two
 constexpr double kMayBeNearer = 0.1;  ///< of the radius: a foot between samples is nearer than they are
 constexpr uint32_t kGroup = 8;        ///< samples that are ruled out together; kATick is a multiple
-constexpr float kAside2 = kAside * kAside;
-constexpr float kRounding = 2e-5F;  ///< of the size squared: more than single numbers err by
+constexpr float kSteep = 1e6F;        ///< makes of a doubt an open question and of a certain no a great depth below
+constexpr float kRounding = 2e-5F;    ///< of the size: more than single numbers err by
 
 std::vector<double> between(const std::vector<double>& t, int per_interval) {
   std::vector<double> all;
@@ -49,15 +50,17 @@ int perInterval(const medial::Skeleton& skeleton, std::size_t axis) {
 
 }  // namespace
 
-/// Whether the sphere of a sample reaches over p by more than `deepest`, which it then sets.
-bool FootScan::nearer(const Sample& sample, const Vector3d& p, const medial::SkeletonFoot& foot,
+/// Whether the sphere of a sample reaches over p by more than `deepest`, which it then sets. Far aside of the foot it
+/// may reach by `width` less: the other flank of a valley is known before it begins to push.
+bool FootScan::nearer(const Sample& sample, const Vector3d& p, const medial::SkeletonFoot& foot, double width,
                       double& deepest) noexcept {
   const Vector3d away = p - sample.center;
-  const double reach = sample.radius - deepest, distance2 = away.squaredNorm();
+  const double reach = sample.radius + width - deepest, distance2 = away.squaredNorm();
   if (!(reach > 0) || !(distance2 < reach * reach)) return false;  // most: no root is taken
-  const double distance = std::sqrt(distance2);
-  if (away.dot(foot.normal) > kAside * distance) return false;
-  deepest = sample.radius - distance;
+  const double distance = std::sqrt(distance2), along = away.dot(foot.normal);
+  const double over = sample.radius - distance + (along < kFarAside * distance ? width : 0);
+  if (along > kAside * distance || !(over > deepest)) return false;
+  deepest = over;
   return true;
 }
 
@@ -97,34 +100,41 @@ void FootScan::scale() {
   }
 }
 
+/// The next group, from the k-th sample on, of which one may be a rival as nearer() says. What is not so far aside as
+/// it should be counts as far below.
+uint32_t FootScan::nextGroup(const Probe& probe, uint32_t first, uint32_t k, uint32_t looks) const noexcept {
+  using Group = Eigen::Array<float, kGroup, 1>;
+  const float deepest = probe.deepest - kRounding;
+  for (; k < looks; k += kGroup) {
+    const auto at = [this, i = first + k](const std::vector<float>& all) {
+      return Eigen::Map<const Group>(all.data() + i);
+    };
+    const Group x = probe.p.x() - at(x_), y = probe.p.y() - at(y_), z = probe.p.z() - at(z_);
+    const Group distance = (x * x + y * y + z * z).sqrt(), over = at(radius_) - distance;
+    const Group along = probe.normal.x() * x + probe.normal.y() * y + probe.normal.z() * z - kRounding;
+    const Group aside = over.min(kSteep * (static_cast<float>(kAside) * distance - along));
+    const Group far_aside = (over + probe.width).min(kSteep * (static_cast<float>(kFarAside) * distance - along));
+    if (aside.max(far_aside).maxCoeff() > deepest) break;
+  }
+  return k;
+}
+
 /// Most samples are ruled out by the group, in single numbers; what the rest are is found to the last bit.
-std::optional<std::array<double, 2>> FootScan::rival(const Vector3d& p, const medial::SkeletonFoot& foot,
+std::optional<std::array<double, 2>> FootScan::rival(const Vector3d& p, const medial::SkeletonFoot& foot, double width,
                                                      uint32_t& next) const noexcept {
   const auto count = static_cast<uint32_t>(samples_.size()), looks = std::min(kATick, count);
   const Sample* best = nullptr;
   double deepest = foot.depth - kMayBeNearer * foot.radius;
   const Probe probe{((p - middle_) / size_).cast<float>(), foot.normal.cast<float>(),
-                    static_cast<float>(deepest / size_)};
+                    static_cast<float>(deepest / size_), static_cast<float>(width / size_)};
   const uint32_t first = next + 1 < count ? next + 1 : 0;
-  for (uint32_t k = 0; k < looks; k += kGroup) {
-    if (ruledOut(probe, first + k)) continue;
+  for (uint32_t k = nextGroup(probe, first, 0, looks); k < looks; k = nextGroup(probe, first, k + kGroup, looks)) {
     for (uint32_t i = k; i < std::min(k + kGroup, looks); ++i)
-      if (const Sample& sample = samples_[(first + i) % count]; nearer(sample, p, foot, deepest)) best = &sample;
+      if (const Sample& sample = samples_[(first + i) % count]; nearer(sample, p, foot, width, deepest)) best = &sample;
   }
   next = (first + looks - 1) % count;
   if (best == nullptr) return std::nullopt;
   return std::array{best->u, best->v};
-}
-
-/// Whether each sample of a group is too far, |p - c|^2 > (r - deepest)^2, or surely in the direction of the foot.
-bool FootScan::ruledOut(const Probe& probe, uint32_t first) const noexcept {
-  using Group = Eigen::Array<float, kGroup, 1>;
-  const auto at = [first](const std::vector<float>& all) { return Eigen::Map<const Group>(all.data() + first); };
-  const Group x = probe.p.x() - at(x_), y = probe.p.y() - at(y_), z = probe.p.z() - at(z_);
-  const Group distance2 = x * x + y * y + z * z, reach = at(radius_) - probe.deepest;
-  const Group along = probe.normal.x() * x + probe.normal.y() * y + probe.normal.z() * z;
-  const Group far = distance2 - reach * reach, beside = along * along.abs() - kAside2 * distance2;
-  return far.max(beside).minCoeff() > kRounding;
 }
 
 double FootScan::apart(const medial::SkeletonFoot& a, const medial::SkeletonFoot& b) noexcept {

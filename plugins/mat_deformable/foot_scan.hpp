@@ -15,8 +15,9 @@ class FootScan {
  public:
   explicit FootScan(const medial::Skeleton& skeleton);  ///< [main]
   /// [rt] Looks at the next samples, from `next` on, round and round.
-  /// @return the parameters of the best that is apart from the foot and may be nearer to p
-  std::optional<std::array<double, 2>> rival(const Eigen::Vector3d& p, const medial::SkeletonFoot& foot,
+  /// @param width [m] by which a foot may be less deep, where it is surely of another place
+  /// @return the parameters of the best that is apart from the foot and may be nearer to p, or by `width` less near
+  std::optional<std::array<double, 2>> rival(const Eigen::Vector3d& p, const medial::SkeletonFoot& foot, double width,
                                              uint32_t& next) const noexcept;
   /// [rt] 0: two feet are of one place of the skeleton; 1: of two.
   static double apart(const medial::SkeletonFoot& a, const medial::SkeletonFoot& b) noexcept;
@@ -32,11 +33,11 @@ class FootScan {
   /// A probe and what is asked of samples, likewise.
   struct Probe {
     Eigen::Vector3f p, normal;
-    float deepest;
+    float deepest, width;
   };
   void scale();
-  bool ruledOut(const Probe& probe, uint32_t first) const noexcept;
-  static bool nearer(const Sample& sample, const Eigen::Vector3d& p, const medial::SkeletonFoot& foot,
+  uint32_t nextGroup(const Probe& probe, uint32_t first, uint32_t k, uint32_t looks) const noexcept;
+  static bool nearer(const Sample& sample, const Eigen::Vector3d& p, const medial::SkeletonFoot& foot, double width,
                      double& deepest) noexcept;
 
   std::vector<Sample> samples_;

@@ -66,7 +66,7 @@ class GridBody final : public SoftBody {
   }
   void placeOf(const Vector3d& p, const SkeletonFoot& foot, const Felt& felt, medial::Envelope envelope,
                medial::FeltPlace& place) noexcept override {
-    body_.placeOf(p, foot, felt.normal, envelope, felt.normal.dot(foot.normal) > kSameDirection, place);
+    body_.placeOf(p, foot, felt.normal, envelope, directness(felt.normal.dot(foot.normal)), place);
   }
   medial::FeltSurface* feltSurface() noexcept override { return body_.feltSurface(); }
   void yield(std::span<const medial::Press> contacts) noexcept override { body_.deformation().press(contacts); }
@@ -151,7 +151,7 @@ class GridBody final : public SoftBody {
     track.apart = 0;
     if (!(track.foot.depth > 0)) return;
     if (known && isRival(p, track.rival.u, track.rival.v, options, track)) return;
-    if (const auto found = scan_->rival(p, track.foot, track.scanned))
+    if (const auto found = scan_->rival(p, track.foot, options.crease, track.scanned))
       isRival(p, (*found)[0], (*found)[1], options, track);
   }
 

@@ -116,7 +116,7 @@ void MatDeformable::activate(const hsp_activation& activation, hsp_report& repor
   report.size_m = body_->bounds().diagonal().norm();
   report.locked_bytes = body_->bytes() + displaced_->bytes() + volume_bytes + probes * sizeof(Track) + sizeof *this +
                         (frames_ ? frames_->bytes() : 0);
-  describe(file);
+  describe(file, activation.rate_hz > 0 ? 1 / activation.rate_hz : medial::FeltOptions{}.tick);
 }
 
 void MatDeformable::deactivate() {

@@ -142,8 +142,11 @@ class MatDeformable final : public Shape {
   static const void* geometryExtension();
   static const void* energyExtension();
   static const void* stateExtension();
-  void describe(const MedialFile& file) const;
-  void describeMaterial(const MedialFile& file) const;
+  void describe(const MedialFile& file, double tick) const;
+  void describeMaterial(const MedialFile& file, double tick) const;
+  void describeContact(const MedialFile& file, double tick) const;
+  medial::Tissue tissueAt(const MedialFile& file, std::size_t point) const;  ///< what the file says of a point
+  std::vector<medial::Tissue> distinct(const MedialFile& file) const;
   void say(int level, const std::string& text) const;  ///< [main] to the log of the host, where it has one
   double elapsed(const hsp_step& step) noexcept HSP_RT;
   FindOptions findOptions(const hsp_step& step) const noexcept HSP_RT;

@@ -45,8 +45,9 @@ class MeshSoftBody final : public SoftBody {
   }
   void placeOf(const Vector3d& p, const SkeletonFoot& foot, const Felt& felt, medial::Envelope,
                medial::FeltPlace& place) noexcept override {
-    body_.placeOf(p, foot, felt.normal, felt.normal.dot(p - foot.center) > kSameDirection * (p - foot.center).norm(),
-                  place);
+    const double distance = (p - foot.center).norm();
+    const double cosine = distance > 0 ? felt.normal.dot(p - foot.center) / distance : 0;
+    body_.placeOf(p, foot, felt.normal, directness(cosine), place);
   }
   medial::FeltSurface* feltSurface() noexcept override { return body_.feltSurface(); }
   void yield(std::span<const medial::Press> contacts) noexcept override { body_.deformation().press(contacts); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// What the plugin needs of a soft body, whichever form its medial axis has: a grid of points or a mesh.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <span>
@@ -54,6 +55,12 @@ struct Felt {
   double share = 0;  ///< of the rival, 0 to 1
 };
 inline constexpr double kSameDirection = 0.99;  ///< cosine of the direction of a foot and the one that is felt
+inline constexpr double kTurned = 0.9;          ///< cosine from which on it is another, that turns toward the foot's
+
+/// [rt] 1: a direction with this cosine to that of the foot is the foot's; 0: it is another.
+inline double directness(double cosine) noexcept {
+  return std::clamp((cosine - kTurned) / (kSameDirection - kTurned), 0.0, 1.0);
+}
 
 /// What a person should know of a body before they touch it.
 struct Description {

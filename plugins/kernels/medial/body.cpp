@@ -56,8 +56,8 @@ std::vector<Tissue> Body::tissueOf(const std::vector<Oscillator>& material) cons
   return all;
 }
 
-void Body::placeOf(const Vector3d& p, const SkeletonFoot& foot, const Vector3d& normal, Envelope envelope, bool direct,
-                   FeltPlace& place) const noexcept {
+void Body::placeOf(const Vector3d& p, const SkeletonFoot& foot, const Vector3d& normal, Envelope envelope,
+                   double direct, FeltPlace& place) const noexcept {
   deformation_->nodesAt(foot.u, foot.v, place);
   place.normal = normal;
   place.stiffness = stiffness_.evaluate(foot.u, foot.v).f;

@@ -75,9 +75,9 @@ class Body {
   BodyForce press(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
                   double closing_speed) const noexcept;
   /// [rt] The place of the contour that a probe at `p` is at, with its foot, as a felt surface needs it.
-  /// @param direct whether `normal` is the direction from the foot to the probe
+  /// @param direct 1: `normal` is the direction from the foot to the probe; 0: it is not; between, in part
   void placeOf(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, Envelope envelope,
-               bool direct, FeltPlace& place) const noexcept;
+               double direct, FeltPlace& place) const noexcept;
   FeltSurface* feltSurface() noexcept { return felt_ ? &*felt_ : nullptr; }  ///< [any] nullptr: it is only seen
   /// [main] Looks at the force law all over the skeleton, on both sides.
   MonotonicityReport checkMonotonicity() const;

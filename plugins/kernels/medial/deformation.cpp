@@ -38,23 +38,27 @@ struct Basis {
   std::array<double, spline::kMaxDegree + 1> value{}, slope{};
   int first = 0, count = 0;
 
+  /// Both from the functions of one degree less (Piegl & Tiller, Eqs. 2.5 and 2.7).
   Basis(const ControlGrid& grid, std::size_t axis, double t) noexcept {
     const std::vector<double>& knots = grid.knots[axis];
     const int degree = grid.degree[axis], span = spline::findSpan(knots, degree, t);
     first = span - degree;
     count = degree + 1;
-    spline::basisFunctions(knots, degree, span, t, value);
+    value[0] = 1;
     if (degree == 0) return;
-    std::array<double, spline::kMaxDegree + 1> lower{};  // of one degree less: N_(first + 1) and on
-    spline::basisFunctions(knots, degree - 1, span, t, lower);
-    for (int i = 0; i < count; ++i) {  // Piegl & Tiller, Eq. 2.7
-      const auto at = static_cast<std::size_t>(first + i), next = static_cast<std::size_t>(first + i + 1);
-      const double left = knots[at + static_cast<std::size_t>(degree)] - knots[at];
-      const double right = knots[next + static_cast<std::size_t>(degree)] - knots[next];
+    spline::basisFunctions(knots, degree - 1, span, t, value);
+    double from_left = 0, slope_from_left = 0;
+    for (int i = 0; i < degree; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      if (i > 0 && left > 0) slope[k] += degree / left * lower[k - 1];
-      if (i < degree && right > 0) slope[k] -= degree / right * lower[k];
+      const double left = knots[static_cast<std::size_t>(first + i + 1)];
+      const double right = knots[static_cast<std::size_t>(span + i + 1)], share = value[k] / (right - left);
+      value[k] = from_left + (right - t) * share;
+      slope[k] = slope_from_left - degree * share;
+      from_left = (t - left) * share;
+      slope_from_left = degree * share;
     }
+    value[static_cast<std::size_t>(degree)] = from_left;
+    slope[static_cast<std::size_t>(degree)] = slope_from_left;
   }
 };
 
@@ -66,33 +70,60 @@ struct Shares {
   std::array<double, kWidest> value{}, slope{};
   int first = 0, count = 0;
 
-  void add(const Basis& basis, double part, bool follows) noexcept {
+  /// @param rate by which the place of `basis` follows
+  void add(const Basis& basis, double part, double rate) noexcept {
     const int from = basis.first - first;
     for (int i = 0; i < basis.count && static_cast<std::size_t>(from + i) < kWidest; ++i) {
       const auto to = static_cast<std::size_t>(from + i), k = static_cast<std::size_t>(i);
       value[to] += part * basis.value[k];
-      if (follows) slope[to] += part * basis.slope[k];
+      slope[to] += part * rate * basis.slope[k];
     }
     count = std::min(std::max(count, from + basis.count), static_cast<int>(kWidest));
   }
 };
 
-/// Those of a place at t that takes the places `reach` before and behind it along. At the rim they are the rim.
-Shares sharesOf(const ControlGrid& grid, std::size_t axis, double t, double reach) noexcept {
+/// A place near a rim that stands for the one at t, and the rate by which it follows t.
+struct Place {
+  double at = 0, rate = 1;
+};
+
+/// Within `width` of the rim a place follows ever less and comes no nearer than half of it. A foot that is held at the
+/// rim does not move: the slope of the dent ends there, and would end in one step.
+Place nearRim(const std::vector<double>& knots, double t, double width) noexcept {
+  const double low = knots.front(), high = knots.back();
+  if (!(width > 0)) return {std::clamp(t, low, high), t > low && t < high ? 1.0 : 0.0};
+  const double from_low = width - std::max(0.0, t - low), from_high = width - std::max(0.0, high - t);
+  if (from_low > 0) return {std::max(low, t) + 0.5 * from_low * from_low / width, 1 - from_low / width};
+  if (from_high > 0) return {std::min(high, t) - 0.5 * from_high * from_high / width, 1 - from_high / width};
+  return {t, 1};
+}
+
+/// Shares in a place at t that takes the places `reach` before and behind it along.
+Shares sharesOf(const ControlGrid& grid, std::size_t axis, double t, double reach, double rim) noexcept {
   Shares shares;
-  const Basis here(grid, axis, t);
+  const std::vector<double>& knots = grid.knots[axis];
+  const Place here = nearRim(knots, t, rim);
+  const Basis middle(grid, axis, here.at);
   if (!(reach > 0)) {
-    shares.first = here.first;
-    shares.add(here, 1, true);
+    shares.first = middle.first;
+    shares.add(middle, 1, here.rate);
     return shares;
   }
-  const double low = grid.knots[axis].front(), high = grid.knots[axis].back();
-  const Basis before(grid, axis, std::max(low, t - reach)), behind(grid, axis, std::min(high, t + reach));
-  shares.first = before.first;
-  shares.add(before, 0.25, t - reach > low);
-  shares.add(here, 0.5, true);
-  shares.add(behind, 0.25, t + reach < high);
+  const Place before = nearRim(knots, t - reach, rim), behind = nearRim(knots, t + reach, rim);
+  const Basis low(grid, axis, before.at), high(grid, axis, behind.at);
+  shares.first = low.first;
+  shares.add(low, 0.25, before.rate);
+  shares.add(middle, 0.5, here.rate);
+  shares.add(high, 0.25, behind.rate);
   return shares;
+}
+
+/// The width of a rim as a difference of parameters: that of a control point, where the rim is one.
+double rimWidth(const Skeleton& skeleton, std::size_t axis) {
+  const ControlGrid& grid = skeleton.control();
+  if (grid.count[axis] < 2 || (axis == 0 && skeleton.curve())) return 0;
+  const double range = grid.knots[axis].back() - grid.knots[axis].front();
+  return range / std::max(2, grid.count[axis] - 1);
 }
 
 /// The reach [m] as a difference of parameters, the same all over the body so that derivatives are those of the shares;
@@ -159,7 +190,8 @@ Deformation::Deformation(const Skeleton& skeleton, const std::vector<Oscillator>
                          const DeformationOptions& options)
     : Nodes(total(skeleton.control()), material, options),
       skeleton_(&skeleton),
-      reach_{parameterReach(skeleton, 0, options.shear_reach), parameterReach(skeleton, 1, options.shear_reach)} {}
+      reach_{parameterReach(skeleton, 0, options.shear_reach), parameterReach(skeleton, 1, options.shear_reach)},
+      rim_{rimWidth(skeleton, 0), rimWidth(skeleton, 1)} {}
 
 Deformation::Reach Deformation::reachOf(double u, double v) const noexcept {
   const ControlGrid& grid = skeleton_->control();
@@ -192,16 +224,17 @@ void Deformation::press(std::span<const Press> contacts) noexcept {
 
 void Deformation::nodesAt(double u, double v, FeltPlace& place) const noexcept {
   const ControlGrid& grid = skeleton_->control();
-  const Shares along_u = sharesOf(grid, 0, u, reach_[0]), along_v = sharesOf(grid, 1, v, reach_[1]);
-  place.count = 0;
+  const Shares along_u = sharesOf(grid, 0, u, reach_[0], rim_[0]), along_v = sharesOf(grid, 1, v, reach_[1], rim_[1]);
+  PlaceNode* node = place.nodes.data();
   for (int i = 0; i < along_u.count; ++i) {
-    for (int j = 0; j < along_v.count; ++j) {
-      const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-      place.nodes[place.count++] = {static_cast<uint32_t>((along_u.first + i) * grid.count[1] + along_v.first + j),
-                                    along_u.value[a] * along_v.value[b], along_u.slope[a] * along_v.value[b],
-                                    along_u.value[a] * along_v.slope[b]};
-    }
+    const auto a = static_cast<std::size_t>(i);
+    const auto row = static_cast<uint32_t>((along_u.first + i) * grid.count[1] + along_v.first);
+    const double weight = along_u.value[a], slope = along_u.slope[a];
+    for (std::size_t b = 0; b < static_cast<std::size_t>(along_v.count); ++b)
+      *node++ = {row + static_cast<uint32_t>(b), weight * along_v.value[b], slope * along_v.value[b],
+                 weight * along_v.slope[b]};
   }
+  place.count = static_cast<std::size_t>(node - place.nodes.data());
 }
 
 std::vector<double> Deformation::compliance() const {

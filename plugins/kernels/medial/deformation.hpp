@@ -54,6 +54,7 @@ class Deformation : public Nodes {
 
   const Skeleton* skeleton_;
   std::array<double, 2> reach_{0, 0};  ///< shear_reach as a difference of u and of v
+  std::array<double, 2> rim_{0, 0};    ///< likewise: within it a place nears the rim ever more slowly
 };
 
 }  // namespace hapticd::medial

@@ -81,36 +81,46 @@ void FeltSurface::prepare(Material& material, double dt) noexcept {
 
 /// Held compliance h = sum of weight^2 * compliance / stiffness of the nodes; scale^2 * h is that of the material here.
 void FeltSurface::fit(FeltPlace& place) const noexcept {
-  double h = 0, hu = 0, hv = 0;
+  double h = 0, hu = 0, hv = 0, yields = 0;
+  const bool uniform = this->uniform();
   for (std::size_t i = 0; i < place.count; ++i) {
     const PlaceNode& part = place.nodes[i];
-    const double stiffness = materialOf(part.node).element.stiffness;
-    if (!(stiffness > 0)) continue;
-    const double soft = part.weight * compliance_[part.node] / stiffness;
-    h += part.weight * soft;
+    double soft = part.weight * compliance_[part.node];
+    yields += part.weight * soft;
+    if (!uniform) {
+      const double stiffness = materialOf(part.node).element.stiffness;
+      if (!(stiffness > 0)) continue;
+      soft /= stiffness;
+      h += part.weight * soft;
+    }
     hu += part.weight_u * soft;
     hv += part.weight_v * soft;
   }
   place.contact = place.scale = 0;
+  place.yields = yields;
+  const double of_all = materials_.front().element.stiffness, whole = uniform ? yields : h;
+  if (uniform) h = of_all > 0 ? yields / of_all : 0;
   if (!(h > 0) || !(place.stiffness > 0)) return;
   const double ratio = contactRatio();
   place.contact = ratio * place.stiffness;
   place.scale = 1 / std::sqrt(place.stiffness * ratio / (ratio - 1) * h);
-  place.ripple = {-hu / h, -hv / h};
+  place.ripple = {-hu / whole, -hv / whole};
 }
 
 /// [m] by which the contour has given way at a place.
 double FeltSurface::shift(const FeltPlace& place) const noexcept {
-  const Vector4d inward = inwardOf(place.normal);
-  double sum = 0;
-  for (std::size_t i = 0; i < place.count; ++i)
-    sum += place.nodes[i].weight * inward.dot(nodes_->nodes_[place.nodes[i].node].x);
-  return place.scale * sum;
+  Vector4d sum = Vector4d::Zero();
+  for (std::size_t i = 0; i < place.count; ++i) sum += place.nodes[i].weight * nodes_->nodes_[place.nodes[i].node].x;
+  return place.scale * inwardOf(place.normal).dot(sum);
 }
 
 /// [m/N] by how much the contour at `a` gives way within a tick to a force at `b` of 1 N.
 double FeltSurface::give(const FeltPlace& a, const FeltPlace& b, double dt) noexcept {
   const double along = inwardOf(a.normal).cwiseProduct(shares_).dot(inwardOf(b.normal));
+  if (&a == &b && uniform()) {
+    prepare(materials_.front(), dt);
+    return a.scale * a.scale * along * a.yields * materials_.front().step.xf;
+  }
   double sum = 0;
   const auto add = [&](uint32_t node, double weights) {
     Material& material = materialOf(node);
@@ -152,6 +162,11 @@ void FeltSurface::bring(const FeltPlace& place, double displacement) noexcept {
 }
 
 void FeltSurface::swing(double dt) noexcept {
+  if (nodes_->awake_.empty()) return;
+  if (uniform() && branch_.empty()) {
+    prepare(materials_.front(), dt);
+    return swingAlike(materials_.front().step);
+  }
   for (const uint32_t i : nodes_->awake_) {
     Nodes::Node& node = nodes_->nodes_[i];
     Material& material = materialOf(i);
@@ -166,6 +181,17 @@ void FeltSurface::swing(double dt) noexcept {
     }
     node.x = x;
     node.v = v;
+  }
+}
+
+void FeltSurface::swingAlike(const ViscoelasticStep& step) noexcept {
+  const double xx = step.xx, xv = step.xv, vx = step.vx, vv = step.vv;
+  Nodes::Node* const nodes = nodes_->nodes_.data();
+  for (const uint32_t i : nodes_->awake_) {
+    Nodes::Node& node = nodes[i];
+    const Vector4d moved = xx * node.x + xv * node.v;
+    node.v = vx * node.x + vv * node.v;
+    node.x = moved;
   }
 }
 
@@ -201,16 +227,24 @@ void FeltSurface::push(const FeltContact& contact) noexcept {
   const FeltPlace& place = contact.place;
   if (!(contact.mean > 0)) return;
   const Vector4d pushed = place.scale * contact.mean * shares_.cwiseProduct(inwardOf(place.normal));
+  Nodes::Node* const nodes = nodes_->nodes_.data();
+  const bool uniform = this->uniform(), relaxes = !branch_.empty();
+  const Vector4d to_x = materials_.front().step.xf * pushed, to_v = materials_.front().step.vf * pushed;
   for (std::size_t i = 0; i < place.count; ++i) {
     const PlaceNode& part = place.nodes[i];
     if (part.weight == 0) continue;
-    const ViscoelasticStep& s = materialOf(part.node).step;
     wake(part.node);
-    Nodes::Node& node = nodes_->nodes_[part.node];
-    const Vector4d force = part.weight * compliance_[part.node] * pushed;
-    node.x += s.xf * force;
-    node.v += s.vf * force;
-    if (!branch_.empty()) branch_[part.node] += s.yf * force;
+    Nodes::Node& node = nodes[part.node];
+    const double share = part.weight * compliance_[part.node];
+    if (uniform) {
+      node.x += share * to_x;
+      node.v += share * to_v;
+    } else {
+      const ViscoelasticStep& s = materialOf(part.node).step;
+      node.x += share * s.xf * pushed;
+      node.v += share * s.vf * pushed;
+    }
+    if (relaxes) branch_[part.node] += share * materialOf(part.node).step.yf * pushed;
   }
 }
 
@@ -246,18 +280,18 @@ bool FeltSurface::letSleep() noexcept {
 
 /// The displacement is s(u, v, normal): it changes with the foot and with the direction that the probe is in.
 Vector3d FeltSurface::slopeAt(const FeltPlace& place) const noexcept {
-  const Vector4d inward = inwardOf(place.normal);
-  double s = 0, su = 0, sv = 0;
-  Vector3d moved = Vector3d::Zero();
+  Vector4d here = Vector4d::Zero(), along_u = Vector4d::Zero(), along_v = Vector4d::Zero();
   for (std::size_t i = 0; i < place.count; ++i) {
     const PlaceNode& part = place.nodes[i];
     const Vector4d& x = nodes_->nodes_[part.node].x;
-    const double along = inward.dot(x);
-    s += part.weight * along;
-    su += part.weight_u * along;
-    sv += part.weight_v * along;
-    moved += part.weight * x.head<3>();
+    here += part.weight * x;
+    along_u += part.weight_u * x;
+    along_v += part.weight_v * x;
   }
+  const Vector4d inward = inwardOf(place.normal);
+  const Vector3d moved = here.head<3>();
+  const double s = inward.dot(here);
+  double su = inward.dot(along_u), sv = inward.dot(along_v);
   su += place.ripple[0] * s;
   sv += place.ripple[1] * s;
   const Vector3d aside = place.turn * (moved - moved.dot(place.normal) * place.normal);
@@ -305,17 +339,36 @@ double FeltSurface::energy(std::span<const FeltContact> contacts) const noexcept
   double sum = 0;
   for (const FeltContact& contact : contacts)
     sum += 0.5 * contact.place.contact * std::pow(std::max(0.0, contact.inside), 2);
-  Vector4d stiff;
-  for (Eigen::Index k = 0; k < 4; ++k) stiff[k] = shares_[k] > 0 ? 1 / shares_[k] : 0;
+  const Vector4d twice = uniform() && branch_.empty() ? twiceEnergyAlike() : twiceEnergy();
+  for (Eigen::Index k = 0; k < 4; ++k) sum += shares_[k] > 0 ? 0.5 * twice[k] / shares_[k] : 0;
+  return sum;
+}
+
+/// Twice the energy of the nodes for each direction of a displacement, before its share in that.
+Vector4d FeltSurface::twiceEnergy() const noexcept {
+  Vector4d twice = Vector4d::Zero();
   for (const uint32_t i : nodes_->awake_) {
+    if (!(compliance_[i] > 0)) continue;
     const Nodes::Node& node = nodes_->nodes_[i];
     const SurfaceElement& e = materialOf(i).damped;
-    const auto square = [&stiff](const Vector4d& x) { return x.cwiseProduct(stiff).dot(x); };
-    double twice = e.stiffness * square(node.x) + e.mass * square(node.v);
-    if (!branch_.empty()) twice += e.branch * square(node.x - branch_[i]);
-    if (compliance_[i] > 0) sum += 0.5 * twice / compliance_[i];
+    const double share = 1 / compliance_[i];
+    twice += share * e.stiffness * node.x.cwiseAbs2() + share * e.mass * node.v.cwiseAbs2();
+    if (!branch_.empty()) twice += share * e.branch * (node.x - branch_[i]).cwiseAbs2();
   }
-  return sum;
+  return twice;
+}
+
+Vector4d FeltSurface::twiceEnergyAlike() const noexcept {
+  const Nodes::Node* const nodes = nodes_->nodes_.data();
+  Vector4d x2 = Vector4d::Zero(), v2 = Vector4d::Zero();
+  for (const uint32_t i : nodes_->awake_) {
+    if (!(compliance_[i] > 0)) continue;
+    const double share = 1 / compliance_[i];
+    x2 += share * nodes[i].x.cwiseAbs2();
+    v2 += share * nodes[i].v.cwiseAbs2();
+  }
+  const SurfaceElement& e = materials_.front().damped;
+  return e.stiffness * x2 + e.mass * v2;
 }
 
 std::size_t FeltSurface::bytes() const noexcept {

@@ -38,6 +38,7 @@ struct FeltPlace {
   // What FeltSurface::fit() finds.
   double contact = 0;                  ///< [N/m] of the contact spring
   double scale = 0;                    ///< of the displacement
+  double yields = 0;                   ///< sum of weight^2 * compliance of the nodes
   std::array<double, 2> ripple{0, 0};  ///< relative change of `scale` along u and v that only the nodes' places cause
 };
 
@@ -94,12 +95,17 @@ class FeltSurface {
   double give(const FeltPlace& a, const FeltPlace& b, double dt) noexcept;
   void bring(const FeltPlace& place, double displacement) noexcept;
   void swing(double dt) noexcept;
+  void swingAlike(const ViscoelasticStep& step) noexcept;
   void solve(double dt, std::span<FeltContact> contacts) noexcept;
   void push(const FeltContact& contact) noexcept;
   void keepAwake(std::span<const FeltContact> contacts) noexcept;
   bool letSleep() noexcept;
   Eigen::Vector3d slopeAt(const FeltPlace& place) const noexcept;
+  Eigen::Vector4d twiceEnergy() const noexcept;
+  Eigen::Vector4d twiceEnergyAlike() const noexcept;
   void wake(uint32_t node) noexcept;
+  /// One material for all nodes: what depends on it is the same for each, and is worked out once.
+  bool uniform() const noexcept { return which_.empty(); }
 
   Nodes* nodes_;
   std::vector<Material> materials_;  ///< the distinct ones

@@ -2,6 +2,7 @@
 #include "kernels/medial/foot_motion.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 
 namespace hapticd::medial {
 namespace {
@@ -34,7 +35,7 @@ std::array<Vector3d, 2> solve(const Matrix2d& h, const std::array<Vector3d, 2>& 
 }  // namespace
 
 FootMotion footMotion(const Skeleton& skeleton, const Vector3d& p, const SkeletonFoot& foot, const Vector3d& normal,
-                      Envelope envelope, bool direct) noexcept {
+                      Envelope envelope, double direct) noexcept {
   FootMotion motion;
   spline::SurfacePoint s;
   skeleton.surface().evaluate2(foot.u, foot.v, s);
@@ -44,7 +45,7 @@ FootMotion footMotion(const Skeleton& skeleton, const Vector3d& p, const Skeleto
   const ScalarField::Value r = exact ? skeleton.radius().evaluate2(foot.u, foot.v) : ScalarField::Value{};
   const std::array<Vector3d, 2> tangent{s.Su, s.Sv};
   const std::array<double, 2> at{foot.u, foot.v}, slope{r.fu, r.fv};
-  direct = direct && distance > kNear;
+  direct *= std::clamp(distance / kNear - 1, 0.0, 1.0);
   std::array<bool, 2> held{skeleton.curve(), false};
   std::array<Vector3d, 2> aside;
   for (std::size_t a = 0; a < 2; ++a) {
@@ -52,16 +53,17 @@ FootMotion footMotion(const Skeleton& skeleton, const Vector3d& p, const Skeleto
     const double pull = tangent[a].dot(normal) + slope[a];
     held[a] = held[a] || (at[a] <= range.front() && pull <= 0) || (at[a] >= range.back() && pull >= 0);
     // A direction that is not that of the foot says nothing of how the foot follows: as on a flat skeleton, then.
-    aside[a] = direct ? Vector3d(tangent[a] - tangent[a].dot(normal) * normal) : tangent[a];
+    aside[a] = tangent[a] - direct * tangent[a].dot(normal) * normal;
   }
   Matrix2d h;
   h << aside[0].dot(aside[0]), aside[0].dot(aside[1]), aside[0].dot(aside[1]), aside[1].dot(aside[1]);
-  if (direct) {
-    h(0, 0) -= distance * (normal.dot(s.Suu) + r.fuu);
-    h(0, 1) -= distance * (normal.dot(s.Suv) + r.fuv);
+  if (direct > 0) {
+    const double bent = direct * distance;
+    h(0, 0) -= bent * (normal.dot(s.Suu) + r.fuu);
+    h(0, 1) -= bent * (normal.dot(s.Suv) + r.fuv);
     h(1, 0) = h(0, 1);
-    h(1, 1) -= distance * (normal.dot(s.Svv) + r.fvv);
-    motion.turn = 1 / distance;
+    h(1, 1) -= bent * (normal.dot(s.Svv) + r.fvv);
+    motion.turn = direct / distance;
   }
   const std::array<Vector3d, 2> toward = solve(h, aside, held);
   motion.toward_u = toward[0];

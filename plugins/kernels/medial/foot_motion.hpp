@@ -12,9 +12,10 @@ struct FootMotion {
   double turn = 0;  ///< [1/m] by which the direction to the probe turns while the foot stays
 };
 
-/// [rt] From the condition of the foot, d|p - S|/du = dr/du, differentiated. `direct`: `normal` is the direction from
-/// the foot to the probe, which it is no more where the probe was pushed through the skeleton.
+/// [rt] From the condition of the foot, d|p - S|/du = dr/du, differentiated.
+/// @param direct 1: `normal` is the direction from the foot to the probe. Where the probe was pushed through the
+/// skeleton it is no more, 0: the foot then follows as on a flat skeleton, and the direction stays; between, in part
 FootMotion footMotion(const Skeleton& skeleton, const Eigen::Vector3d& p, const SkeletonFoot& foot,
-                      const Eigen::Vector3d& normal, Envelope envelope, bool direct) noexcept;
+                      const Eigen::Vector3d& normal, Envelope envelope, double direct) noexcept;
 
 }  // namespace hapticd::medial

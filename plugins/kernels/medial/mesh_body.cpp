@@ -186,7 +186,7 @@ MeshBody::MeshBody(const MeshBodyData& data, const BodyOptions& options) : optio
 }
 
 /// How parameters follow the probe is measured on the cone or slab of the foot: its closed form is cheap.
-void MeshBody::placeOf(const Vector3d& p, const SkeletonFoot& foot, const Vector3d& normal, bool direct,
+void MeshBody::placeOf(const Vector3d& p, const SkeletonFoot& foot, const Vector3d& normal, double direct,
                        FeltPlace& place) noexcept {
   deformation_->nodesAt(foot.element, {foot.u, foot.v}, place);
   place.normal = normal;
@@ -204,7 +204,7 @@ void MeshBody::placeOf(const Vector3d& p, const SkeletonFoot& foot, const Vector
   place.tangent_u = element.count > 1 ? Vector3d(center(1) - center(0)) : Vector3d(Vector3d::Zero());
   place.tangent_v = element.count > 2 ? Vector3d(center(2) - center(0)) : Vector3d(Vector3d::Zero());
   const double distance = (p - foot.center).norm();
-  place.turn = direct && distance > kNearAxis ? 1 / distance : 0;
+  place.turn = distance > kNearAxis ? direct * std::min(1.0, distance / kNearAxis - 1) / distance : 0;
 }
 
 /// The foot on a cone or slab may lie on its end, where the next one begins: that is no part of its own, and a flat

@@ -90,8 +90,8 @@ class MeshBody {
   BodyForce press(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
                   double closing_speed) const noexcept;
   /// [rt] The place of the surface that a probe at `p` is at, with its foot, as a felt surface needs it.
-  /// @param direct whether `normal` is the direction from the foot to the probe
-  void placeOf(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, bool direct,
+  /// @param direct 1: `normal` is the direction from the foot to the probe; 0: it is not; between, in part
+  void placeOf(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, double direct,
                FeltPlace& place) noexcept;
   FeltSurface* feltSurface() noexcept { return felt_ ? &*felt_ : nullptr; }  ///< [any] nullptr: it is only seen
   double greatestStiffness() const noexcept;                                 ///< [any] [N/m]

@@ -8,6 +8,7 @@
 
 #include "bench.hpp"
 #include "felt_bodies.hpp"
+#include "kernels/medial/passive.hpp"
 
 namespace hapticd::bench_mat {
 namespace {
@@ -104,6 +105,16 @@ double stiffest(const Tissue& tissue, const std::vector<Load>& loads, double dt)
   return least;
 }
 
+/// [N/m] the stiffest contact spring that is passive on the arm, whoever holds it.
+double passiveUpTo(const Tissue& tissue, double dt) {
+  double low = 1, high = 1e6;
+  while (high > 1.001 * low) {
+    const double contact = std::sqrt(low * high);
+    (medial::passiveDamping(scaled(tissue, contact, dt), dt) <= kArmDamping ? low : high) = contact;
+  }
+  return low;
+}
+
 /// Hands of mass and spring without friction, over the frequencies at which sampling meets them.
 std::vector<Load> worstHands(double dt) {
   std::vector<Load> all;
@@ -117,14 +128,15 @@ std::vector<Load> worstHands(double dt) {
 
 std::string zWidth() {
   std::string text =
-      "| tissue | rate | bound 2 b / T | found, worst hand | felt stiffness there | arm of 75 g alone |\n"
-      "|---|---|---|---|---|---|\n";
+      "| tissue | rate | 2 b / T | bound | found, worst hand | felt stiffness there | arm of 75 g alone |\n"
+      "|---|---|---|---|---|---|---|\n";
   for (const auto& [name, tissue] : tissues()) {
     for (const double rate : kRates) {
       const double dt = 1 / rate, worst = stiffest(tissue, worstHands(dt), dt);
       const double ratio = medial::elementOf(tissue, medial::test::kRatio).contact / tissue.stiffness;
-      text += fmt::format("| {} | {:g} Hz | {:.0f} N/m | {:.0f} N/m | {:.0f} N/m | {:.0f} N/m |\n", name, rate,
-                          2 * kArmDamping * rate, worst, worst / ratio, stiffest(tissue, {{}}, dt));
+      text += fmt::format("| {} | {:g} Hz | {:.0f} N/m | {:.0f} N/m | {:.0f} N/m | {:.0f} N/m | {:.0f} N/m |\n", name,
+                          rate, 2 * kArmDamping * rate, passiveUpTo(tissue, dt), worst, worst / ratio,
+                          stiffest(tissue, {{}}, dt));
     }
   }
   return text + "\n";
@@ -140,9 +152,8 @@ std::string feltTables() {
          moduli() +
          "Z-width: the stiffest contact spring (`contact_ratio` times a fast press's stiffness) on an arm of b = 0.1 N "
          "s/m, by the eigenvalues of the whole sampled loop of arm, hand and surface; the force is held for a tick. "
-         "The "
-         "bound 2 b / T is that of a wall of the contact's stiffness. Tissue is scaled with its times kept. One with "
-         "mass may stay some percent below the bound: behind the contact it resonates.\n\n" +
+         "2 b / T is the bound of a wall of the contact's stiffness; *bound* is that of the surface itself, which "
+         "`hapticd explain` prints: behind the contact a mass resonates. Tissue is scaled with its times kept.\n\n" +
          zWidth();
 }
 

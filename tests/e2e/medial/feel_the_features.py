@@ -7,6 +7,7 @@ Usage: feel_the_features.py HAPTICD CONFIG     prints one line per case; exit 1 
 import csv
 import math
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -97,10 +98,31 @@ def swingsBack():
         check("it left the hand and came back", most > 5 and least < 0.3 * most, (least, most))
 
 
+def undamped():
+    """A mass that nothing damps swings against the contact spring, and the force that is held for a tick makes it worse."""
+    with tempfile.TemporaryDirectory() as folder:
+        def told(command, damping):
+            for name, text in (("body.yaml", BODY.replace("damping: 0.5", f"damping: {damping}").replace("mass: 0.5", "mass: 0.01")),
+                               ("scene.yaml", SCENE)):
+                with open(os.path.join(folder, name), "w", encoding="utf-8") as out:
+                    out.write(text)
+            done = subprocess.run([HAPTICD, command, os.path.join(folder, "scene.yaml")], capture_output=True, text=True,
+                                  timeout=60)
+            return done.stdout + done.stderr
+        warned = " ".join(told("check", 0).split())
+        found = re.search(r"no arm is passive on it; expected a damping of at least ([0-9.]+) N s/m", warned)
+        check("a mass without damping is warned of, with what would do", found, warned)
+        enough = found.group(1) if found else "1"
+        check("with that damping there is no warning", "undamped" not in told("check", enough), told("check", enough))
+        needed = re.search(r"contact spring 9000 N/m, passive on an arm that damps ([0-9.]+) N s/m", " ".join(told("explain", 3).split()))
+        check("explain knows what an arm must damp", needed and abs(float(needed.group(1)) - 5.07) < 0.02, told("explain", 3))
+
+
 relaxation()
 twoHands()
 mesh()
 swingsBack()
+undamped()
 for name in ("relaxation.yaml", "two-hands.yaml", "mesh.yaml"):
     told = subprocess.run([HAPTICD, "check", scene(name)], capture_output=True, text=True, timeout=60)
     check(f"{name} is checked without a warning", told.returncode == 0 and "warning" not in told.stdout, told.stdout)
