@@ -105,7 +105,7 @@ document::Problems unreachableHands(const scene::Scene& scene) {
   document::Problems problems;
   for (const scene::Device& device : scene.devices) {
     if (device.module != "simulated") continue;
-    const auto told = host::runInChild([&] { return tryStart(scene, device); }, kLimitMs);
+    const auto told = host::runInChild([&] { return tryStart(scene, device); }, kHandLimitMs);
     if (told && *told != "=") document::report(problems, placeOfHand(device), "hand", *told);
   }
   return problems;
