@@ -106,9 +106,7 @@ uint32_t FootScan::nextGroup(const Probe& probe, uint32_t first, uint32_t k, uin
   using Group = Eigen::Array<float, kGroup, 1>;
   const float deepest = probe.deepest - kRounding;
   for (; k < looks; k += kGroup) {
-    const auto at = [this, i = first + k](const std::vector<float>& all) {
-      return Eigen::Map<const Group>(all.data() + i);
-    };
+    const auto at = [i = first + k](const std::vector<float>& all) { return Eigen::Map<const Group>(all.data() + i); };
     const Group x = probe.p.x() - at(x_), y = probe.p.y() - at(y_), z = probe.p.z() - at(z_);
     const Group distance = (x * x + y * y + z * z).sqrt(), over = at(radius_) - distance;
     const Group along = probe.normal.x() * x + probe.normal.y() * y + probe.normal.z() * z - kRounding;
