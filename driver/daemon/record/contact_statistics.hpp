@@ -10,6 +10,16 @@
 
 namespace hapticd::record {
 
+/// Ticks in which a model pushed though its answer told of no contact.
+struct Pushes {
+  uint64_t ticks = 0;
+  double max_force = 0;  ///< [N] in those
+  void add(double force_n) noexcept HSP_RT {
+    ++ticks;
+    max_force = std::max(max_force, force_n);
+  }
+};
+
 class ContactStatistics {
  public:
   static constexpr double kBuzzWindow = 0.02;  ///< [s] faster changes of depth than this are felt as buzz
@@ -32,10 +42,11 @@ class ContactStatistics {
   }
 
   /// [rt] A tick in which it pushed though it traced no surface: no contact can be told of it.
-  void addUntraced(double force_n) noexcept HSP_RT {
-    ++untraced_ticks_;
-    max_untraced_ = std::max(max_untraced_, force_n);
-  }
+  void addUntraced(double force_n) noexcept HSP_RT { untraced_.add(force_n); }
+  /// [rt] The same with a surface, and a depth_m of 0: as of a shape that never fills it in.
+  void addDepthless(double force_n) noexcept HSP_RT { depthless_.add(force_n); }
+  /// [rt] The same with a depth_m below 0: from outside, as a magnet does, or a depth of wrong sign.
+  void addOutside(double force_n) noexcept HSP_RT { outside_.add(force_n); }
 
   /// [rt] What is known of the foot of a tick. Not called in ticks without one.
   void addFoot(bool held, bool degraded) noexcept HSP_RT {
@@ -43,12 +54,13 @@ class ContactStatistics {
   }
 
   uint64_t contactTicks() const noexcept { return ticks_; }
-  uint64_t untracedTicks() const noexcept { return untraced_ticks_; }  ///< with a force and no surface
-  double maxUntraced() const noexcept { return max_untraced_; }        ///< [N] in those
-  uint64_t nearestFeet() const noexcept { return nearest_feet_; }      ///< ticks whose foot is the nearest point
-  uint64_t heldFeet() const noexcept { return held_feet_; }            ///< of a held contact; another point is nearer
-  uint64_t degradedFeet() const noexcept { return degraded_feet_; }    ///< neither proved nor held
-  double meanDepth() const noexcept { return mean_; }                  ///< [m]
+  const Pushes& untraced() const noexcept { return untraced_; }      ///< without a surface
+  const Pushes& depthless() const noexcept { return depthless_; }    ///< at a depth of exactly 0
+  const Pushes& outside() const noexcept { return outside_; }        ///< at a depth below 0
+  uint64_t nearestFeet() const noexcept { return nearest_feet_; }    ///< ticks whose foot is the nearest point
+  uint64_t heldFeet() const noexcept { return held_feet_; }          ///< of a held contact; another point is nearer
+  uint64_t degradedFeet() const noexcept { return degraded_feet_; }  ///< neither proved nor held
+  double meanDepth() const noexcept { return mean_; }                ///< [m]
   double stdDepth() const noexcept { return ticks_ > 1 ? std::sqrt(spread_ / static_cast<double>(ticks_ - 1)) : 0; }
   double maxDepth() const noexcept { return max_depth_; }
   double meanForce() const noexcept { return ticks_ > 0 ? force_sum_ / static_cast<double>(ticks_) : 0; }  ///< [N]
@@ -74,9 +86,10 @@ class ContactStatistics {
     window_ticks_ = window_mean_ = window_spread_ = window_time_ = 0;
   }
 
-  uint64_t ticks_ = 0, buzz_ticks_ = 0, nearest_feet_ = 0, held_feet_ = 0, degraded_feet_ = 0, untraced_ticks_ = 0;
-  double mean_ = 0, spread_ = 0, max_depth_ = 0, force_sum_ = 0, max_force_ = 0, buzz_sum_ = 0, max_untraced_ = 0;
+  uint64_t ticks_ = 0, buzz_ticks_ = 0, nearest_feet_ = 0, held_feet_ = 0, degraded_feet_ = 0;
+  double mean_ = 0, spread_ = 0, max_depth_ = 0, force_sum_ = 0, max_force_ = 0, buzz_sum_ = 0;
   double window_ticks_ = 0, window_mean_ = 0, window_spread_ = 0, window_time_ = 0;
+  Pushes untraced_, depthless_, outside_;
   Histogram step_us_;
 };
 

@@ -26,6 +26,10 @@ Json contactJson(const ContactStatistics& c) {
           {"buzz_mm", c.buzz() * kMm}};
 }
 
+Json pushesJson(const Pushes& pushes) {
+  return {{"ticks", pushes.ticks}, {"force_max_n", pushes.max_force}};
+}
+
 Json modelJson(const ModelReport& model) {
   constexpr double kNs = 1e3;
   const Histogram& step = model.contact.stepUs();
@@ -36,7 +40,9 @@ Json modelJson(const ModelReport& model) {
   json["feet"] = {{"nearest", model.contact.nearestFeet()},
                   {"held", model.contact.heldFeet()},
                   {"degraded", model.contact.degradedFeet()}};
-  json["untraced"] = {{"ticks", model.contact.untracedTicks()}, {"force_max_n", model.contact.maxUntraced()}};
+  json["untraced"] = pushesJson(model.contact.untraced());
+  json["depthless"] = pushesJson(model.contact.depthless());
+  json["outside"] = pushesJson(model.contact.outside());
   json["step_ns"] = {{"p50", step.quantile(0.5) * kNs}, {"p99", step.quantile(0.99) * kNs}, {"max", step.max() * kNs}};
   for (const ArmContact& arm : model.arms) json["arms"][arm.device] = contactJson(arm.contact);
   return json;
@@ -58,13 +64,19 @@ std::string contactText(const ContactStatistics& c, const RunReport& report, con
   return text;
 }
 
-/// A field has no surface. A shape with one that forgets the flag is felt, and everything here says that it is not.
-std::string untracedText(const ModelReport& model) {
+/// A field has no surface, and a magnet pulls from outside. A shape with a surface that forgets the flag or the depth
+/// is felt, and everything here says that it is not.
+std::string oddPushesText(const ModelReport& model) {
+  const auto told = [&](const char* word, const Pushes& pushes, const char* how, const char* follows) {
+    if (pushes.ticks == 0) return std::string();
+    return fmt::format("  {:<9} {} pushed in {} ticks {}, with up to {:.2f} N: {}\n", word, model.name, pushes.ticks,
+                       how, pushes.max_force, follows);
+  };
   const ContactStatistics& c = model.contact;
-  if (c.untracedTicks() == 0) return "";
-  return fmt::format(
-      "  warning   {} pushed in {} ticks without HSP_OUT_TRACED, with up to {:.2f} N: no contact is told of these\n",
-      model.name, c.untracedTicks(), c.maxUntraced());
+  const std::string untraced = told("warning", c.untraced(), "without HSP_OUT_TRACED", "no contact is told of these");
+  if (c.contactTicks() > 0) return untraced;  // it does fill in a depth
+  return untraced + told("warning", c.depthless(), "with depth_m left at 0", "no contact is told of these") +
+         told("outside", c.outside(), "from outside (depth_m below 0)", "contacts are told inside only");
 }
 
 std::string modelText(const ModelReport& model, const RunReport& report) {
@@ -72,7 +84,7 @@ std::string modelText(const ModelReport& model, const RunReport& report) {
   std::string text = fmt::format("{} ({})\n", model.name, model.plugin);
   if (model.arms.empty()) text += contactText(c, report, "");
   for (const ArmContact& arm : model.arms) text += contactText(arm.contact, report, " by " + arm.device);
-  text += untracedText(model);
+  text += oddPushesText(model);
   if (model.degraded_ticks > 0)
     text += fmt::format(
         "  degraded  {} ticks, to level {} of 3, so that the tick's budget holds; residual up to {:.3g} um\n",
@@ -101,14 +113,17 @@ std::string degradedText(const RunReport& report) {
 }
 
 bool felt(const ContactStatistics& contact) {
-  return contact.contactTicks() > 0 || contact.untracedTicks() > 0;
+  return contact.contactTicks() + contact.untraced().ticks + contact.depthless().ticks + contact.outside().ticks > 0;
 }
 
 /// For whoever wonders why nothing was felt.
 std::string untouchedText(const RunReport& report) {
   const bool touched = std::any_of(report.models.begin(), report.models.end(),
                                    [](const ModelReport& model) { return felt(model.contact); });
-  if (touched || report.ticks == 0) return "";
+  // What silenced a model says more of why.
+  const bool silenced = std::any_of(report.faults.begin(), report.faults.end(),
+                                    [](const std::string& fault) { return fault.rfind("model ", 0) == 0; });
+  if (touched || silenced || report.ticks == 0) return "";
   return "  contact   none: the tip touched no model\n";
 }
 

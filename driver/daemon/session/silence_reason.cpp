@@ -17,6 +17,12 @@ std::string placeOf(const Pull& pull) {
   return text;
 }
 
+/// What is wrong with a shape that pulled: a surface that is told at no depth may be one whose depth was forgotten.
+std::string causeOf(const Pull& pull) {
+  const std::string sign = "its force has the wrong sign";
+  return pull.depth == 0 ? "its depth_m was left at 0 inside, or " + sign : sign;
+}
+
 }  // namespace
 
 std::string silenceReason(const ModelState& model) {
@@ -56,8 +62,8 @@ std::string silenceReason(const std::string& model, Trouble trouble, int32_t fai
     case Trouble::kNotUnit:
       return who + "gave a pose whose quaternion is not of unit length; it was silenced";
     case Trouble::kPulls:
-      return who + "pulled the probe into its surface" + placeOf(pull) +
-             ": its force has the wrong sign, since it reports to push only (HSP_R_PUSHES); it was silenced; test it "
+      return who + "pulled the probe into its surface" + placeOf(pull) + ": " + causeOf(pull) +
+             ", since it reports to push only (HSP_R_PUSHES); it was silenced; test it "
              "with: hapticd plugin check FILE.so, which tells the place as well";
   }
   return "";

@@ -89,29 +89,41 @@ void Telemetry::bookModels(double dt, const Core& core, BlackBoxRow& row) noexce
   for (const uint32_t index : core.live()) {
     const ModelState& model = core.models()[index];
     if (model.status < row.status) row.status = model.status;
-    double depth = -HUGE_VAL, force = 0, untraced = 0;
+    double depth = -HUGE_VAL, force = 0;
+    Odd odd;
     bool held = false;
     for (uint32_t probe = 0; probe < core.probeCount(); ++probe) {
       const Contact& contact = core.contact(index, probe);
+      const double size = Eigen::Map<const Vector3d>(contact.world.force).norm();
       if (!contact.traced) {
-        untraced = std::max(untraced, Eigen::Map<const Vector3d>(contact.world.force).squaredNorm());
+        odd.untraced = std::max(odd.untraced, size);
         continue;
       }
-      if (contact.world.depth_m > depth) held = (contact.world.flags & HSP_OUT_HELD) != 0;
-      depth = std::max(depth, contact.world.depth_m);
-      force = std::max(force, Eigen::Map<const Vector3d>(contact.world.force).norm());
+      const double deep = contact.world.depth_m;
+      if (deep > depth) held = (contact.world.flags & HSP_OUT_HELD) != 0;
+      depth = std::max(depth, deep);
+      force = std::max(force, size);
+      if (deep > 0) continue;
+      double& shallow = deep < 0 ? odd.outside : odd.depthless;
+      shallow = std::max(shallow, size);
     }
     models_[index].add(depth > 0, depth, force, dt, model.step_ns);
     if (depth > -HUGE_VAL && model.status >= HSP_OK) models_[index].addFoot(held, model.status == HSP_DEGRADED);
     // What a model in trouble fades out with is no answer of it.
-    if (untraced > 0 && model.status >= HSP_OK && !model.guard.quarantined())
-      models_[index].addUntraced(std::sqrt(untraced));
+    const bool any = odd.untraced + odd.depthless + odd.outside > 0;
+    if (any && model.status >= HSP_OK && !model.guard.quarantined()) bookOdd(index, odd);
     bookArms(index, dt, core);
     if (depth > -HUGE_VAL && (row.model == UINT32_MAX || depth > row.depth_m)) {
       row.depth_m = static_cast<float>(depth);
       row.model = index;
     }
   }
+}
+
+void Telemetry::bookOdd(uint32_t index, const Odd& odd) noexcept HSP_RT {
+  if (odd.untraced > 0) models_[index].addUntraced(odd.untraced);
+  if (odd.depthless > 0) models_[index].addDepthless(odd.depthless);
+  if (odd.outside > 0) models_[index].addOutside(odd.outside);
 }
 
 void Telemetry::finish(uint64_t ticks, Nanoseconds elapsed, long page_faults, uint64_t allocations) noexcept {

@@ -92,6 +92,11 @@ class Telemetry final : public TickLog {
   void keep(const BlackBoxRow& row) noexcept HSP_RT;
   std::vector<record::ArmContact> armsOf(size_t place) const;
   void bookArms(uint32_t index, double dt, const Core& core) noexcept HSP_RT;
+  /// [N] What a model pushed with in a tick, the largest of all probes, though no contact can be told of it.
+  struct Odd {
+    double untraced = 0, depthless = 0, outside = 0;
+  };
+  void bookOdd(uint32_t index, const Odd& odd) noexcept HSP_RT;
   void bookModels(double dt, const Core& core, BlackBoxRow& row) noexcept HSP_RT;
 
   std::vector<std::string> names_, plugins_;

@@ -60,6 +60,18 @@ def own_shape(folder):
     code, said = run(HAPTICD, "run", file, "--for", "5", "--virtual-time", environment=environment)
     check("a floor that forgets HSP_OUT_TRACED is felt, and the run says so",
           re.search(r"ground pushed in \d+ ticks without HSP_OUT_TRACED", said) and "touched no model" not in said, said)
+    depthless = re.sub(r"out\.depth_m = ([^;]*);", r"const double depth = \1;", code_of_floor(), count=1)
+    depthless = re.sub(r"out\.depth_m", "depth", depthless)
+    open(os.path.join(folder, "floor.cpp"), "w").write(depthless)
+    subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
+    code, said = run(HAPTICD, "run", file, "--for", "5", "--virtual-time", environment=environment)
+    check("a floor that leaves depth_m at 0 and only pushes is silenced, and the run says why",
+          "its depth_m was left at 0 inside" in said and "touched no model" not in said, said)
+    open(os.path.join(folder, "floor.cpp"), "w").write(depthless.replace("report.flags = HSP_R_PUSHES;", ""))
+    subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
+    code, said = run(HAPTICD, "run", file, "--for", "5", "--virtual-time", environment=environment)
+    check("one that claims nothing is felt, and the run says so",
+          re.search(r"ground pushed in \d+ ticks with depth_m left at 0", said) and "touched no model" not in said, said)
     line = re.search(r"^    (gcc .* -o my-plugins/c_ball.so -lm)$", README, re.M)[1].replace("my-plugins", os.path.join(folder, "my-plugins"))
     done = subprocess.run(line.replace("gcc", "cc", 1), shell=True, cwd=SOURCE, capture_output=True, text=True, timeout=200)
     check("the README's shape in C compiles with its line", done.returncode == 0, done.stderr[-800:])

@@ -90,15 +90,16 @@ struct Failing : hapticd::Shape {
   }
 };
 
-/// A floor at y = 0 with the wrong sign, which may say that it only pushes.
+/// A floor at y = 0 with the wrong sign, which may say that it only pushes; or with the right one and no depth.
 struct Pulling : hapticd::Shape {
   double stiffness = 800;
-  bool claims = true;
+  bool claims = true, shallow = false;
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.pulling", "pulling", "1.0.0", "MIT", "Pulls inward."};
   static constexpr auto fields() {
     using F = Fields<Pulling>;
     return std::array{F::real("stiffness", &Pulling::stiffness, "N/m", 0, 1e6, 800, "Stiffness."),
-                      F::boolean("claims", &Pulling::claims, true, "It reports that it only pushes.")};
+                      F::boolean("claims", &Pulling::claims, true, "It reports that it only pushes."),
+                      F::boolean("shallow", &Pulling::shallow, false, "It pushes, and leaves depth_m at 0.")};
   }
   void activate(const hsp_activation&, hsp_report& report) {
     report.max_stiffness = stiffness;
@@ -111,11 +112,29 @@ struct Pulling : hapticd::Shape {
     out.normal[1] = 1;
     if (out.depth_m <= 0) return HSP_OK;
     out.flags |= HSP_OUT_CONTACT;
-    out.force[1] = -stiffness * out.depth_m;
+    out.force[1] = (shallow ? stiffness : -stiffness) * out.depth_m;
+    if (shallow) out.depth_m = 0;
+    return HSP_OK;
+  }
+};
+
+/// Traces a surface and pushes with 1.5 N, at a depth that does not fit.
+struct Shallow : hapticd::Shape {
+  double depth = 0;
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.shallow", "shallow", "1.0.0", "MIT", "Tells no depth."};
+  static constexpr auto fields() {
+    return std::array{Fields<Shallow>::real("depth", &Shallow::depth, "m", -1, 1, 0, "That it tells.")};
+  }
+  void activate(const hsp_activation&, hsp_report&) {}
+  hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
+    out.flags = HSP_OUT_TRACED;
+    out.normal[1] = 1;
+    out.force[1] = 1.5;
+    out.depth_m = depth;
     return HSP_OK;
   }
 };
 
 }  // namespace
 
-HAPTICD_SHAPES(Still, Kicking, Failing, Pulling)
+HAPTICD_SHAPES(Still, Kicking, Failing, Pulling, Shallow)

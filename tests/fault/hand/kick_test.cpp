@@ -2,6 +2,7 @@
 /// A plugin's force is compared, as a vector in the world, with what the probe's motion and the plugin's own claims
 /// explain; traced or not, claimed or not.
 #include <cmath>
+#include <tuple>
 
 #include "scenario.hpp"
 #include "session/silence_reason.hpp"
@@ -50,6 +51,37 @@ std::string nameOfHow(const testing::TestParamInfo<How>& given) {
   return kNames[given.param];
 }
 INSTANTIATE_TEST_SUITE_P(Each, Kick, testing::Values(kTurns, kVibrates, kSteps, kSpins), nameOfHow);
+
+/// The guard counts strikes in ticks and drift in seconds: neither may open a door at another rate.
+class KickAtRate : public testing::TestWithParam<std::tuple<double, How>> {};
+TEST_P(KickAtRate, IsHeldBackAndThenSilenced) {
+  const auto [rate, how] = GetParam();
+  Scenario scenario({.rate = rate, .models = {kicking(how, 8)}, .limit = bare});
+  const double begins = 100 / rate;
+  const std::vector<Sent> sent = scenario.run(begins + std::max(0.1, 20 / rate));
+  EXPECT_GT(largest(sent), 0) << "nothing was tried: no test";
+  EXPECT_LE(largest(sent), Claim::kStep + Claim::kDrift * (20e-3 + 4 / rate));
+  for (const Sent& s : sent)
+    if (s.t > begins + std::max(0.03, 10 / rate)) {
+      ASSERT_EQ(s.force.norm(), 0) << s.t;
+    }
+  EXPECT_EQ(scenario.trouble(), Trouble::kJump);
+}
+INSTANTIATE_TEST_SUITE_P(Each, KickAtRate,
+                         testing::Combine(testing::Values(100.0, 10000.0), testing::Values(kTurns, kSteps)));
+
+/// A plugin that kicks beside one that pushes as it should: only the first is silenced, whichever comes first.
+TEST(KickBesideAnother, SilencesTheCulpritAlone) {
+  for (const uint32_t culprit : {0u, 1u}) {
+    std::vector<scene::Model> models(2, hostile("failing", {value(1, HSP_INT, 1000000)}));
+    models[culprit] = kicking(kTurns, 8);
+    Scenario scenario({.models = models, .limit = bare});
+    const std::vector<Sent> sent = scenario.run(0.6);
+    EXPECT_EQ(scenario.trouble(culprit), Trouble::kJump);
+    EXPECT_EQ(scenario.trouble(1 - culprit), Trouble::kNone);
+    EXPECT_NEAR(sent.back().force.norm(), 8, 1e-9) << "the other one is felt as before";
+  }
+}
 
 /// A foot may go over an edge, and a surface may be found anew: three times, and no more.
 class KickOfASurface : public testing::TestWithParam<How> {};
@@ -111,6 +143,21 @@ TEST(SurfaceThatOnlyPushes, IsSilencedAndNamedWhenItPulls) {
       << why;
 }
 
+/// A force toward a surface that is told at no depth is a pull from outside; what was forgotten is named too.
+TEST(SurfaceThatOnlyPushes, IsToldThatItsDepthWasLeftAtZero) {
+  Scenario scenario({.models = {hostile("pulling", {value(2, HSP_BOOL, 1)})}, .limit = bare});
+  press(scenario);
+  EXPECT_EQ(scenario.trouble(), Trouble::kPulls);
+  const std::string why = silenceReason(scenario.core().models()[0]);
+  EXPECT_NE(why.find("at a depth of 0 mm: its depth_m was left at 0 inside, or its force has the wrong sign"),
+            std::string::npos)
+      << why;
+  Scenario claimless({.models = {hostile("pulling", {value(1, HSP_BOOL, 0), value(2, HSP_BOOL, 1)})}, .limit = bare});
+  press(claimless);
+  EXPECT_EQ(claimless.trouble(), Trouble::kNone);
+  EXPECT_GT(claimless.telemetry().report({}).models[0].contact.depthless().ticks, 10u);
+}
+
 TEST(SurfaceThatOnlyPushes, IsAClaimThatNobodyMustMake) {
   Scenario scenario({.models = {hostile("pulling", {value(1, HSP_BOOL, 0)})}, .limit = bare});
   EXPECT_GT(largest(press(scenario)), 3);
@@ -122,16 +169,31 @@ TEST(ForceWithoutASurface, IsCountedAndSaid) {
   Scenario scenario({.models = {hostile("failing", {value(1, HSP_INT, 1000)}), hostile("still")}, .limit = bare});
   scenario.run(0.3);
   const record::RunReport report = scenario.telemetry().report({});
-  EXPECT_GT(report.models[0].contact.untracedTicks(), 250u);
-  EXPECT_DOUBLE_EQ(report.models[0].contact.maxUntraced(), 8);
-  EXPECT_EQ(report.models[1].contact.untracedTicks(), 0u);
+  EXPECT_GT(report.models[0].contact.untraced().ticks, 250u);
+  EXPECT_DOUBLE_EQ(report.models[0].contact.untraced().max_force, 8);
+  EXPECT_EQ(report.models[1].contact.untraced().ticks, 0u);
+}
+
+/// So is one that tells its surface, and leaves its depth at 0; a push from outside is told apart.
+TEST(ForceWithoutADepth, IsCountedAndSaid) {
+  for (const double depth : {0.0, -1e-3, 1e-3}) {
+    Scenario scenario({.models = {hostile("shallow", {value(0, HSP_REAL, depth)}), hostile("still")}, .limit = bare});
+    scenario.run(0.3);
+    const record::ContactStatistics contact = scenario.telemetry().report({}).models[0].contact;
+    EXPECT_EQ(contact.depthless().ticks > 250, depth == 0) << depth;
+    EXPECT_EQ(contact.outside().ticks > 250, depth < 0) << depth;
+    EXPECT_EQ(contact.contactTicks() > 250, depth > 0) << depth;
+    EXPECT_EQ(contact.depthless().ticks + contact.outside().ticks > 0, depth <= 0) << depth;
+    EXPECT_DOUBLE_EQ(contact.depthless().max_force, depth == 0 ? 1.5 : 0);
+    EXPECT_EQ(contact.untraced().ticks, 0u);
+  }
 }
 
 /// What a silenced model fades out with is not its answer.
 TEST(ForceWithoutASurface, IsNotCountedWhileAModelFadesOut) {
   Scenario scenario({.models = {hostile("pulling", {value(1, HSP_BOOL, 1)})}, .limit = bare});
   press(scenario);
-  EXPECT_EQ(scenario.telemetry().report({}).models[0].contact.untracedTicks(), 0u);
+  EXPECT_EQ(scenario.telemetry().report({}).models[0].contact.untraced().ticks, 0u);
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ struct ModelState {
   hsp_status failed_status = HSP_OK;  ///< the first that was no status of a step
   Pull pull;                          ///< the first, where it reports to push only
   Guard guard;
-  ClaimBounds claims;         ///< what it may do; the force is that of each arm
+  ClaimBounds claims;         ///< what it may do
   bool overran = false;       ///< its last step was held against it for the time it took
   bool overran_then = false;  ///< it was in the run of which this is a replay
   uint64_t step_ns = 0;       ///< time of the last step; 0 when not measured
@@ -161,8 +161,8 @@ class Core {
   Trouble judge(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT;
   void fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP_RT;
   Trouble holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT;
-  bool holdToClaim(ModelState& model, uint32_t index, uint32_t probe, const Eigen::Matrix3d* turn,
-                   double dt) noexcept HSP_RT;
+  bool holdToClaim(ModelState& model, uint32_t index, uint32_t probe, double dt) noexcept HSP_RT;
+  bool pulls(ModelState& model) noexcept HSP_RT;
   Trouble holdToTime(ModelState& model) noexcept HSP_RT;
   Trouble takePose(ModelState& model, hsp_pose pose) noexcept HSP_RT;
   void bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT;
@@ -180,9 +180,12 @@ class Core {
   std::vector<uint32_t> live_;  // models with something to do, in scene order: the sum is always the same
   std::vector<Load> loads_;     // of the models that were stepped
   LoadShedding shedding_;
-  std::vector<Claim> claims_;      // [model * probe_count + probe]
-  std::vector<Contact> contacts_;  // [model * probe_count + probe]
-  std::vector<hsp_probe> inputs_;  // of the model being stepped
+  std::vector<Claim> claims_;  // [model * probe_count + probe]
+  // Of the answer being judged: kept, for a step that is made anew costs as much as looking at it.
+  ClaimStep claim_step_;
+  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();  // of its model in this tick, if it moves
+  std::vector<Contact> contacts_;                       // [model * probe_count + probe]
+  std::vector<hsp_probe> inputs_;                       // of the model being stepped
   std::vector<hsp_contact> outputs_;
   // Bounded: a flood of records must not make a tick late; the rest waits for the next.
   std::array<link::ActivationRecord, 1024> received_;

@@ -2,6 +2,7 @@
 /// What becomes of a shape's answer: it is judged, held to the plugin's claims, and kept in the world frame.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "servo/core/core.hpp"
 
@@ -12,19 +13,70 @@ namespace {
 using Map = Eigen::Map<Vector3d>;
 using ConstMap = Eigen::Map<const Vector3d>;
 
+constexpr double kLargest = 1e100;
+
 /// Also false for numbers whose squares overflow: a length of them would be none, and a ratio of two such.
 bool finite(const double* values, size_t count) noexcept HSP_RT {
-  constexpr double kLargest = 1e100;
   for (size_t i = 0; i < count; ++i)
     if (!(std::abs(values[i]) <= kLargest)) return false;
   return true;
 }
 
+/// Adjacent numbers of the answer to a probe: its force and torque, its foot with the normal and the depth.
+using Wrench = Eigen::Map<const Eigen::Matrix<double, 6, 1>>;
+using Foot = Eigen::Map<const Eigen::Matrix<double, 7, 1>>;
+static_assert(offsetof(hsp_contact, torque) == offsetof(hsp_contact, force) + 3 * sizeof(double));
+static_assert(offsetof(hsp_contact, depth_m) == offsetof(hsp_contact, point) + 6 * sizeof(double));
+
+/// Where the sum of the squares is small enough each number is: this is asked of every answer in every tick.
 bool finite(const hsp_contact& c) noexcept HSP_RT {
-  return finite(c.force, 3) && finite(c.torque, 3) && ((c.flags & HSP_OUT_TRACED) == 0 || finite(c.point, 7));
+  const bool traced = (c.flags & HSP_OUT_TRACED) != 0;
+  const double squares = Wrench(c.force).squaredNorm() + (traced ? Foot(c.point).squaredNorm() : 0);
+  if (squares <= kLargest) return true;
+  return finite(c.force, 3) && finite(c.torque, 3) && (!traced || finite(c.point, 7));
 }
 
 }  // namespace
+
+/// True if the force of the answer to this probe was beyond the claim: it is then what the claim explains. This and
+/// what calls it go into judge(): they are asked of every answer in every tick, and calls cost as much as they do.
+[[gnu::always_inline]] inline bool Core::holdToClaim(ModelState& model, uint32_t index, uint32_t probe,
+                                                     double dt) noexcept HSP_RT {
+  hsp_contact& out = outputs_[probe];
+  const hsp_probe& in = inputs_[probe];
+  ClaimStep& step = claim_step_;
+  step.force = model.frame.vectorToWorld(ConstMap(out.force));
+  step.p_model = ConstMap(in.position);
+  step.velocity = ConstMap(in.velocity);
+  step.in = in.flags, step.out = out.flags;
+  step.max_force = uses_.max_force[probe];
+  if ((out.flags & HSP_OUT_TRACED) != 0) step.normal = model.frame.vectorToWorld(ConstMap(out.normal));
+  step.turn = model.moves ? &turn_ : nullptr;
+  if (model.claims.moves_itself) {  // after the probe was put into its frame
+    step.p_world = last_position_[probe];
+    step.p_model = model.frame.pointToModel(step.p_world);
+    step.origin = model.frame.origin_world;
+  }
+  bool held = false;
+  const Vector3d let = claims_[size_t{index} * probe_count_ + probe].judge(step, model.claims, dt, held);
+  if (!held) return false;
+  Map(out.force) = model.frame.vectorToModel(let);
+  Map(out.torque) *= std::min(1.0, let.norm() / step.force.norm());
+  return true;
+}
+
+/// What a healthy answer may still break: the time it was given, and what was claimed for it.
+[[gnu::always_inline]] inline Trouble Core::holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
+  constexpr int kJumps = 3;
+  Trouble trouble = Trouble::kNone;
+  if (model.moves) turn_.noalias() = model.frame.R_world_model * model.before.R_world_model.transpose();
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    if (!holdToClaim(model, index, i, dt)) continue;
+    trouble = model.guard.strike(Trouble::kJump, kJumps);
+  }
+  if ((model.shape->report().flags & HSP_R_PUSHES) != 0 && pulls(model)) return model.guard.enter(Trouble::kPulls);
+  return trouble == Trouble::kNone ? holdToTime(model) : trouble;
+}
 
 /// Whether the answers may be felt; a model that moves itself goes to its new pose.
 Trouble Core::judge(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT {
@@ -56,50 +108,15 @@ void Core::fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP
   Map(last.world.torque) *= part;
 }
 
-/// What a healthy answer may still break: the time it was given, and what was claimed for it.
-Trouble Core::holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
-  constexpr int kJumps = 3;
-  Trouble trouble = Trouble::kNone;
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  if (model.moves) turn.noalias() = model.frame.R_world_model * model.before.R_world_model.transpose();
+/// True if one of the answers pulls, which is then noted.
+bool Core::pulls(ModelState& model) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
-    if (!holdToClaim(model, index, i, model.moves ? &turn : nullptr, dt)) continue;
-    trouble = model.guard.strike(Trouble::kJump, kJumps);
+    if (!pullsIn(outputs_[i], model.frame.pointToModel(last_position_[i]))) continue;
+    model.pull.depth = outputs_[i].depth_m;
+    model.pull.force = ConstMap(outputs_[i].force).norm();
+    return true;
   }
-  if ((model.shape->report().flags & HSP_R_PUSHES) != 0)
-    for (uint32_t i = 0; i < probe_count_; ++i) {
-      if (!pullsIn(outputs_[i], model.frame.pointToModel(last_position_[i]))) continue;
-      model.pull.depth = outputs_[i].depth_m;
-      model.pull.force = ConstMap(outputs_[i].force).norm();
-      return model.guard.enter(Trouble::kPulls);
-    }
-  return trouble == Trouble::kNone ? holdToTime(model) : trouble;
-}
-
-/// True if the force of the answer to this probe was beyond the claim: it is then what the claim explains.
-bool Core::holdToClaim(ModelState& model, uint32_t index, uint32_t probe, const Eigen::Matrix3d* turn,
-                       double dt) noexcept HSP_RT {
-  hsp_contact& out = outputs_[probe];
-  const hsp_probe& in = inputs_[probe];
-  const Vector3d& p_world = last_position_[probe];
-  ClaimStep step;
-  step.force = model.frame.vectorToWorld(ConstMap(out.force));
-  step.normal = model.frame.vectorToWorld(ConstMap(out.normal));
-  step.p_world = p_world;
-  step.p_model = model.claims.moves_itself ? model.frame.pointToModel(p_world) : Vector3d(ConstMap(in.position));
-  step.velocity = ConstMap(in.velocity);
-  step.origin = model.frame.origin_world;
-  step.turn = turn;
-  step.in = in.flags, step.out = out.flags;
-  ClaimBounds bounds = model.claims;
-  bounds.force = uses_.max_force[probe];
-  bool held = false;
-  const double asked = step.force.norm();
-  const Vector3d let = claims_[size_t{index} * probe_count_ + probe].judge(step, bounds, dt, held);
-  if (!held) return false;
-  Map(out.force) = model.frame.vectorToModel(let);
-  Map(out.torque) *= std::min(1.0, let.norm() / asked);
-  return true;
+  return false;
 }
 
 /// The force of the last tick was held while the model's surface moved on: that work is the model's.

@@ -17,51 +17,69 @@ Vector3d nearestPart(const Vector3d& of, const Vector3d& to) noexcept HSP_RT {
   return std::clamp(to.dot(of) / square, 0.0, 1.0) * of;
 }
 
+/// [N/m] of the law of contact, in its steepest place.
+double stiffnessOf(const ClaimBounds& bounds) noexcept HSP_RT {
+  return Claim::kMargin * (bounds.stiffness > 0 ? bounds.stiffness : Claim::kUnclaimed);
+}
+
 }  // namespace
 
 Vector3d Claim::judge(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT {
-  const double asked = step.force.norm();
-  const bool beyond = bounds.force > 0 && asked > bounds.force;
-  Vector3d let = beyond ? Vector3d(step.force * (bounds.force / asked)) : step.force;
+  Vector3d let = step.force;
+  // The root of the square of a number is that number: squares tell the same, and cost no root in most ticks.
+  if (const double most = step.max_force, square = let.squaredNorm(); most > 0 && square > most * most)
+    let *= most / std::sqrt(square);
   passes_ = std::min(kPasses, passes_ + kPassesPerSecond * dt);
   held = false;
   Vector3d from = let;
   double follows = 1;  // the share of the change that explained_ goes along with
   if (known_ && (step.in & (HSP_IN_JUMP | HSP_IN_INVALID)) == 0) {
-    const double moved = explained(step, bounds, dt), most = moved + std::max(kStep, bounds.jump);
+    const double turned = step.turn != nullptr ? turn(*step.turn, bounds, dt) : 0;
     from = nearestPart(explained_, let);
     const Vector3d change = let - from;
-    const double size = change.norm();
-    held = size > most && !takePass(step);
-    if (held) let = from + change * (most / size);
-    if (held || (size <= most && size > moved + kDrift * dt)) follows = (moved + kDrift * dt) / std::min(size, most);
+    const double square = change.squaredNorm();
+    if (!surelyExplained(square, step, bounds)) {
+      const double moved = explained(step, bounds, dt) + turned, most = moved + std::max(kStep, bounds.jump);
+      const double size = std::sqrt(square);
+      held = size > most && !takePass(step);
+      if (held) let = from + change * (most / size);
+      if (held || (size <= most && size > moved + kDrift * dt)) follows = (moved + kDrift * dt) / std::min(size, most);
+    }
   }
-  explained_ = from + std::min(1.0, follows) * (let - from);
-  remember(step);
+  explained_ = follows < 1 ? Vector3d(from + follows * (let - from)) : Vector3d(from + (let - from));
+  remember(step, bounds);
   return held ? let : step.force;
 }
 
+/// True if the stiffness alone explains a change of this square [N^2], as it does in nearly every tick of a contact:
+/// then nothing else need be looked at. Found without a root, so with room for its rounding.
+bool Claim::surelyExplained(double square, const ClaimStep& step, const ClaimBounds& bounds) const noexcept HSP_RT {
+  if (bounds.moves_itself) return false;
+  const double per_metre = kSurely * stiffnessOf(bounds);
+  return square <= per_metre * per_metre * (step.p_model - p_model_).squaredNorm();
+}
+
+/// [N] What the turn of the model since the last step explains beside its way. The force of a model that the host turns
+/// turns with it.
+double Claim::turn(const Eigen::Matrix3d& turn, const ClaimBounds& bounds, double dt) noexcept HSP_RT {
+  const Vector3d carried = turn * explained_;
+  if (bounds.moves_itself) return std::min((carried - explained_).norm(), kOwnTurn * dt * explained_.norm());
+  explained_ = carried;
+  return 0;
+}
+
 /// [N] How far the force may have changed by what the probe and the model did since the last step.
-double Claim::explained(const ClaimStep& step, const ClaimBounds& bounds, double dt) noexcept HSP_RT {
+double Claim::explained(const ClaimStep& step, const ClaimBounds& bounds, double dt) const noexcept HSP_RT {
   double way = (step.p_model - p_model_).norm(), speed = std::max(step.velocity.norm(), velocity_.norm());
   double change = (step.velocity - velocity_).norm();
-  double turned = 0;
-  if (step.turn != nullptr) {
-    const Vector3d carried = *step.turn * explained_;
-    turned = (carried - explained_).norm();
-    if (!bounds.moves_itself) explained_ = carried;  // the host turned it
-  }
   if (bounds.moves_itself) {
     const double own = (step.p_world - p_world_).norm();
     way = std::min(way, own + ownWay(step, dt));
     if (dt > 0) speed = std::min(speed, own / dt + kOwnSpeed);
     change = std::min(change, speed);
-    turned = std::min(turned, kOwnTurn * dt * explained_.norm());
   }
   if (dt > 0) speed = std::max(speed, way / dt);
-  const double stiffness = bounds.stiffness > 0 ? bounds.stiffness : kUnclaimed;
-  return kMargin * stiffness * way + std::max(kDamping * change, kMargin * bounds.damping * speed) +
-         (bounds.moves_itself ? turned : 0);
+  return stiffnessOf(bounds) * way + std::max(kDamping * change, kMargin * bounds.damping * speed);
 }
 
 /// [m] How far the surface at the probe may have come by a pose that is the shape's own word: a body's speed along, and
@@ -80,13 +98,15 @@ bool Claim::takePass(const ClaimStep& step) noexcept HSP_RT {
   return true;
 }
 
-void Claim::remember(const ClaimStep& step) noexcept HSP_RT {
+/// Only what the next step is compared with: this is done for each shape, probe and tick.
+void Claim::remember(const ClaimStep& step, const ClaimBounds& bounds) noexcept HSP_RT {
   known_ = (step.in & HSP_IN_INVALID) == 0;
   traced_ = (step.out & HSP_OUT_TRACED) != 0;
-  p_world_ = step.p_world;
   p_model_ = step.p_model;
   velocity_ = step.velocity;
-  normal_ = step.normal;
+  if (traced_) normal_ = step.normal;
+  if (!bounds.moves_itself) return;
+  p_world_ = step.p_world;
   origin_ = step.origin;
 }
 
@@ -94,10 +114,10 @@ bool pullsIn(const hsp_contact& contact, const Vector3d& p) noexcept HSP_RT {
   constexpr double kSmallest = 1e-6, kRounding = 0.01;  // [m] to a foot that tells no direction; [N], and of the force
   if ((contact.flags & HSP_OUT_TRACED) == 0) return false;
   const Vector3d force(contact.force), out = Vector3d(contact.point) - p;
-  const double depth = out.norm(), size = force.norm();
-  if (!(depth > kSmallest) || !(size > kRounding)) return false;
   const double outward = contact.depth_m > 0 ? force.dot(out) : -force.dot(out);
-  return outward < -kRounding * size * depth;
+  if (!(outward < 0)) return false;  // pushes, as nearly always
+  const double depth = out.norm(), size = force.norm();
+  return depth > kSmallest && size > kRounding && outward < -kRounding * size * depth;
 }
 
 }  // namespace hapticd::servo

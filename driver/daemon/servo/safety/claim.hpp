@@ -10,16 +10,16 @@
 
 namespace hapticd::servo {
 
-/// What a shape may do to one probe; from its report and its parameters, and from the arm.
+/// What a shape may do to a probe; from its report and its parameters.
 struct ClaimBounds {
   double stiffness = 0;       ///< [N/m] 0: nothing was claimed, kUnclaimed holds
   double damping = 0;         ///< [N s/m]
   double jump = 0;            ///< [N] on purpose; at least kStep
-  double force = 0;           ///< [N] that the arm lets through; 0: unknown. Forces are compared no further.
   bool moves_itself = false;  ///< its pose is its own word: what that explains is bounded
 };
 
-/// One answer of a shape to one probe. World frame where nothing else is said.
+/// One answer of a shape to one probe. World frame where nothing else is said. `normal` is looked at where it is
+/// traced, `p_world` and `origin` where the shape moves itself.
 struct ClaimStep {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< [N]
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< outward, where it is traced
@@ -28,7 +28,8 @@ struct ClaimStep {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s] relative to the model; zero where it asks for none
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();    ///< [m] of the model, after the step
   const Eigen::Matrix3d* turn = nullptr;               ///< of the model since its last step; nullptr: it does not turn
-  uint32_t in = 0, out = 0;                            ///< HSP_IN_*, HSP_OUT_*
+  double max_force = 0;      ///< [N] that the arm lets through; 0: unknown. Forces are compared no further.
+  uint32_t in = 0, out = 0;  ///< HSP_IN_*, HSP_OUT_*
 };
 
 /// What is remembered of one model and one probe.
@@ -44,7 +45,8 @@ class Claim {
   /// A surface that is found anew under the probe, or a foot that goes over an edge, changes the force at once.
   /// kPasses such changes may come together, and kPassesPerSecond per second.
   static constexpr double kPasses = 3, kPassesPerSecond = 20;
-  static constexpr double kEdge = 0.1;  ///< [rad] a normal that turns farther in one step has gone over an edge
+  static constexpr double kEdge = 0.1;     ///< [rad] a normal that turns farther in one step has gone over an edge
+  static constexpr double kSurely = 0.99;  ///< of what stiffness explains: what is below needs no second look
 
   /// [rt] How much of the force of `step` may be let through, world frame: all of it, or what the claim explains.
   /// @param dt [s] since the last step  @param held true if the force was held back
@@ -54,10 +56,12 @@ class Claim {
   void forget() noexcept { known_ = false; }
 
  private:
-  double explained(const ClaimStep& step, const ClaimBounds& bounds, double dt) noexcept HSP_RT;
+  bool surelyExplained(double square, const ClaimStep& step, const ClaimBounds& bounds) const noexcept HSP_RT;
+  double turn(const Eigen::Matrix3d& turn, const ClaimBounds& bounds, double dt) noexcept HSP_RT;
+  double explained(const ClaimStep& step, const ClaimBounds& bounds, double dt) const noexcept HSP_RT;
   double ownWay(const ClaimStep& step, double dt) const noexcept HSP_RT;
   bool takePass(const ClaimStep& step) noexcept HSP_RT;
-  void remember(const ClaimStep& step) noexcept HSP_RT;
+  void remember(const ClaimStep& step, const ClaimBounds& bounds) noexcept HSP_RT;
 
   bool known_ = false, traced_ = false;
   double passes_ = kPasses;

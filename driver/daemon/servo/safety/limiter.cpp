@@ -74,8 +74,8 @@ void Limiter::apply(Vector3d& force, Vector3d& torque, const Vector3d& position,
   // What was sent in the last tick was held until now, however late this one is.
   const double held = std::min(dt, kImpulseWindow);
   impulse_ += (last_force_.norm() - impulse_ / kImpulseWindow) * held;
-  follow(slow_force_, last_force_, limits_.slew, dt);
-  follow(slow_torque_, last_torque_, limits_.torque_slew, dt);
+  if (limits_.slew > 0) follow(slow_force_, last_force_, limits_.slew, dt);
+  if (limits_.torque_slew > 0) follow(slow_torque_, last_torque_, limits_.torque_slew, dt);
   if (fault() != Fault::kNone) {
     // Fade along the last force: the new one may be the fault itself.
     fade_ = rampedDown(fade_, dt, faultRamp());

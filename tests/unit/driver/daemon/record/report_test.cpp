@@ -187,6 +187,8 @@ TEST_F(Report, TellsPeopleThatNothingWasTouched) {
   EXPECT_EQ(summary(report).find("touched no model"), std::string::npos);
   report.models[0].contact = {};
   EXPECT_NE(summary(report).find("touched no model"), std::string::npos);
+  report.faults = {"model ball: its plugin pulled the probe into its surface"};
+  EXPECT_EQ(summary(report).find("touched no model"), std::string::npos) << "that it was silenced says why";
 }
 
 TEST_F(Report, TellsPeopleOfForceWithoutASurface) {
@@ -203,6 +205,26 @@ TEST_F(Report, TellsPeopleOfForceWithoutASurface) {
   const auto ball = nlohmann::json::parse(read(file("r.json"))).at("models").at("ball");
   EXPECT_EQ(ball.at("untraced").at("ticks"), 2);
   EXPECT_DOUBLE_EQ(ball.at("untraced").at("force_max_n"), 1.12);
+}
+
+TEST_F(Report, TellsPeopleOfForceWithoutADepthAndFromOutside) {
+  RunReport report = sample();
+  report.models[0].contact = {};
+  report.models[0].contact.addDepthless(0.5);
+  report.models[0].contact.addDepthless(1.12);
+  report.models[0].contact.addOutside(0.25);
+  const std::string text = summary(report);
+  EXPECT_NE(text.find("warning   ball pushed in 2 ticks with depth_m left at 0, with up to 1.12 N"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("outside   ball pushed in 1 ticks from outside (depth_m below 0), with up to 0.25 N"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(text.find("HSP_OUT_TRACED"), std::string::npos) << text;
+  EXPECT_EQ(text.find("touched no model"), std::string::npos) << text;
+  ASSERT_TRUE(writeJson(report, file("r.json")));
+  const auto ball = nlohmann::json::parse(read(file("r.json"))).at("models").at("ball");
+  EXPECT_EQ(ball.at("depthless").at("ticks"), 2);
+  EXPECT_DOUBLE_EQ(ball.at("outside").at("force_max_n"), 0.25);
 }
 
 TEST_F(Report, DrawsEveryPeakAndEscapesNames) {

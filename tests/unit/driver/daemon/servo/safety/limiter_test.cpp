@@ -99,6 +99,15 @@ TEST(Limiter, TheSlewLimitIsTheSameAtEveryRate) {
   }
 }
 
+/// What follows the force stays behind it also by parts of a newton.
+TEST(Limiter, ASmallSlewLimitHoldsAtAFastRate) {
+  scene::Limits limits = generous();
+  limits.slew = 500;
+  Limiter kick(limits, 0);
+  for (int i = 0; i < 200; ++i)
+    ASSERT_LE(limited(kick, {8, 0, 0}, 5e-5).x(), limits.slew * (i * 5e-5 + Limiter::kSlewWindow) + 1e-9) << i;
+}
+
 /// Every limit at once, with random bounds.
 scene::Limits anyLimits(std::mt19937& random) {
   std::uniform_real_distribution<double> unit(0, 1);

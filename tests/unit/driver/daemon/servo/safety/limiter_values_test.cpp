@@ -36,6 +36,17 @@ TEST(Limiter, FadesOverTwoCentimetresBeyondTheWorkspace) {
   }
 }
 
+/// What follows the force goes on where the limit is below one newton per second, too.
+TEST(Limiter, LetsAForceGrowToItsEndHoweverSlowTheLimit) {
+  scene::Limits limits = generous();
+  limits.slew = limits.torque_slew = 0.5;
+  Limiter slow(limits, 8.5);
+  Applied last;
+  for (int i = 0; i < 300; ++i) last = applied(slow, {0, 0.1, 0}, {0, 0.05, 0});
+  EXPECT_NEAR(last.force.y(), 0.1, 1e-12) << "after 0.2 s";
+  EXPECT_NEAR(last.torque.y(), 0.05, 1e-12);
+}
+
 TEST(Limiter, BoundsTheTorqueAndItsGrowth) {
   scene::Limits limits = generous();
   limits.torque = 0.2;

@@ -28,7 +28,7 @@ TEST(PowerBound, ReckonsWithTheLagAndTheAccelerationsOfLate) {
   bound.watch({0.01, 0, 0});  // 10 m/s^2
   EXPECT_NEAR(1 / bound.most(kAlong, 1), 0.01 + PowerBound::kMargin * 10 * 3e-3, 1e-9) << "lag and a tick";
   bound.pass(1e-3);
-  const double later = 10 * (1 - 1e-3 / PowerBound::kRemember);
+  const double later = 10 * (1 - 1e-3 / 0.02);  // they are forgotten in 20 ms
   EXPECT_NEAR(1 / bound.most(kAlong, 1), 0.01 + PowerBound::kMargin * later * 4e-3, 1e-9) << "and its age";
   for (int i = 0; i < 1000; ++i) {
     bound.watch({0.01, 0, 0});
