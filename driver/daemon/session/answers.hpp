@@ -35,6 +35,9 @@ std::string statusAnswer(const Session& session);
 /// [main] Why a model is not felt for the rest of the run; "": it is.
 std::string silencedWhy(const Session& session, uint32_t place);
 
+/// [main] Why an arm gets no force now, and what to do; "": it gets what is asked for.
+std::string noForceWhy(const Session& session, uint32_t arm);
+
 /// [main] Models: names, numbers, poses, leaders, and live parameters with their values.
 std::string listAnswer(const Session& session);
 
@@ -44,6 +47,9 @@ std::string snapshotAnswer(const Session& session);
 
 /// [main] The value of one parameter, or of all.
 Result<std::string> valuesAnswer(const Session& session, uint32_t place, const std::string& parameter);
+
+/// [main] " (did you mean "stiffness"?)": what a parameter of this name may mean; "": nothing near.
+std::string parameterMeant(const hsp_class& plugin, const std::string& name);
 
 /// [main] One event as an object of JSON, without the end of a line.
 std::string eventText(const Session& session, const hapticd_event& event);

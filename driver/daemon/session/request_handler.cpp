@@ -47,7 +47,7 @@ RequestHandler::RequestHandler(Runner& runner, LoadScene load, host::Services::L
       scene_file_(std::filesystem::absolute(runner.scene().file).string()),
       places_(runner.world().places()),
       leads_([this](const Order& order) { return give(order); }, runner.scene().clients.exclusive,
-             [this](uint32_t arm, const Leads::Pusher& who, bool begins) { tellOfPusher(arm, who, begins); }) {
+             [this](uint32_t arm, const Leads::Pusher& who, Leads::News news) { tellOfPusher(arm, who, news); }) {
   for (size_t i = 0; i < runner.scene().models.size(); ++i) places_[i] = {runner.scene().models[i], true, true};
 }
 
@@ -85,7 +85,8 @@ Result<std::string> RequestHandler::tell(const control::Peer& peer, const Reques
     case Request::Kind::kGet: {
       const auto place = placeOf(request.model);
       if (!place) return Error{place.error()};
-      return valuesAnswer(session(), *place, request.parameter);
+      auto values = valuesAnswer(session(), *place, request.parameter);
+      return values ? std::move(values) : refuse("unknown", values.error());
     }
     case Request::Kind::kGeometry: {
       const auto place = placeOf(request.model);
@@ -221,7 +222,8 @@ Result<void> RequestHandler::set(const Request& request) {
   order.value = request.value;
   const hsp_param* param = parameterOf(plugin, request.parameter, order.param);
   const std::string what = "parameter \"" + request.parameter.substr(0, 100) + "\" of " + plugin.name;
-  if (param == nullptr) return refuse("unknown", what + ": there is no live parameter of that name; see list");
+  if (param == nullptr)
+    return refuse("unknown", what + ": there is no parameter of that name" + parameterMeant(plugin, request.parameter));
   if ((param->flags & HSP_P_LIVE) == 0)
     return refuse("unsupported", what + ": cannot change while the model runs\n  fix: change the scene and reload it");
   const bool whole = param->kind == HSP_REAL || std::floor(request.value) == request.value;
