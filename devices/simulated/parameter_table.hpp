@@ -6,7 +6,7 @@
 
 namespace hapticd::simulated {
 
-inline constexpr const char* kKinds[] = {"premium15", "chain"};
+inline constexpr const char* kKinds[] = {"premium15", "chain", "phantom"};
 inline constexpr const char* kScripts[] = {"hold", "stroke", "press", "tap", "circle", "path", "none", "guided"};
 inline constexpr int kMaxDelay = 16;
 
@@ -17,24 +17,38 @@ struct ParameterTable {
 
   static constexpr auto arm() {
     return std::array{
-        F::choice("arm.kind", &T::kind, kKinds, 0, "The mechanism: a PHANToM Premium 1.5, or the chain of arm.dh."),
+        F::choice("arm.kind", &T::kind, kKinds, 0,
+                  "The mechanism: a PHANToM Premium 1.5, the chain of arm.dh, or an arm built as the PHANToM, with the "
+                  "lengths "
+                  "of its own (as arm.kind of the arm that it is a twin of)."),
         F::vector3("arm.origin", &T::origin, "m", -1, 1, "[0, 0, 0]",
-                   "premium15: where the tip of the neutral pose lies in the device frame."),
+                   "premium15, phantom: where the tip of the neutral pose lies in the device frame; chain: added to "
+                   "arm.base_position."),
         F::array("arm.dh", &T::dh, "m, rad, m, rad", 4, 0, 64, -10, 10, "[]",
                  "chain: a row a, alpha, d, theta a joint (standard Denavit-Hartenberg)."),
         F::array("arm.limits", &T::limits, "rad", 2, 0, 32, -100, 100, "[]",
-                 "chain: a row least, greatest angle a joint; left out: half a turn to either side."),
-        F::array("arm.masses", &T::masses, "kg", 1, 0, 16, 0, 1000, "[]", "chain: mass of each link."),
+                 "chain, phantom: a row least, greatest angle a joint; left out: half a turn to either side, the stops "
+                 "of the "
+                 "Premium."),
+        F::array("arm.masses", &T::masses, "kg", 1, 0, 16, 0, 1000, "[]",
+                 "chain: mass of each link; phantom: ma mc mbe mdf, left out: those of the Premium."),
         F::array("arm.centers", &T::centers, "m", 3, 0, 48, -10, 10, "[]",
                  "chain: centre of mass of each link, in the frame after its joint."),
         F::array("arm.inertias", &T::inertias, "kg m^2", 3, 0, 48, 0, 1000, "[]",
-                 "chain: inertia of each link about the axes of that frame through its centre."),
+                 "chain: inertia of each link about the axes of that frame through its centre; phantom: rows a, c, be, "
+                 "df and "
+                 "base, left out: those of the Premium."),
         F::vector3("arm.base_position", &T::base_position, "m", -10, 10, "[0, 0, 0]",
                    "chain: where its first frame lies in the device frame."),
         F::array("arm.base_orientation", &T::base_orientation, "", 4, 0, 4, -1.001, 1.001, "[]",
                  "chain: how its first frame is turned in the device frame, a unit quaternion w, x, y, z."),
         F::vector3("arm.tool_position", &T::tool_position, "m", -10, 10, "[0, 0, 0]",
                    "chain: the tip in the frame of the last link."),
+        F::array("arm.lengths", &T::lengths, "m", 1, 0, 5, -10, 10, "[]",
+                 "phantom: l1 l2 l3 l5 l6; left out: those of the Premium."),
+        F::array("arm.max_torque", &T::arm_torque, "N m", 1, 0, 16, 0, 1e5, "[]",
+                 "Largest torque of each joint behind its gear, as the file of a real arm says it; in the place of "
+                 "joint.max_torque."),
         F::real("device.rate", &T::rate, "Hz", 1, 100000, 1000,
                 "Natural rate: what it reports, and of its samples where they drive the loop."),
         F::real("device.max_force", &T::max_force, "N", 0, 10000, 8.5, "Largest force that the arm reports."),

@@ -54,7 +54,7 @@ Eigen::Quaterniond baseOrientation(const std::vector<double>& q) {
 
 kinematics::ChainGeometry chainOf(const Parameters& p) {
   kinematics::ChainGeometry geometry;
-  geometry.base.position = vector(p.base_position);
+  geometry.base.position = vector(p.base_position) + vector(p.origin);  // origin: as the file of a real chain says it
   geometry.base.orientation = baseOrientation(p.base_orientation);
   geometry.tool.position = vector(p.tool_position);
   const size_t count = p.dh.size() / 4;
@@ -75,9 +75,8 @@ kinematics::ChainGeometry chainOf(const Parameters& p) {
 }
 
 kinematics::PhantomGeometry phantomOf(const Parameters& p) {
-  kinematics::PhantomGeometry geometry;
-  geometry.origin = vector(p.origin);
-  return geometry;
+  if (p.arm() == Kind::kPremium15) return kinematics::phantomGeometry({}, {}, vector(p.origin));
+  return kinematics::phantomGeometry(p.lengths, p.masses, vector(p.origin));
 }
 
 JointSettings jointsOf(const Parameters& p, int count) {
@@ -88,12 +87,15 @@ JointSettings jointsOf(const Parameters& p, int count) {
   const JointVector counts = perJoint(p.counts, count, premium ? kPremiumCounts : 0, "joint.counts");
   const JointVector rotor = perJoint(p.rotor, count, premium ? kPremiumRotor : 0, "joint.rotor");
   const JointVector torque = perJoint(p.max_torque, count, premium ? kPremiumStall : 100, "joint.max_torque");
+  if (!p.arm_torque.empty() && !p.max_torque.empty())
+    throw std::invalid_argument("arm.max_torque and joint.max_torque are both given, expected one of them");
   joints.step = joints.rotor = joints.max_torque = JointVector::Zero(count);
   for (int i = 0; i < count; ++i) {
     joints.step[i] = counts[i] > 0 ? 2 * M_PI / (counts[i] * gear[i]) : 0;
     joints.rotor[i] = rotor[i] * gear[i] * gear[i];
     joints.max_torque[i] = torque[i] * gear[i];
   }
+  if (!p.arm_torque.empty()) joints.max_torque = perJoint(p.arm_torque, count, 0, "arm.max_torque");
   joints.damping = perJoint(p.damping, count, premium ? kPremiumDamping : 0, "joint.damping");
   joints.friction = perJoint(p.friction, count, premium ? kPremiumFriction : 0, "joint.friction");
   if (!p.stiffness.empty()) {
@@ -117,20 +119,54 @@ HandSettings handOf(const Parameters& p) {
   return hand;
 }
 
+namespace {
+
+/// The links of a PHANToM with the stops and inertias of the file.
+kinematics::Phantom makePhantom(const Parameters& p) {
+  kinematics::Phantom arm(phantomOf(p));
+  if (p.arm() == Kind::kPremium15 || p.limits.empty()) return arm;
+  const auto rows = static_cast<Eigen::Index>(p.limits.size() / 2);
+  kinematics::JointLimits limits{JointVector(rows), JointVector(rows)};
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    limits.min[i] = p.limits[static_cast<size_t>(2 * i)];
+    limits.max[i] = p.limits[static_cast<size_t>(2 * i + 1)];
+  }
+  arm.narrow(limits);
+  return arm;
+}
+
+kinematics::PhantomInertia inertiaOf(const Parameters& p, const JointVector& rotor) {
+  constexpr size_t kNumbers = 15;
+  kinematics::PhantomInertia inertia;
+  inertia.rotor = rotor;
+  if (p.arm() == Kind::kPremium15 || p.inertias.empty()) return inertia;
+  const std::vector<double>& i = p.inertias;
+  if (i.size() != kNumbers)
+    throw std::invalid_argument("arm.inertias: " + std::to_string(i.size() / 3) +
+                                " rows, expected 5 for a phantom: a, c, be, df and base");
+  inertia.a = Vector3d(i[0], i[1], i[2]), inertia.c = Vector3d(i[3], i[4], i[5]);
+  inertia.be = Vector3d(i[6], i[7], i[8]), inertia.df = Vector3d(i[9], i[10], i[11]);
+  inertia.base_yy = i[13];
+  return inertia;
+}
+
+}  // namespace
+
 std::unique_ptr<kinematics::Arm> makeArm(const Parameters& p) {
-  if (p.arm() == Kind::kPremium15) return std::make_unique<kinematics::Phantom>(phantomOf(p));
-  return std::make_unique<kinematics::Chain>(chainOf(p));
+  if (!p.lengths.empty() && p.arm() != Kind::kPhantom)
+    throw std::invalid_argument(p.arm() == Kind::kChain
+                                    ? "arm.lengths is given, and a chain has its lengths in arm.dh"
+                                    : "arm.lengths is given, and a premium15 has its own; expected arm.kind phantom");
+  if (p.arm() == Kind::kChain) return std::make_unique<kinematics::Chain>(chainOf(p));
+  return std::make_unique<kinematics::Phantom>(makePhantom(p));
 }
 
 std::unique_ptr<Plant> makePlant(const Parameters& p, const JointSettings& joints, const Vector3d& gravity) {
   const double mass = static_cast<Script>(p.script) == Script::kNone ? 0 : p.mass;
-  if (p.arm() == Kind::kPremium15) {
-    kinematics::PhantomInertia inertia;
-    inertia.rotor = joints.rotor;
-    const kinematics::Phantom arm(phantomOf(p));
-    return std::make_unique<PlantOf<PhantomMechanism>>(joints, PhantomMechanism(arm, inertia, mass, gravity));
-  }
-  return std::make_unique<PlantOf<ChainMechanism>>(joints, ChainMechanism(chainOf(p), joints.rotor, mass, gravity));
+  if (p.arm() == Kind::kChain)
+    return std::make_unique<PlantOf<ChainMechanism>>(joints, ChainMechanism(chainOf(p), joints.rotor, mass, gravity));
+  const kinematics::PhantomInertia inertia = inertiaOf(p, joints.rotor);
+  return std::make_unique<PlantOf<PhantomMechanism>>(joints, PhantomMechanism(makePhantom(p), inertia, mass, gravity));
 }
 
 }  // namespace hapticd::simulated

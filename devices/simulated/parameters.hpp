@@ -13,14 +13,14 @@
 
 namespace hapticd::simulated {
 
-enum class Kind { kPremium15, kChain };
+enum class Kind { kPremium15, kChain, kPhantom };
 
 struct Parameters {
   int seed = 1, kind = 0, delay = 0;
   double substep = 2e-4;
   // arm
   std::array<double, 3> origin{}, base_position{}, tool_position{};
-  std::vector<double> base_orientation, dh, limits, masses, centers, inertias;
+  std::vector<double> base_orientation, dh, limits, masses, centers, inertias, lengths, arm_torque;
   // joint: lists of one number for all joints, or a number each
   std::vector<double> gear, counts, damping, friction, max_torque, rotor, stiffness, rate_damping;
   double motor_lag = 0, friction_speed = 0, torque_noise = 0;

@@ -19,9 +19,10 @@ constexpr int kMaxSubsteps = 5000;  ///< a read: one second at the default subst
 
 class SimulatedArm : public Device, public Parameters {
  public:
-  static constexpr DeviceInfo kInfo{
-      "org.hapticd.device.simulated", "simulated", "1.0.0", "MIT",
-      "An arm simulated at torque level (PHANToM Premium 1.5 or any serial chain), and the hand that holds it."};
+  static constexpr DeviceInfo kInfo{"org.hapticd.device.simulated", "simulated", "1.0.0", "MIT",
+                                    "An arm simulated at torque level (PHANToM Premium 1.5, one built like it, or any "
+                                    "serial chain), and the hand that "
+                                    "holds it."};
   static constexpr auto fields() {
     using Table = ParameterTable<SimulatedArm>;
     return join(Table::arm(), Table::joint(), Table::hand());
@@ -30,6 +31,7 @@ class SimulatedArm : public Device, public Parameters {
   void open(hdv_info& info) {
     arm_ = makeArm(*this);
     joints_ = jointsOf(*this, arm_->jointCount());
+    makePlant(*this, joints_, Vector3d::Zero());  // what it objects to is told now, not at the start
     hand_ = std::make_unique<Hand>(handOf(*this), path.empty() ? HandPath{} : HandPath::read(path));
     describe(info);
   }
@@ -45,7 +47,7 @@ class SimulatedArm : public Device, public Parameters {
     const JointVector off = JointVector::Zero(arm_->jointCount());
     drives_.fill({false, off, off, off});
     target_ = hand_->at(0);
-    JointVector q = arm_->neutral();
+    JointVector q = arm_->neutral().cwiseMax(arm_->limits().min).cwiseMin(arm_->limits().max);
     if (hand_->holds() && !arm_->inverse(target_.position, q)) throw std::invalid_argument(unreachable());
     plant_->reset(q);
   }
@@ -169,7 +171,9 @@ class SimulatedArm : public Device, public Parameters {
       info.damping = std::isfinite(least) ? least : 0;
     }
     std::snprintf(info.product, sizeof info.product, "simulated %s",
-                  arm() == Kind::kPremium15 ? "PHANToM Premium 1.5" : "serial arm");
+                  arm() == Kind::kPremium15 ? "PHANToM Premium 1.5"
+                  : arm() == Kind::kPhantom ? "arm like the PHANToM"
+                                            : "serial arm");
     std::snprintf(info.serial, sizeof info.serial, "seed %d", seed);
   }
 

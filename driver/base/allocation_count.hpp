@@ -9,4 +9,8 @@ namespace hapticd {
 /// [any] Calls of malloc, calloc, realloc and the aligned kinds by this thread so far; C++ new ends there too.
 uint64_t allocationsOfThread() noexcept;
 
+/// [any] From now on each allocation of this thread calls `look` first, which may allocate: it is not called for that.
+/// nullptr: none.
+void onAllocation(void (*look)()) noexcept;
+
 }  // namespace hapticd

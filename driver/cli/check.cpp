@@ -29,7 +29,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   std::vector<std::string> files;
-  std::string schema;
+  std::string schema, device;
   bool quiet = false, files_only = false, json = false;
 };
 
@@ -120,6 +120,12 @@ Verdict checkOne(const std::string& file, const Options& options) {
   std::optional<scene::Scene> scene;
   Verdict verdict{file, scene::checkFile(file, catalog(), &scene), {}};
   document::Problems& found = verdict.problems;
+  if (scene && !options.device.empty()) {  // as run takes it
+    scene::Loaded other = scene::load(file, catalog(), {true, options.device});
+    scene = std::move(other.scene);
+    found = std::move(other.problems);
+    if (!scene) return verdict;
+  }
   ModelTrial trial;
   if (scene && !options.files_only) trial = tryModels(*scene, servo::maxForceOf(withArm(*scene)));
   found.insert(found.end(), trial.problems.begin(), trial.problems.end());
@@ -195,6 +201,8 @@ void addCheck(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("check", "Validate scene, device and daemon files; print every problem.");
   command->add_option("files", options->files, "files to check");
+  command->add_option("--device", options->device,
+                      "device file to check scenes with instead of their own, as run takes it");
   command->add_option("--schema", options->schema, "print the JSON Schema of a format instead, for editors")
       ->check(CLI::IsMember({"scene", "device", "daemon"}));
   command->add_flag("--quiet,-q", options->quiet, "print nothing about files without problems");
@@ -205,7 +213,8 @@ void addCheck(CLI::App& app, int& exit_code) {
       "there is a problem. If a scene has none, its models are set up once, because only\na plugin can check some "
       "files, such as geometry. A warning names each setting that cannot be stable on\nthe device, with the bound and "
       "the nearest stable setting. Warnings do not affect the exit code.\n\nExample:\n  hapticd check "
-      "config/scenes/teapot.yaml config/devices/simulated-premium15.yaml\n  hapticd check --schema scene > "
+      "config/scenes/teapot.yaml config/devices/simulated-premium15.yaml\n  hapticd check config/scenes/sphere.yaml "
+      "--device my-arm.yaml\n  hapticd check --schema scene > "
       "scene.schema.json");
   command->callback([options, &exit_code] { exit_code = check(*options); });
 }

@@ -69,6 +69,7 @@ void printParam(const host::ParamInfo& p) {
   const std::string def = defaultText(p);
   facts += is_required ? "; required" : def.empty() ? "" : "; default " + def;
   if ((p.flags & HSP_P_LIVE) != 0) facts += "; may change while running";
+  if ((p.flags & HSP_P_LIVE) != 0 && (p.flags & HSP_P_SAFETY) != 0) facts += " with consent (ctl set --consent)";
   if ((p.flags & HSP_P_ACCURACY) != 0) facts += "; trades speed for accuracy";
   std::printf("  %-20s %s\n  %-20s %s\n", p.id.c_str(), facts.c_str(), "", p.doc.c_str());
 }

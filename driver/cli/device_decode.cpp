@@ -11,6 +11,7 @@
 #include <string>
 
 #include "capture/hints.hpp"
+#include "capture/plausible.hpp"
 #include "capture/report_table.hpp"
 #include "capture/saturation.hpp"
 #include "cli/command.hpp"
@@ -27,11 +28,23 @@ struct Options {
   bool hex = false, raw = false, from_arm = false;
 };
 
-/// A device file's wire format, and how many joints its arm has.
+/// A device file's wire format, and what it says of its arm.
 struct Described {
   codec::Wire wire;
   size_t joints = 0;
+  capture::ArmFacts arm;
 };
+
+capture::ArmFacts factsOf(const scene::Device& device, size_t joints) {
+  capture::ArmFacts facts;
+  facts.joints = joints;
+  for (const scene::Value& value : device.parameters) {
+    if (value.id == "arm.limits") facts.limits = value.numbers;
+    if (value.id == "calibration.method") facts.zeroed = value.number > 1;  // pose
+    if (value.id == "health.max_speed") facts.max_speed = value.number;
+  }
+  return facts;
+}
 
 /// All problems of the file are printed where there are any.
 std::optional<Described> describedIn(const std::string& file, int& exit_code) {
@@ -48,7 +61,7 @@ std::optional<Described> describedIn(const std::string& file, int& exit_code) {
   for (const scene::Value& value : loaded.device->parameters)
     if (value.id == "wire") {
       const size_t joints = (*device)->kinematics().joint_count;
-      return Described{codec::readWire(value.text, joints), joints};
+      return Described{codec::readWire(value.text, joints), joints, factsOf(*loaded.device, joints)};
     }
   exit_code = fail(kBadInput, file + ": its module " + loaded.device->module +
                                   " has no parameter wire, expected a device file of usb_hid, usb_bulk or vme");
@@ -82,8 +95,9 @@ int decode(const Options& options) {
   if (const int failed = writeOut(options.out, capture::csvOf(described->wire, described->joints, decoded));
       failed != 0)
     return failed;
-  std::fprintf(stderr, "read as %s: %s\n%s", taken->text ? "hexadecimal text" : "raw bytes",
-               capture::summaryOf(decoded).c_str(), capture::hintsOf(described->wire, decoded).c_str());
+  std::fprintf(stderr, "read as %s: %s\n%s%s", taken->text ? "hexadecimal text" : "raw bytes",
+               capture::summaryOf(decoded).c_str(), capture::hintsOf(described->wire, decoded).c_str(),
+               capture::implausible(described->wire, described->arm, decoded).c_str());
   if (decoded.reports.empty())
     return fail(kFailed, "no report in " + std::to_string(bytes->size()) + " bytes, expected " +
                              std::to_string(described->wire.input.bytes()) + " bytes per report");

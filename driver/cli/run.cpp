@@ -139,7 +139,7 @@ void warnOfHeat(const servo::Runner& runner, double rate) {
     forces.push_back(std::hypot(row.force[0], row.force[1], row.force[2]));
   if (runner.arms().empty() || static_cast<double>(forces.size()) < kHeatSeconds * rate) return;
   const std::string text =
-      tune::overheating(runner.scene().devices[0].name, runner.arms()[0]->info().continuous_force, forces);
+      tune::overheating(runner.scene().devices[0].name, runner.arms()[0]->info().continuous_force, forces, rate);
   if (!text.empty()) log::write(HSP_LOG_WARNING, "", text);
 }
 
@@ -178,6 +178,8 @@ int conclude(const Options& options, servo::Runner& runner, const std::vector<st
   if (!options.picture.empty())
     if (auto drawn = record::drawRun(report, samplesOf(runner.telemetry()), notesOf(runner), options.picture); !drawn)
       return fail(kFailed, drawn.error());
+  for (const auto& [what, file] : {std::pair("report", &options.report), std::pair("picture", &options.picture)})
+    if (!file->empty()) std::printf("  %-8s  %s\n", what, file->c_str());
   return faults.empty() ? kWorked : kFailed;
 }
 
@@ -343,7 +345,10 @@ void addTiming(CLI::App* command, Options& options) {
 
 void addOutputs(CLI::App* command, Options& options) {
   command->add_option("--report", options.report, "write a report (JSON)");
-  command->add_option("--picture", options.picture, "write a picture of depth, force and lateness over time (SVG)");
+  command->add_option(
+      "--picture", options.picture,
+      "write a picture of depth, force and lateness over time (SVG), of the last 10 s of a longer run; hapticd "
+      "plot draws all of a recording");
   command->add_option("--name", options.name, "name of this daemon for top, ctl and view; default: hapticd")
       ->check([](const std::string& name) {
         const bool plain = name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_") ==

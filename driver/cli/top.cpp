@@ -308,7 +308,7 @@ int top(const Options& options) {
   View view = look(page);
   view.held = view.now.t > 0 ? static_cast<double>(view.now.tick) / view.now.t : 0;
   sortModels(view.models, options.sort);
-  std::fputs(options.json ? (toJson(view).dump(2) + "\n").c_str() : table(view, view.models.size()).c_str(), stdout);
+  std::fputs(options.json ? (toJson(view).dump() + "\n").c_str() : table(view, view.models.size()).c_str(), stdout);
   return kWorked;
 }
 

@@ -32,7 +32,7 @@ struct TemplateBall : hapticd::Shape {
     return std::array{
         F::real("radius", &TemplateBall::radius, "m", 0.001, 1, 0.05, "Radius of the ball."),
         F::real("stiffness", &TemplateBall::stiffness, "N/m", 0, 5000, 500, "Force for each metre of depth.",
-                HSP_P_LIVE),
+                HSP_P_LIVE | HSP_P_SAFETY),
         F::real("friction", &TemplateBall::friction, "", 0, 2, 0.2, "Force along the surface by force into it."),
         F::choice("law", &TemplateBall::law, kLaws, 0, "Force by stiffness, or by the table of depth and force."),
         F::array("profile", &TemplateBall::profile, "m, N", 2, 4, 200, 0, 20, "[[0, 0], [0.002, 1], [0.01, 3]]",

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "codec/bits.hpp"
+#include "codec/checksum_start.hpp"
 #include "codec/choice.hpp"
 #include "codec/wire_meant.hpp"
 #include "codec/wire_overlap.hpp"
@@ -24,12 +25,12 @@ constexpr Name<Role> kRoles[] = {
     {"calibrate", Role::kCalibrate}, {"reference", Role::kReference},   {"follow", Role::kFollow},
     {"starts", Role::kStarts}};
 constexpr Name<bool> kOrders[] = {{"little", false}, {"big", true}};
-constexpr const char* kKeys[] = {"is",     "joint",         "button",         "at",        "type",
-                                 "endian", "bit",           "bit_offset",     "inverted",  "scale",
-                                 "offset", "scale_degrees", "offset_degrees", "limit",     "wraps",
-                                 "value",  "modulo",        "method",         "from",      "to",
-                                 "word",   "polynomial",    "initial",        "reflected", "final_xor",
-                                 "negated"};
+constexpr const char* kKeys[] = {"is",      "joint",         "button",         "at",        "type",
+                                 "endian",  "bit",           "bit_offset",     "inverted",  "scale",
+                                 "offset",  "scale_degrees", "offset_degrees", "limit",     "wraps",
+                                 "value",   "modulo",        "method",         "from",      "to",
+                                 "word",    "polynomial",    "initial",        "reflected", "final_xor",
+                                 "negated", "over_id"};
 
 bool isText(Type type) {
   return type == Type::kNibble || type == Type::kNibbles;
@@ -236,6 +237,11 @@ void readMethodDetails(const Tree& tree, Check& check) {
 void readChecksum(const Tree& tree, const Report& report, bool placed, Field& field) {
   if (readMethod(tree, field)) readMethodDetails(tree, field.check);
   field.check.big_endian = field.big_endian;
+  if (tree.has("over_id") && tree.at("over_id").boolean()) {
+    if (report.id < 0) tree.at("over_id").fail("true, but the report has no id");
+    if (field.check.word > 1) tree.at("over_id").fail("true, expected with words of 1 byte alone");
+    field.check = startedWith(field.check, static_cast<uint8_t>(std::max(report.id, 0)));
+  }
   field.from = static_cast<uint16_t>(tree.at("from").whole(0, static_cast<double>(report.size - 1)));
   field.to = static_cast<uint16_t>(tree.at("to").whole(field.from + 1.0, static_cast<double>(report.size)));
   if (field.type != Type::kUnsigned && field.type != Type::kSigned)

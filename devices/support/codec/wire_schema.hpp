@@ -48,7 +48,8 @@ inline constexpr const char* kWireSchema[] = {R"json({
         "method": {"type": "string", "pattern": "^(sum8?|xor8?|crc[0-9a-z-]*)$", "description": "sum, xor, crc with its numbers, or a published CRC by name: crc8, crc16-modbus, crc32"},
         "from": {"type": "integer", "minimum": 0}, "to": {"type": "integer", "minimum": 1}, "word": {"type": "integer", "minimum": 1, "maximum": 8},
         "polynomial": {"type": "integer", "minimum": 0}, "initial": {"type": "integer", "minimum": 0}, "final_xor": {"type": "integer", "minimum": 0},
-        "reflected": {"type": "boolean", "default": false}, "negated": {"type": "boolean", "default": false}}}}}},
+        "reflected": {"type": "boolean", "default": false}, "negated": {"type": "boolean", "default": false},
+        "over_id": {"type": "boolean", "default": false, "description": "the checksum begins with the report id"}}}}}},
     "output": {"type": "object", "additionalProperties": false, "required": ["size", "fields"], "properties": {
       "id": {"type": "integer", "minimum": 1, "maximum": 255}, "size": {"type": "integer", "minimum": 1, "maximum": 1023, "description": "bytes without the report id"},
       "fields": {"type": "array", "items": {"type": "object", "additionalProperties": false, "required": ["is", "type"], "properties": {
@@ -65,7 +66,8 @@ inline constexpr const char* kWireSchema[] = {R"json({
         "method": {"type": "string", "pattern": "^(sum8?|xor8?|crc[0-9a-z-]*)$", "description": "sum, xor, crc with its numbers, or a published CRC by name: crc8, crc16-modbus, crc32"},
         "from": {"type": "integer", "minimum": 0}, "to": {"type": "integer", "minimum": 1}, "word": {"type": "integer", "minimum": 1, "maximum": 8},
         "polynomial": {"type": "integer", "minimum": 0}, "initial": {"type": "integer", "minimum": 0}, "final_xor": {"type": "integer", "minimum": 0},
-        "reflected": {"type": "boolean", "default": false}, "negated": {"type": "boolean", "default": false}}}}}}
+        "reflected": {"type": "boolean", "default": false}, "negated": {"type": "boolean", "default": false},
+        "over_id": {"type": "boolean", "default": false, "description": "the checksum begins with the report id"}}}}}}
   }
 })json"};
 

@@ -2,6 +2,8 @@
 #include "kinematics/phantom.hpp"
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 namespace hapticd::kinematics {
 namespace {
@@ -30,7 +32,28 @@ double nearest(double angle, double reference) noexcept {
   return reference + wrapped(angle - reference);
 }
 
+/// Puts a list into members, in their order.
+template <class... Member>
+void assign(const std::vector<double>& from, const char* id, Member&... members) {
+  if (from.empty()) return;
+  if (from.size() != sizeof...(members))
+    throw std::invalid_argument(std::string(id) + ": " + std::to_string(from.size()) +
+                                (from.size() == 1 ? " number" : " numbers") + ", expected " +
+                                std::to_string(sizeof...(members)) + " for this kind of arm");
+  size_t i = 0;
+  ((members = from[i++]), ...);
+}
+
 }  // namespace
+
+PhantomGeometry phantomGeometry(const std::vector<double>& lengths, const std::vector<double>& masses,
+                                const Eigen::Vector3d& origin) {
+  PhantomGeometry g;
+  assign(lengths, "arm.lengths", g.l1, g.l2, g.l3, g.l5, g.l6);
+  assign(masses, "arm.masses", g.ma, g.mc, g.mbe, g.mdf);
+  g.origin = origin;
+  return g;
+}
 
 double Phantom::largestOpening() noexcept {
   return kOpening;

@@ -2,6 +2,8 @@
 /// The PHANToM class of arms: a base that turns and a parallelogram whose links are driven from the base, so that both
 /// link angles are absolute (measured against the horizontal), not relative to one another.
 #pragma once
+#include <vector>
+
 #include "kinematics/arm.hpp"
 
 namespace hapticd::kinematics {
@@ -16,6 +18,12 @@ struct PhantomGeometry {
   double ma = 0.0202, mc = 0.0249, mbe = 0.2359, mdf = 0.1906;  ///< forearm, parallel link, the driven pairs
   Eigen::Vector3d origin{0, 0, 0};                              ///< [m] tip of the neutral pose, device frame
 };
+
+/// [main] The numbers of a device file in their place; an empty list keeps the published ones. Throws
+/// std::invalid_argument with a message for the user.
+/// @param lengths l1 l2 l3 l5 l6 [m]  @param masses ma mc mbe mdf [kg]
+PhantomGeometry phantomGeometry(const std::vector<double>& lengths, const std::vector<double>& masses,
+                                const Eigen::Vector3d& origin);
 
 /// Three joints. With c1 = cos q1, ...: r = l1 c2 + l2 s3 out from the axis and h = l1 s2 - l2 c3 up, turned by q1
 /// about the vertical. The published base frame (x out toward the user, y, z up) is the device frame with

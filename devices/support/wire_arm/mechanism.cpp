@@ -40,11 +40,8 @@ kinematics::Pose baseOf(const MechanismParameters& p) {
 }
 
 std::unique_ptr<kinematics::Arm> phantom(const MechanismParameters& p) {
-  kinematics::PhantomGeometry g;
-  assign(p.lengths, "arm.lengths", g.l1, g.l2, g.l3, g.l5, g.l6);
-  assign(p.masses, "arm.masses", g.ma, g.mc, g.mbe, g.mdf);
-  g.origin = Vector3d(p.origin[0], p.origin[1], p.origin[2]);
-  return std::make_unique<kinematics::Phantom>(g);
+  const Vector3d origin(p.origin[0], p.origin[1], p.origin[2]);
+  return std::make_unique<kinematics::Phantom>(kinematics::phantomGeometry(p.lengths, p.masses, origin));
 }
 
 std::unique_ptr<kinematics::Arm> delta(const MechanismParameters& p) {

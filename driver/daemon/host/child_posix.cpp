@@ -7,8 +7,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <optional>
@@ -19,7 +21,9 @@
 namespace hapticd::host {
 namespace {
 
-using Deadline = std::chrono::steady_clock::time_point;
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+using std::chrono::steady_clock;
 
 constexpr size_t kLargestAnswer = 64u << 20;
 constexpr int kThrew = 113;   ///< exit code of a child that an exception ended
@@ -106,17 +110,49 @@ class Surroundings {
   posix_spawnattr_t how_;
 };
 
+/// How long the child stood ready without a processor. 0 where the kernel does not count it.
+nanoseconds keptWaiting(pid_t child) {
+  char path[32], words[96] = {};
+  std::snprintf(path, sizeof path, "/proc/%d/schedstat", static_cast<int>(child));
+  const int fd = open(path, O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return nanoseconds(0);
+  const ssize_t got = read(fd, words, sizeof words - 1);
+  close(fd);
+  long long ran = 0, waited = 0;
+  if (got <= 0 || std::sscanf(words, "%lld %lld", &ran, &waited) != 2) return nanoseconds(0);
+  return nanoseconds(waited);
+}
+
+/// The time that a child may take. What others took from it on a busy machine is given back, up to ten times the limit.
+class Allowance {
+ public:
+  Allowance(pid_t child, milliseconds limit)
+      : child_(child), limit_(limit), begun_(steady_clock::now()), end_(begun_ + limit) {}
+
+  /// More than 0 while it may go on.
+  milliseconds left() {
+    const auto now = steady_clock::now();
+    if (now >= end_) end_ = begun_ + limit_ + std::min<nanoseconds>(keptWaiting(child_), 9 * limit_);
+    return std::chrono::ceil<milliseconds>(end_ - now);
+  }
+
+ private:
+  pid_t child_;
+  milliseconds limit_;
+  steady_clock::time_point begun_, end_;
+};
+
 /// Everything the child writes until it closes the pipe; nothing when the time is over first.
-std::optional<std::string> readAll(int fd, Deadline end) {
+std::optional<std::string> readAll(int fd, Allowance& allowed) {
   std::string bytes;
   char buffer[16384];
   while (bytes.size() < kLargestAnswer) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+    const milliseconds left = allowed.left();
     if (left.count() <= 0) return std::nullopt;
     pollfd waiting{fd, POLLIN, 0};
     const int ready = poll(&waiting, 1, static_cast<int>(left.count()));
-    if (ready == 0 || (ready < 0 && errno != EINTR)) return std::nullopt;
-    if (ready < 0) continue;
+    if (ready < 0 && errno != EINTR) return std::nullopt;
+    if (ready <= 0) continue;
     const ssize_t got = read(fd, buffer, sizeof buffer);
     if (got == 0) return bytes;
     if (got < 0 && errno != EINTR) return std::nullopt;
@@ -125,14 +161,14 @@ std::optional<std::string> readAll(int fd, Deadline end) {
   return std::nullopt;
 }
 
-/// How the child ended. One that has closed the pipe and lives on after `end` is ended; `in_time` says whether.
-int waitFor(pid_t child, Deadline end, bool& in_time) {
-  constexpr auto kPause = std::chrono::milliseconds(1);
+/// How the child ended. One that has closed the pipe and lives on beyond its time is ended; `in_time` says whether.
+int waitFor(pid_t child, Allowance& allowed, bool& in_time) {
+  constexpr auto kPause = milliseconds(1);
   int status = 0;
   for (;;) {
     const pid_t ended = waitpid(child, &status, in_time ? WNOHANG : 0);
     if (ended == child || (ended < 0 && errno != EINTR)) return status;
-    if (in_time && std::chrono::steady_clock::now() >= end) {
+    if (in_time && allowed.left().count() <= 0) {
       in_time = false;
       kill(child, SIGKILL);
     } else if (in_time) {
@@ -143,12 +179,12 @@ int waitFor(pid_t child, Deadline end, bool& in_time) {
 
 /// The child's answer, or how it ended. Closes `fd`, the reading end.
 Result<std::string> hear(pid_t child, int fd, int limit_ms) {
-  const Deadline end = std::chrono::steady_clock::now() + std::chrono::milliseconds(limit_ms);
-  std::optional<std::string> told = readAll(fd, end);
+  Allowance allowed(child, milliseconds(limit_ms));
+  std::optional<std::string> told = readAll(fd, allowed);
   close(fd);
   bool in_time = told.has_value();
   if (!in_time) kill(child, SIGKILL);
-  const int status = waitFor(child, end, in_time);
+  const int status = waitFor(child, allowed, in_time);
   if (!in_time) return Error{"took longer than " + std::to_string(limit_ms / 1000.0).substr(0, 4) + " s"};
   if (WIFSIGNALED(status)) return Error{std::string("crashed: ") + strsignal(WTERMSIG(status))};
   if (WEXITSTATUS(status) == kThrew) return Error{"threw an exception" + (told->empty() ? "" : ": " + *told)};

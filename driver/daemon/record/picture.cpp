@@ -159,8 +159,10 @@ void addAsked(Panel& panel, const std::vector<Sample>& samples, const RunNotes& 
   panel.bounds = {{limit, fmt::format("limits.force: {:g} N", limit)}};
 }
 
-std::string titleOf(const RunReport& report) {
-  std::string text = fmt::format("{}: {:.1f} s, {:.1f} Hz held", report.scene, report.seconds, report.rate_hz);
+std::string titleOf(const RunReport& report, double first, double last) {
+  const bool whole = last - first > 0.98 * report.seconds;
+  const std::string part = whole ? "" : fmt::format("{:.1f} to {:.1f} s of ", first, last);
+  std::string text = fmt::format("{}: {}{:.1f} s, {:.1f} Hz held", report.scene, part, report.seconds, report.rate_hz);
   if (report.overruns > 0) text += fmt::format(", {} overruns", report.overruns);
   return text;
 }
@@ -187,8 +189,8 @@ std::string nameOfFault(uint32_t fault) {
 Result<void> drawRun(const RunReport& report, const std::vector<Sample>& samples, const RunNotes& notes,
                      const std::string& file) {
   if (samples.empty()) return Error{file + ": nothing to draw: the run had no tick"};
-  Picture picture(titleOf(report), {kOver, kBeside});
   const double first = samples.front().t, last = std::max(samples.back().t, first + 1e-3);
+  Picture picture(titleOf(report, first, last), {kOver, kBeside});
   for (const Quantity& q : quantitiesOf(report, samples, notes.positions)) {
     Panel panel(q.title, {"time [s]", first, last}, axisOf(q, samples, false));
     panel.curves = {curveOf("", q.colour, samples, q.value)};

@@ -215,6 +215,15 @@ std::string snapshotAnswer(const Session& session) {
   return text({{"ok", true}, {"scene", session.scene_file}, {"next", next}, {"models", models}, {"devices", devices}});
 }
 
+std::string noSuchParameter(const hsp_class& plugin, const std::string& parameter, uint32_t flags) {
+  std::vector<std::string> names;
+  for (uint32_t i = 0; i < plugin.param_count; ++i)
+    if ((paramAt(plugin, i).flags & flags) == flags) names.emplace_back(paramAt(plugin, i).id);
+  return "parameter \"" + parameter.substr(0, 100) + "\" of " + plugin.name + ": there is no " +
+         ((flags & HSP_P_LIVE) != 0 ? "live " : "") + "parameter of that name, expected one of " +
+         document::listed(names) + document::suggestion(parameter.substr(0, 100), names);
+}
+
 Result<std::string> valuesAnswer(const Session& session, uint32_t place, const std::string& parameter) {
   const hsp_class& plugin = session.runner.world().shapes()[place]->description();
   const scene::Model& model = session.places[place].model;
@@ -226,14 +235,7 @@ Result<std::string> valuesAnswer(const Session& session, uint32_t place, const s
     values[param.id] = valueJson(model, param, i);
   }
   if (parameter.empty()) return text({{"ok", true}, {"values", values}});
-  return Error{"parameter \"" + parameter.substr(0, 100) + "\" of " + plugin.name +
-               ": there is no parameter of that name" + parameterMeant(plugin, parameter)};
-}
-
-std::string parameterMeant(const hsp_class& plugin, const std::string& name) {
-  std::vector<std::string> names;
-  for (uint32_t i = 0; i < plugin.param_count; ++i) names.emplace_back(paramAt(plugin, i).id);
-  return document::suggestion(name.substr(0, 100), names) + "; it has " + document::listed(names);
+  return Error{noSuchParameter(plugin, parameter, 0)};
 }
 
 std::string noForceWhy(const Session& session, uint32_t index) {
@@ -248,9 +250,8 @@ std::string noForceWhy(const Session& session, uint32_t index) {
            (endsByItself(fault) ? "" : clear);
   if (!arm.foundPressed()) return "";
   return "device " + device +
-         ": the button of limits.enable was down when the run began, so it enables nothing\n  fix: let it go once, "
-         "then "
-         "press it";
+         ": the button of limits.enable was down when the run began, so it enables nothing\n  fix: let it go "
+         "once, then press it";
 }
 
 namespace {

@@ -45,11 +45,12 @@ std::string listAnswer(const Session& session);
 /// also of those at rest, and every device.
 std::string snapshotAnswer(const Session& session);
 
+/// [main] The words for a parameter that the plugin does not have, with those that it has.
+/// @param flags HSP_P_LIVE: only live ones were meant; 0: all
+std::string noSuchParameter(const hsp_class& plugin, const std::string& parameter, uint32_t flags);
+
 /// [main] The value of one parameter, or of all.
 Result<std::string> valuesAnswer(const Session& session, uint32_t place, const std::string& parameter);
-
-/// [main] " (did you mean "stiffness"?)": what a parameter of this name may mean; "": nothing near.
-std::string parameterMeant(const hsp_class& plugin, const std::string& name);
 
 /// [main] One event as an object of JSON, without the end of a line.
 std::string eventText(const Session& session, const hapticd_event& event);

@@ -86,7 +86,7 @@ Result<std::string> RequestHandler::tell(const control::Peer& peer, const Reques
       const auto place = placeOf(request.model);
       if (!place) return Error{place.error()};
       auto values = valuesAnswer(session(), *place, request.parameter);
-      return values ? std::move(values) : refuse("unknown", values.error());
+      return values ? values : refuse("unknown", values.error());
     }
     case Request::Kind::kGeometry: {
       const auto place = placeOf(request.model);
@@ -222,8 +222,7 @@ Result<void> RequestHandler::set(const Request& request) {
   order.value = request.value;
   const hsp_param* param = parameterOf(plugin, request.parameter, order.param);
   const std::string what = "parameter \"" + request.parameter.substr(0, 100) + "\" of " + plugin.name;
-  if (param == nullptr)
-    return refuse("unknown", what + ": there is no parameter of that name" + parameterMeant(plugin, request.parameter));
+  if (param == nullptr) return refuse("unknown", noSuchParameter(plugin, request.parameter, HSP_P_LIVE));
   if ((param->flags & HSP_P_LIVE) == 0)
     return refuse("unsupported", what + ": cannot change while the model runs\n  fix: change the scene and reload it");
   const bool whole = param->kind == HSP_REAL || std::floor(request.value) == request.value;

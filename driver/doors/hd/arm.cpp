@@ -142,10 +142,10 @@ void Arm::begin(uint64_t scheduler_tick) {
 
 void Arm::reportFault() {
   const uint32_t fault = now_.fault;
+  if (fault != kStopped) stopped_since_ = -1;
   if (fault == told_fault_) return;
   // A daemon that ends ramps its forces out as a hold does. That it is gone is told by the scheduler.
   constexpr double kEnds = 0.25;  // s
-  if (fault != kStopped) stopped_since_ = -1;
   if (fault == kStopped && stopped_since_ < 0) stopped_since_ = now_.t;
   if (fault == kStopped && now_.t - stopped_since_ < kEnds) return;
   told_fault_ = fault;

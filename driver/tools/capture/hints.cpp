@@ -6,6 +6,8 @@
 #include <set>
 #include <vector>
 
+#include "codec/checksum_start.hpp"
+
 namespace hapticd::capture {
 namespace {
 
@@ -16,6 +18,8 @@ using codec::Field;
 constexpr size_t kEnough = 3;
 /// Of the reports whose checksum is wrong: some of them are really damaged.
 constexpr double kMost = 0.8;
+/// Of so many wrong reports one may be right by chance.
+constexpr size_t kChance = 50;
 
 std::string hexByte(uint8_t byte) {
   char text[8];
@@ -64,8 +68,8 @@ struct Fit {
   size_t count = 0;
 };
 
-/// The method and byte order that agree with most of them.
-Fit bestMethod(Field field, const Reports& reports) {
+/// The method and byte order that agree with most of them, also with the report id in front (-1: it has none).
+Fit bestMethod(Field field, const Reports& reports, int id) {
   Fit best;
   std::vector<codec::NamedCrc> all(codec::namedCrcs().begin(), codec::namedCrcs().end());
   codec::Check plain;
@@ -73,17 +77,20 @@ Fit bestMethod(Field field, const Reports& reports) {
   plain.method = Checksum::kSum, all.push_back({"sum", plain, 0});
   plain.method = Checksum::kXor, all.push_back({"xor", plain, 0});
   for (const codec::NamedCrc& one : all)
-    for (const bool big : {false, true}) {
+    for (int way = 0; way < (id < 0 ? 2 : 4); ++way) {
+      const bool big = way % 2 == 1, over_id = way >= 2;
       if (one.check.bits > field.bits || (big && field.bits <= 8)) continue;
-      field.check = one.check;
+      field.check = over_id ? codec::startedWith(one.check, static_cast<uint8_t>(id)) : one.check;
       field.check.big_endian = field.big_endian = big;
       const size_t count = fitting(field, reports);
-      if (count > best.count) best = {std::string(one.name) + ", endian: " + (big ? "big" : "little"), count};
+      if (count <= best.count) continue;
+      best = {std::string(one.name) + ", endian: " + (big ? "big" : "little") + (over_id ? ", over_id: true" : ""),
+              count};
     }
   return best;
 }
 
-std::string checksumHint(const Decoded& decoded) {
+std::string checksumHint(const Decoded& decoded, int id) {
   const Field* field = nullptr;
   Reports sums;
   std::set<std::string> different;
@@ -94,11 +101,13 @@ std::string checksumHint(const Decoded& decoded) {
     sums.push_back(&bad);
     different.insert(hexText(bad.bytes.data(), bad.bytes.size()));
   }
-  if (decoded.good() > 0 || different.size() < kEnough) return "";
-  const Fit best = bestMethod(*field, sums);
+  // One report in 256 has the bytes of its checksum equal, and is right in the wrong order as well.
+  if (decoded.good() * kChance > decoded.reports.size() || different.size() < kEnough) return "";
+  const Fit best = bestMethod(*field, sums, id);
   if (static_cast<double>(best.count) < kMost * static_cast<double>(sums.size()))
     return "no method that is known by name fits them either, from byte " + std::to_string(field->from) + " to " +
-           std::to_string(field->to - 1) + ": see from, to and at of the checksum\n";
+           std::to_string(field->to - 1) + (id >= 0 ? ", with the report id in front or without" : "") +
+           ": see from, to and at of the checksum\n";
   const bool all = best.count == sums.size() && sums.size() == decoded.bad.size();
   return "the checksum of " +
          (all ? "each" : std::to_string(best.count) + " of the " + std::to_string(decoded.bad.size())) +
@@ -108,7 +117,7 @@ std::string checksumHint(const Decoded& decoded) {
 }  // namespace
 
 std::string hintsOf(const codec::Wire& wire, const Decoded& decoded) {
-  return sizeHint(wire, decoded) + checksumHint(decoded);
+  return sizeHint(wire, decoded) + checksumHint(decoded, wire.input.id);
 }
 
 }  // namespace hapticd::capture

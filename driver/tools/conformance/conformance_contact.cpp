@@ -82,18 +82,26 @@ std::string contactFlags(const Recipe& recipe, uint64_t) {
   return along(*made.subject, [](const Answer& answer, const Vector3d&) { return flagsOf(answer.contacts[0]); });
 }
 
-/// [N/m] The slopes of a press straight in, at rest; in order of size.
+/// [N/m] The slopes of a press straight in, at rest; in order of size. What a force may jump on purpose is no slope: it
+/// is taken off, over ways so long that it hides little.
 std::vector<double> slopesOf(Subject& subject, const Place& place) {
-  std::vector<double> slopes;
-  double force = 0, at = 0;
-  bool known = false;
+  const hsp_report& report = subject.report();
+  const double jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
+  const size_t apart = jump > 0 ? 25 : 1;
+  std::vector<double> slopes, forces, at;
   press(subject, place, [&](const Answer& answer, const PressStep& step) {
     if (!step.settled) return std::string();
     const hsp_contact& c = answer.contacts[0];
-    const double now = Vector3d(c.force).dot(place.out), here = step.p.dot(place.out);
-    if (known && c.depth_m > 0) slopes.push_back((now - force) / (at - here));
-    known = c.depth_m > 0;
-    force = now, at = here;
+    if (!(c.depth_m > 0)) {
+      forces.clear(), at.clear();
+      return std::string();
+    }
+    forces.push_back(Vector3d(c.force).dot(place.out)), at.push_back(step.p.dot(place.out));
+    if (forces.size() <= apart) return std::string();
+    const size_t before = forces.size() - 1 - apart;
+    const double change = forces.back() - forces[before];
+    const double slope = std::copysign(std::max(0.0, std::abs(change) - jump), change) / (at[before] - at.back());
+    slopes.push_back(slope);
     return std::string();
   });
   std::sort(slopes.begin(), slopes.end());

@@ -45,6 +45,25 @@ std::string descriptorComplete(const Recipe& recipe, uint64_t) {
   return "";
 }
 
+/// A stiffness that jumps under a hand is felt as a blow.
+std::string liveConsent(const Recipe& recipe, uint64_t) {
+  auto made = Subject::make(recipe);
+  if (!made) return made.error();
+  const hsp_class& c = (*made)->description();
+  std::string found;
+  for (uint32_t i = 0; i < c.param_count; ++i) {
+    const hsp_param& p = paramAt(c, i);
+    const std::string unit = p.unit != nullptr ? p.unit : "";
+    const bool force = unit == "N" || unit == "N/m" || unit == "N s/m" || unit == "N m" || unit == "N m/rad";
+    if (force && (p.flags & HSP_P_LIVE) != 0 && (p.flags & HSP_P_SAFETY) == 0)
+      found += (found.empty() ? "" : ", ") + std::string(p.id);
+  }
+  return found.empty() ? ""
+                       : "warn: " + found +
+                             " may change the force under a hand without anybody's consent; expected HSP_P_LIVE | "
+                             "HSP_P_SAFETY";
+}
+
 std::string idUnique(const Recipe& recipe, uint64_t) {
   auto library = host::Library::open(recipe.file);
   if (!library) return library.error();
@@ -62,12 +81,16 @@ std::string idUnique(const Recipe& recipe, uint64_t) {
   return "";
 }
 
+/// The soonest of three tries: a machine may stand still, or read the file from a slow disk, once.
 std::string scanTimeLimit(const Recipe& recipe, uint64_t) {
-  const Nanoseconds begun = monotonicNow();
-  auto library = host::Library::open(recipe.file);
-  if (!library) return library.error();
-  const double seconds = static_cast<double>(monotonicNow() - begun) * 1e-9;
-  return seconds < 1 ? "" : "loading took " + text(seconds) + " s; expected less than 1 s";
+  double least = HUGE_VAL;
+  for (int i = 0; i < 3 && least >= 1; ++i) {
+    const Nanoseconds begun = monotonicNow();
+    auto library = host::Library::open(recipe.file);
+    if (!library) return library.error();
+    least = std::min(least, static_cast<double>(monotonicNow() - begun) * 1e-9);
+  }
+  return least < 1 ? "" : "loading took " + text(least) + " s; expected less than 1 s";
 }
 
 std::string unknownExtension(const Recipe& recipe, uint64_t) {
@@ -143,6 +166,7 @@ std::vector<ConformanceTest> lifeTests() {
       {"descriptor-complete", "every function, name, unit and default is there", &descriptorComplete},
       {"id-unique", "no id, name or parameter occurs twice", &idUnique},
       {"units", "units are SI", &unitsSi},
+      {"live-force-consent", "what changes a force under a hand asks for consent", &liveConsent},
       {"unknown-extension-returns-null", "an unknown extension is NULL", &unknownExtension},
       {"set-out-of-range-rejected", "values out of range change nothing", &setOutOfRange},
       {"param-roundtrip", "get() returns what set() was given", &paramRoundtrip},

@@ -40,6 +40,14 @@ std::string along(Subject& subject, const std::function<std::string(const Answer
 /// "warn: ..." for parameters whose units are not SI.
 std::string unitsSi(const Recipe& recipe, uint64_t);
 
+/// [bytes] What each life keeps, from the memory in use after each: the least that its growth from one quarter of the
+/// lives to the next explains, by the least and by the most of a quarter. What is taken once, however late, and what an
+/// allocator keeps and gives back, is no leak: it does not grow through all of them. 0 for fewer than eight lives.
+double leakOf(const std::vector<double>& used);
+
+/// "" or what create() to destroy() leaks.
+std::string createDestroyLeak(const Recipe& recipe, uint64_t);
+
 /// "": a status that a step may have, and an answer that is finite.
 std::string wrongStatus(const Answer& answer);
 

@@ -10,6 +10,7 @@
 #include "base/allocation_count.hpp"
 #include "base/clock.hpp"
 #include "base/thread_usage.hpp"
+#include "conformance/allocation_place.hpp"
 #include "conformance/step_watch.hpp"
 #include "host/class_table.hpp"
 
@@ -215,6 +216,7 @@ void Subject::call(const hsp_step& step, const hsp_probe& first) {
   const Nanoseconds begun = monotonicNow();
   {
     const StepWatch watch(first);
+    const AllocationWatch allocations;
     answer_.status = class_->step(shape_, &step);
   }
   step_ns_ = monotonicNow() - begun;

@@ -11,7 +11,7 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Joints of the arm at rest [rad]: in the pose of its calibration, else at zero.
+/// [main] Joints of the arm at rest [rad]: in the pose of its calibration, else at zero or the stop nearest to it.
 std::array<double, HDV_MAX_JOINTS> restJoints(const document::Node& root, uint32_t joints);
 
 /// [main] arm.max_torque of each joint [N m]; empty: not known of all of them.

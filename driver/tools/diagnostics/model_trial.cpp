@@ -56,11 +56,22 @@ class Remarks {
   host::Packer list_;
 };
 
+/// What moves a body is given to one that does not move: a person waits for it to give way.
+void adviseMotion(const scene::Model& model, size_t index, document::Problems& warnings) {
+  for (const scene::Value& value : model.parameters)
+    for (const char* id : {"mass", "inertia", "gravity", "drag", "angular_drag", "joint", "tether", "velocity"})
+      if (value.id == id)
+        document::report(warnings, value.place, "models[" + std::to_string(index) + "].parameters." + id,
+                         "acts on a model that moves by its plugin, which this one does not: motion: dynamic under "
+                         "parameters makes it do so, where the plugin has that");
+}
+
 std::string tryAll(const scene::Scene& scene, double max_force) {
   Remarks problems, warnings;
   host::Packer claims;
   for (size_t i = 0; i < scene.models.size(); ++i) {
     double stiffness = 0;
+    bool idle = false;
     const auto log = [&](int level, const std::string&, const std::string& text) {
       if (level == HSP_LOG_WARNING) warnings.add(i, text);
     };
@@ -70,8 +81,11 @@ std::string tryAll(const scene::Scene& scene, double max_force) {
       problems.add(i, activated.error());
     } else {
       stiffness = (*shape)->report().max_stiffness;
+      const bool may_move = ((*shape)->description().flags & HSP_C_MOVES) != 0;
+      idle = may_move && ((*shape)->report().flags & HSP_R_MOVES) == 0;
     }
     claims.number(stiffness);
+    claims.number(uint32_t{idle ? 1u : 0u});
   }
   return problems.take() + warnings.take() + claims.take();
 }
@@ -89,7 +103,10 @@ ModelTrial tryModels(const scene::Scene& scene, double max_force) {
   host::Unpacker in(*told);
   trial.problems = Remarks::read(in, scene);
   trial.warnings = Remarks::read(in, scene);
-  for (size_t i = 0; i < scene.models.size() && in.good(); ++i) trial.stiffness.push_back(in.real());
+  for (size_t i = 0; i < scene.models.size() && in.good(); ++i) {
+    trial.stiffness.push_back(in.real());
+    if (in.count() != 0) adviseMotion(scene.models[i], i, trial.warnings);
+  }
   return trial;
 }
 

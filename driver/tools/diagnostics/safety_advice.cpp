@@ -116,7 +116,7 @@ std::set<std::string> keysOf(Role role) {
   else if (role == Role::kConstant || role == Role::kFirmware)
     add({"value"});
   else if (role == Role::kChecksum)
-    add({"method", "from", "to", "word", "polynomial", "initial", "reflected", "final_xor", "negated"});
+    add({"method", "from", "to", "word", "polynomial", "initial", "reflected", "final_xor", "negated", "over_id"});
   return keys;
 }
 

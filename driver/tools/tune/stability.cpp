@@ -155,15 +155,15 @@ document::Problems fastPaths(const scene::Scene& scene) {
   return problems;
 }
 
-std::string overheating(const std::string& device, double sustained, const std::vector<double>& forces) {
+std::string overheating(const std::string& device, double sustained, const std::vector<double>& forces, double rate) {
   if (sustained <= 0 || forces.empty()) return "";
   double heat = 0;
   for (const double force : forces) heat += force * force;
   const double effective = std::sqrt(heat / static_cast<double>(forces.size()));
   if (effective <= sustained) return "";
-  return device + " gave " + text(effective) + " N (root of the mean square) over the end of the run and sustains " +
-         text(sustained) + " N: real motors would overheat; a softer model or limits.force: " + text(sustained) +
-         " keeps within that";
+  return device + " gave " + text(effective) + " N (root of the mean square of the last " +
+         text(std::round(static_cast<double>(forces.size()) / rate)) + " s) and sustains " + text(sustained) +
+         " N: real motors would overheat; a softer model or limits.force: " + text(sustained) + " keeps within that";
 }
 
 }  // namespace hapticd::tune

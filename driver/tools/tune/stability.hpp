@@ -26,7 +26,7 @@ document::Problems fastPaths(const scene::Scene& scene);
 
 /// [main] Whether an arm was asked for more force than it sustains: "", or what a user should know.
 /// @param sustained [N] for any length of time; 0: unknown
-/// @param forces [N] of successive ticks; motors heat with the square of them
-std::string overheating(const std::string& device, double sustained, const std::vector<double>& forces);
+/// @param forces [N] of successive ticks; motors heat with the square of them  @param rate [Hz] of those ticks
+std::string overheating(const std::string& device, double sustained, const std::vector<double>& forces, double rate);
 
 }  // namespace hapticd::tune

@@ -23,7 +23,14 @@ enum class Slip {
   kNormalInward,  ///< and the force with it
   kShares,        ///< a static variable
   kNoInvalid,     ///< HSP_IN_INVALID is not looked at
-  kComputes       ///< 3 ms of computing
+  kComputes,      ///< 3 ms of computing
+  kLeaks,         ///< 1000 bytes in each life
+  kSawtooth,      ///< keeps 100 kB, and gives them back in its next life
+  kSawtoothLate,  ///< the same, a life later
+  kClaims,        ///< to be quicker than any processor
+  kAllocates,     ///< in contact
+  kVibrates,      ///< on purpose, and says so: no slip
+  kLive           ///< a stiffness that changes without consent
 };
 
 template <class Derived, Slip kSlip>
@@ -31,14 +38,29 @@ struct Floor : hapticd::Shape {
   double stiffness = 0;
   std::vector<double> heights = {0};
   volatile double kept = 0;  // so that the computing is done
+  char* leaked = nullptr;
   static constexpr auto fields() {
     return std::array{hapticd::Fields<Derived>::real("stiffness", &Derived::stiffness,
-                                                     kSlip == Slip::kUnit ? "N/mm" : "N/m", 0, 5000, 500, "Spring.")};
+                                                     kSlip == Slip::kUnit ? "N/mm" : "N/m", 0, 5000, 500, "Spring.",
+                                                     kSlip == Slip::kLive ? uint32_t{HSP_P_LIVE} : 0)};
   }
-  void activate(const hsp_activation&, hsp_report& report) { report.max_stiffness = stiffness; }
+  void activate(const hsp_activation&, hsp_report& report) {
+    static std::vector<char> kept_over(kSlip == Slip::kSawtoothLate ? 100'000 : 0);
+    report.max_stiffness = stiffness;
+    if (kSlip == Slip::kLeaks) leaked = new char[1000];
+    if (kSlip == Slip::kSawtooth || kSlip == Slip::kSawtoothLate)
+      kept_over = std::vector<char>(kept_over.empty() ? 100'000 : 0);
+    if (kSlip == Slip::kVibrates) hapticd::reportJumps(report, 0.2);
+    if (kSlip == Slip::kClaims) report.worst_ns = 1;
+  }
+
+  __attribute__((noinline)) void keepDepth(double depth) {
+    if (heights.size() < 100) heights.push_back(depth);
+  }
 
   double push(const hsp_probe& in, double depth) {
     static double shared = 0;
+    if (kSlip == Slip::kAllocates) keepDepth(depth);
     if (kSlip == Slip::kPrints) std::printf("depth %f\n", depth);
     if (kSlip == Slip::kAsks) return getppid() > 0 ? stiffness * depth : 0;
     if (kSlip == Slip::kReadsVelocity) return stiffness * depth - 2 * in.velocity[1];
@@ -47,6 +69,8 @@ struct Floor : hapticd::Shape {
     if (kSlip == Slip::kCrashes) *reinterpret_cast<volatile double*>(heights.size() - 1) = 1;
     if (kSlip == Slip::kNan) return std::sqrt(-depth);
     if (kSlip == Slip::kShares) return stiffness * depth + 1e-3 * std::sin(1e4 * (shared += depth));
+    if (kSlip == Slip::kVibrates)
+      return stiffness * depth + 0.1 * std::sin(2 * M_PI * 200e-9 * static_cast<double>(in.time_ns));
     return stiffness * depth;
   }
 
@@ -83,8 +107,15 @@ SHAPE("normal_inward", NormalInward, kNormalInward)
 SHAPE("shares", Shares, kShares)
 SHAPE("no_invalid", NoInvalid, kNoInvalid)
 SHAPE("computes", Computes, kComputes)
+SHAPE("leaks", Leaks, kLeaks)
+SHAPE("sawtooth", Sawtooth, kSawtooth)
+SHAPE("sawtooth_late", SawtoothLate, kSawtoothLate)
+SHAPE("claims", Claims, kClaims)
+SHAPE("allocates", Allocates, kAllocates)
+SHAPE("vibrates", Vibrates, kVibrates)
+SHAPE("live", Live, kLive)
 
 }  // namespace
 
 HAPTICD_SHAPES(Right, Prints, Asks, ReadsVelocity, Millimetres, Unit, Throws, Crashes, Nan, NormalInward, Shares,
-               NoInvalid, Computes)
+               NoInvalid, Computes, Leaks, Sawtooth, SawtoothLate, Claims, Allocates, Vibrates, Live)

@@ -86,6 +86,55 @@ def examples(folder):
     check("record_to_pandas.py", code == 0 and " 0 gaps" in out and open(table).readline().startswith("tick,time_ns,t,"), (out, err))
 
 
+PUSHES = """
+import os, signal, sys, time
+import hapticd
+h = hapticd.connect("push")
+def until(seen, seconds=60):
+    end = time.monotonic() + seconds
+    while not seen() and time.monotonic() < end:
+        time.sleep(0.05)
+    return seen()
+def broken(state):
+    raise ValueError("no force today")
+push = h.push(h.devices[0], broken)
+assert until(lambda: push.error is not None)
+print("before end()", file=sys.stderr)
+try:
+    push.end()
+    raise SystemExit("what the callback raised was lost")
+except ValueError:
+    pass
+push = h.push(h.devices[0], lambda state: [0.1, 0, 0])
+assert until(lambda: push.answers > 0), "nothing was answered"
+os.kill(int(sys.argv[1]), signal.SIGKILL)
+assert until(lambda: push.error is not None), "the end of the daemon was not noticed"
+try:
+    push.end()
+    raise SystemExit("the end of the daemon was not told")
+except hapticd.HapticdError as error:
+    assert "the daemon is gone" in str(error), error
+"""
+
+
+def pushes(folder):
+    """What ends a push is told at once, not only where the program ends it."""
+    scene = os.path.join(folder, "push.yaml")
+    with open(scene, "w") as file:
+        file.write("hapticd: 1\nclients: add\nmodels: []\n")
+    victim = subprocess.Popen([HAPTICD, "run", scene, "--name", "push"], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    for _ in range(600):
+        if os.path.exists(os.path.join(folder, "push.sock")):
+            break
+        time.sleep(0.05)
+    done = subprocess.run([sys.executable, "-c", PUSHES, str(victim.pid)], env=dict(environment, PYTHONPATH=CLIENT), capture_output=True, text=True, timeout=300)
+    victim.kill()
+    victim.wait()
+    told = done.stderr.split("before end()")[0]
+    check("what a callback raises is told at once", done.returncode == 0 and "ValueError: no force today" in told, done.stderr)
+    check("and so is the end of the daemon", "the daemon is gone" in done.stderr, done.stderr)
+
+
 with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
     environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
     scene = os.path.join(folder, "scene.yaml")
@@ -101,6 +150,7 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
         time.sleep(0.05)
     alone()
     examples(folder)
+    pushes(folder)
     daemon.terminate()
     check("the run ends in order", daemon.wait(timeout=30) == 0)
 finish()

@@ -95,7 +95,7 @@ def other_lines(folder):
 
 
 def twin_of_an_arm(folder):
-    """The twin by a chain that the guide to devices shows presses the sphere."""
+    """The twin that the guide to devices shows presses the sphere."""
     page = open(os.path.join(SOURCE, "driver/docs/devices.md")).read()
     file, report = os.path.join(folder, "twin.yaml"), os.path.join(folder, "twin.json")
     open(file, "w").write(re.search(r"### A twin of.*?```yaml\n(.*?)```", page, re.S)[1])

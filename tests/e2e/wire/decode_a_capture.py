@@ -5,7 +5,10 @@ Usage: decode_a_capture.py HAPTICD SOURCE_DIR VME_BOARD MODULE_DIR       exit 1 
 """
 import binascii
 import csv
+import functools
 import io
+import math
+import operator
 import os
 import pty
 import struct
@@ -146,6 +149,39 @@ with tempfile.TemporaryDirectory() as folder:
     open(other, "w").write(ARM.replace("at: 14, type: u32, method: crc32, from: 0, to: 14", "at: 14, type: u32, method: crc32, from: 1, to: 14"))
     code, out, err = run("decode", other, given="\n".join(lines).encode())
     check("where none fits, this is told", code == 1 and "no method that is known by name fits" in err, err)
+    # A checksum that begins with the report id, which no offset names: zlib's, binascii's, a plain sum and xor, by their own code.
+    for method, type_, sum_of in (("crc32", "u32", lambda b: struct.pack("<I", binascii.crc32(b))),
+                                  ("crc16-ccitt-false", "u32", lambda b: struct.pack("<I", binascii.crc_hqx(b, 0xFFFF))),
+                                  ("sum", "u32", lambda b: struct.pack("<I", sum(b))), ("xor8", "u32", lambda b: struct.pack("<I", functools.reduce(operator.xor, b)))):
+        over = ARM.replace("      size: 18\n", "      id: 5\n      size: 18\n").replace("method: crc32,", f"method: {method}, over_id: true,")
+        text = "\n".join("05 " + (body[:14] + sum_of(b"\x05" + body[:14])).hex() for body in (report(i, 1000 * i, -7 * i, 0.5) for i in range(20)))
+        open(other, "w").write(over)
+        code, out, err = run("decode", other, given=text.encode())
+        check(f"{method} over the report id: all are right", code == 0 and "20 reports, 20 good" in err, err)
+        if method.startswith("crc"):
+            open(other, "w").write(over.replace(", over_id: true", ""))
+            code, out, err = run("decode", other, given=text.encode())
+            check(f"{method} over the report id is found", code == 1 and "over_id: true" in err and f"method: {method}" in err.replace("crc16,", "crc16-ccitt-false,"), err)
+    # Good reports of positions that the arm cannot have.
+    stops = ARM.replace("max_torque: [0.5]}", "max_torque: [0.5], limits: [[-1.2, 1.2], [-0.8, 0.8], [-1, 1]]}")
+    swing = "\n".join(report(i, round(1e6 * math.sin(i / 20)), round(5e5 * math.sin(i / 30)), 0.5).hex() for i in range(200))
+    open(other, "w").write(stops)
+    code, out, err = run("decode", other, given=swing.encode())
+    check("positions within the stops are not remarked on", code == 0 and "joint" not in err, err)
+    open(other, "w").write(stops.replace("type: i24, scale: 1.0e-6}", "type: i24, scale: 5.7e-5}", 1))
+    code, out, err = run("decode", other, given=swing.encode())
+    check("a scale in degrees is told by the stops", "joint 1: from -57 to 57 rad" in err and "scale_degrees" in err and "joint 2" not in err, err)
+    open(other, "w").write(stops.replace("joint: 1, at: 2, type: i24, scale", "joint: 1, at: 2, type: i24, endian: big, scale"))
+    code, out, err = run("decode", other, given=swing.encode())
+    check("a wrong order of bytes is told by its jumps", "joint 1: jumps by up to" in err and "endian" in err and "joint 2" not in err, err)
+    # One report in 256 has equal bytes in its checksum: right in the wrong order, and no reason to say nothing.
+    swapped = ARM.replace("type: u32, method: crc32, from: 0, to: 14", "type: u16, method: crc16-modbus, from: 0, to: 14")
+    open(other, "w").write(swapped)
+    bodies = [report(i, 31 * i, -7 * i, 0.5)[:14] for i in range(1500)]
+    text = "\n".join((body + struct.pack(">H", modbus(body)) + b"\0\0").hex() for body in bodies)
+    code, out, err = run("decode", other, given=text.encode())
+    alike = sum(modbus(body) // 256 == modbus(body) % 256 for body in bodies)
+    check("an order of bytes is found though some agree by chance", alike > 0 and "method: crc16-modbus, endian: big" in err, (alike, err))
     code, out, err = run("decode", arm, given=lines[0].encode())
     check("one report is one", "1 report, 1 good" in err, err)
     for text, words in ((b"0.1 -0.1 0.2\n", "expected commas between the numbers"), (b"abc,1,2\n", '"abc"'), (b"nan,0,0\n", '"nan"')):

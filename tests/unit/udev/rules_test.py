@@ -4,6 +4,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
@@ -13,6 +14,20 @@ RULES = ROOT / "udev" / "70-hapticd.rules"
 class Rules(unittest.TestCase):
     def test_are_generated_from_the_device_files(self):
         subprocess.run([sys.executable, ROOT / "udev" / "generate-rules", "--check"], check=True)
+
+    def test_of_another_arm_are_printed(self):
+        generate = [sys.executable, ROOT / "udev" / "generate-rules"]
+        before = RULES.read_text()
+        with tempfile.TemporaryDirectory() as folder:
+            arm = pathlib.Path(folder) / "my-arm.yaml"
+            arm.write_text('hapticd-device: 1\nmodule: usb_hid\nparameters:\n  usb: {id: "1209:0A0a"}\n')
+            told = subprocess.run([*generate, arm], check=True, capture_output=True, text=True).stdout
+            self.assertIn('ATTR{idVendor}=="1209", ATTR{idProduct}=="0a0a"', told)
+            self.assertIn('KERNELS=="*:1209:0A0A.*"', told)
+            arm.write_text("models: []\n")
+            self.assertIn("expected a device file", subprocess.run([*generate, arm], capture_output=True, text=True).stderr)
+        self.assertIn("usage", subprocess.run([*generate, "--help"], check=True, capture_output=True, text=True).stdout)
+        self.assertEqual(RULES.read_text(), before)
 
     def test_never_open_a_device_to_the_world(self):
         modes = re.findall(r'MODE\s*:?=\s*"(\d+)"', RULES.read_text())

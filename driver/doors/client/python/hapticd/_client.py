@@ -72,7 +72,11 @@ class _Line:
 
     def say(self, request: dict[str, Any]) -> None:
         try:
-            self._socket.sendall(json.dumps(request).encode() + b"\n")
+            line = json.dumps(request, allow_nan=False)
+        except ValueError:
+            raise ValueError(f"a number of the request is not finite: {request}") from None
+        try:
+            self._socket.sendall(line.encode() + b"\n")
         except OSError as error:
             raise HapticdError(f"the daemon is gone: {error.strerror}") from None
 
@@ -145,7 +149,7 @@ class Events:
         except HapticdError:
             self.close()
             if self._died():
-                raise HapticdError("the daemon has ended: it was killed, or it crashed") from None
+                raise HapticdError("the daemon is gone: it was killed, or it crashed") from None
             raise StopIteration from None
         if event is None:
             self.close()
@@ -241,8 +245,7 @@ class Client:
         return self.ended() and os.path.exists(self._base + ".sock")
 
     def _gone(self) -> str:
-        return (f"the daemon {self.name} has ended"
-                + (": it was killed, or it crashed" if self.died() else "")
+        return (f"the daemon is gone: {self.name} " + ("was killed, or it crashed" if self.died() else "has ended")
                 + "\n  fix: start it again with hapticd run, then connect anew")
 
     def _check(self) -> None:

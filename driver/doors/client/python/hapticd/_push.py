@@ -55,17 +55,17 @@ class ForceThread:
         try:
             self._answer()
         except BaseException as error:  # noqa: B902 - told at once, and raised in end()
-            self.error = error
             self._tell(error)
+            self.error = error
         finally:
             self._bell.close()
             self._page.close()
 
     def _tell(self, error: BaseException) -> None:
         """Nobody may look at the main thread for long."""
-        print(f"hapticd: the push on {self._device} has ended, and its force ramps out:", file=sys.stderr)
         shown = None if isinstance(error, HapticdError) else error.__traceback__
-        traceback.print_exception(type(error), error, shown, file=sys.stderr)
+        text = "".join(traceback.format_exception(type(error), error, shown))
+        print(f"hapticd: the push on {self._device} has ended, and its force ramps out:\n{text}", end="", file=sys.stderr)
 
     def _watch(self, state: State) -> None:
         """A fault that begins is told beside the ticks: words for it take a request."""

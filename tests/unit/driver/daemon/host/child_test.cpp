@@ -2,7 +2,10 @@
 #include "host/child.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <signal.h>
+#include <sys/prctl.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <stdexcept>
@@ -40,6 +43,39 @@ TEST(Child, TellsACrashFromAHangFromAnExit) {
   EXPECT_EQ(exits.error(), "ended the process with code 3");
   const auto throws = runInChild([]() -> std::string { throw std::runtime_error("no"); }, 10'000);
   ASSERT_FALSE(throws);
+}
+
+void burn(double seconds, clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  const double end = static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) + seconds;
+  while (static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) < end) clock_gettime(clock, &now);
+}
+
+/// Computes for 0.2 s while five others want the same processor.
+std::string workAmongOthers() {
+  cpu_set_t one;
+  CPU_ZERO(&one);
+  CPU_SET(sched_getcpu(), &one);
+  sched_setaffinity(0, sizeof one, &one);
+  pid_t others[5];
+  for (pid_t& other : others) {
+    if ((other = fork()) != 0) continue;
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    burn(20, CLOCK_MONOTONIC);
+    _exit(0);
+  }
+  burn(0.2, CLOCK_THREAD_CPUTIME_ID);
+  for (const pid_t other : others) kill(other, SIGKILL);
+  return "done";
+}
+
+// It takes more than a second here, of which it stands ready, without a processor, for most.
+TEST(Child, IsNotBlamedForTheTimeThatOthersTook) {
+  if (access("/proc/self/schedstat", R_OK) != 0) GTEST_SKIP() << "this kernel does not count it";
+  const auto told = runInChild(workAmongOthers, 500);
+  ASSERT_TRUE(told) << told.error();
+  EXPECT_EQ(*told, "done");
 }
 
 TEST(Program, DescribesAFileAsAForkDoesAndTellsHowABadOneEnds) {

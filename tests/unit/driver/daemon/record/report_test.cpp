@@ -171,6 +171,17 @@ TEST_F(Report, SaysNothingOfAFewTicksThatABusyMachineWasLateIn) {
   EXPECT_EQ(paceText(report, 1000), "");
 }
 
+// Of a thousand ticks 30 were interrupted, as on a machine that builds something meanwhile.
+TEST_F(Report, BlamesNoModelForABusyMachineInVirtualTime) {
+  RunReport report = sample();
+  for (int i = 0; i < 1000; ++i) {
+    report.compute_us.add(i < 30 ? 8000 : 12);
+    report.models[0].contact.add(true, 0.002, 1.5, 1e-3, i < 30 ? 7'000'000 : 400);
+  }
+  report.virtual_time = true;
+  EXPECT_EQ(paceText(report, 1000), "");
+}
+
 TEST_F(Report, TellsPeopleThatNothingWasTouched) {
   RunReport report = sample();
   EXPECT_EQ(summary(report).find("touched no model"), std::string::npos);

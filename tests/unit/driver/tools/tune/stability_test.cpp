@@ -123,9 +123,10 @@ TEST(UnstableSettings, SayThatNothingSparesTheMotorsOfAnArmThatIsHeld) {
 
 TEST(Overheating, IsToldOfTheRootOfTheMeanSquareBeyondWhatIsSustained) {
   const std::vector<double> pulses = {0, 4, 0, 0};  // heats as 2 N do
-  EXPECT_NE(overheating("arm", 1.4, pulses).find("2 N"), std::string::npos);
-  EXPECT_EQ(overheating("arm", 2.1, pulses), "");
-  EXPECT_EQ(overheating("arm", 0, pulses), "");  // unknown
+  EXPECT_NE(overheating("arm", 1.4, pulses, 1).find("2 N"), std::string::npos);
+  EXPECT_NE(overheating("arm", 1.4, pulses, 1).find("the last 4 s"), std::string::npos);
+  EXPECT_EQ(overheating("arm", 2.1, pulses, 1), "");
+  EXPECT_EQ(overheating("arm", 0, pulses, 1), "");  // unknown
 }
 
 }  // namespace

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+/// Positions that an arm cannot have: a layout or a scale that is wrong reads every report as a good one.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "capture/report_table.hpp"
+
+namespace hapticd::capture {
+
+/// What the device file says of the arm that sent the reports.
+struct ArmFacts {
+  size_t joints = 0;
+  std::vector<double> limits;  ///< least, greatest [rad] of each joint; empty: not given
+  bool zeroed = false;         ///< positions count from where the arm was switched on: a pose gives their zero
+  double max_speed = 100;      ///< [rad/s] of a joint
+};
+
+/// [main] One line for each joint whose positions leave its limits, or jump faster than it can move; "": none.
+std::string implausible(const codec::Wire& wire, const ArmFacts& arm, const Decoded& decoded);
+
+}  // namespace hapticd::capture
