@@ -2,6 +2,7 @@
 /// `hapticd client`: runs a program of OpenHaptics (HDAPI) on the arm of a running daemon.
 #include "control/client.hpp"
 
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -56,6 +57,12 @@ void passOn(int signal) {
   if (program > 0) kill(static_cast<pid_t>(program), signal);
 }
 
+/// In a child: it ends with `hapticd client`, however that ends. Kept over execve.
+void endWith(pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != parent) std::_Exit(kFailed);  // it ended before
+}
+
 /// In the child: becomes `words`. What it prints of its own goes nowhere if it is `silent`.
 [[noreturn]] void become(std::vector<std::string> words, bool silent) {
   std::vector<char*> arguments;
@@ -69,8 +76,8 @@ void passOn(int signal) {
 }
 
 pid_t start(const std::vector<std::string>& words, bool silent) {
-  const pid_t child = fork();
-  if (child == 0) become(words, silent);
+  const pid_t parent = getpid(), child = fork();
+  if (child == 0) endWith(parent), become(words, silent);
   return child;
 }
 
@@ -151,8 +158,8 @@ void addClient(CLI::App& app, int& exit_code) {
   command->fallthrough(false);  // the options after PROGRAM are its own
   command->footer(
       "The program finds hapticd's own libHD.so and the daemon of --name. Where none runs, one is started with the\n"
-      "simulated arm, and ends with the program. ClientArguments of this command stand before PROGRAM; its exit code "
-      "is the "
+      "simulated arm, and ends with the program, also where this command is killed. Options of this command stand "
+      "before PROGRAM; its exit code is the "
       "program's.\n\n"
       "With real-time priority, the program's servo loop looks for each tick without sleeping from 100 us before it "
       "is\n"

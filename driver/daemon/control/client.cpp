@@ -57,6 +57,12 @@ Result<Client> Client::connect(const std::string& file) {
   return Client(file, fd);
 }
 
+/// The kernel says so as soon as the other end is closed, however its process ended.
+bool Client::ended() const {
+  pollfd socket{fd_, 0, 0};
+  return poll(&socket, 1, 0) > 0 && (socket.revents & (POLLHUP | POLLERR)) != 0;
+}
+
 Client::~Client() {
   if (fd_ >= 0) close(fd_);
 }

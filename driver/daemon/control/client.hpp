@@ -36,6 +36,8 @@ class Client {
   Result<Reply> askForMore(const std::string& line, double seconds = 10);
   /// [main] The next line that comes by itself. @param seconds at most; an error where none came
   Result<std::string> hear(double seconds);
+  /// [any] The daemon has ended, or it ended this connection.
+  bool ended() const;
 
  private:
   Client(std::string file, int fd) : file_(std::move(file)), fd_(fd) {}

@@ -162,8 +162,10 @@ std::string statusAnswer(const Session& session) {
   for (size_t i = 0; i < session.runner.arms().size(); ++i) {
     const auto arm = page.arm[i].now.read().value_or(status::ArmNow{});
     const auto fault = static_cast<Fault>(arm.fault);
+    const std::string why = noForceWhy(session, static_cast<uint32_t>(i));
     devices.push_back({{"name", session.runner.scene().devices[i].name},
                        {"fault", fault == Fault::kNone ? Json() : Json(describe(fault))},
+                       {"no_force", why.empty() ? Json() : Json(why)},
                        {"force_n", {arm.force[0], arm.force[1], arm.force[2]}},
                        {"position_m", {arm.position[0], arm.position[1], arm.position[2]}}});
     if (session.runner.arms()[i]->clients().possible())
@@ -236,6 +238,51 @@ Result<std::string> valuesAnswer(const Session& session, uint32_t place, const s
   return Error{noSuchParameter(plugin, parameter, 0)};
 }
 
+std::string noForceWhy(const Session& session, uint32_t index) {
+  const Arm& arm = *session.runner.arms()[index];
+  const std::string& device = session.runner.scene().devices[index].name;
+  const Fault fault = arm.limiter().fault();
+  const std::string clear = "\n  fix: hapticd ctl clear, once whoever holds the arm agrees";
+  if (fault == Fault::kStopped)
+    return "device " + device + ": it is held; its forces ended and stay off until it is cleared" + clear;
+  if (fault != Fault::kNone)
+    return faultMessage(device, fault, arm.limiter().measured(), arm.troubleOf(fault)) +
+           (endsByItself(fault) ? "" : clear);
+  if (!arm.foundPressed()) return "";
+  return "device " + device +
+         ": the button of limits.enable was down when the run began, so it enables nothing\n  fix: let it go "
+         "once, then press it";
+}
+
+namespace {
+
+/// Who pushes or pushed on an arm with refused answers: the one whose answers were refused most.
+void addRefused(const Session& session, uint32_t arm, Json& json) {
+  uint64_t most = 0;
+  for (const Leads::Pusher& pusher : session.leads.pushers(arm)) {
+    const auto& client = session.runner.arms()[arm]->clients().clients()[pusher.place];
+    const uint64_t refused = client.refused.load(std::memory_order_relaxed);
+    if (refused <= most) continue;
+    most = refused;
+    json["pid"] = pusher.pid;
+    json["program"] = pusher.program;
+    json["why"] = describe(client.why.load(std::memory_order_relaxed));
+  }
+}
+
+/// Of an event of a lead: which program, and what it does.
+void addProgram(const Session& session, const hapticd_event& event, Json& json) {
+  const bool push = event.model < 0 && event.code == static_cast<uint32_t>(Order::Led::kForce);
+  if (event.kind == HAPTICD_REFUSED && push) return addRefused(session, static_cast<uint32_t>(event.probe), json);
+  if (event.kind != HAPTICD_JOINED && event.kind != HAPTICD_LOST) return;
+  const auto pid = static_cast<pid_t>(event.value);
+  json["pid"] = pid;
+  json["program"] = session.leads.program(pid);
+  json["does"] = push ? "pushes" : "leads";
+}
+
+}  // namespace
+
 std::string eventText(const Session& session, const hapticd_event& event) {
   Json json = {{"event", nameOfEvent(event.kind)}, {"tick", event.tick}, {"t", event.t}};
   const auto model = static_cast<size_t>(event.model), arm = static_cast<size_t>(event.probe);
@@ -247,6 +294,7 @@ std::string eventText(const Session& session, const hapticd_event& event) {
   json["code"] = event.code;
   json["value"] = event.value;
   if (event.kind == HAPTICD_FAULT) json["why"] = describe(static_cast<Fault>(event.code));
+  if (event.probe < 0 || arm < session.runner.arms().size()) addProgram(session, event, json);
   if (event.kind == HAPTICD_SILENCED) json["why"] = silenceReason(event, json.value("model", ""));
   return text(json);
 }

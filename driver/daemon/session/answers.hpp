@@ -35,6 +35,9 @@ std::string statusAnswer(const Session& session);
 /// [main] Why a model is not felt for the rest of the run; "": it is.
 std::string silencedWhy(const Session& session, uint32_t place);
 
+/// [main] Why an arm gets no force now, and what to do; "": it gets what is asked for.
+std::string noForceWhy(const Session& session, uint32_t arm);
+
 /// [main] Models: names, numbers, poses, leaders, and live parameters with their values.
 std::string listAnswer(const Session& session);
 
@@ -42,10 +45,11 @@ std::string listAnswer(const Session& session);
 /// also of those at rest, and every device.
 std::string snapshotAnswer(const Session& session);
 
-/// [main] The value of one parameter, or of all.
 /// [main] The words for a parameter that the plugin does not have, with those that it has.
 /// @param flags HSP_P_LIVE: only live ones were meant; 0: all
 std::string noSuchParameter(const hsp_class& plugin, const std::string& parameter, uint32_t flags);
+
+/// [main] The value of one parameter, or of all.
 Result<std::string> valuesAnswer(const Session& session, uint32_t place, const std::string& parameter);
 
 /// [main] One event as an object of JSON, without the end of a line.

@@ -2,6 +2,7 @@
 /// Requests of programs that read along or lead: events, subscriptions, leads.
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "document/suggestion.hpp"
@@ -22,9 +23,9 @@ Result<uint32_t> RequestHandler::armOf(const std::string& device) const {
 }
 
 /// For the status page, and for the report of the run.
-void RequestHandler::tellOfPusher(uint32_t arm, const Leads::Pusher& pusher, bool begins) {
-  runner_.namePusher(arm, pusher.place, begins ? pusher.pid : 0, begins ? pusher.program : "");
-  if (begins) return;
+void RequestHandler::tellOfPusher(uint32_t arm, const Leads::Pusher& pusher, Leads::News news) {
+  if (news == Leads::News::kBegins) return runner_.namePusher(arm, pusher.place, pusher.pid, pusher.program);
+  runner_.forgetPusher(arm, pusher.place, news == Leads::News::kLeft ? PusherLog::End::kLeft : PusherLog::End::kUnlead);
   const ClientForces::Client& client = runner_.arms()[arm]->clients().clients()[pusher.place];
   runner_.book(reportOf(client, pusher, runner_.scene().devices[arm].name));
 }
@@ -75,8 +76,11 @@ Result<std::string> RequestHandler::lead(const control::Peer& peer, const Reques
   auto memory = leads_.begin(*target, peer);
   if (!memory) return refuse("busy", memory.error());
   attached_ = std::move(*memory);
-  return fmt::format(R"({{"ok":true,"bytes":{},"record":"{}"}})", HAPTICD_LEAD_BYTES,
-                     target->led == Order::Led::kForce ? "hapticd_push" : "hapticd_target");
+  const bool pushes = target->led == Order::Led::kForce;
+  const std::string why = pushes ? noForceWhy(session(), target->index) : "";
+  return fmt::format(R"({{"ok":true,"bytes":{},"record":"{}"{}}})", HAPTICD_LEAD_BYTES,
+                     pushes ? "hapticd_push" : "hapticd_target",
+                     why.empty() ? "" : ",\"no_force\":" + nlohmann::json(why).dump());
 }
 
 /// Memory that all share who ask for it; made for the first of them.

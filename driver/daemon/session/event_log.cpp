@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+
 #include "hapticd/abi.h"
 #include "log/log.hpp"
 #include "servo/safety/fault.hpp"
+#include "session/program_name.hpp"
 #include "session/silence_reason.hpp"
 
 namespace hapticd::servo {
@@ -15,9 +18,7 @@ namespace {
 constexpr size_t kAtOnce = 256;    ///< events that are read in one go
 constexpr double kBegins = 0.005;  ///< [s] nobody brings a tip to a surface so soon: it was inside already
 
-std::string leaderOf(const hapticd_event& event) {
-  return fmt::format("process {:.0f}", event.value);
-}
+constexpr size_t kMostPrograms = 256;
 
 }  // namespace
 
@@ -30,10 +31,13 @@ void EventLog::name(uint32_t place, const std::string& model) {
 
 void EventLog::tell(const Flight& flight) {
   tellOfSwitches();
+  tellOfPushers();
   for (;;) {
     const std::vector<hapticd_event> events = flight.events(next_, kAtOnce);
     for (const hapticd_event& event : events) {
+      if (event.kind == HAPTICD_JOINED) nameLeader(event);
       const Message message = messageOf(event);
+      note(event);
       if (!message.text.empty()) log::write(message.level, message.who, message.text);
     }
     next_ += events.size();
@@ -49,6 +53,45 @@ void EventLog::tellOfSwitches() {
     const Message message = messageOfSwitch(i);
     log::write(message.level, message.who, message.text);
   }
+}
+
+void EventLog::tellOfPushers() {
+  const std::chrono::duration<double> now = std::chrono::steady_clock::now().time_since_epoch();
+  for (uint32_t i = 0; i < arms_.size(); ++i)
+    for (const PusherLog::Message& message : pushers_.look(i, arms_[i]->clients(), now.count())) write(i, message);
+}
+
+void EventLog::write(uint32_t arm, const PusherLog::Message& message) const {
+  log::write(message.level, arm < devices_.size() ? devices_[arm] : "", message.text);
+}
+
+void EventLog::pushes(uint32_t arm, uint32_t place, pid_t pid, const std::string& program) {
+  write(arm, pushers_.begins(arm, place, pid, program));
+}
+
+void EventLog::pushesNoMore(uint32_t arm, uint32_t place, PusherLog::End how) {
+  write(arm, pushers_.ends(arm, place, how, arms_[arm]->clients().clients()[place]));
+}
+
+/// While it lives.
+void EventLog::nameLeader(const hapticd_event& event) {
+  const auto pid = static_cast<pid_t>(event.value);
+  if (programs_.size() >= kMostPrograms) programs_.clear();
+  programs_[pid] = programOf(pid);
+}
+
+std::string EventLog::leaderOf(const hapticd_event& event) const {
+  const auto found = programs_.find(static_cast<pid_t>(event.value));
+  return fmt::format("process {:.0f}", event.value) +
+         (found != programs_.end() ? " (" + found->second + ")" : std::string());
+}
+
+void EventLog::note(const hapticd_event& event) {
+  if (event.kind != HAPTICD_FAULT && event.kind != HAPTICD_CLEARED) return;
+  held_.resize(devices_.size());
+  const auto arm = static_cast<size_t>(event.probe);
+  if (event.probe < 0 || arm >= held_.size()) return;
+  held_[arm] = event.kind == HAPTICD_FAULT && static_cast<Fault>(event.code) == Fault::kStopped;
 }
 
 EventLog::Message EventLog::messageOfSwitch(size_t arm) const {
@@ -111,22 +154,27 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
 }
 
 EventLog::Message EventLog::messageOfArm(const hapticd_event& event) const {
-  if (event.kind == HAPTICD_CLEARED) return {HSP_LOG_INFO, device(event), "the fault is over; its forces come back"};
-  const auto fault = static_cast<Fault>(event.code);
-  if (fault == Fault::kStopped)  // a hold; the end of a run is no fault
-    return {HSP_LOG_INFO, device(event), "is held: no force reaches the hand until hapticd ctl clear"};
   const auto arm = static_cast<size_t>(event.probe);
+  const bool held = event.probe >= 0 && arm < held_.size() && held_[arm];
+  if (event.kind == HAPTICD_CLEARED)
+    return {HSP_LOG_INFO, device(event),
+            held ? "the hold is over; its forces come back" : "the fault is over; its forces come back"};
+  const auto fault = static_cast<Fault>(event.code);
+  if (fault == Fault::kStopped)  // by an order to hold: the end of a run is no event
+    return {HSP_LOG_WARNING, device(event), "it is held: its forces ended and stay off until: hapticd ctl clear"};
   const char* trouble = event.probe >= 0 && arm < arms_.size() ? arms_[arm]->troubleOf(fault) : nullptr;
   return {HSP_LOG_ERROR, "", "fault: " + faultMessage(device(event), fault, event.value, trouble)};
 }
 
 EventLog::Message EventLog::messageOfLeader(const hapticd_event& event) const {
+  if (event.model < 0 && event.code == static_cast<uint32_t>(Order::Led::kForce))
+    return {HSP_LOG_DEBUG, "", ""};  // the log of those who push tells more
   const std::string what = event.model >= 0 ? model(event) : device(event);
   if (event.kind == HAPTICD_REFUSED)
-    return {HSP_LOG_WARNING, what, fmt::format("{:.0f} records of its leader were refused so far", event.value)};
-  return {HSP_LOG_INFO, what,
-          leaderOf(event) + (event.model >= 0 ? " leads it" : " leads or pushes it") +
-              (event.kind == HAPTICD_JOINED ? "" : " no more")};
+    return {HSP_LOG_WARNING, what,
+            fmt::format("{:.0f} record{} of its leader {} refused so far", event.value, event.value == 1 ? "" : "s",
+                        event.value == 1 ? "was" : "were")};
+  return {HSP_LOG_INFO, what, leaderOf(event) + (event.kind == HAPTICD_JOINED ? " leads it" : " leads it no more")};
 }
 
 }  // namespace hapticd::servo

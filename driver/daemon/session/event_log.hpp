@@ -3,6 +3,7 @@
 /// models and leaders that come and go.
 #pragma once
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -11,6 +12,7 @@
 #include "hapticd/client.h"
 #include "servo/arm/arm.hpp"
 #include "session/flight.hpp"
+#include "session/pusher_log.hpp"
 
 namespace hapticd::servo {
 
@@ -28,6 +30,10 @@ class EventLog {
   /// [main] Writes the events since the last call.
   void tell(const Flight& flight);
 
+  /// [any] A program begins to push on an arm, or ends.
+  void pushes(uint32_t arm, uint32_t place, pid_t pid, const std::string& program);
+  void pushesNoMore(uint32_t arm, uint32_t place, PusherLog::End how);
+
   /// A message for the log; an empty text: none is due.
   struct Message {
     int32_t level;  ///< HSP_LOG_DEBUG, ...
@@ -35,11 +41,17 @@ class EventLog {
   };
   /// [main] What an event means, in words.
   Message messageOf(const hapticd_event& event) const;
+  /// [main] Keeps what the words of later events depend on: whether an arm is held.
+  void note(const hapticd_event& event);
   /// [main] Of an arm whose enable switch was found pressed, in words.
   Message messageOfSwitch(size_t arm) const;
 
  private:
   void tellOfSwitches();
+  void tellOfPushers();
+  void write(uint32_t arm, const PusherLog::Message& message) const;
+  std::string leaderOf(const hapticd_event& event) const;
+  void nameLeader(const hapticd_event& event);
   std::string model(const hapticd_event& event) const;
   std::string device(const hapticd_event& event) const;
   Message messageOfModel(const hapticd_event& event) const;
@@ -49,7 +61,9 @@ class EventLog {
   mutable std::mutex mutex_;  // a model comes on the thread of the control socket
   std::vector<std::string> models_, devices_;
   const Arms& arms_;
-  std::vector<bool> told_of_switch_;
+  std::vector<bool> told_of_switch_, held_;
+  PusherLog pushers_;
+  std::map<pid_t, std::string> programs_;  ///< names of those that lead; at most kMostPrograms
   uint64_t next_ = 0;
 };
 

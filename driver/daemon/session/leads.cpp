@@ -19,6 +19,8 @@ Order orderOf(Order::Kind kind, const Leads::Target& target) {
   return order;
 }
 
+constexpr size_t kMostPrograms = 256;
+
 bool same(const Leads::Target& a, const Leads::Target& b) {
   return a.led == b.led && a.index == b.index;
 }
@@ -60,39 +62,41 @@ Result<Descriptor> Leads::begin(Target target, const control::Peer& peer) {
     order.push = new ((*memory)->data()) link::PushSlot;  // all zeros as it is
   else
     order.slot = new ((*memory)->data()) link::PoseSlot;
+  if (programs_.size() >= kMostPrograms) programs_.clear();
+  programs_[peer.pid] = programOf(peer.pid);  // before the servo tells of it
   const auto given = give_(order);
   // also where the servo was late: it may obey yet
-  leads_.push_back({target, peer, std::move(*memory), programOf(peer.pid)});
-  tell(leads_.back(), true);
+  leads_.push_back({target, peer, std::move(*memory), programs_[peer.pid]});
+  tell(leads_.back(), News::kBegins);
   if (given) return std::move(*shared);
   (void)end(target, peer);
   return Error{given.error()};
 }
 
-Result<void> Leads::end(const Target& target, const control::Peer& peer) {
+Result<void> Leads::end(const Target& target, const control::Peer& peer, News how) {
   const auto found = std::find_if(leads_.begin(), leads_.end(), [&](const Lead& lead) {
     return same(lead.target, target) && lead.peer.id == peer.id;
   });
   if (found == leads_.end()) return Error{target.name + " is not led by this connection"};
   Lead lead = std::move(*found);
   leads_.erase(found);
-  return finish(std::move(lead));
+  return finish(std::move(lead), how);
 }
 
 Leads::~Leads() {
-  for (const Lead& lead : leads_) tell(lead, false);
+  for (const Lead& lead : leads_) tell(lead, News::kEnds);
 }
 
-void Leads::tell(const Lead& lead, bool begins) const {
+void Leads::tell(const Lead& lead, News news) const {
   if (tell_ && lead.target.led == Order::Led::kForce)
-    tell_(lead.target.index, {lead.peer.pid, lead.target.place, lead.program}, begins);
+    tell_(lead.target.index, {lead.peer.pid, lead.target.place, lead.program}, news);
 }
 
-Result<void> Leads::finish(Lead lead) {
+Result<void> Leads::finish(Lead lead, News how) {
   Order order = orderOf(Order::Kind::kUnlead, lead.target);
   order.value = lead.peer.pid;
   auto done = give_(order);
-  tell(lead, false);
+  tell(lead, how);
   if (!done) kept_.push_back(std::move(lead.memory));
   return done;
 }
@@ -108,7 +112,7 @@ void Leads::left(const control::Peer& peer) {
   while (holds(peer)) {
     const auto found =
         std::find_if(leads_.begin(), leads_.end(), [&](const Lead& lead) { return lead.peer.id == peer.id; });
-    (void)end(found->target, peer);  // nobody is there to be told
+    (void)end(found->target, peer, News::kLeft);  // nobody is there to be told
   }
 }
 
@@ -116,6 +120,11 @@ std::optional<pid_t> Leads::leader(Order::Led led, uint32_t index) const {
   for (const Lead& lead : leads_)
     if (lead.target.led == led && lead.target.index == index) return lead.peer.pid;
   return std::nullopt;
+}
+
+std::string Leads::program(pid_t pid) const {
+  const auto found = programs_.find(pid);
+  return found != programs_.end() ? found->second : "?";
 }
 
 std::vector<Leads::Pusher> Leads::pushers(uint32_t arm) const {

@@ -3,6 +3,7 @@
 /// for it. Control thread only.
 #pragma once
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -36,8 +37,10 @@ class Leads {
     uint32_t place;
     std::string program;
   };
-  /// Hears of a program that begins to push on an arm, and that ends.
-  using Tell = std::function<void(uint32_t arm, const Pusher& pusher, bool begins)>;
+  /// A program begins to push; it ends by a request, or its connection is gone.
+  enum class News { kBegins, kEnds, kLeft };
+  /// Hears of a program that pushes on an arm.
+  using Tell = std::function<void(uint32_t arm, const Pusher& pusher, News news)>;
 
   /// @param exclusive one program pushes on an arm; otherwise as many as there are places
   explicit Leads(Give give, bool exclusive = false, Tell tell = nullptr)
@@ -49,7 +52,7 @@ class Leads {
   /// [main] Begins a lead. @return a descriptor of its memory. An error names the leader that is there already.
   Result<Descriptor> begin(Target target, const control::Peer& peer);
   /// [main] Ends the lead of this peer.
-  Result<void> end(const Target& target, const control::Peer& peer);
+  Result<void> end(const Target& target, const control::Peer& peer) { return end(target, peer, News::kEnds); }
   /// [main] Ends whatever leads a model: it moves otherwise, or leaves.
   Result<void> endOfModel(uint32_t model);
   /// [main] Ends all leads of a peer that is gone.
@@ -57,6 +60,8 @@ class Leads {
 
   /// [main] The process that leads a model or a hand, if one does.
   std::optional<pid_t> leader(Order::Led led, uint32_t index) const;
+  /// [main] What a process calls itself that led or pushed; "?": none of this number did.
+  std::string program(pid_t pid) const;
   /// [main] Those that push on an arm.
   std::vector<Pusher> pushers(uint32_t arm) const;
   /// [main] Something lives as long as the peer's connection.
@@ -71,8 +76,9 @@ class Leads {
     std::unique_ptr<SealedMemory> memory;
     std::string program;  ///< that pushes
   };
-  Result<void> finish(Lead lead);
-  void tell(const Lead& lead, bool begins) const;
+  Result<void> end(const Target& target, const control::Peer& peer, News how);
+  Result<void> finish(Lead lead, News how);
+  void tell(const Lead& lead, News news) const;
   Result<void> findPlace(Target& target, const control::Peer& peer);
 
   Give give_;
@@ -80,6 +86,7 @@ class Leads {
   bool exclusive_;
   uint32_t last_place_ = 0;
   std::vector<Lead> leads_;
+  std::map<pid_t, std::string> programs_;            ///< of those that came last
   std::vector<std::unique_ptr<SealedMemory>> kept_;  ///< of leads that the servo did not end: it may look there yet
 };
 

@@ -47,7 +47,7 @@ RequestHandler::RequestHandler(Runner& runner, LoadScene load, host::Services::L
       scene_file_(std::filesystem::absolute(runner.scene().file).string()),
       places_(runner.world().places()),
       leads_([this](const Order& order) { return give(order); }, runner.scene().clients.exclusive,
-             [this](uint32_t arm, const Leads::Pusher& who, bool begins) { tellOfPusher(arm, who, begins); }) {
+             [this](uint32_t arm, const Leads::Pusher& who, Leads::News news) { tellOfPusher(arm, who, news); }) {
   for (size_t i = 0; i < runner.scene().models.size(); ++i) places_[i] = {runner.scene().models[i], true, true};
 }
 

@@ -59,7 +59,7 @@ class RequestHandler {
   size_t staying() const;
   static void remember(scene::Model& model, const hsp_param& param, const Order& order);
   Result<uint32_t> placeOf(const std::string& model) const;
-  void tellOfPusher(uint32_t arm, const Leads::Pusher& pusher, bool begins);
+  void tellOfPusher(uint32_t arm, const Leads::Pusher& pusher, Leads::News news);
   Result<uint32_t> armOf(const std::string& device) const;
   Result<Leads::Target> pushOf(const std::string& device) const;
   Result<Leads::Target> leadOf(const control::Request& request) const;

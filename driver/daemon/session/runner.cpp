@@ -352,6 +352,12 @@ void Runner::nameModel(uint32_t place, const std::string& name, const std::strin
 void Runner::namePusher(uint32_t arm, uint32_t place, pid_t pid, const std::string& program) {
   if (telemetry_->statusWriter() != nullptr)
     telemetry_->statusWriter()->pusher(arm, place, static_cast<uint64_t>(pid), program);
+  event_log_->pushes(arm, place, pid, program);
+}
+
+void Runner::forgetPusher(uint32_t arm, uint32_t place, PusherLog::End how) {
+  if (telemetry_->statusWriter() != nullptr) telemetry_->statusWriter()->pusher(arm, place, 0, "");
+  event_log_->pushesNoMore(arm, place, how);
 }
 
 bool Runner::onlySimulated() const {

@@ -73,8 +73,10 @@ class Runner {
   void endBlackBox() { telemetry_->flight()->ring().removeFile(); }
   /// [any] The same thread: a model takes a place; "": it has left.
   void nameModel(uint32_t place, const std::string& name, const std::string& plugin);
-  /// [any] The same thread: a program pushes on an arm; pid 0: it does no more.
+  /// [any] The same thread: a program pushes on an arm.
   void namePusher(uint32_t arm, uint32_t place, pid_t pid, const std::string& program);
+  /// [any] The same thread: it does no more.
+  void forgetPusher(uint32_t arm, uint32_t place, PusherLog::End how);
   /// [any] The same thread: what a program was like that pushed, for the report.
   void book(const record::ClientReport& client) { telemetry_->pushed(client); }
 

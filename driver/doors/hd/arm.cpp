@@ -23,13 +23,16 @@ uint32_t bitOf(HDenum capability) {
   return found != std::end(kCapabilities) ? 1u << (found - std::begin(kCapabilities)) : 0;
 }
 
+constexpr uint32_t kNone = 0, kStopped = 8;  ///< hapticd_state.fault: none; the arm is held, or the daemon ends
+
 /// What the daemon's reasons for not letting a force flow are here (hapticd_state.fault). HD_SUCCESS: nothing to tell.
 HDerror errorOf(uint32_t fault) {
-  constexpr uint32_t kNone = 0, kDeviceLost = 2, kStale = 4, kTooFast = 5, kStopped = 8, kOverheated = 10;
+  constexpr uint32_t kDeviceLost = 2, kStale = 4, kTooFast = 5, kOverheated = 10;
   switch (fault) {
     case kNone:
+      return HD_SUCCESS;
     case kStopped:
-      return HD_SUCCESS;  // the daemon ends; that it is gone is told by the scheduler
+      return HD_FORCE_ERROR;
     case kDeviceLost:
     case kStale:
       return HD_COMM_ERROR;
@@ -40,6 +43,15 @@ HDerror errorOf(uint32_t fault) {
     default:
       return HD_DEVICE_FAULT;
   }
+}
+
+std::string hintOf(const std::string& arm, uint32_t fault) {
+  if (fault == kStopped)
+    return "the arm " + arm +
+           " is held: nobody feels a force\n  fix: hapticd ctl clear, once whoever holds the arm agrees";
+  return "the arm " + arm + " is at fault (" + std::to_string(fault) +
+         "): nobody feels a force\n  fix: hapticd ctl status says what it is; hapticd ctl clear lets the force come "
+         "back";
 }
 
 double sizeOf(const double v[3]) {
@@ -65,7 +77,7 @@ void Arm::open(std::shared_ptr<Link> link, Facts facts) {
   motion_ = {};
   frame_ = last_ = {};
   ended_ = pushed_ = seen_ = false;  // a frame that is open ends as it would have: the daemon was lost meanwhile
-  told_fault_ = 0;
+  told_fault_ = 0, stopped_since_ = -1, told_limit_ = false;
   std::fill_n(held_force_, 3, 0.0), std::fill_n(held_torque_, 3, 0.0);
   capabilities_ = bitOf(HD_MAX_FORCE_CLAMPING) | bitOf(HD_FORCE_RAMPING) | bitOf(HD_SOFTWARE_FORCE_LIMIT) |
                   bitOf(HD_ONE_FRAME_LIMIT);
@@ -130,8 +142,14 @@ void Arm::begin(uint64_t scheduler_tick) {
 
 void Arm::reportFault() {
   const uint32_t fault = now_.fault;
+  if (fault != kStopped) stopped_since_ = -1;
   if (fault == told_fault_) return;
+  // A daemon that ends ramps its forces out as a hold does. That it is gone is told by the scheduler.
+  constexpr double kEnds = 0.25;  // s
+  if (fault == kStopped && stopped_since_ < 0) stopped_since_ = now_.t;
+  if (fault == kStopped && now_.t - stopped_since_ < kEnds) return;
   told_fault_ = fault;
+  if (fault != kNone) hintOnce(keptForever(hintOf(facts_.name, fault)));
   if (const HDerror error = errorOf(fault); error != HD_SUCCESS) errors_.push(error, handle_, static_cast<int>(fault));
 }
 
@@ -144,6 +162,7 @@ void Arm::end(uint64_t scheduler_tick, uint64_t ns, bool pushes) {
   double force[3], torque[3];
   std::copy_n(frame_.force, 3, force), std::copy_n(frame_.torque, 3, torque);
   addJointTorque(force, torque);
+  tellOfLimit(force);
   if (const HDerror error = checked(ns, force); error != HD_SUCCESS) {
     errors_.push(error, handle_);
     std::fill_n(force, 3, 0.0);
@@ -170,10 +189,18 @@ void Arm::addJointTorque(double force[3], double torque[3]) const {
   for (int i = 0; i < 3; ++i) force[i] += more_force[i], torque[i] += more_torque[i];
 }
 
+/// Where a force is clamped, the error says so when that begins: what is felt is not what was asked for.
+void Arm::tellOfLimit(const double force[3]) {
+  const bool beyond = forceOn() && facts_.max_force > 0 && allFinite(force) && sizeOf(force) > facts_.max_force;
+  const bool tells = isEnabled(HD_SOFTWARE_FORCE_LIMIT) && isEnabled(HD_MAX_FORCE_CLAMPING);
+  if (beyond && tells && !told_limit_) errors_.push(HD_EXCEEDED_MAX_FORCE, handle_);
+  told_limit_ = beyond;
+}
+
 /// What the library lets out of what the program asked for. An error: nothing of it.
 HDerror Arm::checked(uint64_t ns, double force[3]) const {
   if (!forceOn()) return HD_SUCCESS;
-  if (!allFinite(force)) return HD_FORCE_ERROR;
+  if (!allFinite(force)) return hintOnce("a force is not a number: it cannot be felt"), HD_FORCE_ERROR;
   if (bounds_.velocity > 0 && sizeOf(frame_.velocity) * kMmPerMetre > bounds_.velocity) return HD_EXCEEDED_MAX_VELOCITY;
   const double step[3] = {force[0] - last_.force[0], force[1] - last_.force[1], force[2] - last_.force[2]};
   if (bounds_.impulse > 0 && sizeOf(step) > bounds_.impulse) return HD_EXCEEDED_MAX_FORCE_IMPULSE;

@@ -68,6 +68,7 @@ class Arm {
   void refresh();
   void see(Frame& frame) const;
   void reportFault();
+  void tellOfLimit(const double force[3]);
   HDerror checked(uint64_t ns, double force[3]) const;
   void addJointTorque(double force[3], double torque[3]) const;
   void answer(uint64_t tick, const double force[3], const double torque[3], uint64_t ns);
@@ -85,6 +86,8 @@ class Arm {
   bool pushed_ = false;
   double held_force_[3] = {}, held_torque_[3] = {};
   uint32_t capabilities_ = 0, told_fault_ = 0;
+  double stopped_since_ = -1;  ///< [s] of the daemon; < 0: the arm is not held
+  bool told_limit_ = false;    ///< that the program asks for more than the arm's force
   Bounds bounds_;
 };
 

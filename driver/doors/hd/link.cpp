@@ -7,6 +7,8 @@
 #include <cstring>
 #include <vector>
 
+#include "errors.hpp"
+
 namespace hapticd::hd {
 
 namespace {
@@ -62,8 +64,9 @@ bool Link::lead(std::string& why) {
   if (leads()) return true;
   hapticd_error error;
   lead_ = hapticd_lead_force(client_, hapticd_device_name(client_, device_), &error);
-  if (!leads()) why = error.text;
-  return leads();
+  if (!leads()) return why = error.text, false;
+  if (std::strcmp(error.code, "no_force") == 0) hintOnce(keptForever(error.text));
+  return true;
 }
 
 void Link::temperatures(double* of_joint, size_t most) const {

@@ -165,25 +165,25 @@ HAPTICD_API long hapticd_columns(hapticd_client* client, int stream, const hapti
 /* Returns how many rows were ever written, which is the number of the next row. */
 HAPTICD_API uint64_t hapticd_written(hapticd_client* client, int stream);
 /* Copies up to `most` rows, from number `*row` on, into `rows`. It skips those that are no longer kept, and sets `*row`
- * behind the last one copied. Returns how many; 0: there is nothing new; -1: no such stream. It never waits. */
+ * behind the last one copied. Returns at once: how many; 0: none new; -1: no such stream, or the daemon has ended. */
 HAPTICD_API long hapticd_read(hapticd_client* client, int stream, uint64_t* row, void* rows, size_t most);
 /* Sleeps until the rows of `tick` are written, at most timeout_ms; the servo wakes it. Returns 1: they are; 0: not yet;
- * -1: it cannot wait. */
+ * -1: it cannot wait, or the daemon has ended. */
 HAPTICD_API int hapticd_wait(hapticd_client* client, uint64_t tick, int timeout_ms);
 
-/* Take the lead of a kinematic model, of the hand of a simulated arm, or of a force on an arm. NULL: see `error`. */
+/* Lead a kinematic model, a simulated hand, or a force on an arm. NULL: see `error`. "no_force": it is unfelt. */
 HAPTICD_API hapticd_lead* hapticd_lead_model(hapticd_client* client, const char* model, hapticd_error* error);
 HAPTICD_API hapticd_lead* hapticd_lead_hand(hapticd_client* client, const char* device, hapticd_error* error);
 HAPTICD_API hapticd_lead* hapticd_lead_force(hapticd_client* client, const char* device, hapticd_error* error);
-/* Says where a model or a hand shall be. Wait-free; one thread per lead. Returns 0, or -1 if the lead is of a force. */
+/* Says where a model or a hand shall be. Wait-free; one thread per lead. Returns 0, or -1: of a force, or ended. */
 HAPTICD_API int hapticd_lead_put(hapticd_lead* lead, const hapticd_target* target);
-/* Answers a tick with a force. Wait-free; one thread per lead. Returns 0, or -1 if the lead is not of a force. */
+/* Answers a tick with a force. Wait-free; one thread per lead. Returns 0, or -1: not of a force, or ended. */
 HAPTICD_API int hapticd_lead_push(hapticd_lead* lead, const hapticd_push* push);
 /* Ends a lead and frees it: a model brakes and stays, a force ramps out. `lead` may be NULL. */
 HAPTICD_API void hapticd_lead_end(hapticd_lead* lead);
 
 /* Waits for the state of an arm in a tick after tick `after` (UINT64_MAX: in any tick), at most timeout_ms. Returns 1:
- * `state` is filled in; 0: there is none yet; -1: there is no such arm, or it cannot wait.
+ * `state` is filled in; 0: there is none yet; -1: no such arm, it cannot wait, or the daemon has ended.
  */
 HAPTICD_API int hapticd_next_state(hapticd_client* client, int device, uint64_t after, int timeout_ms,
                                    hapticd_state* state);

@@ -289,6 +289,38 @@ def outage(folder):
     daemon.stop()
 
 
+def told(folder):
+    """A hold, and a force beyond the limit."""
+    with Daemon(folder, "told", scene(hand="{script: guided}")) as daemon, daemon.connect() as client:
+        daemon.program("told", "limit")
+        client.clear()
+        program = subprocess.Popen(daemon.command("told", "hold"), env=daemon.environment, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        while (line := program.stdout.readline()) not in ("ready\n", ""):
+            print(line, end="")
+        client.clear()
+        client.hold()
+        rest, hints = program.communicate(timeout=60)
+        if "held" not in (client.status()["devices"][0]["no_force"] or ""):
+            return print("SKIPPED: the machine stood still, and a fault of that came before the hold")
+        print(rest, end="")
+        check("told hold", program.returncode == 0, program.returncode)
+        check("stderr says what to do about a hold", "is held" in hints and "hapticd ctl clear" in hints, hints)
+        client.clear()
+
+
+def killed(folder):
+    """`hapticd client` is killed: the daemon that it started ends, and so does the program."""
+    environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
+    command = [HAPTICD, "client", "--name", "orphan", os.path.join(PROGRAMS, "hd_forces"), "spring", "60"]
+    wrapper = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    sock = os.path.join(folder, "orphan.sock")
+    check("it starts a daemon", until(lambda: os.path.exists(sock), 60))
+    wrapper.kill()
+    wrapper.wait()
+    check("kill -9 of hapticd client ends the daemon that it started", until(lambda: not os.path.exists(sock), 60))
+
+
 def refused(folder):
     """What a program and its user are told where it cannot work."""
     with Daemon(folder, "off", scene(clients="off")) as daemon:
@@ -342,6 +374,8 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as place:
     two_arms(place)
     six(place)
     outage(place)
+    told(place)
     refused(place)
     command(place)
+    killed(place)
 finish()

@@ -49,10 +49,12 @@ void ClientForces::begin(uint32_t place, const link::PushSlot& slot) noexcept HS
   client.seen = 0;
   client.silence = kSilentAfter + kFadeOut;
   client.answered = false;
-  for (std::atomic<uint64_t>* counter : {&client.answers, &client.in_time, &client.silences, &client.next_tick})
+  for (std::atomic<uint64_t>* counter :
+       {&client.answers, &client.in_time, &client.silences, &client.next_tick, &client.bounded, &client.refused})
     counter->store(0, std::memory_order_relaxed);
-  client.felt.store(0, std::memory_order_relaxed);
-  client.largest.store(0, std::memory_order_relaxed);
+  for (std::atomic<double>* figure : {&client.felt, &client.largest, &client.asked, &client.given, &client.quiet})
+    figure->store(0, std::memory_order_relaxed);
+  client.why.store(Refusal::kNone, std::memory_order_relaxed);
 }
 
 void ClientForces::end(uint32_t place) noexcept HSP_RT {
@@ -93,6 +95,8 @@ void ClientForces::step(Client& client, uint64_t tick, double dt) noexcept HSP_R
   client.silence = take(client, tick) ? 0 : client.silence + dt;
   const bool silent = client.slot == nullptr || client.silence > kSilentAfter;
   if (silent && !was_silent && client.slot != nullptr) count(client.silences);  // who leaves does not fall silent
+  if (client.slot != nullptr && client.answered)
+    client.quiet.store(silent ? client.silence : 0, std::memory_order_relaxed);
   client.gain = faded(client.gain, !silent, dt);
   if (client.gain == 0) return client.felt.store(0, std::memory_order_relaxed);
   const Vector3d force = client.gain * bounded(client.push.force, max_force_);
@@ -109,25 +113,39 @@ bool ClientForces::take(Client& client, uint64_t tick) noexcept HSP_RT {
   // A second look: who writes just now has its answer ready for this tick.
   if (client.slot == nullptr || (!client.slot->take(client.seen, push) && !client.slot->take(client.seen, push)))
     return false;
-  if (!sound(push, tick)) {
+  if (const Refusal why = refusalOf(push, tick); why != Refusal::kNone) {
     ++refused_;
+    client.why.store(why, std::memory_order_relaxed);
+    count(client.refused);
     return false;
   }
   if ((client.answered && push.tick <= client.push.tick) || tick - push.tick > oldest_ticks_) return false;
   client.push = push;
   client.answered = client.fresh = true;
+  note(client);
   count(client.answers);
   if (push.tick == tick) count(client.in_time);
   if (push.tick + 1 == tick) count(client.next_tick);
   return true;
 }
 
-bool ClientForces::sound(const hapticd_push& push, uint64_t tick) noexcept HSP_RT {
-  if (push.tick > tick) return false;
+/// What it asks for, and what it gets of that.
+void ClientForces::note(Client& client) const noexcept HSP_RT {
+  const double asked = Eigen::Map<const Vector3d>(client.push.force).norm();
+  client.given.store(std::min(asked, max_force_), std::memory_order_relaxed);
+  if (asked > client.asked.load(std::memory_order_relaxed)) client.asked.store(asked, std::memory_order_relaxed);
+  if (asked > max_force_) count(client.bounded);
+}
+
+ClientForces::Refusal ClientForces::refusalOf(const hapticd_push& push, uint64_t tick) noexcept HSP_RT {
+  if (push.tick > tick) return Refusal::kAhead;
+  Refusal why = Refusal::kNone;
   for (const double* numbers : {push.force, push.torque})
-    for (int i = 0; i < 3; ++i)
-      if (!(std::abs(numbers[i]) <= kLargestNumber)) return false;
-  return true;
+    for (int i = 0; i < 3; ++i) {
+      if (!std::isfinite(numbers[i])) return Refusal::kNotFinite;
+      if (!(std::abs(numbers[i]) <= kLargestNumber)) why = Refusal::kTooLarge;
+    }
+  return why;
 }
 
 }  // namespace hapticd::servo

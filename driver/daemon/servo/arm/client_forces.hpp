@@ -22,20 +22,29 @@ class ClientForces {
   static constexpr double kOldest = 20e-3;       ///< [s] an answer to an older tick is none
   static constexpr double kLargestNumber = 1e6;  ///< [N], [N m] beyond it a program is out of its mind
 
+  /// Why an answer was refused.
+  enum class Refusal : uint32_t { kNone, kNotFinite, kTooLarge, kAhead };
+
   /// One program. Counts are read by other threads.
   struct Client {
-    hapticd_push push{};                   ///< the last that was taken
-    double gain = 0, silence = 0;          ///< [s]
-    const link::PushSlot* slot = nullptr;  ///< its memory; nullptr: it has gone, and its force ramps out
-    uint64_t seen = 0;                     ///< count of the memory
-    bool answered = false;                 ///< ever
-    bool fresh = false;                    ///< `push` was taken in this tick
-    std::atomic<uint64_t> answers{0};      ///< that were taken
-    std::atomic<uint64_t> in_time{0};      ///< of these, in the tick that they answer
-    std::atomic<uint64_t> silences{0};     ///< times that it fell silent
-    std::atomic<uint64_t> next_tick{0};    ///< of the answers, one tick late
-    std::atomic<double> felt{0};           ///< [N] of its force now, bounded and faded
-    std::atomic<double> largest{0};        ///< [N] of that ever
+    hapticd_push push{};                       ///< the last that was taken
+    double gain = 0, silence = 0;              ///< [s]
+    const link::PushSlot* slot = nullptr;      ///< its memory; nullptr: it has gone, and its force ramps out
+    uint64_t seen = 0;                         ///< count of the memory
+    bool answered = false;                     ///< ever
+    bool fresh = false;                        ///< `push` was taken in this tick
+    std::atomic<uint64_t> answers{0};          ///< that were taken
+    std::atomic<uint64_t> in_time{0};          ///< of these, in the tick that they answer
+    std::atomic<uint64_t> silences{0};         ///< times that it fell silent
+    std::atomic<uint64_t> next_tick{0};        ///< of the answers, one tick late
+    std::atomic<double> felt{0};               ///< [N] of its force now, bounded and faded
+    std::atomic<double> largest{0};            ///< [N] of that ever
+    std::atomic<double> asked{0};              ///< [N] the largest that it asked for
+    std::atomic<double> given{0};              ///< [N] of its last answer, bounded
+    std::atomic<double> quiet{0};              ///< [s] it is silent for so long; 0: it is not, or never answered
+    std::atomic<uint64_t> bounded{0};          ///< answers that were cut to the bound
+    std::atomic<uint64_t> refused{0};          ///< answers that were refused
+    std::atomic<Refusal> why{Refusal::kNone};  ///< the last of these
   };
 
   /// [main] @param device_force [N] what the device's limits let through, 0: no bound
@@ -64,12 +73,14 @@ class ClientForces {
   bool present() const noexcept { return places_ > 0; }  ///< somebody pushes, or what is left of it ramps out
   const std::array<Client, kMost>& clients() const noexcept { return clients_; }
   uint64_t refused() const noexcept { return refused_; }  ///< [rt] answers that were refused so far
+  double bound() const noexcept { return max_force_; }    ///< [any] [N] of the force of each program; infinity: none
 
  private:
   void step(uint64_t tick, double dt) noexcept HSP_RT;
   void step(Client& client, uint64_t tick, double dt) noexcept HSP_RT;
   bool take(Client& client, uint64_t tick) noexcept HSP_RT;
-  bool sound(const hapticd_push& push, uint64_t tick) noexcept HSP_RT;
+  static Refusal refusalOf(const hapticd_push& push, uint64_t tick) noexcept HSP_RT;
+  void note(Client& client) const noexcept HSP_RT;
 
   scene::ClientMode mode_;
   double max_force_, max_torque_;

@@ -15,6 +15,11 @@
 
 namespace hapticd::client {
 
+bool Rows::isFile(const std::string& file) const {
+  struct stat info{};
+  return stat(file.c_str(), &info) == 0 && info.st_dev == device_ && info.st_ino == inode_;
+}
+
 using Json = nlohmann::json;
 
 Mapping::Mapping(int fd, size_t bytes, int protection) : bytes_(bytes) {
@@ -50,10 +55,18 @@ std::string baseOf(const std::string& name) {
   return !isThere(own) && isThere(system) ? system : own;
 }
 
+/// A program has no option --name.
+std::string forPrograms(std::string text) {
+  constexpr std::string_view kOption = "name a running one with --name";
+  if (const size_t at = text.find(kOption); at != std::string::npos)
+    text.replace(at, kOption.size(), "give hapticd_connect the name of a running one");
+  return text;
+}
+
 hapticd_client* connect(const std::string& name, hapticd_error* error) {
   const std::string base = baseOf(name);
   auto line = control::Client::connect(base + ".sock");
-  if (!line) return tell(error, "gone", line.error()), nullptr;
+  if (!line) return tell(error, "gone", forPrograms(line.error())), nullptr;
   auto rows = Rows::open(base + ".blackbox.h5");
   if (!rows) return tell(error, "damaged", rows.error()), nullptr;
   return new hapticd_client(base, std::move(*line), std::move(*rows));
@@ -68,6 +81,14 @@ bool refused(const std::string& line, hapticd_error* error) {
 }
 
 }  // namespace
+
+/// So that the daemon does not tell of a program that died. Without an answer the end of the connection does it.
+void endInOrder(hapticd_client& client, const hapticd_lead& lead) try {
+  constexpr double kPatience = 0.5;  // s
+  const std::lock_guard lock(client.asking);
+  if (!client.line.ended()) (void)client.line.askForMore(lead.unlead, kPatience);
+} catch (const std::exception&) {
+}
 
 }  // namespace hapticd::client
 
@@ -93,6 +114,11 @@ std::byte* hapticd_client::page(const char* request, hapticd::client::Mapping& k
   return kept.data();
 }
 
+/// A connection may end before the daemon does: where others need its place.
+bool hapticd_client::ended() {
+  return line.ended() && (!rows.isFile(base + ".blackbox.h5") || hapticd_alive(this) == 0);
+}
+
 const char* hapticd_version(void) {
   return HAPTICD_VERSION;
 }
@@ -107,7 +133,10 @@ hapticd_client* hapticd_connect(const char* name, hapticd_error* error) try {
 
 void hapticd_close(hapticd_client* client) {
   if (client == nullptr) return;
-  for (const hapticd_lead* lead : client->leads) delete lead;  // the connection's end ends them
+  for (const hapticd_lead* lead : client->leads) {
+    hapticd::client::endInOrder(*client, *lead);
+    delete lead;
+  }
   delete client;
 }
 

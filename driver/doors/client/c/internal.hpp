@@ -2,6 +2,7 @@
 /// What the files of the client library share. Nothing of it is seen outside.
 #pragma once
 #include <sys/mman.h>
+#include <sys/types.h>
 
 #include <atomic>
 #include <cstddef>
@@ -50,6 +51,7 @@ struct Stream {
   std::string name;
   uint64_t* written = nullptr;  ///< in the mapping
   uint64_t* rows = nullptr;
+  uint64_t handed = 0;  ///< rows before this number were read already, by any thread
   uint64_t capacity = 0;
   size_t row_words = 0;
   std::list<std::string> texts;  ///< that the columns point to
@@ -65,6 +67,8 @@ class Rows {
   /// ns from one tick to the next.
   int64_t period() const { return period_; }
   std::vector<Stream>& streams() { return streams_; }
+  /// The file is that of the daemon which was connected to: another would have replaced it.
+  bool isFile(const std::string& file) const;
   static uint64_t written(const Stream& stream);
   static long read(const Stream& stream, uint64_t& row, void* rows, size_t most);
 
@@ -76,6 +80,8 @@ class Rows {
   std::vector<Stream> streams_;
   std::vector<std::string> devices_;
   int64_t period_ = 0;
+  dev_t device_ = 0;
+  ino_t inode_ = 0;
 };
 
 /// What a request got.
@@ -84,7 +90,11 @@ struct Answer {
   Descriptor descriptor;
 };
 
+/// Any `error` may be nullptr.
 void tell(hapticd_error* error, const char* code, const std::string& text);
+
+/// Ends a lead that the client's end would end.
+void endInOrder(hapticd_client& client, const hapticd_lead& lead);
 
 }  // namespace hapticd::client
 
@@ -97,6 +107,8 @@ struct hapticd_client {
   /// The memory of a request, mapped once. nullptr: it cannot be had
   std::byte* page(const char* request, hapticd::client::Mapping& kept, size_t least, int protection);
 
+  /// [any] The daemon that this is a client of has ended: its rows and states are old.
+  bool ended();
   std::string base;  ///< of the daemon's files, "/run/hapticd/NAME"
   hapticd::control::Client line;
   hapticd::client::Rows rows;

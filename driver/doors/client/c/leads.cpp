@@ -10,6 +10,12 @@ namespace {
 using hapticd::client::Answer;
 using hapticd::client::tell;
 
+/// Why the arm gets no force, as the daemon says it; "": it gets what is asked for.
+std::string noForce(const std::string& answer) {
+  const auto json = nlohmann::json::parse(answer, nullptr, false);
+  return json.is_object() && json.contains("no_force") ? json["no_force"].get<std::string>() : "";
+}
+
 hapticd_lead* leadOf(hapticd_client* client, const char* what, const char* name, hapticd_error* error) try {
   tell(error, "", "");
   nlohmann::json request = {{"do", "lead"}, {what, name}};
@@ -22,6 +28,7 @@ hapticd_lead* leadOf(hapticd_client* client, const char* what, const char* name,
   auto* lead = new hapticd_lead{client, request.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
                                 std::string_view(what) == "force", std::move(memory)};
   client->leads.push_back(lead);
+  if (const std::string why = noForce(answer.line); !why.empty()) tell(error, "no_force", why);
   return lead;
 } catch (const std::exception& problem) {
   tell(error, "failed", problem.what());
@@ -43,13 +50,13 @@ hapticd_lead* hapticd_lead_force(hapticd_client* client, const char* device, hap
 }
 
 int hapticd_lead_put(hapticd_lead* lead, const hapticd_target* target) {
-  if (lead->pushes) return -1;
+  if (lead->pushes || lead->client->line.ended()) return -1;
   reinterpret_cast<hapticd::link::PoseSlot*>(lead->memory.data())->put(*target);
   return 0;
 }
 
 int hapticd_lead_push(hapticd_lead* lead, const hapticd_push* push) {
-  if (!lead->pushes) return -1;
+  if (!lead->pushes || lead->client->line.ended()) return -1;
   reinterpret_cast<hapticd::link::PushSlot*>(lead->memory.data())->put(*push);
   return 0;
 }

@@ -2,6 +2,7 @@
 /// Rows of the black box. Its writer stores the words of a row with release and then the count of rows: a row is whole
 /// if the writer has not come round meanwhile.
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -32,6 +33,8 @@ Result<Rows> Rows::open(const std::string& file) {
   if (fd < 0) return Error{"cannot read " + file + ": " + std::strerror(errno)};
   Rows rows;
   rows.memory_ = Mapping(fd, 0, PROT_READ);
+  struct stat info{};
+  if (fstat(fd, &info) == 0) rows.device_ = info.st_dev, rows.inode_ = info.st_ino;
   close(fd);
   if (rows.memory_.data() == nullptr) return Error{"cannot map " + file};
   if (auto read = rows.readStreams(); !read) return Error{file + ": " + read.error()};
@@ -149,6 +152,13 @@ uint64_t hapticd_written(hapticd_client* client, int stream) {
 }
 
 long hapticd_read(hapticd_client* client, int stream, uint64_t* row, void* rows, size_t most) {
-  const auto* found = streamOf(client, stream);
-  return found != nullptr ? hapticd::client::Rows::read(*found, *row, rows, most) : -1;
+  auto* found = streamOf(client, stream);
+  if (found == nullptr) return -1;
+  const long got = hapticd::client::Rows::read(*found, *row, rows, most);
+  std::atomic_ref<uint64_t> handed(found->handed);
+  if (*row > handed.load(std::memory_order_relaxed))
+    handed.store(*row, std::memory_order_relaxed);
+  else if (client->ended())
+    return -1;  // what was told before is no news
+  return got;
 }

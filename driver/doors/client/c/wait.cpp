@@ -38,15 +38,16 @@ void sleepOn(uint32_t& word, uint32_t& waiting, uint32_t seen, long ms) {
   syscall(SYS_futex, &word, FUTEX_WAIT, seen, &limit, nullptr, 0);
 }
 
-/// Asks until `there` says so, or nowMs() is `end`. @return it did
+/// Asks until `there` says so, or nowMs() is `end`. @return 1: it did; 0: not in time; -1: the daemon has ended
 template <class There>
-bool waitFor(uint32_t& word, uint32_t& waiting, long end, There&& there) {
+int waitFor(hapticd_client* client, uint32_t& word, uint32_t& waiting, long end, There&& there) {
   constexpr long kLongest = 100;  // a wake-up may be lost to somebody who plays with the bell
   for (;;) {
     const uint32_t seen = std::atomic_ref<uint32_t>(word).load();
-    if (there()) return true;
+    if (there()) return 1;
     const long left = end - nowMs();
-    if (left <= 0) return false;
+    if (left <= 0) return client->ended() ? -1 : 0;
+    if (client->ended()) return -1;
     sleepOn(word, waiting, seen, std::min(left, kLongest));
   }
 }
@@ -94,10 +95,8 @@ int hapticd_wait(hapticd_client* client, uint64_t tick, int timeout_ms) try {
   const int ticks = hapticd_stream(client, "ticks");
   hapticd_bell* bell = bellOf(client);
   if (bell == nullptr || ticks < 0) return -1;
-  return waitFor(bell->rows, bell->rows_waiting, nowMs() + timeout_ms,
-                 [&] { return hapticd_written(client, ticks) > tick; })
-             ? 1
-             : 0;
+  return waitFor(client, bell->rows, bell->rows_waiting, nowMs() + timeout_ms,
+                 [&] { return hapticd_written(client, ticks) > tick; });
 } catch (const std::exception&) {
   return -1;
 }
@@ -109,11 +108,12 @@ int hapticd_next_state(hapticd_client* client, int device, uint64_t after, int t
   const auto there = [&] { return newest(at, *state) && (after == UINT64_MAX || state->tick > after); };
   const int64_t before = client->listen_ns.load(std::memory_order_relaxed), period = client->rows.period();
   const long end = nowMs() + timeout_ms;
+  if (after == UINT64_MAX && client->ended()) return -1;  // the newest state is that of the past
   if (there()) return 1;
   if (before > 0 && after != UINT64_MAX && timeout_ms * kNsPerMs > 2 * period &&
       listen(at, period, before, after, *state))
     return 1;
-  return waitFor(bell->state, bell->state_waiting, end, there) ? 1 : 0;
+  return waitFor(client, bell->state, bell->state_waiting, end, there);
 } catch (const std::exception&) {
   return -1;
 }

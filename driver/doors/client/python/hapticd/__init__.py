@@ -13,12 +13,12 @@ SI units; vectors in the world frame: x to the right, y up, z toward the user; q
 but Python; with numpy, rows are structured arrays, without it lists of tuples.
 """
 from ._client import Client, Events, connect
-from ._error import HapticdError, Refused
+from ._error import HapticdError, NoForceWarning, Refused
 from ._lead import ForceLead, Lead, PoseLead
 from ._models import Model, Parameter
 from ._push import ForceThread
 from ._rows import Column, Stream
 from ._state import State
 
-__all__ = ["Client", "Column", "Events", "ForceLead", "ForceThread", "HapticdError", "Lead", "Model", "Parameter", "PoseLead",
-           "Refused", "State", "Stream", "connect"]
+__all__ = ["Client", "Column", "Events", "ForceLead", "ForceThread", "HapticdError", "Lead", "Model", "NoForceWarning",
+           "Parameter", "PoseLead", "Refused", "State", "Stream", "connect"]

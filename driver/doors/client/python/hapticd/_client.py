@@ -10,9 +10,10 @@ import select
 import socket
 import stat
 import time
+import warnings
 from typing import Any, Callable, Iterator, Optional, Sequence
 
-from ._error import HapticdError, Named, Refused
+from ._error import HapticdError, Named, NoForceWarning, Refused
 from ._lead import ForceLead, PoseLead
 from ._models import Model
 from ._push import ForceThread
@@ -103,6 +104,14 @@ class _Line:
         line, self._heard = self._heard.split(b"\n", 1)
         return json.loads(line)
 
+    def ended(self) -> bool:
+        """The other end is closed: the kernel tells at once, however its process ended."""
+        if self._socket.fileno() < 0:
+            return False
+        socket_ = select.poll()
+        socket_.register(self._socket, 0)
+        return bool(socket_.poll(0))
+
     def descriptor(self) -> int:
         """The one that came with the last line."""
         if not self._descriptors:
@@ -123,8 +132,8 @@ class _Line:
 class Events:
     """What happens in a daemon, as it happens."""
 
-    def __init__(self, line: _Line, patience: float, timeout: Optional[float]) -> None:
-        self._line, self._timeout = line, timeout
+    def __init__(self, line: _Line, patience: float, timeout: Optional[float], died: Callable[[], bool]) -> None:
+        self._line, self._timeout, self._died = line, timeout, died
         line.say({"do": "subscribe"})
         answer = line.hear(patience)
         if answer is None or not answer.get("ok"):
@@ -138,7 +147,10 @@ class Events:
         try:
             event = self._line.hear(self._timeout)
         except HapticdError:
-            event = None
+            self.close()
+            if self._died():
+                raise HapticdError("the daemon is gone: it was killed, or it crashed") from None
+            raise StopIteration from None
         if event is None:
             self.close()
             raise StopIteration
@@ -159,6 +171,7 @@ class Client:
         self._line = _Line(self._base + ".sock")
         try:
             self._box = BlackBox(self._base + ".blackbox.h5")
+            self._box_file = self._file_of_box()
         except HapticdError:
             self._line.close()
             raise
@@ -179,12 +192,15 @@ class Client:
         return self._box.streams
 
     def rows(self, stream: str = "ticks", last: int = 1000) -> Any:
-        """The newest rows of a stream, oldest first: a numpy structured array."""
+        """The newest rows of a stream, oldest first: a numpy structured array. Raises HapticdError once the daemon has
+        ended: its rows are old then (`streams[stream].last(last)` reads them all the same)."""
+        self._check()
         return self._box.streams[stream].last(last)
 
     def follow(self, stream: str = "ticks", timeout: Optional[float] = None, pause: float = 0.01) -> Iterator[Any]:
         """Rows as they come: arrays of one row or more, without gaps as long as each is taken within what is kept.
-        Ends with the daemon, or where no row came for `timeout` seconds."""
+        Ends with the daemon, or where no row came for `timeout` seconds. Raises HapticdError, behind the last row, where
+        the daemon was killed or crashed."""
         rows = self._box.streams[stream]
         at, since = rows.written, time.monotonic()
         while True:
@@ -193,7 +209,9 @@ class Client:
                 at += len(news)
                 since = time.monotonic()
                 yield news
-            elif timeout is not None and time.monotonic() - since > timeout or not self.alive():
+            elif self.died():
+                raise HapticdError(self._gone())
+            elif timeout is not None and time.monotonic() - since > timeout or self.ended():
                 return
             else:
                 time.sleep(pause)
@@ -210,6 +228,29 @@ class Client:
             return True
         except OSError:
             return False
+
+    def _file_of_box(self) -> Optional[tuple[int, int]]:
+        try:
+            info = os.stat(self._base + ".blackbox.h5")
+            return info.st_dev, info.st_ino
+        except OSError:
+            return None
+
+    def ended(self) -> bool:
+        """The daemon that this client is connected to has ended. One that took its name since does not count."""
+        return self._line.ended() and (self._file_of_box() != self._box_file or not self.alive())
+
+    def died(self) -> bool:
+        """It ended without putting its files away: it was killed, or it crashed."""
+        return self.ended() and os.path.exists(self._base + ".sock")
+
+    def _gone(self) -> str:
+        return (f"the daemon is gone: {self.name} " + ("was killed, or it crashed" if self.died() else "has ended")
+                + "\n  fix: start it again with hapticd run, then connect anew")
+
+    def _check(self) -> None:
+        if self.ended():
+            raise HapticdError(self._gone())
 
     # ---- requests
 
@@ -250,8 +291,9 @@ class Client:
 
     def events(self, timeout: Optional[float] = None) -> "Events":
         """Events from now on, as an iterator over dicts with `event`, `tick`, `t` and what belongs to it. It ends with the
-        daemon, or where none came for `timeout` seconds. On a connection of its own."""
-        return Events(_Line(self._base + ".sock"), self.timeout, timeout)
+        daemon, or where none came for `timeout` seconds; raises HapticdError where the daemon was killed or crashed. On a
+        connection of its own."""
+        return Events(_Line(self._base + ".sock"), self.timeout, timeout, self.died)
 
     # ---- leads
 
@@ -265,17 +307,37 @@ class Client:
 
     def _lead(self, target: dict[str, str]) -> PoseLead:
         answer = self.ask(do="lead", **target)
-        return PoseLead(self._line.descriptor(), answer["bytes"], lambda: self._unlead(target))
+        return PoseLead(self._line.descriptor(), answer["bytes"], lambda: self._unlead(target), self._lost_lead)
 
     def lead_force(self, device: str) -> ForceLead:
-        """Pushes on the hand of an arm, tick by tick; `push` does it in a thread. The scene must allow it (`clients`)."""
+        """Pushes on the hand of an arm, tick by tick; `push` does it in a thread. The scene must allow it (`clients`).
+        Warns (NoForceWarning) where the arm gets no force now."""
         target = {"force": device}
         answer = self.ask(do="lead", **target)
-        return ForceLead(self._line.descriptor(), answer["bytes"], lambda: self._unlead(target))
+        if answer.get("no_force"):
+            warnings.warn(answer["no_force"], NoForceWarning, stacklevel=2)
+        return ForceLead(self._line.descriptor(), answer["bytes"], lambda: self._unlead(target), self._lost_lead)
+
+    def _lost_lead(self) -> str:
+        """Why no lead of this connection counts any more; "": they do."""
+        if not self._line.ended():
+            return ""
+        return self._gone() if self.ended() else "the daemon ended the connection, and with it this lead; connect anew"
+
+    def _no_force(self, device: str) -> str:
+        """[any thread] Why an arm gets no force now, as the daemon says it; "": it gets what is asked for."""
+        line = _Line(self._base + ".sock")
+        try:
+            line.say({"do": "status"})
+            answer = line.hear(self.timeout) or {}
+        finally:
+            line.close()
+        return next((d.get("no_force") or "" for d in answer.get("devices", []) if d["name"] == device), "")
 
     def push(self, device: str, callback: Callable[[State], Optional[Sequence[float]]], priority: int = 70) -> ForceThread:
         """Calls `callback(state)` once a tick in a thread of its own (SCHED_FIFO `priority` where that is allowed); the
-        force [N] that it gives back, in the world frame, is added to what the hand feels."""
+        force [N] that it gives back, in the world frame, is added to what the hand feels. Warns (NoForceWarning) where the
+        arm gets no force, now and whenever that begins."""
         return ForceThread(self, device, callback, priority)
 
     def state(self, device: str) -> State:
@@ -326,8 +388,8 @@ class Client:
     def _unlead(self, target: dict[str, str]) -> None:
         try:
             self.ask(do="unlead", **target)
-        except HapticdError:
-            pass  # it has ended with the daemon, or with the model
+        except Refused:
+            pass  # it has ended with the model
 
     def close(self) -> None:
         """Ends all leads of this connection."""
@@ -340,8 +402,11 @@ class Client:
     def __enter__(self) -> "Client":
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: object, *_: object) -> None:
+        gone = self._gone() if kind is None and self.died() else ""
         self.close()
+        if gone:
+            raise HapticdError(gone)
 
 
 def connect(name: str = "hapticd", folder: Optional[str] = None, timeout: float = 10) -> Client:

@@ -15,6 +15,10 @@ class Refused(HapticdError):
         self.code = code
 
 
+class NoForceWarning(UserWarning):
+    """A program pushes on an arm that gets no force: a fault is latched, or somebody holds it. The text says what to do."""
+
+
 class Named(dict):  # type: ignore[type-arg]
     """A dictionary that says what there is where a name is not found."""
 

@@ -9,6 +9,8 @@ import struct
 import time
 from typing import Any, Callable, Optional, Sequence
 
+from ._error import HapticdError
+
 _TARGET = struct.Struct("<14d")
 _PUSH = struct.Struct("<Q6dQQ")
 _COUNT = struct.Struct("<Q")
@@ -47,28 +49,38 @@ class _Slot:
 class Lead:
     """Something that this program leads. Ends with `end()`, with the client, or with `with`."""
 
-    def __init__(self, fd: int, size: int, unlead: Callable[[], Any]) -> None:
+    def __init__(self, fd: int, size: int, unlead: Callable[[], Any],
+                 lost: Callable[[], str] = lambda: "") -> None:
         self._slot: Optional[_Slot] = _Slot(fd, size)
         self._unlead = unlead
+        self._lost = lost  # why it counts no more; "": it does
 
     def _put(self, record: bytes) -> None:
         if self._slot is None:
             raise ValueError("the lead has ended")
+        if why := self._lost():
+            raise HapticdError(why)
         self._slot.put(record)
 
     def end(self) -> None:
-        """Leads no more: a model brakes and stays, a force ramps out."""
+        """Leads no more: a model brakes and stays, a force ramps out. Raises HapticdError where the daemon has ended."""
         if self._slot is None:
             return
         self._slot.close()
         self._slot = None
+        if why := self._lost():
+            raise HapticdError(why)
         self._unlead()
 
     def __enter__(self) -> "Lead":
         return self
 
-    def __exit__(self, *_: object) -> None:
-        self.end()
+    def __exit__(self, kind: object, *_: object) -> None:
+        try:
+            self.end()
+        except HapticdError:
+            if kind is None:
+                raise  # else it would hide what went wrong first
 
 
 class PoseLead(Lead):

@@ -6,10 +6,11 @@ import os
 import sys
 import threading
 import time
+import traceback
 import warnings
 from typing import TYPE_CHECKING, Callable, Optional, Sequence
 
-from ._error import HapticdError
+from ._error import HapticdError, NoForceWarning
 from ._lead import ForceLead
 from ._state import Bell, State, StatePage
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from ._client import Client
 
 _TOO_OLD = 20_000_000  # ns: an answer so long after its tick is ignored
-_LOOKS = 500_000_000  # ns without a tick, after which the daemon's lock is looked at
+_STOPPED = 8  # the fault of an arm that is held, or whose run ends
 _PATIENCE = 0.1  # s between two looks at whether anything is alive
 
 Force = Sequence[float]
@@ -25,16 +26,16 @@ Force = Sequence[float]
 
 class ForceThread:
     """Calls `callback(state)` in a thread once a tick; what it gives back, three numbers in N (or six with the torque in
-    N m), pushes on the hand; None answers nothing. An exception in the callback ends the push: it is told on stderr at
-    once, `error` has it, and `end()` raises it. `end()` warns where no tick was answered, or answers came too late to
-    count. A fault that keeps the force from the hand is told on stderr when the push meets it."""
+    N m), pushes on the hand; None answers nothing. An exception in the callback ends the push, is printed at once, stays
+    in `error`, and is raised by `end()`; so is the end of the daemon. `end()` warns where no tick was answered, or answers
+    came too late to count. A NoForceWarning comes when the arm begins to get no force."""
 
     def __init__(self, client: "Client", device: str, callback: Callable[[State], Optional[Force]], priority: int) -> None:
         self._lead: ForceLead = client.lead_force(device)
         self._page: StatePage = client._state_page()
         self._bell: Bell = client._bell()
         self._arm = client._arm(device)
-        self._alive = client.alive
+        self._client, self._device = client, device
         self._callback, self._priority = callback, priority
         self._stop = threading.Event()
         self.answers = 0  #: ticks that were answered
@@ -53,32 +54,52 @@ class ForceThread:
             pass  # it works without; late answers ramp the force out
         try:
             self._answer()
-        except BaseException as error:  # noqa: B902 - raised in end(), which may be far off
+        except BaseException as error:  # noqa: B902 - told at once, and raised in end()
+            self._tell(error)
             self.error = error
-            print(f"hapticd: the push ended, its force ramps out: {type(error).__name__}: {error}", file=sys.stderr)
         finally:
             self._bell.close()
             self._page.close()
 
+    def _tell(self, error: BaseException) -> None:
+        """Nobody may look at the main thread for long."""
+        shown = None if isinstance(error, HapticdError) else error.__traceback__
+        text = "".join(traceback.format_exception(type(error), error, shown))
+        print(f"hapticd: the push on {self._device} has ended, and its force ramps out:\n{text}", end="", file=sys.stderr)
+
+    def _watch(self, state: State) -> None:
+        """A fault that begins is told beside the ticks: words for it take a request."""
+        if state.fault != self._fault and state.fault != 0:
+            threading.Thread(target=self._tell_fault, args=(state.fault,), daemon=True).start()
+        self._fault = state.fault
+
+    def _tell_fault(self, fault: int) -> None:
+        time.sleep(_PATIENCE)
+        if self._client.ended():
+            return  # it ramped its forces out as it ended, which is told as such
+        try:
+            why = self._client._no_force(self._device)
+        except (HapticdError, OSError):
+            why = ""
+        if not why and fault == _STOPPED:
+            return  # it is about to end
+        # without a registry: also the second time
+        warnings.warn_explicit(why or f"device {self._device}: a fault ({fault}) ended its forces; see: hapticd ctl status",
+                               NoForceWarning, __file__, 0)
+
     def _answer(self) -> None:
-        seen, last, fault = self._bell.wait("state", -1, 0), -1, 0
-        looked = time.monotonic_ns()
+        seen, last = self._bell.wait("state", -1, 0), -1
+        first = self._page.read(self._arm)
+        self._fault = first.fault if first else 0  # of which lead_force() warned
         while not self._stop.is_set():
             seen = self._bell.wait("state", seen, _PATIENCE)
             woke = time.monotonic_ns()
             state = self._page.read(self._arm)
             if state is None or state.tick == last:
-                if time.monotonic_ns() - looked > _LOOKS:
-                    looked = time.monotonic_ns()
-                    if not self._alive():
-                        raise HapticdError("the daemon is gone, so nothing is pushed any more")
+                self._client._check()
                 continue
-            looked = time.monotonic_ns()
             last = state.tick
-            if state.fault not in (0, fault):
-                print(f"hapticd: no force reaches the hand (fault {state.fault}): hapticd ctl status says why, hapticd "
-                      "ctl clear ends it", file=sys.stderr)
-            fault = state.fault
+            self._watch(state)
             force = self._callback(state)
             if force is None:
                 self.unanswered += 1
@@ -92,7 +113,11 @@ class ForceThread:
         self._stop.set()
         if threading.current_thread() is not self._thread:
             self._thread.join()
-        self._lead.end()
+        try:
+            self._lead.end()
+        except HapticdError:
+            if self.error is None:
+                raise
         if self.error is not None:
             raise self.error
         if self.answers == 0 and self.unanswered > 0:
@@ -105,5 +130,9 @@ class ForceThread:
     def __enter__(self) -> "ForceThread":
         return self
 
-    def __exit__(self, *_: object) -> None:
-        self.end()
+    def __exit__(self, kind: object, *_: object) -> None:
+        try:
+            self.end()
+        except HapticdError:
+            if kind is None:
+                raise  # else it would hide what went wrong first

@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "hapticd/abi.h"
 #include "servo/safety/guard.hpp"
+#include "session/pusher_log.hpp"
 
 namespace hapticd::servo {
 namespace {
@@ -61,6 +64,59 @@ TEST_F(EventWords, SayThatASwitchWasFoundPressed) {
 TEST_F(EventWords, NameTheProcessThatLeads) {
   EXPECT_EQ(of(HAPTICD_JOINED, 0, 4711).text, "process 4711 leads it");
   EXPECT_EQ(of(HAPTICD_LOST, 0, 4711).text, "process 4711 leads it no more");
+}
+
+TEST_F(EventWords, OfAHoldAndOfItsEndMatch) {
+  hapticd_event event{};
+  event.kind = HAPTICD_FAULT;
+  event.model = -1;
+  event.code = static_cast<uint32_t>(Fault::kStopped);
+  EXPECT_NE(log_.messageOf(event).text.find("it is held"), std::string::npos) << log_.messageOf(event).text;
+  log_.note(event);
+  EXPECT_EQ(of(HAPTICD_CLEARED).text, "the hold is over; its forces come back");
+  event.kind = HAPTICD_CLEARED;
+  log_.note(event);
+  EXPECT_EQ(of(HAPTICD_CLEARED).text, "the fault is over; its forces come back");
+}
+
+/// Texts of one look at the programs on an arm.
+std::string look(PusherLog& log, const ClientForces& forces, double now) {
+  std::string text;
+  for (const auto& message : log.look(0, forces, now)) text += message.text + "\n";
+  return text;
+}
+
+TEST(PusherWords, TellWhoAskedFallsSilentAndDies) {
+  constexpr double kTick = 1e-3;
+  ClientForces forces({scene::ClientMode::kAdd, 4, false}, 10, 1, kTick);
+  PusherLog log;
+  link::PushSlot slot;
+  uint64_t now = 1000;
+  const auto tick = [&](double force) {
+    hapticd_push push{};
+    push.tick = now;
+    push.force[0] = force;
+    slot.put(push);
+    forces.collect(now++, kTick);
+  };
+  EXPECT_EQ(log.begins(0, 0, 4711, "spring").text, "process 4711 (spring) pushes on it");
+  forces.begin(0, slot);
+  tick(2);
+  EXPECT_EQ(look(log, forces, 0), "");
+  tick(100);
+  EXPECT_NE(look(log, forces, 0).find("(spring) asked for 100 N and gets 4 N at most"), std::string::npos);
+  tick(std::numeric_limits<double>::quiet_NaN());
+  tick(2e6);
+  EXPECT_EQ(look(log, forces, 0), "2 answers of process 4711 (spring) were refused so far: a number is beyond 1e6\n");
+  tick(3);
+  for (int i = 0; i < 300; ++i) forces.collect(now++, kTick);
+  EXPECT_EQ(look(log, forces, 1), "process 4711 (spring) fell silent while it pushed with 3 N: its force ramped out\n");
+  EXPECT_EQ(look(log, forces, 2), "");
+  tick(3);
+  EXPECT_NE(look(log, forces, 3).find("answers again, after about 0.3 s"), std::string::npos);
+  EXPECT_EQ(log.ends(0, 0, PusherLog::End::kLeft, forces.clients()[0]).text,
+            "process 4711 (spring) ended while it pushed with 3 N: its force ramped out");
+  EXPECT_EQ(look(log, forces, 4), "");
 }
 
 TEST_F(EventWords, KeepTheNameOfAModelThatHasLeft) {

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "session/pusher_log.hpp"
+
+#include <fmt/format.h>
+
+#include "hapticd/abi.h"
+
+namespace hapticd::servo {
+
+namespace {
+
+constexpr auto kRelaxed = std::memory_order_relaxed;
+
+}  // namespace
+
+const char* describe(ClientForces::Refusal why) {
+  switch (why) {
+    case ClientForces::Refusal::kNone:
+      return "";
+    case ClientForces::Refusal::kNotFinite:
+      return "a number is not finite";
+    case ClientForces::Refusal::kTooLarge:
+      return "a number is beyond 1e6";
+    case ClientForces::Refusal::kAhead:
+      return "its tick lies ahead";
+  }
+  return "";
+}
+
+PusherLog::Told& PusherLog::at(uint32_t arm, uint32_t place) {
+  if (arm >= told_.size()) told_.resize(arm + 1);
+  return told_[arm][place % ClientForces::kMost];
+}
+
+std::string PusherLog::who(const Told& told) {
+  return fmt::format("process {} ({})", told.pid, told.program);
+}
+
+PusherLog::Message PusherLog::begins(uint32_t arm, uint32_t place, pid_t pid, const std::string& program) {
+  const std::lock_guard lock(mutex_);
+  Told& told = at(arm, place) = Told();
+  told.pid = pid;
+  told.program = program;
+  return {HSP_LOG_INFO, who(told) + " pushes on it"};
+}
+
+PusherLog::Message PusherLog::ends(uint32_t arm, uint32_t place, End how, const ClientForces::Client& client) {
+  const std::lock_guard lock(mutex_);
+  Told& told = at(arm, place);
+  const std::string name = who(told);
+  told.pid = 0;
+  const double given = client.given.load(kRelaxed);
+  if (how == End::kUnlead) return {HSP_LOG_INFO, name + " pushes on it no more"};
+  if (told.silent) return {HSP_LOG_WARNING, name + " ended; it was silent before, so that its force was gone already"};
+  if (given == 0) return {HSP_LOG_INFO, name + " ended, and pushed with no force"};
+  return {HSP_LOG_WARNING, fmt::format("{} ended while it pushed with {:.3g} N: its force ramped out", name, given)};
+}
+
+std::vector<PusherLog::Message> PusherLog::look(uint32_t arm, const ClientForces& forces, double now) {
+  const std::lock_guard lock(mutex_);
+  std::vector<Message> messages;
+  for (uint32_t place = 0; place < ClientForces::kMost; ++place) {
+    Told& told = at(arm, place);
+    if (told.pid == 0) continue;
+    const ClientForces::Client& client = forces.clients()[place];
+    lookAtSilence(told, client, messages);
+    lookAtRefusals(told, client, now, messages);
+    lookAtBound(told, client, forces.bound(), messages);
+  }
+  return messages;
+}
+
+void PusherLog::lookAtSilence(Told& told, const ClientForces::Client& client, std::vector<Message>& messages) {
+  const double quiet = client.quiet.load(kRelaxed);
+  if (!told.silent && quiet > kSilent)
+    messages.push_back(
+        {HSP_LOG_WARNING, fmt::format("{} fell silent while it pushed with {:.3g} N: its force ramped out", who(told),
+                                      client.given.load(kRelaxed))});
+  if (told.silent && quiet == 0)
+    messages.push_back(
+        {HSP_LOG_INFO,
+         fmt::format("{} answers again, after about {:.1f} s of silence: its force fades in", who(told), told.quiet)});
+  told.silent = told.silent ? quiet > 0 : quiet > kSilent;
+  told.quiet = quiet;
+}
+
+void PusherLog::lookAtRefusals(Told& told, const ClientForces::Client& client, double now,
+                               std::vector<Message>& messages) {
+  const uint64_t refused = client.refused.load(kRelaxed);
+  if (refused == told.refused || now - told.refused_at < kRefusedPeriod) return;
+  told.refused = refused;
+  told.refused_at = now;
+  messages.push_back(
+      {HSP_LOG_WARNING, fmt::format("{} answer{} of {} {} refused so far: {}", refused, refused == 1 ? "" : "s",
+                                    who(told), refused == 1 ? "was" : "were", describe(client.why.load(kRelaxed)))});
+}
+
+void PusherLog::lookAtBound(Told& told, const ClientForces::Client& client, double bound,
+                            std::vector<Message>& messages) {
+  if (told.bounded || client.bounded.load(kRelaxed) == 0) return;
+  told.bounded = true;
+  messages.push_back(
+      {HSP_LOG_WARNING,
+       fmt::format("{} asked for {:.3g} N and gets {:.3g} N at most (clients.max_force, or the limit of the device)",
+                   who(told), client.asked.load(kRelaxed), bound)});
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+/// Writes into the daemon's log what programs do that push on an arm: which process, what it does, and why its force is
+/// less than it asks for, or none.
+#pragma once
+#include <sys/types.h>
+
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "servo/arm/client_forces.hpp"
+
+namespace hapticd::servo {
+
+class PusherLog {
+ public:
+  static constexpr double kSilent = 0.2;  ///< [s] then the log tells of a silence; shorter ones are counted alone
+  static constexpr double kRefusedPeriod = 1.0;  ///< [s] between two words about refused answers of a program
+
+  /// A message for the log. @param level HSP_LOG_INFO, ...
+  struct Message {
+    int32_t level;
+    std::string text;
+  };
+  /// How a program ends its push.
+  enum class End { kUnlead, kLeft };
+
+  /// [any] A program begins to push. @param place less than ClientForces::kMost
+  Message begins(uint32_t arm, uint32_t place, pid_t pid, const std::string& program);
+  /// [any] It ends. @param client how it was
+  Message ends(uint32_t arm, uint32_t place, End how, const ClientForces::Client& client);
+  /// [any] What is new with the programs on an arm. @param now [s]
+  std::vector<Message> look(uint32_t arm, const ClientForces& forces, double now);
+
+ private:
+  /// What was told of a program.
+  struct Told {
+    pid_t pid = 0;  ///< 0: an empty place
+    std::string program;
+    bool silent = false, bounded = false;
+    double quiet = 0;  ///< [s]
+    uint64_t refused = 0;
+    double refused_at = -kRefusedPeriod;
+  };
+  static std::string who(const Told& told);
+  Told& at(uint32_t arm, uint32_t place);
+  static void lookAtSilence(Told& told, const ClientForces::Client& client, std::vector<Message>& messages);
+  static void lookAtRefusals(Told& told, const ClientForces::Client& client, double now,
+                             std::vector<Message>& messages);
+  static void lookAtBound(Told& told, const ClientForces::Client& client, double bound, std::vector<Message>& messages);
+
+  std::mutex mutex_;  // programs come and go on the thread of the control socket
+  std::vector<std::array<Told, ClientForces::kMost>> told_;
+};
+
+/// [any] "a number is not finite": why an answer was refused.
+const char* describe(ClientForces::Refusal why);
+
+}  // namespace hapticd::servo

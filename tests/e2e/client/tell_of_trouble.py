@@ -1,0 +1,175 @@
+#!/usr/bin/env python3
+"""A program is told that nobody feels its force, and that its daemon is gone; the daemon's log tells what programs did.
+
+Usage: tell_of_trouble.py HAPTICD SOURCE OUTLIVES     prints one line per case; exit 1 when one is off.
+"""
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import warnings
+
+HAPTICD, SOURCE, OUTLIVES = sys.argv[1:4]
+CLIENT = os.path.join(SOURCE, "driver", "doors", "client", "python")
+sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
+sys.path.insert(0, CLIENT)
+import hapticd
+from e2e import check, finish, until
+
+SCENE = """hapticd: 1
+servo: {{rate: 1000}}
+device: {source}/config/devices/simulated-premium15.yaml
+hand: {{script: guided, tremor: 0, wander: 0}}
+clients: {{mode: add, max_force: 3}}
+models:
+  - name: door
+    plugin: nurbs_rigid
+    motion: kinematic
+    pose: {{position: [0, -0.3, 0]}}
+    parameters: {{geometry: {source}/config/models/box.yaml, stiffness: 500}}
+"""
+ARM = "simulated Premium 1.5"
+PROGRAM = """
+import sys, time
+import hapticd
+with hapticd.connect("trouble") as h:
+    with h.push(h.devices[0], lambda state: [0, 0, float(sys.argv[1])]):
+        time.sleep(1000)
+"""
+
+
+class Daemon:
+    def __init__(self, folder):
+        self.folder = folder
+        self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder, PYTHONPATH=CLIENT)
+        scene, self.log = os.path.join(folder, "scene.yaml"), os.path.join(folder, "log.txt")
+        with open(scene, "w") as file:
+            file.write(SCENE.format(source=SOURCE))
+        with open(self.log, "w") as log:
+            self.run = subprocess.Popen([HAPTICD, "run", scene, "--name", "trouble"], env=self.environment,
+                                        stdout=subprocess.DEVNULL, stderr=log)
+        until(lambda: os.path.exists(os.path.join(folder, "trouble.sock")), 30)
+
+    def connect(self):
+        return hapticd.connect("trouble", folder=self.folder)
+
+    def says(self, *words):
+        """The log has a line with all of these words."""
+        def found():
+            with open(self.log) as log:
+                return any(all(word in line for word in words) for line in log)
+        return until(found, 30)
+
+    def told(self):
+        with open(self.log) as log:
+            return log.read()
+
+
+def warned(action):
+    """Texts of the warnings that nobody feels a force."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        action(caught)
+    return [str(w.message) for w in caught if issubclass(w.category, hapticd.NoForceWarning)]
+
+
+def held(daemon):
+    """A hold before the push, and one that begins while it pushes."""
+    with daemon.connect() as h:
+        h.clear()  # a busy machine may have latched a fault
+
+        def begins(caught):
+            with h.push(ARM, lambda state: [0, 0, 1]) as push:
+                until(lambda: push.answers > 0)
+                h.hold()
+                until(lambda: len(caught) > 0)
+        texts = warned(begins)
+        if "held" not in (h.status()["devices"][0]["no_force"] or ""):
+            h.clear()
+            return print("SKIPPED: the machine stood still, and a fault of that came before the hold")
+        check("a hold while it pushes is a warning with its cure", any("held" in t and "hapticd ctl clear" in t for t in texts), texts)
+        check("status has the words too", "held" in (h.status()["devices"][0]["no_force"] or ""), h.status())
+        texts = warned(lambda _: h.lead_force(ARM).end())
+        check("who begins on an arm that is held is warned", any("held" in t and "hapticd ctl clear" in t for t in texts), texts)
+        h.clear()
+        check("the log tells of the hold", daemon.says(ARM, "it is held", "hapticd ctl clear"), daemon.told())
+        check("and of its end in matching words", daemon.says(ARM, "the hold is over"), daemon.told())
+
+
+def logged(daemon):
+    """Who pushes, asks for more than it gets, falls silent, and dies."""
+    victim = subprocess.Popen([sys.executable, "-c", PROGRAM, "100"], env=daemon.environment)
+    name = f"process {victim.pid} (python"
+    check("the log names the program that pushes", daemon.says(ARM, name, "pushes on it"), daemon.told())
+    check("it tells who asks for more than it gets", daemon.says(name, "asked for 100 N and gets 3 N at most"), daemon.told())
+    victim.send_signal(signal.SIGSTOP)
+    check("and who fell silent", daemon.says(name, "fell silent while it pushed with 3 N"), daemon.told())
+    victim.send_signal(signal.SIGCONT)
+    check("and that it came back", daemon.says(name, "answers again"), daemon.told())
+    with daemon.connect() as h:
+        until(lambda: h.status()["devices"][0]["clients"][0]["force_n"] > 0)
+    victim.kill()
+    victim.wait()
+    check("and what it did as it died", daemon.says(name, "ended"), daemon.told())
+    with daemon.connect() as h:
+        lost = [e for e in h.ask(do="events")["events"] if e["event"] == "lost" and e.get("pid") == victim.pid]
+        check("events name the program, and what it did", lost and "python" in lost[-1]["program"] and lost[-1]["does"] == "pushes", lost)
+
+
+def refused(daemon):
+    with daemon.connect() as h, h.lead_force(ARM) as lead:
+        lead._slot.put(hapticd._lead._PUSH.pack(h.state(ARM).tick, float("nan"), 0, 0, 0, 0, 0, 0, 0))
+        check("a refused answer is told with its process and reason",
+              daemon.says(f"process {os.getpid()}", "refused so far: a number is not finite"), daemon.told())
+        told = [e for e in h.ask(do="events")["events"] if e["event"] == "refused"]
+        check("also by events", told and told[-1]["pid"] == os.getpid() and "not finite" in told[-1]["why"], told)
+    check("who ends in order is told so", daemon.says(f"process {os.getpid()}", "pushes on it no more"), daemon.told())
+
+
+def raises(action):
+    try:
+        action()
+    except hapticd.HapticdError as error:
+        return "gone" in str(error)
+    return False
+
+
+def dies(daemon):
+    """The daemon is killed under a program in C and one in Python."""
+    with daemon.connect() as h:
+        h.hold()
+    program = subprocess.Popen([OUTLIVES, "trouble", "door"], env=daemon.environment, stdin=subprocess.PIPE,
+                               stdout=subprocess.PIPE, text=True)
+    while (line := program.stdout.readline()) not in ("ready\n", ""):
+        print(line, end="")
+    with daemon.connect() as h:
+        h.clear()
+        program.stdin.flush()
+    h = daemon.connect()
+    lead, rows, events = h.lead_hand(ARM), h.follow("ticks"), h.events()
+    next(rows)
+    push = h.push(ARM, lambda state: [0, 0, 1])
+    until(lambda: push.answers > 0)
+    daemon.run.kill()
+    daemon.run.wait()
+    check("a push learns that its daemon is gone", until(lambda: push.error is not None))
+    check("and raises it", raises(push.end))
+    check("old rows are not given out as new ones", raises(lambda: h.rows("ticks", last=1)))
+    check("a lead tells it", raises(lambda: lead.put([0, 0, 0])))
+    check("and its end", raises(lead.end))
+    check("who follows gets the last rows, then the news", raises(lambda: [None for _ in rows]))
+    check("who waits for events too", raises(lambda: [None for _ in events]))
+    check("leaving the with tells it", raises(lambda: h.__exit__(None, None, None)))
+    rest, _ = program.communicate("\n", timeout=120)
+    print(rest, end="")
+    check("and every call in C", program.returncode == 0, rest)
+
+
+with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
+    one = Daemon(scratch)
+    held(one)
+    logged(one)
+    refused(one)
+    dies(one)
+finish()
