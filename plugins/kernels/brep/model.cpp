@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 #include "kernels/brep/feet.hpp"
@@ -148,10 +149,26 @@ class ModelBuilder {
   }
 
   void warn() {
+    constexpr std::size_t kMostNamed = 5;
+    std::vector<std::uint32_t> faces;
     int gaps = 0;
-    for (const FaceShape& face : model_.faces_) gaps += face.trim.gaps();
-    if (gaps > 0)
-      model_.warnings_.push_back(std::to_string(gaps) + " gaps in the loops of faces were closed by straight lines");
+    for (std::uint32_t f = 0; f < model_.faces_.size(); ++f) {
+      const int count = model_.faces_[f].trim.gaps().count;
+      if (count > 0) faces.push_back(f);
+      gaps += count;
+    }
+    if (gaps == 0) return;
+    const auto widest = [this](std::uint32_t f) { return model_.faces_[f].trim.gaps().widest; };
+    std::stable_sort(faces.begin(), faces.end(), [&](auto a, auto b) { return widest(a) > widest(b); });
+    std::string text = std::to_string(gaps) + " gaps in the loops of faces were closed by straight lines: ";
+    for (std::size_t i = 0; i < std::min(faces.size(), kMostNamed); ++i) {
+      char size[32];
+      std::snprintf(size, sizeof size, ", %.3g mm", 1000 * widest(faces[i]));
+      text += (i == 0 ? "" : "; ") + faceName(part_, faces[i]) + size;
+    }
+    if (faces.size() > kMostNamed)
+      text += "; and narrower ones on " + std::to_string(faces.size() - kMostNamed) + " faces";
+    model_.warnings_.push_back(std::move(text));
   }
 
   Model& model_;
