@@ -99,6 +99,16 @@ int sortChildren(const BoxNode& node, const Float4& bounds, double limit, std::a
   return count;
 }
 
+/// Whether the disc of a row of triangles is farther than `limit`; then `beyond` falls to its bound.
+inline bool discIsFarther(const BodyTree& body, std::int32_t row, const BoxProbe& probe, double limit,
+                          double& beyond) noexcept {
+  if (body.slabs.empty()) return false;
+  const auto bound = static_cast<double>(slabDistance(body.slabs[static_cast<std::size_t>(row)], probe));
+  if (!(bound > limit)) return false;
+  beyond = std::min(beyond, bound);
+  return true;
+}
+
 }  // namespace
 
 double Nearest::distance() const noexcept {
@@ -193,13 +203,7 @@ void Search::searchBody(std::uint32_t place, const Vector3d& p, Run& run, const 
       continue;
     }
     if (entry.child < 0) {
-      if (!body.slabs.empty()) {
-        const auto closer = static_cast<double>(slabDistance(body.slabs[static_cast<std::size_t>(entry.row)], probe));
-        if (closer > best.hit.d2) {
-          run.others2 = std::min(run.others2, closer);
-          continue;
-        }
-      }
+      if (discIsFarther(body, entry.row, probe, best.hit.d2, run.others2)) continue;
       const ElementRow row = BoxTree::rowOf(entry.child);
       for (std::uint32_t i = row.first; i < row.first + row.count; ++i)
         if (const Element element = body.elements[i]; !(element == first) && wanted(element))

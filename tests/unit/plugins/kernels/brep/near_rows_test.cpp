@@ -59,9 +59,8 @@ double distanceTo(const Part& part, std::uint32_t triangle, const Vector3d& p) {
   return (triangleFoot(p, vec(part.points[c[0]]), vec(part.points[c[1]]), vec(part.points[c[2]])).point - p).norm();
 }
 
-/// Any triangles, needles and points among them, seen from as far as a metre and as near as a nanometre.
-TEST(RowSlab, BoundsNoTriangleFromAbove) {
-  std::mt19937 random(5);
+/// Triangles of any size and shape, needles and points among them.
+Part scattered(std::mt19937& random) {
   std::uniform_real_distribution<double> share(-1, 1), exponent(-9, 0);
   std::vector<Vector> points;
   std::vector<std::array<std::uint32_t, 3>> corners;
@@ -74,7 +73,14 @@ TEST(RowSlab, BoundsNoTriangleFromAbove) {
     }
     corners.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
-  const Model model(meshOf(std::move(points), corners));
+  return meshOf(std::move(points), corners);
+}
+
+/// Seen from as far as a metre and as near as a nanometre.
+TEST(RowSlab, BoundsNoTriangleFromAbove) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> share(-1, 1), exponent(-9, 0);
+  const Model model(scattered(random));
   const BodyTree& body = model.body(0);
   int close = 0;
   for (std::int32_t n = 0; n < static_cast<std::int32_t>(body.tree.nodeCount()); ++n)
