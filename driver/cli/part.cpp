@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd part info`: what a part file holds.
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -8,6 +9,7 @@
 
 #include "base/regular_file.hpp"
 #include "cli/command.hpp"
+#include "kernels/brep/model.hpp"
 #include "kernels/brep/part_file.hpp"
 #include "kernels/brep/part_names.hpp"
 
@@ -89,6 +91,18 @@ Json describe(const Part& part, std::size_t bytes) {
           {"warnings", part.warnings}};
 }
 
+/// What stands in no record: the box about all bodies where they stand, and what is noted when the part is loaded.
+void addMeasures(Json& info, Part part) {
+  try {
+    const brep::Model model(std::move(part));
+    const Eigen::Vector3d low = model.bounds().min(), size = model.bounds().sizes();
+    info["box_m"] = {{"low", {low.x(), low.y(), low.z()}}, {"size", {size.x(), size.y(), size.z()}}};
+    for (const std::string& warning : model.warnings()) info["warnings"].push_back(warning);
+  } catch (const std::invalid_argument& error) {
+    info["warnings"].push_back(error.what());
+  }
+}
+
 std::string listed(const Json& counts) {
   std::string text;
   for (const auto& [name, count] : counts.items())
@@ -142,6 +156,12 @@ void print(const std::string& file, const Json& info) {
   const Json& source = info["source"];
   std::printf("  from %s, unit %s, tolerance %.3g m\n", source["file"].get<std::string>().c_str(),
               source["unit"].get<std::string>().c_str(), info["tolerance_m"].get<double>());
+  if (info.contains("box_m")) {
+    const Json &size = info["box_m"]["size"], &low = info["box_m"]["low"];
+    const auto mm = [](const Json& length) { return std::round(1e9 * length.get<double>()) * 1e-6 + 0.0; };
+    std::printf("  size: %.4g x %.4g x %.4g mm, from (%.4g, %.4g, %.4g) mm on\n", mm(size[0]), mm(size[1]), mm(size[2]),
+                mm(low[0]), mm(low[1]), mm(low[2]));
+  }
   if (info["faces"].get<std::size_t>() > 0) {
     std::printf("  faces: %s\n", listed(info["face_kinds"]).c_str());
     std::printf("  edges: %s\n", edgesOf(info).c_str());
@@ -166,9 +186,10 @@ int partInfo(const std::string& file, bool json, std::optional<std::uint32_t> fe
   const auto bytes = readRegular(file, kMaxPartBytes);
   if (!bytes) return fail(kBadInput, file + ": " + bytes.error());
   try {
-    const Part part = brep::readPart(std::as_bytes(std::span(*bytes)), file);
+    Part part = brep::readPart(std::as_bytes(std::span(*bytes)), file);
     if (feature) return printFeature(file, part, *feature);
-    const Json info = describe(part, bytes->size());
+    Json info = describe(part, bytes->size());
+    addMeasures(info, std::move(part));
     if (json)
       std::printf("%s\n", info.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
     else

@@ -32,6 +32,13 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/driver/doors/client/python/examples DEST
 install(FILES ${PROJECT_SOURCE_DIR}/driver/doors/client/c/examples/spring.c
               ${PROJECT_SOURCE_DIR}/driver/doors/client/c/examples/lead_model.c DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 
+# What each Debian package says of its licences.
+install(FILES ${PROJECT_SOURCE_DIR}/driver/package/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/hapticd)
+install(FILES ${PROJECT_SOURCE_DIR}/driver/package/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/hapticd-dev COMPONENT dev)
+if(TARGET hapticd-import)
+  install(FILES ${PROJECT_SOURCE_DIR}/driver/package/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/hapticd-import COMPONENT cad)
+endif()
+
 # The unit names the program, wherever it is installed.
 configure_file(${PROJECT_SOURCE_DIR}/config/systemd/hapticd.service.in ${PROJECT_BINARY_DIR}/hapticd.service @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/hapticd.service DESTINATION lib/systemd/system)

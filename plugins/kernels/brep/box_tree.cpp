@@ -37,7 +37,6 @@ struct BoxTree::Builder {
   BoxTree& tree;
   std::span<const AlignedBox3d> boxes;
   std::size_t row;
-  float margin;
 
   Range rangeOf(std::size_t first, std::size_t count) const {
     Range range{first, count, {}};
@@ -131,8 +130,8 @@ struct BoxTree::Builder {
     for (int axis = 0; axis < 3; ++axis) {
       const auto low = static_cast<float>(box.min()[axis] - tree.origin_[axis]);
       const auto high = static_cast<float>(box.max()[axis] - tree.origin_[axis]);
-      node.lo[axis][place] = std::nextafter(low, -kInfinity) - margin;
-      node.hi[axis][place] = std::nextafter(high, kInfinity) + margin;
+      node.lo[axis][place] = std::nextafter(low, -kInfinity) - tree.margin_;
+      node.hi[axis][place] = std::nextafter(high, kInfinity) + tree.margin_;
     }
   }
 
@@ -150,8 +149,13 @@ struct BoxTree::Builder {
     for (int i = 0; i < count; ++i) {
       const Range& range = ranges[static_cast<std::size_t>(i)];
       setBox(node, i, range.box);
-      node.child[static_cast<std::size_t>(i)] =
-          range.count <= row ? ~static_cast<std::int32_t>(8 * range.first + range.count - 1) : build(range, depth + 1);
+      const auto at = static_cast<std::size_t>(i);
+      if (range.count <= row) {
+        node.child[at] = ~static_cast<std::int32_t>(8 * range.first + range.count - 1);
+        node.row[at] = tree.row_count_++;
+      } else {
+        node.child[at] = build(range, depth + 1);
+      }
     }
     tree.nodes_[static_cast<std::size_t>(index)] = node;
     return index;
@@ -160,6 +164,7 @@ struct BoxTree::Builder {
 
 void BoxTree::build(std::span<const AlignedBox3d> boxes, int row) {
   nodes_.clear();
+  row_count_ = 0;
   order_.resize(boxes.size());
   bounds_.setEmpty();
   for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -169,8 +174,8 @@ void BoxTree::build(std::span<const AlignedBox3d> boxes, int row) {
   if (boxes.empty()) return;
   origin_ = bounds_.center();
   // A probe up to twice the extent away is rounded by less than this; see kBoundShare for those farther away.
-  const auto margin = static_cast<float>(bounds_.diagonal().norm() * std::ldexp(1.0, -21));
-  Builder builder{*this, boxes, static_cast<std::size_t>(std::clamp(row, 1, kMaxRow)), margin};
+  margin_ = static_cast<float>(bounds_.diagonal().norm() * std::ldexp(1.0, -21));
+  Builder builder{*this, boxes, static_cast<std::size_t>(std::clamp(row, 1, kMaxRow))};
   builder.build(builder.rangeOf(0, boxes.size()), 0);
   nodes_.shrink_to_fit();
 }

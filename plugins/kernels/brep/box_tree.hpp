@@ -17,7 +17,7 @@ struct alignas(64) BoxNode {
   Float4 lo[3], hi[3];
   /// A node (0 or more), or ~(8 * first + count - 1): elements first to first + count - 1 of the tree's order.
   std::array<std::int32_t, 4> child{};
-  std::array<std::int32_t, 4> unused{};
+  std::array<std::int32_t, 4> row{};  ///< of a child that is a row: its number among all rows
 };
 
 /// Elements that a child of a node stands for.
@@ -39,10 +39,14 @@ class BoxTree {
   /// [main] Frees order().
   void forgetOrder() noexcept { order_ = {}; }
   bool empty() const noexcept { return nodes_.empty(); }
+  std::size_t nodeCount() const noexcept { return nodes_.size(); }
   const BoxNode& node(std::int32_t index) const noexcept { return nodes_[static_cast<std::size_t>(index)]; }
   /// [any] The middle of all boxes; the nodes hold coordinates relative to it.
   const Eigen::Vector3d& origin() const noexcept { return origin_; }
   const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }
+  /// [any] What the boxes are larger by, so that a probe in single precision is nowhere farther from them [m].
+  double margin() const noexcept { return static_cast<double>(margin_); }
+  std::int32_t rowCount() const noexcept { return row_count_; }
   std::size_t bytes() const noexcept { return nodes_.size() * sizeof(BoxNode) + order_.size() * sizeof order_[0]; }
 
   static ElementRow rowOf(std::int32_t child) noexcept {
@@ -57,6 +61,8 @@ class BoxTree {
   std::vector<std::uint32_t> order_;
   Eigen::Vector3d origin_{0, 0, 0};
   Eigen::AlignedBox3d bounds_;
+  float margin_ = 0;
+  std::int32_t row_count_ = 0;
 };
 
 /// A probe as the nodes of one tree see it.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 #include "kernels/brep/feet.hpp"
@@ -126,10 +127,26 @@ class ModelBuilder {
       add(ElementKind::kTriangle, body.first_triangle + i, box);
     }
     BodyTree& made = model_.bodies_[b];
-    made.tree.build(boxes_, body.kind == BodyKind::kMesh ? BoxTree::kMaxRow : 1);
+    made.tree.build(boxes_, body.kind == BodyKind::kMesh ? BodyTree::kMeshRow : 1);
     made.elements.reserve(elements_.size());
     for (const std::uint32_t i : made.tree.order()) made.elements.push_back(elements_[i]);
     made.tree.forgetOrder();
+    if (body.kind == BodyKind::kMesh) flattenRows(made);
+  }
+
+  void flattenRows(BodyTree& body) {
+    body.slabs.resize(static_cast<std::size_t>(body.tree.rowCount()));
+    for (std::size_t n = 0; n < body.tree.nodeCount(); ++n) {
+      const BoxNode& node = body.tree.node(static_cast<std::int32_t>(n));
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (node.child[i] >= 0) continue;  // a node, or an empty place
+        const ElementRow row = BoxTree::rowOf(node.child[i]);
+        std::array<std::uint32_t, BoxTree::kMaxRow> triangles{};
+        for (std::size_t k = 0; k < row.count; ++k) triangles[k] = body.elements[row.first + k].index();
+        body.slabs[static_cast<std::size_t>(node.row[i])] =
+            rowSlab(part_, std::span(triangles).first(row.count), body.tree);
+      }
+    }
   }
 
   void placeBodies() {
@@ -148,10 +165,26 @@ class ModelBuilder {
   }
 
   void warn() {
+    constexpr std::size_t kMostNamed = 5;
+    std::vector<std::uint32_t> faces;
     int gaps = 0;
-    for (const FaceShape& face : model_.faces_) gaps += face.trim.gaps();
-    if (gaps > 0)
-      model_.warnings_.push_back(std::to_string(gaps) + " gaps in the loops of faces were closed by straight lines");
+    for (std::uint32_t f = 0; f < model_.faces_.size(); ++f) {
+      const int count = model_.faces_[f].trim.gaps().count;
+      if (count > 0) faces.push_back(f);
+      gaps += count;
+    }
+    if (gaps == 0) return;
+    const auto widest = [this](std::uint32_t f) { return model_.faces_[f].trim.gaps().widest; };
+    std::stable_sort(faces.begin(), faces.end(), [&](auto a, auto b) { return widest(a) > widest(b); });
+    std::string text = std::to_string(gaps) + " gaps in the loops of faces were closed by straight lines: ";
+    for (std::size_t i = 0; i < std::min(faces.size(), kMostNamed); ++i) {
+      char size[32];
+      std::snprintf(size, sizeof size, ", %.3g mm", 1000 * widest(faces[i]));
+      text += (i == 0 ? "" : "; ") + faceName(part_, faces[i]) + size;
+    }
+    if (faces.size() > kMostNamed)
+      text += "; and narrower ones on " + std::to_string(faces.size() - kMostNamed) + " faces";
+    model_.warnings_.push_back(std::move(text));
   }
 
   Model& model_;
@@ -173,7 +206,10 @@ std::size_t Model::bytes() const noexcept {
   add(faces_), add(edges_), add(leaves_), add(pieces_), add(vertex_normals_), add(point_normals_);
   add(smooth_corner_), add(smooth_normals_), add(placements_);
   for (const FaceShape& face : faces_) sum += face.trim.bytes();
-  for (const BodyTree& body : bodies_) sum += body.tree.bytes() + body.elements.size() * sizeof(Element);
+  for (const BodyTree& body : bodies_) {
+    sum += body.tree.bytes();
+    add(body.elements), add(body.slabs);
+  }
   return sum + placement_tree_.bytes();
 }
 

@@ -11,6 +11,7 @@
 #include "kernels/brep/box_tree.hpp"
 #include "kernels/brep/elements.hpp"
 #include "kernels/brep/guised_edges.hpp"
+#include "kernels/brep/row_slab.hpp"
 
 namespace hapticd::brep {
 
@@ -44,8 +45,11 @@ struct CornerNormal {
 
 /// The elements of one body.
 struct BodyTree {
+  static constexpr int kMeshRow = 2;  ///< triangles in one row: a look at a disc is cheaper than one at a triangle
+
   BoxTree tree;
   std::vector<Element> elements;  ///< in the order of the tree
+  std::vector<RowSlab> slabs;     ///< by the number of the row; meshes alone
 };
 
 /// Built once, then constant: every const function may run in any thread.

@@ -47,4 +47,16 @@ std::string featureName(const Part& part, std::uint32_t feature) {
   return "";
 }
 
+std::string faceName(const Part& part, std::uint32_t face) {
+  const std::uint32_t owner = part.faces[face].body;
+  std::uint64_t first = 0;
+  for (const Instance& instance : part.instances) {
+    if (instance.body == kNone) continue;
+    const Body& body = part.bodies[instance.body];
+    if (instance.body == owner) return featureName(part, static_cast<std::uint32_t>(first + face - body.first_face));
+    first += std::uint64_t{body.face_count} + body.triangle_count;
+  }
+  return "face " + std::to_string(face);
+}
+
 }  // namespace hapticd::brep

@@ -21,4 +21,7 @@ std::string instancePath(const Part& part, std::uint32_t instance);
 /// file. "": there is no such feature.
 std::string featureName(const Part& part, std::uint32_t feature);
 
+/// [main] A face (index in the part) in the words of featureName(), where its body stands first.
+std::string faceName(const Part& part, std::uint32_t face);
+
 }  // namespace hapticd::brep

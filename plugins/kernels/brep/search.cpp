@@ -14,8 +14,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Of a squared distance: so little beyond the best one, a box or another foot is not counted as farther.
-constexpr double kDistanceRounding = 1e-12;
 
 struct AllElements {
   bool operator()(Element) const noexcept { return true; }
@@ -75,6 +73,10 @@ inline double meshFoot(const Part& part, std::uint32_t triangle, const Vector3d&
   return d2;
 }
 
+bool isAt(const Nearest& found, Element element, std::uint32_t place) noexcept {
+  return found.hit.element == element && found.place == place;
+}
+
 /// Sorts the four children of a node by their bounds, farthest first. Returns how many are within `limit`; `beyond`
 /// falls to the least bound of the others.
 template <class Entry>
@@ -91,9 +93,20 @@ int sortChildren(const BoxNode& node, const Float4& bounds, double limit, std::a
     int at = count++;
     for (; at > 0 && children[static_cast<std::size_t>(at - 1)].bound < bound; --at)
       children[static_cast<std::size_t>(at)] = children[static_cast<std::size_t>(at - 1)];
-    children[static_cast<std::size_t>(at)] = {bound, node.child[static_cast<std::size_t>(i)]};
+    children[static_cast<std::size_t>(at)] = {bound, node.child[static_cast<std::size_t>(i)],
+                                              node.row[static_cast<std::size_t>(i)]};
   }
   return count;
+}
+
+/// Whether the disc of a row of triangles is farther than `limit`; then `beyond` falls to its bound.
+inline bool discIsFarther(const BodyTree& body, std::int32_t row, const BoxProbe& probe, double limit,
+                          double& beyond) noexcept {
+  if (body.slabs.empty()) return false;
+  const auto bound = static_cast<double>(slabDistance(body.slabs[static_cast<std::size_t>(row)], probe));
+  if (!(bound > limit)) return false;
+  beyond = std::min(beyond, bound);
+  return true;
 }
 
 }  // namespace
@@ -157,9 +170,11 @@ void Search::look(std::uint32_t place, Element element, const Vector3d& p, doubl
   if (!alone) run.open2 = std::min(run.open2, bound2);
   if (best.hit.d2 < before) {
     run.others2 = std::min(run.others2, before);
+    run.tied = false;
     best.hit.element = element;
     best.place = place;
   } else {
+    run.tied = run.tied || (d2 == before && !isAt(best, run.first, run.first_place) && !isAt(best, element, place));
     run.others2 = std::min(run.others2, d2);
   }
 }
@@ -174,7 +189,7 @@ void Search::searchBody(std::uint32_t place, const Vector3d& p, Run& run, const 
   std::array<Entry, BoxTree::kMaxStack> stack;
   std::array<Entry, 4> children;
   int depth = 0;
-  stack[static_cast<std::size_t>(depth++)] = {0, 0};
+  stack[static_cast<std::size_t>(depth++)] = {0, 0, 0};
   while (depth > 0) {
     const Entry entry = stack[static_cast<std::size_t>(--depth)];
     const auto bound = static_cast<double>(entry.bound);
@@ -188,6 +203,7 @@ void Search::searchBody(std::uint32_t place, const Vector3d& p, Run& run, const 
       continue;
     }
     if (entry.child < 0) {
+      if (discIsFarther(body, entry.row, probe, best.hit.d2, run.others2)) continue;
       const ElementRow row = BoxTree::rowOf(entry.child);
       for (std::uint32_t i = row.first; i < row.first + row.count; ++i)
         if (const Element element = body.elements[i]; !(element == first) && wanted(element))
@@ -208,7 +224,7 @@ void Search::searchPlaces(const Vector3d& p, Run& run) noexcept {
   std::array<Entry, BoxTree::kMaxStack> stack;
   std::array<Entry, 4> children;
   int depth = 0;
-  stack[static_cast<std::size_t>(depth++)] = {0, 0};
+  stack[static_cast<std::size_t>(depth++)] = {0, 0, 0};
   while (depth > 0) {
     const Entry entry = stack[static_cast<std::size_t>(--depth)];
     const auto bound = static_cast<double>(entry.bound);
@@ -233,21 +249,31 @@ void Search::searchPlaces(const Vector3d& p, Run& run) noexcept {
 
 /// Every distance changes by at most the way of the probe: while the last element is nearer than the others can have
 /// come, it holds the nearest point.
-bool Search::goesOn(const Vector3d& p) noexcept {
-  if (!last_.proved || !last_.found()) return false;
+bool Search::goesOn(const Vector3d& p, const Run& run) noexcept {
+  if (!last_.proved || run.first_place == kNone) return false;
   const double others = last_.others - (p - last_p_).norm();
-  Hit hit = last_.hit;
-  hit.d2 = kInfinity;
-  bool alone = true;
-  evaluate(last_.hit.element, model_.placements()[last_.place].toBody(p), &last_.hit, hit, alone);
-  if (!alone || !(std::sqrt(hit.d2) * (1 + kDistanceRounding) < others)) return false;
-  hit.element = last_.hit.element;
-  last_.hit = hit;
+  if (!(std::sqrt(run.best.hit.d2) * (1 + kRounding) < others)) return false;
+  last_.hit = run.best.hit;
   last_.others = others;
   last_.nodes = 0;
   last_.elements = 1;
   last_p_ = p;
   return true;
+}
+
+/// Looks at the last element: a near start spares most of the search.
+void Search::begin(const Vector3d& p, Run& run) noexcept {
+  if (!last_.found()) return;
+  bool alone = true;
+  evaluate(last_.hit.element, model_.placements()[last_.place].toBody(p), &last_.hit, run.best.hit, alone);
+  run.best.elements = 1;
+  if (run.best.hit.d2 < kInfinity) {
+    run.best.hit.element = last_.hit.element;
+    run.best.place = last_.place;
+  }
+  if (!alone) return;
+  run.first = last_.hit.element;
+  run.first_place = last_.place;
 }
 
 void Search::finish(Run& run) noexcept {
@@ -268,27 +294,16 @@ Hit Search::refine(std::uint32_t place, const Hit& last, const Vector3d& p) noex
 }
 
 const Nearest& Search::nearest(const Vector3d& p, const SearchBudget& budget) noexcept {
-  if (goesOn(p)) return last_;
   Run run;
   run.budget = budget;
-  if (last_.found()) {  // a near start spares most of the search
-    bool alone = true;
-    const Vector3d p_body = model_.placements()[last_.place].toBody(p);
-    evaluate(last_.hit.element, p_body, &last_.hit, run.best.hit, alone);
-    run.best.elements = 1;
-    if (run.best.hit.d2 < kInfinity) {
-      run.best.hit.element = last_.hit.element;
-      run.best.place = last_.place;
-    }
-    if (alone) {
-      run.first = last_.hit.element;
-      run.first_place = last_.place;
-    }
+  begin(p, run);
+  if (goesOn(p, run)) return last_;
+  if (!searchNear(p, run)) {
+    if (model_.placements().size() == 1)
+      searchBody(0, model_.placements()[0].toBody(p), run, AllElements{});
+    else
+      searchPlaces(p, run);
   }
-  if (model_.placements().size() == 1)
-    searchBody(0, model_.placements()[0].toBody(p), run, AllElements{});
-  else
-    searchPlaces(p, run);
   finish(run);
   last_ = run.best;
   last_p_ = p;
@@ -324,7 +339,7 @@ int Search::around(const Vector3d& p, std::uint32_t* places, int cap) const noex
   std::array<Entry, 4> children;
   double beyond = kInfinity;
   int depth = 0, found = 0;
-  stack[static_cast<std::size_t>(depth++)] = {0, 0};
+  stack[static_cast<std::size_t>(depth++)] = {0, 0, 0};
   while (depth > 0 && found < cap) {
     const Entry entry = stack[static_cast<std::size_t>(--depth)];
     if (entry.child < 0) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "kernels/brep/model.hpp"
+#include "kernels/brep/near_rows.hpp"
 
 namespace hapticd::brep {
 
@@ -53,9 +54,12 @@ class Search {
   const Model& model() const noexcept { return model_; }
 
  private:
+  /// Of a distance: so little beyond the best one, a box or another foot is not counted as farther.
+  static constexpr double kRounding = 1e-12;
+
   struct Entry {
     float bound;
-    std::int32_t child;
+    std::int32_t child, row;
   };
   /// One search under way.
   struct Run {
@@ -65,9 +69,14 @@ class Search {
     std::uint32_t first_place = kNone;                         ///< where it is
     double others2 = std::numeric_limits<double>::infinity();  ///< nearest bound of anything but the best
     double open2 = std::numeric_limits<double>::infinity();    ///< nearest bound of what may hide a nearer foot
+    bool tied = false;  ///< another element than the best is just as near, and neither was looked at first
   };
 
-  bool goesOn(const Eigen::Vector3d& p) noexcept;
+  void begin(const Eigen::Vector3d& p, Run& run) noexcept;
+  bool goesOn(const Eigen::Vector3d& p, const Run& run) noexcept;
+  bool searchNear(const Eigen::Vector3d& p, Run& run) noexcept;
+  bool gatherNear(const Eigen::Vector3d& p, double way, double distance) noexcept;
+  bool lookAtNear(const Eigen::Vector3d& p, Run& run) noexcept;
   template <class Filter>
   void searchBody(std::uint32_t place, const Eigen::Vector3d& p, Run& run, const Filter& wanted) noexcept;
   void searchPlaces(const Eigen::Vector3d& p, Run& run) noexcept;
@@ -79,6 +88,8 @@ class Search {
   const Model& model_;
   Nearest last_;
   Eigen::Vector3d last_p_{0, 0, 0};
+  NearRows near_;     ///< of a model that is one mesh, in its frame
+  double reach_ = 0;  ///< [m] by which the rows of near_ reach beyond the nearest point
 };
 
 }  // namespace hapticd::brep

@@ -20,6 +20,12 @@ struct TrimPiece {
 };
 
 /// The loops of one face. Constant after construction.
+/// Where the curves of a face's loops do not meet.
+struct LoopGaps {
+  int count = 0;
+  double widest = 0;  ///< [m] in space, between the end of a curve and the start of the next
+};
+
 class Trim {
  public:
   Trim() = default;
@@ -38,7 +44,7 @@ class Trim {
   const Eigen::Array2d& lo() const noexcept { return lo_; }
   const Eigen::Array2d& hi() const noexcept { return hi_; }
   /// [any] Gaps that had to be closed.
-  int gaps() const noexcept { return gaps_; }
+  const LoopGaps& gaps() const noexcept { return gaps_; }
   std::size_t bytes() const noexcept;
 
  private:
@@ -51,7 +57,7 @@ class Trim {
   const Geometry* geometry_ = nullptr;
   Eigen::Array2d lo_{0, 0}, hi_{0, 0}, cell_{1, 1}, per_cell_{1, 1};  ///< box; size of a cell and its reciprocal
   std::int32_t count_u_ = 0, count_v_ = 0;
-  std::int32_t gaps_ = 0;
+  LoopGaps gaps_;
   std::vector<TrimPiece> pieces_;
   /// By cell, row after row: where its pieces begin in of_cell_, and in the top bit whether its reference point is
   /// inside. One more at the end. Empty: the loops are the box.

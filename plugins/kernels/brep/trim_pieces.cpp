@@ -13,12 +13,14 @@ using Eigen::Vector2d;
 class Cutter {
  public:
   Cutter(const Geometry& geometry, const Face& face, std::vector<TrimPiece>& pieces)
-      : geometry_(geometry), part_(geometry.part()), range_(vec(face.hi) - vec(face.lo)), pieces_(pieces) {}
+      : geometry_(geometry),
+        part_(geometry.part()),
+        surface_(face.surface),
+        range_(vec(face.hi) - vec(face.lo)),
+        pieces_(pieces) {}
 
-  /// Returns the number of gaps.
-  int addLoop(const Loop& loop) {
+  void addLoop(const Loop& loop, LoopGaps& gaps) {
     constexpr double kGap = 1e-3;  // of the face's range
-    int gaps = 0;
     for (std::uint32_t i = 0; i < loop.count; ++i) {
       const Coedge& c = part_.coedges[loop.first + i];
       const Vector2d to = startOf(part_.coedges[loop.first + (i + 1) % loop.count]), end = endOf(c);
@@ -27,13 +29,18 @@ class Cutter {
       const bool reversed = (c.flags & kReversed) != 0;
       addCurve(c, reversed ? joint : from, reversed ? from : joint);
       if (!gap) continue;
-      ++gaps;
+      ++gaps.count;
+      gaps.widest = std::max(gaps.widest, (pointAt(to) - pointAt(end)).norm());
       pieces_.push_back({end, to, 0, 0, 0, TrimPiece::Kind::kLine, 0, 1});
     }
-    return gaps;
   }
 
  private:
+  Eigen::Vector3d pointAt(const Vector2d& uv) const {
+    spline::SurfacePoint at;
+    geometry_.surface(surface_, uv[0], uv[1], at);
+    return at.S;
+  }
   Vector2d at(const Coedge& c, double t) const { return geometry_.planeCurve(c.pcurve, t).c; }
   Vector2d startOf(const Coedge& c) const { return at(c, (c.flags & kReversed) != 0 ? c.t1 : c.t0); }
   Vector2d endOf(const Coedge& c) const { return at(c, (c.flags & kReversed) != 0 ? c.t0 : c.t1); }
@@ -170,17 +177,17 @@ class Cutter {
 
   const Geometry& geometry_;
   const Part& part_;
+  std::uint32_t surface_;
   Vector2d range_;
   std::vector<TrimPiece>& pieces_;
 };
 
 }  // namespace
 
-std::vector<TrimPiece> trimPieces(const Geometry& geometry, const Face& face, int& gaps) {
+std::vector<TrimPiece> trimPieces(const Geometry& geometry, const Face& face, LoopGaps& gaps) {
   std::vector<TrimPiece> pieces;
   Cutter cutter(geometry, face, pieces);
-  for (std::uint32_t i = 0; i < face.loop_count; ++i)
-    gaps += cutter.addLoop(geometry.part().loops[face.first_loop + i]);
+  for (std::uint32_t i = 0; i < face.loop_count; ++i) cutter.addLoop(geometry.part().loops[face.first_loop + i], gaps);
   pieces.shrink_to_fit();
   return pieces;
 }

@@ -7,8 +7,8 @@
 
 namespace hapticd::brep {
 
-/// [main] All pieces of all loops. Neighbours share their ends; `gaps` counts those so wide that a line had to be put
-/// between.
-std::vector<TrimPiece> trimPieces(const Geometry& geometry, const Face& face, int& gaps);
+/// [main] All pieces of all loops. Neighbours share their ends; `gaps` tells of those so far apart that a line had to
+/// be put between.
+std::vector<TrimPiece> trimPieces(const Geometry& geometry, const Face& face, LoopGaps& gaps);
 
 }  // namespace hapticd::brep

@@ -2,6 +2,7 @@
 /// Nearest points of parts: time, work and memory, on walks over the surface and on cold queries; for meshes beside
 /// other libraries in the same run.
 ///   bench_parts FILE.hpart...     without a file: parts made here, and bumpy balls of 100,000 and 1,000,000 triangles
+///   bench_parts --balls           the balls alone
 ///   bench_parts FILE.hpart --occt FILE.step ...     the part beside Open CASCADE on the file that it was imported from
 #include <algorithm>
 #include <chrono>
@@ -9,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "kernels/brep/part_file.hpp"
@@ -31,12 +33,12 @@ double nanoseconds(Clock::duration d) {
 
 struct Times {
   std::vector<double> ns;
+  double at(double share) const { return ns[static_cast<std::size_t>(share * static_cast<double>(ns.size() - 1))]; }
+  double mean() const { return std::accumulate(ns.begin(), ns.end(), 0.0) / static_cast<double>(ns.size()); }
   void print(const char* what, double mean_nodes = -1, double mean_elements = -1) {
     std::sort(ns.begin(), ns.end());
-    const auto at = [&](double share) {
-      return ns[static_cast<std::size_t>(share * static_cast<double>(ns.size() - 1))];
-    };
-    std::printf("  %-38s p50 %8.0f  p99 %8.0f  p99.9 %8.0f  max %8.0f ns", what, at(0.5), at(0.99), at(0.999), at(1));
+    std::printf("  %-38s p50 %8.0f  p99 %8.0f  p99.9 %8.0f  max %8.0f  mean %8.0f ns", what, at(0.5), at(0.99),
+                at(0.999), at(1), mean());
     if (mean_nodes >= 0) std::printf("   %.1f nodes, %.1f elements a tick", mean_nodes, mean_elements);
     std::printf("\n");
   }
@@ -139,30 +141,58 @@ void measureContact(const Model& model, const std::vector<Vector3d>& path) {
       static_cast<unsigned long long>(tracer.counts().held), static_cast<unsigned long long>(tracer.counts().degraded));
 }
 
-void measurePeers(const Model& model, const std::vector<Vector3d>& path, const std::vector<Vector3d>& cold) {
+/// Strokes of one speed and rate: ours and a peer in turns of one stroke each, so that a busy machine is the same for
+/// both. The peer knows what it can use of the tick before: the nearest point is no farther than that one is now.
+void measureStrokes(const Model& model, Peer& peer, double speed, double rate, int count) {
+  constexpr std::size_t kStroke = 1000;
+  const auto path = strokes(model, speed / rate, count);
+  brep::Search search(model);
+  Times ours, theirs;
+  double worst = 0;
+  std::size_t proved = 0;
+  std::vector<double> distances(kStroke);
+  for (std::size_t first = 0; first < path.size(); first += kStroke) {
+    for (std::size_t i = 0; i < kStroke; ++i) {
+      const auto begin = Clock::now();
+      const brep::Nearest& found = search.nearest(path[first + i]);
+      ours.ns.push_back(nanoseconds(Clock::now() - begin));
+      distances[i] = found.distance();
+      proved += found.proved;
+    }
+    Vector3d near;
+    double bound = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < kStroke; ++i) {
+      const Vector3d& p = path[first + i];
+      if (i > 0) bound = (p - near).norm() * (1 + 1e-5) + 1e-7;
+      const auto begin = Clock::now();
+      const double distance = peer.distance(p, bound, near);
+      theirs.ns.push_back(nanoseconds(Clock::now() - begin));
+      worst = std::max(worst, std::abs(distance - distances[i]));
+    }
+  }
+  std::printf("  %.2f m/s at %.0f Hz: %zu of %zu feet proved, differ by at most %.2g m\n", speed, rate, proved,
+              path.size(), worst);
+  ours.print("  ours");
+  theirs.print(("  " + peer.name()).c_str());
+  std::printf("    ratios: median %.1f, p99 %.1f, mean %.1f\n", theirs.at(0.5) / ours.at(0.5),
+              theirs.at(0.99) / ours.at(0.99), theirs.mean() / ours.mean());
+}
+
+void measurePeers(const Model& model, const std::vector<Vector3d>& cold) {
   std::vector<std::array<std::uint32_t, 3>> corners;
   for (const auto& t : model.part().triangles) corners.push_back(t.corner);
-  brep::Search search(model);
   for (const auto& peer : makePeers(model.part().points, corners)) {
-    Times tracked, from_cold;
-    Vector3d near = path[0], last = path[0];
-    double distance = std::numeric_limits<double>::infinity(), worst = 0;
-    for (const Vector3d& p : path) {
-      const double bound = (distance + (p - last).norm()) * (1 + 1e-5) + 1e-7;
-      const auto begin = Clock::now();
-      distance = peer->distance(p, bound, near);
-      tracked.ns.push_back(nanoseconds(Clock::now() - begin));
-      worst = std::max(worst, std::abs(distance - search.nearest(p).distance()));
-      last = p;
-    }
+    for (const double rate : {1000.0, 4000.0})
+      for (const double speed : {0.05, 0.1, 0.3})
+        measureStrokes(model, *peer, speed, rate, peer->slow() ? 2000 : 20000);
+    Times from_cold;
+    Vector3d near = cold[0];
     for (const Vector3d& p : cold) {
       const auto begin = Clock::now();
       peer->distance(p, std::numeric_limits<double>::infinity(), near);
       from_cold.ns.push_back(nanoseconds(Clock::now() - begin));
     }
-    tracked.print((peer->name() + ", tracked").c_str());
     from_cold.print((peer->name() + ", cold").c_str());
-    std::printf("      differs from ours by at most %.2g m\n", worst);
   }
 }
 
@@ -223,7 +253,7 @@ void measure(Part part, const char* name, const char* source = nullptr) {
   } else if (source != nullptr) {
     std::printf("  built without Open CASCADE: %s is not compared\n", source);
   }
-  if (model.part().faces.empty()) measurePeers(model, std::vector(middle.begin(), middle.begin() + 10000), cold);
+  if (model.part().faces.empty()) measurePeers(model, cold);
 }
 
 }  // namespace
@@ -231,6 +261,11 @@ void measure(Part part, const char* name, const char* source = nullptr) {
 
 int main(int count, char** files) {
   using namespace hapticd;
+  if (count == 2 && std::string(files[1]) == "--balls") {
+    bench::measure(bench::bumpyBall(100000), "bumpy ball");
+    bench::measure(bench::bumpyBall(1000000), "bumpy ball");
+    return 0;
+  }
   if (count < 2) {
     bench::measure(brep::samples::bracket(), "bracket");
     bench::measure(brep::samples::torus(20, 6), "torus");

@@ -127,6 +127,7 @@ class Fcl final : public Peer {
     return result.min_distance;
   }
   std::string name() const override { return "fcl distance to a point"; }
+  bool slow() const override { return true; }
 
  private:
   std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> mesh_;

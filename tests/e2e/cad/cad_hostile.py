@@ -64,6 +64,13 @@ face = re.search(rb"(?s)(#\d+) = ADVANCED_FACE.*?;", step)
 code, out, err = run("import", put("faceless.step", step.replace(face[0], b"")), "-o", part)
 check("a face that a STEP file refers to and does not have is lost", code == 0 and "nothing was lost" not in out and f"lost: entity {face[1].decode()}:" in out, out + err)
 
+numbers = [m for m in re.finditer(rb"-?\d+\.\d+|(?<=\s)-?\d+(?=\s)", brep)]
+for word in (b"nan", b"-nan", b"inf", b"-INF", b"Infinity", b"1.#QNAN", b"nan(ind)"):  # Open CASCADE would not come back
+    at = numbers[len(numbers) // 2]
+    file = put("words.brep", brep[:at.start()] + word + brep[at.end():])
+    refused(f"{word.decode()} in a BREP file", file, "--time", "60")
+    line = brep[:at.start()].count(b"\n") + 1
+    check(f"{word.decode()} is told with its line", f"line {line}: '{word.decode()}'" in run("import", file, "-o", part)[2])
 for name, whole in (("step", step), ("iges", iges), ("brep", brep)):
     for share in (0.3, 0.6, 0.9):
         survived(f"a .{name} that ends after {share:.0%}", put(f"cut.{name}", whole[:int(share * len(whole))]))

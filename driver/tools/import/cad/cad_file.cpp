@@ -14,6 +14,7 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "cad_import/assembly.hpp"
 #include "cad_import/losses.hpp"
@@ -93,7 +94,28 @@ void readIges(const std::string& file, CadFile& cad) {
   findLostFaces(reader.WS(), 1, cad.losses);
 }
 
+/// Whether a word is a number of C that is none: "nan", "-inf", "1.#QNAN" and their kind.
+bool isNoNumber(std::string word) {
+  std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (word.find("#qnan") != word.npos || word.find("#inf") != word.npos || word.find("#ind") != word.npos) return true;
+  if (word[0] == '+' || word[0] == '-') word.erase(0, 1);
+  return word == "nan" || word.starts_with("nan(") || word == "inf" || word == "infinity";
+}
+
+/// Open CASCADE computes for ever with coordinates that are no numbers: they are looked for before it begins.
+void refuseNoNumbers(const std::string& file) {
+  std::ifstream in(file);
+  std::string line, word;
+  for (std::size_t number = 1; std::getline(in, line); ++number)
+    for (std::istringstream words(line); words >> word;)
+      if (isNoNumber(word))
+        throw CadError("line " + std::to_string(number) + ": '" + word +
+                       "' stands where a number belongs; expected finite coordinates: write the file again from its "
+                       "source");
+}
+
 void readBrep(const std::string& file, CadFile& cad) {
+  refuseNoNumbers(file);
   TopoDS_Shape shape;
   const BRep_Builder builder;
   const Handle(Progress) progress = new Progress("reading shapes");

@@ -61,5 +61,21 @@ TEST(Search, SkipsChangeNoAnswer) {
   EXPECT_GT(skipped, 50000);
 }
 
+/// A curve of a loop that stands 0.5 mm off in both parameters leaves a gap at either end.
+TEST(Model, NamesTheFacesWhoseLoopsHaveGaps) {
+  Part part = samples::cappedCylinder(10, 20);
+  EXPECT_TRUE(Model(part).warnings().empty());
+  std::uint32_t line = 0;
+  while (part.curves2[part.coedges[line].pcurve].kind != CurveKind::kLine) ++line;
+  Curve2& moved = part.curves2[part.coedges[line].pcurve];
+  const std::uint32_t face = part.coedges[line].face;
+  moved.o = {moved.o[0], moved.o[1] + 0.5};
+  const Model model(std::move(part));
+  ASSERT_EQ(model.warnings().size(), 1u);
+  const std::string& warning = model.warnings()[0];
+  EXPECT_NE(warning.find("2 gaps in the loops of faces were closed by straight lines: "), warning.npos) << warning;
+  EXPECT_NE(warning.find("face " + std::to_string(face) + ", 0.5 mm"), warning.npos) << warning;
+}
+
 }  // namespace
 }  // namespace hapticd::brep

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/brep/row_slab.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/brep/geometry.hpp"
+
+namespace hapticd::brep {
+
+using Eigen::Vector3d;
+
+RowSlab rowSlab(const Part& part, std::span<const std::uint32_t> triangles, const BoxTree& tree) {
+  Vector3d normal(0, 0, 0);
+  Eigen::AlignedBox3d box;
+  for (const std::uint32_t triangle : triangles) {
+    const auto& corner = part.triangles[triangle].corner;
+    const Vector3d a = vec(part.points[corner[0]]), b = vec(part.points[corner[1]]), c = vec(part.points[corner[2]]);
+    normal += (b - a).cross(c - a);
+    for (const Vector3d& p : {a, b, c}) box.extend(p);
+  }
+  normal = normal.stableNormalized();  // zero where the triangles have no area or face each other: then a ball
+  // What single precision leaves of the disc is what holds the triangles.
+  RowSlab slab;
+  Vector3d center, n;
+  for (int axis = 0; axis < 3; ++axis) {
+    slab.center[axis] = static_cast<float>(box.center()[axis] - tree.origin()[axis]);
+    slab.normal[axis] = static_cast<float>(normal[axis]);
+    center[axis] = tree.origin()[axis] + static_cast<double>(slab.center[axis]);
+    n[axis] = static_cast<double>(slab.normal[axis]);
+  }
+  double half = 0, radius = 0;
+  for (const std::uint32_t triangle : triangles)
+    for (const std::uint32_t corner : part.triangles[triangle].corner) {
+      const Vector3d way = vec(part.points[corner]) - center;
+      const double off = way.dot(n);
+      half = std::max(half, std::abs(off));
+      radius = std::max(radius, std::sqrt(std::max(0.0, way.squaredNorm() - off * off)));
+    }
+  slab.half = static_cast<float>(half * (1 + 1e-6) + 1e-6 * radius + tree.margin());
+  slab.radius = static_cast<float>(radius * (1 + 1e-5) + 1e-6 * half + tree.margin());
+  return slab;
+}
+
+}  // namespace hapticd::brep

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+/// The flat disc that holds a row of triangles: nearly flat as these are, it bounds them far closer than their box.
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "kernels/brep/box_tree.hpp"
+#include "kernels/brep/part.hpp"
+
+namespace hapticd::brep {
+
+/// A disc about `center` (in the coordinates of its tree's nodes): what it holds is no farther than `half` from its
+/// plane and `radius` from its axis [m].
+struct RowSlab {
+  float center[3]{}, normal[3]{};
+  float half = 0, radius = 0;
+};
+
+/// Four of them that are compared at once. An empty place is infinitely far from everything.
+struct alignas(64) FourSlabs {
+  Float4 center[3], normal[3];
+  Float4 half, radius;
+};
+
+/// [main] The disc about some triangles of a part, at most BoxTree::kMaxRow.
+RowSlab rowSlab(const Part& part, std::span<const std::uint32_t> triangles, const BoxTree& tree);
+
+/// Rounding of a disc's normal, and of the way to a probe, moves the bound by less than this share.
+inline constexpr float kSlabShare = 1 - 1e-5F;
+
+inline Float4 squareRoots(const Float4& x) noexcept {
+  return Float4{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
+}
+
+/// [rt] Lower bounds of the squared distances [m^2] to what each of four discs holds.
+inline Float4 slabDistances(const FourSlabs& slabs, const BoxProbe& probe) noexcept {
+  constexpr Float4 kZero{};
+  Float4 off{}, whole{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Float4 way = probe.at[axis] - slabs.center[axis];
+    off += way * slabs.normal[axis];
+    whole += way * way;
+  }
+  Float4 across2 = whole * (1 - 2e-6F) - off * off;
+  across2 = across2 > kZero ? across2 : kZero;
+  Float4 across = squareRoots(across2) - slabs.radius;
+  Float4 high = (off > kZero ? off : -off) - slabs.half;
+  high = high > kZero ? high : kZero;
+  across = across > kZero ? across : kZero;
+  return (high * high + across * across) * kSlabShare;
+}
+
+/// [rt] The same for one.
+inline float slabDistance(const RowSlab& slab, const BoxProbe& probe) noexcept {
+  float off = 0, whole = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float way = probe.at[axis][0] - slab.center[axis];
+    off += way * slab.normal[axis];
+    whole += way * way;
+  }
+  const float across2 = whole * (1 - 2e-6F) - off * off;
+  const float high = std::abs(off) - slab.half;
+  const float across = (across2 > 0 ? std::sqrt(across2) : 0.0F) - slab.radius;
+  return ((high > 0 ? high * high : 0.0F) + (across > 0 ? across * across : 0.0F)) * kSlabShare;
+}
+
+}  // namespace hapticd::brep

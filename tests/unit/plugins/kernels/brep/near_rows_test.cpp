@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+/// Meshes: the discs about rows of triangles, and ticks that look at the rows about the probe alone.
+#include "kernels/brep/near_rows.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "kernels/brep/geometry.hpp"
+#include "kernels/brep/search.hpp"
+#include "kernels/brep/triangle_foot.hpp"
+
+namespace hapticd::brep {
+namespace {
+
+using Eigen::Vector3d;
+
+/// One mesh of the given corners.
+Part meshOf(std::vector<Vector> points, const std::vector<std::array<std::uint32_t, 3>>& corners) {
+  Part part;
+  part.points = std::move(points);
+  for (const auto& corner : corners) {
+    Triangle triangle;
+    triangle.corner = corner;
+    part.triangles.push_back(triangle);
+  }
+  Body body;
+  body.kind = BodyKind::kMesh;
+  body.point_count = static_cast<std::uint32_t>(part.points.size());
+  body.triangle_count = static_cast<std::uint32_t>(part.triangles.size());
+  part.bodies.push_back(body);
+  Instance instance;
+  instance.body = 0;
+  part.instances.push_back(instance);
+  return part;
+}
+
+/// A sheet of 100 mm with waves of `height` and 2 n^2 triangles.
+Part sheet(std::uint32_t n, double height) {
+  std::vector<Vector> points;
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  for (std::uint32_t i = 0; i <= n; ++i)
+    for (std::uint32_t j = 0; j <= n; ++j) {
+      const double x = 0.1 * i / n, y = 0.1 * j / n;
+      points.push_back({x, y, height * std::sin(200 * x) * std::cos(170 * y)});
+    }
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t j = 0; j < n; ++j) {
+      const std::uint32_t a = i * (n + 1) + j, b = a + n + 1;
+      corners.push_back({a, b, b + 1});
+      corners.push_back({a, b + 1, a + 1});
+    }
+  return meshOf(std::move(points), corners);
+}
+
+double distanceTo(const Part& part, std::uint32_t triangle, const Vector3d& p) {
+  const auto& c = part.triangles[triangle].corner;
+  return (triangleFoot(p, vec(part.points[c[0]]), vec(part.points[c[1]]), vec(part.points[c[2]])).point - p).norm();
+}
+
+/// Triangles of any size and shape, needles and points among them.
+Part scattered(std::mt19937& random) {
+  std::uniform_real_distribution<double> share(-1, 1), exponent(-9, 0);
+  std::vector<Vector> points;
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  for (std::uint32_t i = 0; i < 3000; ++i) {
+    const double size = std::pow(10, -2 + 0.5 * exponent(random));
+    const Vector3d at = 0.05 * Vector3d(share(random), share(random), share(random));
+    for (int k = 0; k < 3; ++k) {
+      const Vector3d p = at + size * Vector3d(share(random), share(random), i % 5 == 0 ? 0 : share(random));
+      points.push_back(i % 50 == 0 ? Vector{at.x(), at.y(), at.z()} : Vector{p.x(), p.y(), p.z()});
+    }
+    corners.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return meshOf(std::move(points), corners);
+}
+
+/// Seen from as far as a metre and as near as a nanometre.
+TEST(RowSlab, BoundsNoTriangleFromAbove) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> share(-1, 1), exponent(-9, 0);
+  const Model model(scattered(random));
+  const BodyTree& body = model.body(0);
+  int close = 0;
+  for (std::int32_t n = 0; n < static_cast<std::int32_t>(body.tree.nodeCount()); ++n)
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (body.tree.node(n).child[i] >= 0) continue;
+      const RowSlab& slab = body.slabs[static_cast<std::size_t>(body.tree.node(n).row[i])];
+      FourSlabs four{};
+      for (int axis = 0; axis < 3; ++axis) {
+        four.center[axis] = Float4{} + slab.center[axis];
+        four.normal[axis] = Float4{} + slab.normal[axis];
+      }
+      four.half = Float4{} + slab.half;
+      four.radius = Float4{} + slab.radius;
+      const ElementRow row = BoxTree::rowOf(body.tree.node(n).child[i]);
+      for (int k = 0; k < 40; ++k) {
+        const std::uint32_t corner = model.part().triangles[body.elements[row.first].index()].corner[k % 3u];
+        const Vector3d away(share(random), share(random), share(random));
+        const Vector3d p = vec(model.part().points[corner]) + std::pow(10, exponent(random)) * away;
+        double truth = 1e300;
+        for (std::uint32_t e = row.first; e < row.first + row.count; ++e)
+          truth = std::min(truth, distanceTo(model.part(), body.elements[e].index(), p));
+        const BoxProbe probe(body.tree, p);
+        const auto bound = static_cast<double>(slabDistance(slab, probe));
+        ASSERT_LE(bound, truth * truth) << p.transpose();
+        ASSERT_LE(static_cast<double>(slabDistances(four, probe)[k % 4]), truth * truth) << p.transpose();
+        close += bound > 0.25 * truth * truth;
+      }
+    }
+  EXPECT_GT(close, 20000);
+}
+
+/// Walks at several speeds, with rests and jumps, beside a search that has no budget for rows about the probe.
+void walkBeside(const Model& model, unsigned seed, bool spares) {
+  const SearchBudget whole{2048, NearRows::kMostElements};
+  Search near(model), all(model);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> share(-0.1, 1.1);
+  const Eigen::AlignedBox3d box = model.bounds();
+  Vector3d p = box.center(), way(0, 0, 0);
+  std::int64_t near_nodes = 0, all_nodes = 0;
+  for (int i = 0; i < 60000; ++i) {
+    const double step = std::array{1e-6, 1.25e-5, 5e-5, 3e-4, 2e-3}[static_cast<std::size_t>(i / 3000 % 5)];
+    if (i % 3000 == 0) p = box.min() + Vector3d(share(random), share(random), 0.5).cwiseProduct(box.sizes());
+    way = 0.95 * way + 0.3 * Vector3d(normal(random), normal(random), normal(random));
+    const Nearest before = near.last();
+    if (i % 1000 > 50 && before.found()) p += step * way.normalized() + 0.05 * (before.hit.point - p);
+    const Nearest& found = near.nearest(p);
+    const Nearest& truth = all.nearest(p, whole);
+    ASSERT_EQ(found.proved, truth.proved) << i;
+    ASSERT_EQ(found.hit.element.code, truth.hit.element.code) << i;
+    ASSERT_EQ(found.hit.d2, truth.hit.d2) << i;
+    ASSERT_TRUE(found.hit.point == truth.hit.point && found.hit.u == truth.hit.u && found.hit.v == truth.hit.v);
+    ASSERT_EQ(found.hit.region, truth.hit.region) << i;
+    near_nodes += found.nodes;
+    all_nodes += truth.nodes;
+  }
+  if (spares) {
+    EXPECT_LT(near_nodes, all_nodes);
+  }
+}
+
+TEST(NearRows, ChangeNoBitOfAnyAnswer) {
+  walkBeside(Model(sheet(150, 0.004)), 1, true);
+  walkBeside(Model(sheet(60, 0)), 2, false);  // flat: many triangles are just as near
+}
+
+/// Beside a corner of a cube three faces of two triangles each are just as near.
+TEST(NearRows, KeepTheOrderOfPreferenceAtACube) {
+  std::vector<Vector> points;
+  for (int i = 0; i < 8; ++i) points.push_back({0.05 * (i & 1), 0.05 * (i >> 1 & 1), 0.05 * (i >> 2 & 1)});
+  walkBeside(Model(meshOf(points, {{0, 2, 3},
+                                   {0, 3, 1},
+                                   {4, 5, 7},
+                                   {4, 7, 6},
+                                   {0, 1, 5},
+                                   {0, 5, 4},
+                                   {2, 6, 7},
+                                   {2, 7, 3},
+                                   {0, 4, 6},
+                                   {0, 6, 2},
+                                   {1, 3, 7},
+                                   {1, 7, 5}})),
+             3, false);
+}
+
+}  // namespace
+}  // namespace hapticd::brep
