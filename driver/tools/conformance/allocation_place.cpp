@@ -21,11 +21,11 @@ namespace hapticd::conformance {
 namespace {
 
 std::array<void*, 32> stack;  ///< return addresses, the newest first
-int depth = 0;
+int stack_depth = 0;
 bool watching = false;
 
 void keepStack() {
-  if (depth == 0) depth = backtrace(stack.data(), static_cast<int>(stack.size()));
+  if (stack_depth == 0) stack_depth = backtrace(stack.data(), static_cast<int>(stack.size()));
 }
 
 template <class T>
@@ -81,7 +81,7 @@ std::string readable(const std::string& name) {
 }  // namespace
 
 AllocationWatch::AllocationWatch() noexcept {
-  if (watching && depth == 0) onAllocation(&keepStack);
+  if (watching && stack_depth == 0) onAllocation(&keepStack);
 }
 
 AllocationWatch::~AllocationWatch() {
@@ -96,7 +96,7 @@ void watchAllocations() {
 
 std::string firstAllocationIn(const std::string& file) {
   std::error_code none;
-  for (size_t i = 0; i < static_cast<size_t>(depth); ++i) {
+  for (size_t i = 0; i < static_cast<size_t>(stack_depth); ++i) {
     Dl_info found{};
     if (dladdr(stack[i], &found) == 0 || !std::filesystem::equivalent(found.dli_fname, file, none)) continue;
     const uint64_t address = reinterpret_cast<uintptr_t>(stack[i]) - reinterpret_cast<uintptr_t>(found.dli_fbase) - 1;
