@@ -243,8 +243,8 @@ def circle(folder, far):
         check("positions are those of the far arm", known > 0.95, known)
         felt = until(lambda: numpy.abs(far.rows("ticks", last=1000)["arm0_client_fz"]).max() > 0.2)
         check("the near ball is felt there", felt, numpy.abs(far.rows("ticks", last=1000)["arm0_client_fz"]).max())
-        near_run.send_signal(signal.SIGKILL)
-        near_run.wait()
+    near_run.send_signal(signal.SIGKILL)
+    near_run.wait()
     check("the far arm is free when the near daemon dies",
           until(lambda: last(far, "arm0_client_fx", "arm0_client_fy", "arm0_client_fz") == [0, 0, 0]))
     service.end()

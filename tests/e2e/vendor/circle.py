@@ -96,9 +96,10 @@ def main(folder):
     arm(folder)
     far_run = daemon(folder, "far", FAR)
     near_run = daemon(folder, "near", NEAR, HAPTICD_NAME="far")
-    with hapticd.connect("far", folder=folder) as far, hapticd.connect("near", folder=folder) as near:
-        check("the arm says its vendor's name for it", near.about["devices"][0]["info"]["product"] == "PHANTOM Premium 1.5")
-        closed(folder, near, far)
+    with hapticd.connect("far", folder=folder) as far:
+        with hapticd.connect("near", folder=folder) as near:
+            check("the arm says its vendor's name for it", near.about["devices"][0]["info"]["product"] == "PHANTOM Premium 1.5")
+            closed(folder, near, far)
         near_run.kill()
         near_run.wait()
         check("the far arm is free when the near daemon dies",
