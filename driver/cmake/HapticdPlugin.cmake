@@ -29,6 +29,7 @@ function(_hapticd_add_module name kind)
   add_library(${name}_objects OBJECT ${arg_UNPARSED_ARGUMENTS})
   target_link_libraries(${name}_objects PUBLIC hapticd::abi ${arg_LIBRARIES} PRIVATE hapticd_options)
   hapticd_include_root(${name}_objects ${name})
+  set_target_properties(${name}_objects PROPERTIES UNITY_BUILD OFF) # hapticd_link_modules() replaces one of them
   add_library(${name} MODULE $<TARGET_OBJECTS:${name}_objects>)
   set_target_properties(${name} PROPERTIES LINKER_LANGUAGE CXX)
   target_link_libraries(${name} PRIVATE hapticd::abi ${arg_LIBRARIES} hapticd_elementary_names)
