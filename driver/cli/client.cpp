@@ -158,9 +158,8 @@ void addClient(CLI::App& app, int& exit_code) {
   command->fallthrough(false);  // the options after PROGRAM are its own
   command->footer(
       "The program finds hapticd's own libHD.so and the daemon of --name. Where none runs, one is started with the\n"
-      "simulated arm, and ends with the program, also where this command is killed. Options of this command stand "
-      "before PROGRAM; its exit code is the "
-      "program's.\n\n"
+      "simulated arm, and ends with the program, also where this command is killed. Options of this command stand\n"
+      "before PROGRAM; its exit code is the program's.\n\n"
       "With real-time priority, the program's servo loop looks for each tick without sleeping from 100 us before it "
       "is\n"
       "due (a tenth of the period at most). HAPTICD_LISTEN in the environment sets this time: 0 to 200 us.\n\n"

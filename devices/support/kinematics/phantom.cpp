@@ -2,8 +2,8 @@
 #include "kinematics/phantom.hpp"
 
 #include <cmath>
-#include <stdexcept>
-#include <string>
+
+#include "kinematics/list_into.hpp"
 
 namespace hapticd::kinematics {
 namespace {
@@ -30,18 +30,6 @@ double wrapped(double angle) noexcept {
 /// The turn of `angle` that is nearest to `reference`.
 double nearest(double angle, double reference) noexcept {
   return reference + wrapped(angle - reference);
-}
-
-/// Puts a list into members, in their order.
-template <class... Member>
-void assign(const std::vector<double>& from, const char* id, Member&... members) {
-  if (from.empty()) return;
-  if (from.size() != sizeof...(members))
-    throw std::invalid_argument(std::string(id) + ": " + std::to_string(from.size()) +
-                                (from.size() == 1 ? " number" : " numbers") + ", expected " +
-                                std::to_string(sizeof...(members)) + " for this kind of arm");
-  size_t i = 0;
-  ((members = from[i++]), ...);
 }
 
 }  // namespace

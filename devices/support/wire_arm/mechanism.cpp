@@ -7,24 +7,14 @@
 #include "kinematics/carried_bodies.hpp"
 #include "kinematics/chain.hpp"
 #include "kinematics/delta.hpp"
+#include "kinematics/list_into.hpp"
 #include "kinematics/phantom.hpp"
 
 namespace hapticd::wire_arm {
 namespace {
 
 using Eigen::Vector3d;
-
-/// Puts a list into members, in their order; an empty one keeps the published numbers.
-template <class... Member>
-void assign(const std::vector<double>& from, const char* id, Member&... members) {
-  if (from.empty()) return;
-  if (from.size() != sizeof...(members))
-    throw std::invalid_argument(std::string(id) + ": " + std::to_string(from.size()) +
-                                (from.size() == 1 ? " number" : " numbers") + ", expected " +
-                                std::to_string(sizeof...(members)) + " for this kind of arm");
-  size_t i = 0;
-  ((members = from[i++]), ...);
-}
+using kinematics::assign;
 
 kinematics::Pose baseOf(const MechanismParameters& p) {
   kinematics::Pose base;

@@ -17,10 +17,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kClientModes[] = {"off", "add", "instead"};  ///< in the order of scene::ClientMode
 
-std::string text(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 const hsp_param& paramAt(const hsp_class& plugin, uint32_t index) {
   return *HSP_AT(const hsp_param, plugin.params, plugin.params[0].struct_size, index);
 }
@@ -130,6 +126,10 @@ Json silencedJson(const Session& session) {
 
 }  // namespace
 
+std::string lineOf(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 record::ClientReport reportOf(const ClientForces::Client& client, const Leads::Pusher& pusher,
                               const std::string& device) {
   const auto read = [](const auto& value) { return value.load(std::memory_order_relaxed); };
@@ -171,15 +171,15 @@ std::string statusAnswer(const Session& session) {
     if (session.runner.arms()[i]->clients().possible())
       devices.back()["clients"] = pushersJson(session, static_cast<uint32_t>(i));
   }
-  return text({{"ok", true},
-               {"scene", session.scene_file},
-               {"seconds", now.t},
-               {"tick", now.tick},
-               {"rate_hz", page.rate},
-               {"missed_ticks", now.missed},
-               {"lateness_us", {{"p50", page.lateness_us.quantile(0.5)}, {"p99", page.lateness_us.quantile(0.99)}}},
-               {"devices", devices},
-               {"silenced", silencedJson(session)}});
+  return lineOf({{"ok", true},
+                 {"scene", session.scene_file},
+                 {"seconds", now.t},
+                 {"tick", now.tick},
+                 {"rate_hz", page.rate},
+                 {"missed_ticks", now.missed},
+                 {"lateness_us", {{"p50", page.lateness_us.quantile(0.5)}, {"p99", page.lateness_us.quantile(0.99)}}},
+                 {"devices", devices},
+                 {"silenced", silencedJson(session)}});
 }
 
 std::string listAnswer(const Session& session) {
@@ -189,7 +189,7 @@ std::string listAnswer(const Session& session) {
     models.push_back(modelJson(session, i));
     models.back()["live_parameters"] = liveParameters(session, i);
   }
-  return text({{"ok", true}, {"models", models}});
+  return lineOf({{"ok", true}, {"models", models}});
 }
 
 std::string snapshotAnswer(const Session& session) {
@@ -212,7 +212,8 @@ std::string snapshotAnswer(const Session& session) {
                        {"clients", kClientModes[static_cast<size_t>(session.runner.scene().clients.mode)]},
                        {"leader", leader ? Json(*leader) : Json()}});
   }
-  return text({{"ok", true}, {"scene", session.scene_file}, {"next", next}, {"models", models}, {"devices", devices}});
+  return lineOf(
+      {{"ok", true}, {"scene", session.scene_file}, {"next", next}, {"models", models}, {"devices", devices}});
 }
 
 std::string noSuchParameter(const hsp_class& plugin, const std::string& parameter, uint32_t flags) {
@@ -231,10 +232,10 @@ Result<std::string> valuesAnswer(const Session& session, uint32_t place, const s
   for (uint32_t i = 0; i < plugin.param_count; ++i) {
     const hsp_param& param = paramAt(plugin, i);
     if (parameter == param.id)
-      return text({{"ok", true}, {"value", valueJson(model, param, i)}, {"unit", host::textOf(param.unit)}});
+      return lineOf({{"ok", true}, {"value", valueJson(model, param, i)}, {"unit", host::textOf(param.unit)}});
     values[param.id] = valueJson(model, param, i);
   }
-  if (parameter.empty()) return text({{"ok", true}, {"values", values}});
+  if (parameter.empty()) return lineOf({{"ok", true}, {"values", values}});
   return Error{noSuchParameter(plugin, parameter, 0)};
 }
 
@@ -296,7 +297,7 @@ std::string eventText(const Session& session, const hapticd_event& event) {
   if (event.kind == HAPTICD_FAULT) json["why"] = describe(static_cast<Fault>(event.code));
   if (event.probe < 0 || arm < session.runner.arms().size()) addProgram(session, event, json);
   if (event.kind == HAPTICD_SILENCED) json["why"] = silenceReason(event, json.value("model", ""));
-  return text(json);
+  return lineOf(json);
 }
 
 }  // namespace hapticd::servo

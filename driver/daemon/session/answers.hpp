@@ -2,6 +2,7 @@
 /// What a running daemon answers about itself, one line of JSON each. Control thread only: the servo goes on meanwhile,
 /// so all of it comes from pages and rings that may be read beside it.
 #pragma once
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,9 @@ struct Session {
   const Leads& leads;
   const std::string& scene_file;
 };
+
+/// [any] JSON as one line.
+std::string lineOf(const nlohmann::ordered_json& json);
 
 /// [main] What a program that pushes was like until now.
 record::ClientReport reportOf(const ClientForces::Client& client, const Leads::Pusher& pusher,

@@ -24,10 +24,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 using control::Request;
 
-std::string lineOf(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 /// The parameter of a class by its id; nullptr if there is none.
 const hsp_param* parameterOf(const hsp_class& plugin, const std::string& id, uint32_t& index) {
   for (index = 0; index < plugin.param_count; ++index) {
