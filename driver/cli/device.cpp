@@ -11,6 +11,7 @@
 #include "cli/command.hpp"
 #include "diagnostics/device_bus.hpp"
 #include "diagnostics/device_trial.hpp"
+#include "diagnostics/enable_button.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
 #include "world/arm_force.hpp"
@@ -101,6 +102,11 @@ void printLimits(const scene::Limits& limits, double most) {
               text(limits.torque, "N m", "the motors'").c_str(), text(limits.slew, "N/s", "none").c_str(),
               (limits.velocity ? text(*limits.velocity, "m/s", "none") : std::string("5 m/s on real hardware")).c_str(),
               text(limits.workspace, "m", "none").c_str());
+  std::printf("  enable     %s\n",
+              !limits.enable.button ? "none: no button must be held"
+                                    : ((limits.enable.mode == scene::EnableMode::kHold ? "while " : "on and off by ") +
+                                       diagnostics::enableButtonText(*limits.enable.button))
+                                          .c_str());
   std::printf("  ramps      %g s in, %g s out\n  passivity  %s\n", limits.ramp_in, limits.ramp_out,
               !limits.passivity   ? "guarded unless tried on hardware"
               : *limits.passivity ? "guarded"

@@ -96,7 +96,7 @@ int decode(const DecodeArguments& options) {
       failed != 0)
     return failed;
   std::fprintf(stderr, "read as %s: %s\n%s%s", taken->text ? "hexadecimal text" : "raw bytes",
-               capture::summaryOf(decoded).c_str(), capture::hintsOf(described->wire, decoded).c_str(),
+               capture::summaryOf(decoded).c_str(), capture::hintsOf(described->wire, *taken, decoded).c_str(),
                capture::implausible(described->wire, described->arm, decoded).c_str());
   if (decoded.reports.empty())
     return fail(kFailed, "no report in " + std::to_string(bytes->size()) + " bytes, expected " +

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -24,8 +26,9 @@ namespace fs = std::filesystem;
 
 struct NewDeviceArguments {
   std::string name, out, bus = "hid", kind = "phantom", id = "1234:0006";
+  std::string checksum;
   std::vector<double> lengths;
-  int joints = 3, bits = 16, buttons = 1;
+  int joints = 3, bits = 16, buttons = 1, report_id = 0;
   double counts = 2000, gear = 10, torque = 0.5, force = 2;
   bool no_questions = false;
 };
@@ -43,6 +46,8 @@ std::string wrongIn(const NewDeviceArguments& o) {
     return fmt::format("--lengths: {} numbers, expected {} for a {}", o.lengths.size(), lengths, o.kind);
   for (const double value : {o.counts, o.gear, o.torque, o.force})
     if (!(value > 0)) return "--counts, --gear, --torque and --force: expected numbers above 0";
+  if (o.checksum.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") != std::string::npos)
+    return "--checksum " + o.checksum + ": expected a name as in driver/docs/devices.md, such as crc16";
   if (o.buttons < 0 || o.buttons > 32) return "--buttons " + std::to_string(o.buttons) + ": expected 0 to 32";
   unsigned vendor = 0, product = 0;
   int used = 0;
@@ -159,7 +164,25 @@ std::string armOf(const NewDeviceArguments& o) {
   return text;
 }
 
+/// Bits of a checksum in whole bytes, which its name has: crc16-modbus, crc5-usb.
+int checksumBits(const std::string& name) {
+  const size_t digits = name.find_first_of("0123456789");
+  const int bits = digits == std::string::npos ? 8 : std::atoi(name.c_str() + digits);
+  return std::clamp((bits + 7) / 8 * 8, 8, 64);
+}
+
+/// The checksum behind the first `size` bytes, or as a comment what one would look like.
+std::string checksumOf(const NewDeviceArguments& o, int size) {
+  const bool given = !o.checksum.empty();
+  const std::string name = given ? o.checksum : "crc16-modbus";
+  const int bits = checksumBits(name);
+  return fmt::format("        {}- {{is: checksum, at: {}, type: u{}, method: {}, from: 0, to: {}{}}}{}\n",
+                     given ? "" : "# ", size, bits, name, size, o.report_id > 0 ? ", over_id: true" : "",
+                     given ? "" : fmt::format("      # then size: {}", size + bits / 8));
+}
+
 std::string wireOf(const NewDeviceArguments& o) {
+  const std::string id = o.report_id > 0 ? fmt::format("      id: {}\n", o.report_id) : std::string();
   const double scale = 2 * M_PI / (o.counts * o.gear);
   std::string text = fmt::format(
       "  wire:                           # driver/docs/devices.md has every key\n"
@@ -177,18 +200,18 @@ std::string wireOf(const NewDeviceArguments& o) {
   }
   for (int i = 0; i < o.buttons; ++i, ++bit)
     fields += fmt::format("        - {{is: button, button: {}, bit_offset: {}, type: u1}}\n", i + 1, bit);
-  const int size = (bit + 7) / 8;
-  fields += fmt::format(
-      "        # - {{is: checksum, at: {}, type: u16, method: crc16-modbus, from: 0, to: {}}}      # then size: {}\n",
-      size, size, size + 2);
+  const int payload = (bit + 7) / 8, size = payload + (o.checksum.empty() ? 0 : checksumBits(o.checksum) / 8);
+  fields += checksumOf(o, payload);
+  text +=
+      id +
+      fmt::format(
+          "      size: {}\n      fields:                     # rad = raw * scale: 2 pi / (counts * turns of one joint "
+          "turn)\n{}",
+          size, fields);
   text += fmt::format(
-      "      size: {}\n      fields:                     # rad = raw * scale: 2 pi / (counts * turns of one joint "
-      "turn)\n{}",
-      size, fields);
-  text += fmt::format(
-      "    output:                       # what the arm gets\n      size: {}\n      fields:                     # N m "
-      "= raw * scale\n",
-      2 * o.joints + 2);
+      "    output:                       # what the arm gets\n{}      size: {}\n"
+      "      fields:                     # N m = raw * scale\n",
+      id, 2 * o.joints + 2);
   for (int i = 0; i < o.joints; ++i)
     text += fmt::format("        - {{is: torque, joint: {}, at: {}, type: i16, scale: {:.6g}}}\n", i + 1, 2 * i,
                         o.torque / 32767);
@@ -271,6 +294,11 @@ void addDeviceNew(CLI::App& app, int& exit_code) {
   command->add_option("--counts", options->counts, "encoder counts of one motor turn")->capture_default_str();
   command->add_option("--gear", options->gear, "motor turns of one joint turn")->capture_default_str();
   command->add_option("--bits", options->bits, "bits of a position in a report")->capture_default_str();
+  command->add_option("--report-id", options->report_id, "HID report id; 0: reports have none")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 255));
+  command->add_option("--checksum", options->checksum,
+                      "of what the arm sends, by its name, such as crc16; default: none");
   command->add_option("--buttons", options->buttons, "buttons")->capture_default_str()->check(CLI::Range(0, 32));
   command->add_option("--torque", options->torque, "largest torque of a joint [N m]")->capture_default_str();
   command->add_option("--force", options->force, "limit of the force at the tip [N]")->capture_default_str();

@@ -7,7 +7,7 @@
 
 #include "cli/colour.hpp"
 #include "cli/command.hpp"
-#include "diagnostics/arm_controls.hpp"
+#include "diagnostics/arm_checks.hpp"
 #include "diagnostics/client_advice.hpp"
 #include "diagnostics/doctor_checks.hpp"
 #include "status/page_file.hpp"
@@ -34,37 +34,12 @@ void print(const Finding& finding) {
   std::printf("      %-16s fix: %s\n", "", finding.fix.c_str());
 }
 
-/// What becomes of the force of one arm when there is no daemon any more.
-Finding checkArm(const std::string& file) {
-  document::Problems problems;
-  const auto found = controlsOfFile(file, catalog(), problems);
-  if (!found)
-    return {file, Verdict::kFail, problems.empty() ? "cannot be used" : problems.front().text(),
-            "the arm cannot be opened", "hapticd check " + file};
-  if (found->simulated) return {found->arm, Verdict::kOk, "a simulated arm has no motors", "", ""};
-  if (found->watchdog)
-    return {found->arm, Verdict::kOk,
-            "its hardware switches the motors off when commands stop" +
-                std::string(found->opened ? "" : ", as its file says (wire.watchdog)"),
-            "", ""};
-  if (found->silenced_after_us)
-    return {found->arm, Verdict::kWarn,
-            "a guard process switches its motors off when the daemon is gone or stands still; nothing does when the "
-            "machine itself stops",
-            "when the kernel hangs, the power fails or its cable is pulled, it may hold the last force",
-            "give wire.watchdog if its hardware has one; else keep a switch of its power within reach"};
-  return {found->arm, Verdict::kWarn,
-          std::string("nothing is known that switches its motors off when the daemon is gone") +
-              (found->opened ? "" : "; the arm is not plugged in, so it could not be asked"),
-          "after SIGKILL, or when the machine dies, it may hold the last force",
-          "keep a switch of its power within reach; all of its controls: hapticd device controls " + file};
-}
-
 /// 0: all well, 1: warnings, 2: something fails.
 int doctor(const std::vector<std::string>& arms, bool json, double seconds) {
   std::vector<Finding> findings = checkSystem(catalog());
   findings.push_back(checkClients(status::runtimeFolder(false)));
-  for (const std::string& file : arms) findings.push_back(checkArm(file));
+  for (const std::string& file : arms)
+    for (const Finding& finding : checkArm(file, catalog())) findings.push_back(finding);
   if (!json)
     for (const Finding& finding : findings) print(finding);
   if (seconds > 0) {

@@ -104,6 +104,7 @@ class Reader {
     one.verdict = codec::decode(wire_.input, bytes, one.state, &wrong);
     if (one.verdict == Verdict::kWrongId) {
       ++decoded.others;
+      decoded.other_ids.insert(bytes[0]);
       return;
     }
     if (one.verdict == Verdict::kWrongSize)
@@ -259,6 +260,18 @@ std::string csvOf(const codec::Wire& wire, size_t joints, const Decoded& decoded
   return text;
 }
 
+/// " (0x01, 0x04)"; nothing where there are many, as there are in bytes that are cut at wrong places.
+static std::string idsOf(const std::set<int>& ids) {
+  constexpr size_t kFew = 4;
+  std::string text;
+  for (const int id : ids) {
+    char number[8];
+    std::snprintf(number, sizeof number, "0x%02x", static_cast<unsigned>(id));
+    text += (text.empty() ? " (" : ", ") + std::string(number);
+  }
+  return ids.size() > kFew ? "" : text + ")";
+}
+
 std::string summaryOf(const Decoded& decoded) {
   std::map<std::string, size_t> verdicts;
   for (const DecodedReport& one : decoded.reports)
@@ -266,7 +279,8 @@ std::string summaryOf(const Decoded& decoded) {
       ++verdicts[one.verdict == Verdict::kWrongSize ? "of a wrong size" : wordOf(one.verdict)];
   std::string text = counted(decoded.reports.size(), "report") + ", " + std::to_string(decoded.good()) + " good";
   for (const auto& [word, count] : verdicts) text += ", " + std::to_string(count) + " " + word;
-  if (decoded.others > 0) text += "; besides " + counted(decoded.others, "report") + " with another id";
+  if (decoded.others > 0)
+    text += "; besides " + counted(decoded.others, "report") + " with another id" + idsOf(decoded.other_ids);
   if (decoded.lost > 0) text += "; besides " + counted(decoded.lost, "byte") + " of no report";
   if (decoded.repeats > 0) text += "; the counter stands still " + counted(decoded.repeats, "time");
   if (decoded.gaps > 0)

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,7 @@ struct Decoded {
   size_t repeats = 0;          ///< reports with the sequence number of the one before
   size_t gaps = 0;             ///< places where sequence numbers are missing
   std::vector<BadReport> bad;  ///< the first ones, of a whole size or field
+  std::set<int> other_ids;     ///< of the others
   size_t good() const;
 };
 

@@ -144,10 +144,19 @@ std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog
   if (!wrong.empty()) return std::nullopt;
   auto device = host::DeviceInstance::create(*loaded.device, logNothing);
   if (!device) return document::report(problems, file, 0, 0, "", device.error()), std::nullopt;
-  ArmControls found{loaded.device->name, static_cast<bool>((*device)->open()), {}, false};
+  const auto opened = (*device)->open();
+  ArmControls found;
+  found.arm = loaded.device->name;
+  found.opened = static_cast<bool>(opened);
+  if (!opened) found.why = opened.error();
+  for (const scene::Value& value : loaded.device->parameters)
+    if (value.id == "usb.id") found.usb_id = value.text;
   found.controls = controlsOf(*loaded.device, **device, found.opened);
   const uint32_t capabilities = found.opened ? (*device)->info().capabilities : 0;
   const auto wire = wireOf(*loaded.device, (*device)->kinematics().joint_count);
+  found.repeats_pass =
+      wire && std::none_of(wire->input.fields.begin(), wire->input.fields.end(),
+                           [](const codec::Field& field) { return field.role == codec::Role::kSequence; });
   found.simulated = (capabilities & HDV_C_SIMULATED) != 0;
   found.watchdog = (capabilities & HDV_C_WATCHDOG) != 0 || (!found.opened && wire && wire->cutsSoon());
   found.silenced_after_us = (*device)->silenceable() || found.watchdog || found.simulated;

@@ -34,6 +34,9 @@ struct ArmControls {
   bool silenced_after_us = false;  ///< something switches its motors off when the daemon has gone
   bool simulated = false;          ///< it has no motors
   bool watchdog = false;           ///< its own hardware does so when commands stop, as far as is known
+  std::string why;                 ///< it could not be opened; "" where it was
+  std::string usb_id;              ///< "1209:0006"; "" for an arm on another bus
+  bool repeats_pass = false;       ///< the same report again and again would not be noticed
 };
 
 /// [main] Loads the file, and opens the arm if it is there; moves nothing. Nothing: `problems` say why.

@@ -148,6 +148,9 @@ with tempfile.TemporaryDirectory() as folder:
         check(f"{wrong}: the right one is found", code == 1 and "is right with method: crc32, endian: little" in err, err)
     open(other, "w").write(ARM.replace("at: 14, type: u32, method: crc32, from: 0, to: 14", "at: 14, type: u32, method: crc32, from: 1, to: 14"))
     code, out, err = run("decode", other, given="\n".join(lines).encode())
+    check("a range that begins a byte late is found", code == 1 and "is right with from: 0\n" in err, err)
+    own = "\n".join(line[:-2] + f"{int(line[-2:], 16) ^ 0x5A:02x}" for line in lines)
+    code, out, err = run("decode", arm, given=own.encode())
     check("where none fits, this is told", code == 1 and "no method that is known by name fits" in err, err)
     # A checksum that begins with the report id, which no offset names: zlib's, binascii's, a plain sum and xor, by their own code.
     for method, type_, sum_of in (("crc32", "u32", lambda b: struct.pack("<I", binascii.crc32(b))),
@@ -225,9 +228,20 @@ with tempfile.TemporaryDirectory() as folder:
         code, out, err = run("encode", arm, "--from-arm", given=(",".join(["0.1"] * joints) + "\n").encode())
         code, out, err = run("decode", arm, given=out)
         check(f"and whose reports of a {kind} can be tried", code == 0 and abs(float(rows(out)[0]["position1"]) - 0.1) < 1e-3, (out, err))
+    # A report id and a checksum over it, by zlib's and binascii's own code.
+    for method, bytes_, sum_of in (("crc32", 4, binascii.crc32), ("crc16-ccitt-false", 2, lambda b: binascii.crc_hqx(b, 0xFFFF)), ("sum8", 1, lambda b: sum(b) % 256)):
+        numbered = os.path.join(folder, f"numbered-{method}.yaml")
+        code, out, err = run("new", "numbered", "-o", numbered, "--report-id", "7", "--checksum", method, "--no-questions")
+        text = open(numbered).read()
+        check(f"device new writes both ids and {method}", code == 0 and text.count("      id: 7\n") == 2 and "# - {is: checksum" not in text, (out, err, text))
+        code, out, err = run("encode", numbered, "--from-arm", "--raw", given=b"0.1,0.2,0.3\n")
+        check(f"and {method} covers the id", code == 0 and out[:1] == b"\x07" and sum_of(out[:-bytes_]).to_bytes(bytes_, "little") == out[-bytes_:], (out.hex(" "), err))
+    code, out, err = run("new", "plain", "-o", os.path.join(folder, "plain.yaml"), "--no-questions")
+    text = open(os.path.join(folder, "plain.yaml")).read()
+    check("without them there is neither", code == 0 and " id: " not in text.split("wire:")[1] and "# - {is: checksum" in text, text)
     code, out, err = run("new", "phantom", "-o", arm)
     check("no file is overwritten", code == 2 and "exists already" in err, err)
-    for bad in (["--kind", "scara"], ["--lengths", "1,2,3"], ["--bits", "65"], ["--bus", "can"], ["--id", "hello"]):
+    for bad in (["--kind", "scara"], ["--lengths", "1,2,3"], ["--bits", "65"], ["--bus", "can"], ["--id", "hello"], ["--checksum", "crc16, at: 0"], ["--report-id", "256"]):
         code, out, err = run("new", "bad", "-o", os.path.join(folder, "bad.yaml"), "--no-questions", *bad)
         check(f"{' '.join(bad)} is refused", code == 2 and not os.path.exists(os.path.join(folder, "bad.yaml")), err)
 

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "capture/checksum_hint.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "codec/checksum_start.hpp"
+
+namespace hapticd::capture {
+namespace {
+
+using codec::Checksum;
+using codec::Field;
+
+/// Fewer reports than that agree with some method by chance.
+constexpr size_t kEnough = 3;
+/// Of the reports whose checksum is wrong: some of them are really damaged.
+constexpr double kMost = 0.8;
+
+using Reports = std::vector<const BadReport*>;
+
+size_t fitting(const Field& field, const Reports& reports) {
+  size_t count = 0, seen = 0;
+  for (const BadReport* bad : reports) {
+    count += codec::codeAt(field, bad->bytes) == codec::checksumAt(field, bad->bytes) ? 1 : 0;
+    if (++seen == 2 * kEnough && count == 0) return 0;
+  }
+  return count;
+}
+
+/// A checksum, in words, and how many reports agree with it.
+struct Fit {
+  std::string words;
+  size_t count = 0;
+};
+
+std::vector<codec::NamedCrc> methodsFor(const Field& field) {
+  std::vector<codec::NamedCrc> all(codec::namedCrcs().begin(), codec::namedCrcs().end());
+  const auto add = [&all](const char* name, Checksum method, unsigned bits) {
+    codec::Check plain;
+    plain.method = method, plain.bits = static_cast<uint8_t>(bits);
+    all.push_back({name, plain, 0});
+  };
+  add("sum", Checksum::kSum, field.bits), add("xor", Checksum::kXor, field.bits);
+  if (field.bits > 8) add("sum8", Checksum::kSum, 8), add("xor8", Checksum::kXor, 8);
+  return all;
+}
+
+/// A range of bytes, and how it differs from that of the file, in words.
+struct Range {
+  Field field;
+  std::string words;
+};
+
+/// The method and byte order that agree with most of them over one range of bytes, also with the report id in front
+/// (-1: there is none).
+void tryMethods(const Range& range, const Reports& reports, int id, Fit& best) {
+  Field field = range.field;
+  for (const codec::NamedCrc& one : methodsFor(field))
+    for (int way = 0; way < (id < 0 ? 2 : 4); ++way) {
+      const bool big = way % 2 == 1, over_id = way >= 2;
+      if (one.check.bits > field.bits || (big && field.bits <= 8)) continue;
+      field.check = over_id ? codec::startedWith(one.check, static_cast<uint8_t>(id)) : one.check;
+      field.check.big_endian = field.big_endian = big;
+      const size_t count = fitting(field, reports);
+      if (count <= best.count) continue;
+      best.words = "method: " + std::string(one.name) + ", endian: " + (big ? "big" : "little") + range.words;
+      if (id >= 0) best.words += over_id ? ", over_id: true" : ", over_id: false";
+      best.count = count;
+    }
+}
+
+/// The checksum a byte beside, or a byte more or less at either end of what it covers; nothing: it would cover itself.
+std::optional<Range> otherRange(const codec::Wire& wire, const Field& field, int at, int from, int to) {
+  const int end = at + static_cast<int>(field.bytes()), most = static_cast<int>(wire.input.size);
+  if (from < 0 || to <= from || to > most || at < 0 || end > most || (at < to && end > from)) return std::nullopt;
+  Range range{field, ""};
+  if (at != field.at) range.words += ", at: " + std::to_string(at);
+  if (from != field.from) range.words += ", from: " + std::to_string(from);
+  if (to != field.to) range.words += ", to: " + std::to_string(to);
+  range.field.at = static_cast<uint16_t>(at);
+  range.field.from = static_cast<uint16_t>(from), range.field.to = static_cast<uint16_t>(to);
+  return range;
+}
+
+/// Other places and ranges, first with the method of the file, whose numbers may be its own.
+void tryRanges(const codec::Wire& wire, const Field& field, const Reports& reports, Fit& best) {
+  for (const int at : {0, 1, -1})
+    for (const int from : {int{field.from}, 0, field.from + 1, field.from - 1})
+      for (const int to : {field.at + at, int{field.to}, field.to + 1, field.to - 1}) {
+        const auto range = otherRange(wire, field, field.at + at, from, to);
+        if (!range || range->words.empty()) continue;
+        if (const size_t count = fitting(range->field, reports); count > best.count)
+          best = {range->words.substr(2), count};
+        tryMethods(*range, reports, wire.input.id, best);
+        if (best.count == reports.size()) return;
+      }
+}
+
+/// The bad reports, where one checksum is what is wrong with all of them.
+const Field* onlyChecksum(const Decoded& decoded, Reports& sums) {
+  const Field* field = nullptr;
+  std::set<std::string> different;
+  for (const BadReport& bad : decoded.bad) {
+    if (bad.wrong == nullptr || bad.wrong->role != codec::Role::kChecksum) continue;
+    if (field != nullptr && bad.wrong != field) return nullptr;
+    field = bad.wrong;
+    sums.push_back(&bad);
+    different.insert(hexText(bad.bytes.data(), bad.bytes.size()));
+  }
+  return different.size() < kEnough ? nullptr : field;
+}
+
+}  // namespace
+
+std::string checksumHint(const codec::Wire& wire, const Decoded& decoded) {
+  // A wrong method is right now and then, by chance: one report in 256 where both bytes are equal.
+  if (static_cast<double>(decoded.good()) > (1 - kMost) * static_cast<double>(decoded.reports.size())) return "";
+  Reports sums;
+  const Field* field = onlyChecksum(decoded, sums);
+  if (field == nullptr) return "";
+  const double needed = kMost * static_cast<double>(sums.size());
+  Fit best;
+  tryMethods({*field, ""}, sums, wire.input.id, best);
+  if (static_cast<double>(best.count) < needed) tryRanges(wire, *field, sums, best);
+  if (static_cast<double>(best.count) < needed)
+    return "no method that is known by name fits them either, from byte " + std::to_string(field->from) + " to " +
+           std::to_string(field->to - 1) + ", a byte more or less" +
+           (wire.input.id >= 0 ? ", with the report id in front or without" : "") +
+           ": see from, to and at of the checksum\n";
+  const bool all = best.count == sums.size() && sums.size() == decoded.bad.size();
+  return "the checksum of " +
+         (all ? "each" : std::to_string(best.count) + " of the " + std::to_string(decoded.bad.size())) +
+         " of them is right with " + best.words + "\n";
+}
+
+}  // namespace hapticd::capture

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "capture/layout_hint.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+#include <vector>
+
+namespace hapticd::capture {
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+
+constexpr size_t kRepeated = 3;     ///< reports: by chance fewer look alike
+constexpr double kNearlyAll = 0.8;  ///< of them
+
+std::string hexByte(int byte) {
+  char text[8];
+  std::snprintf(text, sizeof text, "0x%02x", static_cast<unsigned>(byte));
+  return text;
+}
+
+std::string idLacks(int id) {
+  return "each begins with " + hexByte(id) + " and has one byte too many: if this is the report id, give " +
+         "wire.input id: " + std::to_string(id) + "; size and offsets do not count it\n";
+}
+
+std::string idIsMissing(int id) {
+  return "each has one byte too few: if they were captured without the report id, put " + hexByte(id) +
+         " in front of each, or leave wire.input id out\n";
+}
+
+/// Every bad report is of one and the same wrong size.
+bool allOfOneSize(const Decoded& decoded) {
+  return !decoded.bad.empty() && decoded.good() == 0 &&
+         std::all_of(decoded.bad.begin(), decoded.bad.end(), [&](const BadReport& bad) {
+           return bad.wrong == nullptr && bad.bytes.size() == decoded.bad.front().bytes.size();
+         });
+}
+
+std::string textHint(const codec::Wire& wire, const Decoded& decoded) {
+  if (!allOfOneSize(decoded)) return "";
+  const Bytes& bytes = decoded.bad.front().bytes;
+  const size_t size = bytes.size(), expected = wire.input.bytes();
+  const bool same = std::all_of(decoded.bad.begin(), decoded.bad.end(),
+                                [&](const BadReport& bad) { return bad.bytes.front() == bytes.front(); });
+  if (size == expected + 1 && same && wire.input.id < 0 && bytes.front() != 0) return idLacks(bytes.front());
+  if (size + 1 == expected && wire.input.id >= 0) return idIsMissing(wire.input.id);
+  if (size > expected && size % expected == 0)
+    return std::to_string(size) + " bytes are " + std::to_string(size / expected) + " reports of " +
+           std::to_string(expected) + ": a line of text is one report, expected one a line\n";
+  return "";
+}
+
+/// The byte that stands at every multiple of `size`; nothing where there are several, or too few.
+std::optional<int> everyFirst(const Bytes& bytes, size_t size) {
+  if (size == 0 || bytes.size() % size != 0 || bytes.size() / size < kRepeated) return std::nullopt;
+  for (size_t at = size; at < bytes.size(); at += size)
+    if (bytes[at] != bytes[0]) return std::nullopt;
+  return bytes[0];
+}
+
+/// How many of the reports would be good with another id and size; nothing where any would be: without a checksum,
+/// firmware number or constant.
+std::optional<double> goodWith(codec::Wire wire, int id, size_t size, const Capture& capture) {
+  const auto judges = [](const codec::Field& field) {
+    return field.role == codec::Role::kChecksum || field.role == codec::Role::kConstant ||
+           field.role == codec::Role::kFirmware;
+  };
+  std::vector<codec::Field>& fields = wire.input.fields;
+  if (std::none_of(fields.begin(), fields.end(), judges)) return std::nullopt;
+  wire.input.id = id, wire.input.size = size;
+  for (codec::Field& field : fields) {
+    if (field.at + field.bytes() > size || field.to > size) return 0.0;
+  }
+  const Decoded decoded = decodeCapture(wire, capture);
+  return static_cast<double>(decoded.good()) / static_cast<double>(std::max<size_t>(decoded.reports.size(), 1));
+}
+
+/// The smallest size with which every report begins with the id.
+size_t sizeWithId(const Bytes& bytes, int id) {
+  for (size_t size = 2; size <= codec::kMaxReportBytes; ++size)
+    if (everyFirst(bytes, size) == id) return size;
+  return 0;
+}
+
+std::string withoutAnId(const codec::Wire& wire, const Capture& capture, const Bytes& bytes) {
+  const size_t size = wire.input.size;
+  const auto first = everyFirst(bytes, size + 1);
+  if (first && *first != 0 && !everyFirst(bytes, size) &&
+      goodWith(wire, *first, size, capture).value_or(1) > kNearlyAll)
+    return idLacks(*first);
+  for (size_t other = 1; other <= std::min(2 * size, codec::kMaxReportBytes - 1); ++other)
+    if (other != size && bytes.size() % other == 0 && bytes.size() / other >= kRepeated &&
+        goodWith(wire, -1, other, capture).value_or(0) > kNearlyAll)
+      return "as reports of " + std::to_string(other) +
+             " bytes they are good: give wire.input size: " + std::to_string(other) + "\n";
+  return "";
+}
+
+std::string withAnId(const codec::Wire& wire, const Capture& capture, const Bytes& bytes) {
+  const int id = wire.input.id;
+  const size_t size = wire.input.size;
+  if (everyFirst(bytes, size + 1)) return "";  // theirs, or another that is told as such
+  if (goodWith(wire, -1, size, capture).value_or(0) > kNearlyAll) return idIsMissing(id);
+  const size_t whole = sizeWithId(bytes, id);
+  if (whole == 0) return "";
+  return hexByte(id) + " stands at every " + std::to_string(whole) + " bytes: if these are the reports, give " +
+         "wire.input size: " + std::to_string(whole - 1) + " (it is " + std::to_string(size) +
+         "); size does not count the report id\n";
+}
+
+/// Another id, and none of ours.
+std::string otherIdHint(const codec::Wire& wire, const Decoded& decoded) {
+  if (!decoded.reports.empty() || decoded.other_ids.size() != 1 || decoded.others < kRepeated) return "";
+  const int id = *decoded.other_ids.begin();
+  return "each begins with " + hexByte(id) + ", expected " + hexByte(wire.input.id) +
+         ": if this is the report id, give wire.input id: " + std::to_string(id) + "\n";
+}
+
+}  // namespace
+
+std::string layoutHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded) {
+  if (wire.framing.used) return "";
+  if (const std::string other = otherIdHint(wire, decoded); !other.empty()) return other;
+  if (capture.text) return textHint(wire, decoded);
+  const size_t all = decoded.reports.size() + decoded.others;
+  const Bytes& bytes = capture.transfers.empty() ? Bytes() : capture.transfers.front().bytes;
+  const bool fits = bytes.size() % wire.input.bytes() == 0 && 2 * decoded.good() > all;
+  if (fits || bytes.empty()) return "";
+  return wire.input.id < 0 ? withoutAnId(wire, capture, bytes) : withAnId(wire, capture, bytes);
+}
+
+}  // namespace hapticd::capture

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+/// Which report id and size the bytes of a capture have, where they do not have those of the device file.
+#pragma once
+#include <string>
+
+#include "capture/report_table.hpp"
+
+namespace hapticd::capture {
+
+/// [main] One line, "" where size and id are right: an id that the file lacks or another one, reports without their id,
+/// reports of another size, several in one line of text.
+std::string layoutHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded);
+
+}  // namespace hapticd::capture

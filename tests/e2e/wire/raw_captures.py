@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""An engineer with an arm of his own errs in the id, the size or the checksum of its reports: decode names each mistake, of raw bytes and of text.
+
+Usage: raw_captures.py HAPTICD       exit 1 when one is off
+"""
+import math
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish
+
+HAPTICD = sys.argv[1]
+
+SCALE = 2 * math.pi / (4096 * 40)  # counts of a motor turn, motor turns of one joint turn
+SUM = "at: 18, type: u16, method: crc16, from: 0, to: 18, over_id: true"
+ARM = """hapticd-device: 1
+module: usb_hid
+name: own arm
+limits: {force: 2}
+parameters:
+  usb: {id: "1209:0a0a"}
+  arm: {kind: phantom, lengths: [0.2, 0.2, 0, 0, 0], masses: [0, 0, 0, 0], max_torque: [0.5], limits: [[-1.2, 1.2], [-0.8, 0.8], [-1, 1]]}
+  wire:
+    rate: 1000
+    watchdog: 0.02
+    input:
+      id: 1
+      size: 20
+      fields:
+        - {is: counter, at: 0, type: u8}
+        - {is: position, joint: 1, at: 4, type: i24, scale: @}
+        - {is: position, joint: 2, at: 8, type: i24, scale: @}
+        - {is: position, joint: 3, at: 12, type: i24, scale: @}
+        - {is: checksum, #}
+    output:
+      size: 6
+      fields:
+        - {is: torque, joint: 1, at: 0, type: i16, scale: 2.0e-5}
+        - {is: torque, joint: 2, at: 2, type: i16, scale: 2.0e-5}
+        - {is: torque, joint: 3, at: 4, type: i16, scale: 2.0e-5}
+""".replace("@", f"{SCALE:.9g}").replace("#", SUM)
+
+
+def crc16(data):
+    """CCITT, begun with ones: bit by bit, not by the code that is tested."""
+    crc = 0xFFFF
+    for byte in data:
+        crc ^= byte << 8
+        for _ in range(8):
+            crc = (crc << 1 ^ 0x1021 if crc & 0x8000 else crc << 1) & 0xFFFF
+    return crc
+
+
+def report(i, over_id):
+    body = bytes([i % 256]) + (i * 100 % 65536).to_bytes(2, "little") + b"\0"
+    for angle in (1.1 * math.sin(i / 60), 0.7 * math.sin(i / 80 + 1), 0.9 * math.cos(i / 70)):
+        body += (round(angle / SCALE) & 0xFFFFFF).to_bytes(3, "little") + b"\0"
+    body = body.ljust(18, b"\0")
+    return b"\1" + body + crc16((b"\1" if over_id else b"") + body).to_bytes(2, "little")
+
+
+def text_of(capture):
+    return "\n".join(capture[at:at + 21].hex(" ") for at in range(0, len(capture), 21)).encode()
+
+
+OVER = b"".join(report(i, True) for i in range(600))
+PLAIN = b"".join(report(i, False) for i in range(600))
+
+
+with tempfile.TemporaryDirectory() as folder:
+    def decode(capture, changes):
+        text = ARM
+        for old, new in changes.items():
+            assert old in text, old
+            text = text.replace(old, new)
+        file = os.path.join(folder, "arm.yaml")
+        open(file, "w").write(text)
+        done = subprocess.run([HAPTICD, "device", "decode", file], input=capture, capture_output=True, text=False, timeout=120)
+        return done.returncode, done.stdout.decode(), done.stderr.decode()
+
+    def named(what, capture, changes, *words):
+        code, out, err = decode(capture, changes)
+        check(f"{what} is named", code == 1 and all(word in err for word in words), (code, err))
+
+    no_id = {"      id: 1\n": "", ", over_id: true": ""}
+    plain = {", over_id: true": ""}
+    for changes, capture in (({}, OVER), ({}, text_of(OVER)), (plain, PLAIN)):
+        code, out, err = decode(capture, changes)
+        check("the right file has nothing to be told", code == 0 and "600 reports, 600 good" in err and err.count("\n") == 1, err)
+
+    # The checksum: what it covers, where it is, and in which order.
+    named("a checksum that covers the report id", OVER, plain, "the checksum of each of them is right with method: crc16, endian: little, over_id: true\n")
+    named("one that does not", PLAIN, {}, "is right with method: crc16, endian: little, over_id: false\n")
+    named("another order of its bytes", OVER, {"method: crc16": "endian: big, method: crc16"}, "is right with method: crc16, endian: little, over_id: true\n")
+    code, out, err = decode(OVER, {"method: crc16": "endian: big, method: crc16"})
+    check("though single reports are good by chance", re.search(r"^\d+,[^,]*,good", out, re.M), err)
+    named("a range that begins a byte late", PLAIN, {"from: 0, to: 18, over_id: true": "from: 1, to: 18"}, "is right with from: 0\n")
+    named("a range that ends a byte early", PLAIN, {"from: 0, to: 18, over_id: true": "from: 0, to: 17"}, "is right with to: 18\n")
+    named("a range that ends a byte early, and the wrong method", OVER, {"method: crc16, from: 0, to: 18": "method: crc16-modbus, from: 0, to: 17"},
+          "is right with method: crc16, endian: little, to: 18, over_id: true\n")
+    named("a place a byte too early", PLAIN, {"at: 18": "at: 17", "to: 18, over_id: true": "to: 17"}, "is right with at: 18, to: 18\n")
+    named("a checksum of an unknown method", bytes(b ^ 0x5A if i % 21 == 20 else b for i, b in enumerate(OVER)), {}, "no method that is known by name fits them either")
+    code, out, err = decode(OVER[:21 * 300] + bytes(b ^ 0x5A if i % 21 == 20 else b for i, b in enumerate(OVER[21 * 300:])), {})
+    check("no reason is looked for where half of them are good", code == 1 and "300 good" in err and "right with" not in err and "no method" not in err, err)
+
+    # Id and size.
+    for form, of in (("raw", bytes), ("text", text_of)):
+        named(f"an id that the file lacks, {form}", of(PLAIN), no_id, "each begins with 0x01 and has one byte too many", "give wire.input id: 1;")
+        named(f"another id, {form}", of(OVER), {"      id: 1\n": "      id: 3\n"}, "with another id (0x01)", "each begins with 0x01, expected 0x03", "give wire.input id: 1\n")
+    named("a size of one byte too few, with an id", PLAIN, {"size: 20": "size: 19", SUM: SUM.replace("18", "17").replace(", over_id: true", "")},
+          "0x01 stands at every 21 bytes", "give wire.input size: 20 (it is 19)")
+    bare = b"".join(PLAIN[at + 1:at + 21] for at in range(0, len(PLAIN), 21))
+    named("reports without their id", bare, plain, "captured without the report id", "put 0x01 in front")
+    longer = {**no_id, "size: 20": "size: 21"}
+    named("a size of one byte too many, without an id", bare, longer, "as reports of 20 bytes they are good: give wire.input size: 20\n")
+    code, out, err = decode(OVER[:21 * 100 + 5], {})
+    check("the last report cut is no other size", code == 1 and "100 good" in err and "wire.input" not in err, err)
+finish()
