@@ -214,6 +214,14 @@ void Runner::lookAfter(sim::ProximityThread& proximity, bool anyhow, const std::
   }
 }
 
+/// The servo thread's work. @param runs it has the rights that the arms ask for
+void Runner::serve(bool runs) {
+  const Working working(Worker::kServo);
+  if (guard_ && runs) guard_->arm(true);
+  if (runs) loop_->run();
+  if (guard_ && loop_->silent()) guard_->arm(false);  // the last command was zero: that no tick follows is no fault
+}
+
 Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every,
                              const std::function<void()>& ended) {
   const Nanoseconds begun = monotonicNow();
@@ -235,13 +243,10 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   if (guard_) tellGuard();
   os::Thread servo;
   const auto code = servo.start("hapticd-servo", [this, &ready, &refused, anyhow, locked] {
-    const Working servo_works(Worker::kServo);
     refused = enterRealTime();
     const bool runs = anyhow || (locked && refused.empty());
     ready = true;
-    if (guard_ && runs) guard_->arm(true);
-    if (runs) loop_->run();
-    if (guard_ && loop_->silent()) guard_->arm(false);  // the last command was zero: that no tick follows is no fault
+    serve(runs);
   });
   if (code) return Error{"cannot start the servo thread: " + code.message() + "\n  " + os::realTimeRights()};
   RealClock clock(0);

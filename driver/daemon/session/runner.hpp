@@ -114,6 +114,7 @@ class Runner {
   Result<void> openArms(const host::Services::Log& log);
   Result<void> runReal(watch::Watched& watched, const std::function<void(const Runner&)>& every,
                        const std::function<void()>& ended);
+  void serve(bool runs);
   void lookAfter(sim::ProximityThread& proximity, bool anyhow, const std::function<void(const Runner&)>& every);
   void stopArms();
   void stopProcess();
