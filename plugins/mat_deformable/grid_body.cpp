@@ -20,6 +20,7 @@ constexpr double kNewPlace = 0.25;     ///< a probe that moved by this share of 
 constexpr double kWithinReach = 0.02;  ///< [m] farther bodies wait for the search of the simulation side
 constexpr double kGridHullError = 0.005;  ///< of the greatest radius
 constexpr double kForget = 0.3;           ///< of the radius: a rival that is less deep by so much is left alone
+constexpr double kLookAhead = 0.2;        ///< likewise, of the other flank: a scan of all samples takes its time
 constexpr double kOtherFoot = 0.02;       ///< difference of parameters from which an offered foot is another one
 
 class GridBody final : public SoftBody {
@@ -150,18 +151,36 @@ class GridBody final : public SoftBody {
     const bool known = track.apart > 0;
     track.apart = 0;
     if (!(track.foot.depth > 0)) return;
-    if (known && isRival(p, track.rival.u, track.rival.v, options, track)) return;
-    if (const auto found = scan_->rival(p, track.foot, options.crease, track.scanned))
+    if (known && (isRival(p, track.rival.u, track.rival.v, options, track) || remains(p, track))) return;
+    const double ahead = std::max(options.crease, kLookAhead * track.foot.radius);
+    if (const auto found = scan_->rival(p, track.foot, ahead, track.scanned))
       isRival(p, (*found)[0], (*found)[1], options, track);
   }
 
   /// Whether the foot from there is another one and nearly as deep. The deeper of both is the foot.
   bool isRival(const Vector3d& p, double u, double v, const FindOptions& options, Track& track) const noexcept {
-    SkeletonFoot other = body_.skeleton().nearest(p, u, v, options.newton);
-    if (!other.converged || other.depth < track.foot.depth - kForget * track.foot.radius) return false;
+    const SkeletonFoot other = body_.skeleton().nearest(p, u, v, options.newton);
+    if (!other.converged || !accept(other, track)) return false;
+    if (track.rival.depth > track.foot.depth) std::swap(track.foot, track.rival);
+    return true;
+  }
+
+  /// Deep in a bend, about where its spheres meet, a flank stops to have a foot of its own while it is still nearly as
+  /// deep. Its sphere goes on to push there until it is less deep: else its share would end in one step.
+  static bool remains(const Vector3d& p, Track& track) noexcept {
+    SkeletonFoot other = track.rival;
+    const Vector3d away = p - other.center;
+    const double distance = away.norm();
+    if (!(distance > 0)) return false;
+    other.normal = away / distance;
+    other.depth = other.radius - distance;
+    return accept(other, track);
+  }
+
+  static bool accept(const SkeletonFoot& other, Track& track) noexcept {
+    if (other.depth < track.foot.depth - kForget * track.foot.radius) return false;
     const double apart = FootScan::apart(track.foot, other);
     if (!(apart > 0)) return false;
-    if (other.depth > track.foot.depth) std::swap(track.foot, other);
     track.rival = other;
     track.apart = apart;
     return true;

@@ -42,7 +42,7 @@ double pick(const std::vector<double>& values, std::size_t i) noexcept {
 
 MeshDeformation::MeshDeformation(const MedialMesh& mesh, const std::vector<Oscillator>& material,
                                  const DeformationOptions& options)
-    : Nodes(mesh.vertices().size(), material, options), mesh_(&mesh) {
+    : Nodes(mesh.vertices().size(), material, options), mesh_(&mesh), ends_(endsOf(mesh)) {
   join(mesh);
   place_.assign(mesh.vertices().size(), UINT32_MAX);
   reaches_.resize(kMaxContacts);
@@ -131,14 +131,13 @@ void MeshDeformation::spread(FeltPlace& place) noexcept {
 
 void MeshDeformation::nodesAt(uint32_t element, const Eigen::Array2d& parameter, FeltPlace& place) noexcept {
   const MedialMesh::Element& corners = mesh_->elements()[element];
-  const std::array<double, 3> weights = mesh_->weights(element, parameter);
+  const CornerWeights weights = weightsTowardEnds(*mesh_, ends_, element, parameter);
   place.count = 0;
   for (std::size_t i = 0; i < corners.count; ++i) {
     PlaceNode& corner = nodeOf(place, corners.vertex[i]);
-    corner.weight = weights[i];
-    if (corners.count < 2) continue;
-    corner.weight_u = i == 0 ? -1 : i == 1 ? 1 : 0;
-    corner.weight_v = corners.count < 3 ? 0 : i == 0 ? -1 : i == 2 ? 1 : 0;
+    corner.weight = weights.value[i];
+    corner.weight_u = weights.along_u[i];
+    corner.weight_v = weights.along_v[i];
   }
   for (int ring = std::min(options().rings, kMostRings); ring > 0; --ring) spread(place);
   for (std::size_t k = 0; k < place.count; ++k) place_[place.nodes[k].node] = UINT32_MAX;
@@ -164,7 +163,8 @@ Vector4d MeshDeformation::at(uint32_t element, const Eigen::Array2d& parameter) 
 }
 
 std::size_t MeshDeformation::bytes() const noexcept {
-  return Nodes::bytes() + (first_.capacity() + neighbour_.capacity() + place_.capacity()) * sizeof(uint32_t) +
+  return Nodes::bytes() + ends_.capacity() +
+         (first_.capacity() + neighbour_.capacity() + place_.capacity()) * sizeof(uint32_t) +
          reaches_.capacity() * sizeof(Reach);
 }
 

@@ -11,6 +11,7 @@
 #include "kernels/medial/medial_mesh.hpp"
 #include "kernels/medial/nodes.hpp"
 #include "kernels/medial/shear.hpp"
+#include "kernels/medial/soft_weights.hpp"
 
 namespace hapticd::medial {
 
@@ -33,8 +34,9 @@ class MeshDeformation : public Nodes {
   /// [rt] Moves vertices so that the contour is at no contact outside the probe; u, v are weights 1 and 2 of a slab,
   /// u the place along a cone. Without dynamics the displacements are those of these contacts alone.
   void press(std::span<const Press> contacts) noexcept;
-  /// [rt] The vertices that shape a felt surface at a foot, with their derivatives: the corners' weights, spread over
-  /// `rings` of neighbours, so that neighbouring cones and slabs yield together.
+  /// [rt] The vertices that shape a felt surface at a foot, with their derivatives: the corners' weights, which lose
+  /// their slope where the mesh ends (soft_weights.hpp), spread over `rings` of neighbours, so that neighbouring cones
+  /// and slabs yield together.
   void nodesAt(uint32_t element, const Eigen::Array2d& parameter, FeltPlace& place) noexcept;
   /// [rt] Displacement of the skeleton (x, y, z) and change of the radius at a foot [m].
   Eigen::Vector4d at(uint32_t element, const Eigen::Array2d& parameter) const noexcept;
@@ -57,6 +59,7 @@ class MeshDeformation : public Nodes {
   PlaceNode& nodeOf(FeltPlace& place, uint32_t node) noexcept;
 
   const MedialMesh* mesh_;
+  std::vector<uint8_t> ends_;                ///< of each vertex, whether the mesh ends there
   std::vector<uint32_t> first_, neighbour_;  ///< neighbours of vertex i: neighbour_[first_[i]] and on
   std::vector<uint32_t> place_;              ///< of a vertex in the list that is being made
   std::vector<Reach> reaches_;               ///< one a contact

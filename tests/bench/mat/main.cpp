@@ -37,7 +37,8 @@ int main(int argc, char** argv) {
     for (const auto& [name, make] : kParts) {
       const bool wanted = argc < 2 || write || std::find(argv + 1, argv + argc, std::string(name)) != argv + argc;
       if (!wanted) continue;
-      const std::string made = make();
+      std::string made = make();
+      made.insert(made.find("\n\n") + 2, fmt::format("`bench_mat {}` makes this part.\n\n", name));  // after its title
       fmt::print("{}", made);
       std::fflush(stdout);
       text += made;
