@@ -54,6 +54,10 @@ def own_shape(folder):
     code, said = run(HAPTICD, "run", file, "--for", "2", "--virtual-time", "--report", report, environment=environment)
     pulled = json.load(open(report))["models"]["ground"]["force_n"]["max"]
     check("and the run silences it before it pulls with 2 N", "wrong sign" in said and pulled < 2, (pulled, said))
+    open(os.path.join(folder, "floor.cpp"), "w").write(wrong.replace("report.flags = HSP_R_PUSHES;", ""))
+    subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
+    code, unclaimed = run(HAPTICD, "run", file, "--for", "2", "--virtual-time", environment=environment)
+    check("one that claims nothing pulls, and the run says so", re.search(r"warning   ground pulled the hand in during \d+ % of its contact", unclaimed), unclaimed)
     check("and says when, with what force and how deep", re.search(r"at \d+\.\d+ s with [\d.]+ N at a depth of [\d.]+ mm", said), said)
     open(os.path.join(folder, "floor.cpp"), "w").write(code_of_floor().replace("out.flags = HSP_OUT_TRACED;", ""))
     subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
@@ -144,7 +148,7 @@ def own_client(folder):
     except subprocess.TimeoutExpired:
         daemon.kill()
     check("and the run ends well", daemon.returncode == 0, daemon.stderr.read()[-500:])
-    for word in ("status", "list", "get", "set", "enable", "move", "add", "events", "stop", "hold", "geometry", "reload"):
+    for word in ("status", "list", "socket", "get", "set", "enable", "move", "add", "events", "stop", "hold", "geometry", "reload"):
         code, said = run(HAPTICD, "ctl", word, "--help")
         check(f"ctl {word} --help has an example of its own", code == 0 and re.search(r"Example:\n  hapticd ctl (--name left )?" + word, said), said[-300:])
 
@@ -158,6 +162,13 @@ def own_arm(folder):
     trip = re.search(r"^    (echo .* \| hapticd device encode .*)$", README, re.M)[1]
     code, said = run("sh", "-c", trip, environment=path, cwd=folder)
     check("and its numbers go to bytes and back", code == 0 and ",good,0.09990" in said, said)
+    for words in ("hapticd check config/scenes/sphere.yaml --device", "hapticd device twin", "hapticd run config/scenes/sphere.yaml --device"):
+        line = re.search(rf"^    ({words} [^#\n]*?) *(#.*)?$", README, re.M)[1].replace("config/scenes", os.path.join(SOURCE, "config/scenes"))
+        code, said = run("sh", "-c", line.replace("--view", "--for 3 --virtual-time --report twin.json"), environment=path, cwd=folder)
+        check(f"{words} works with the README's arm", code == 0, said)
+    report = os.path.join(folder, "twin.json")
+    touched = os.path.exists(report) and json.load(open(report))["models"]["sphere"]["contact_ticks"]
+    check("whose twin presses the sphere", touched and touched > 100, touched)
     field = re.search(r"`(\{is: position, joint: 1, at: 2, type: i24, scale: 1.7e-5\})`", README)[1]
     text = open(os.path.join(folder, "my-arm.yaml")).read()
     text = re.sub(r"\{is: position, joint: 1, .*?\}", field, text)
