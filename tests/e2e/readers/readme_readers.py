@@ -148,9 +148,34 @@ def own_client(folder):
     except subprocess.TimeoutExpired:
         daemon.kill()
     check("and the run ends well", daemon.returncode == 0, daemon.stderr.read()[-500:])
+    program_of_the_readme(environment)
     for word in ("status", "list", "socket", "get", "set", "enable", "move", "add", "events", "stop", "hold", "geometry", "reload"):
         code, said = run(HAPTICD, "ctl", word, "--help")
         check(f"ctl {word} --help has an example of its own", code == 0 and re.search(r"Example:\n  hapticd ctl (--name left )?" + word, said), said[-300:])
+
+
+def program_of_the_readme(environment):
+    """The README's lines of a shell and of Python, beside its run."""
+    part = README.split("## Write a program")[1].split("\n## ")[0]
+    scene = re.search(r"hapticd run (\S+)", part)[1]
+    code = re.sub(r"^    ", "", re.search(r"^    python3 -c '\n(.*?)'\n", part, re.M | re.S)[1], flags=re.M)
+    move = re.search(r"^    (hapticd ctl move .*)$", part, re.M)[1]
+    said = run(HAPTICD, "check", os.path.join(SOURCE, scene))
+    check("the scene for programs is in order", said[0] == 0 and "warning" not in said[1], said)
+    daemon = subprocess.Popen([HAPTICD, "run", scene, "--for", "100"], cwd=SOURCE, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    begin = daemon.stderr.readline()
+    while begin and "runs as" not in begin:
+        begin = daemon.stderr.readline()
+    check("a run begins with its name, models, arm, and that programs may push",
+          "runs as hapticd: model ball on simulated Premium 1.5; programs may push (clients: add); socket /" in begin, begin)
+    said = run("bash", "-c", move, environment=environment)
+    check("the README's move is obeyed", said[0] == 0 and '"ok": true' in said[1], said)
+    said = run(sys.executable, "-c", code.replace("sleep(5)", "sleep(1)"),
+               environment=dict(environment, PYTHONPATH=os.path.join(SOURCE, "driver/doors/client/python")))
+    check("and its program in Python reads and pushes", said[0] == 0 and "Parameter(id='stiffness'" in said[1], said)
+    daemon.terminate()
+    rest = daemon.communicate(timeout=30)[1]
+    check("the log tells of the push", "pushes on it" in rest, rest)
 
 
 def own_arm(folder):
