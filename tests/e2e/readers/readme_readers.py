@@ -189,7 +189,7 @@ def own_arm(folder):
     check("and its numbers go to bytes and back", code == 0 and ",good,0.09990" in said, said)
     for words in ("hapticd check config/scenes/sphere.yaml --device", "hapticd device twin", "hapticd run config/scenes/sphere.yaml --device"):
         line = re.search(rf"^    ({words} [^#\n]*?) *(#.*)?$", README, re.M)[1].replace("config/scenes", os.path.join(SOURCE, "config/scenes"))
-        code, said = run("sh", "-c", line.replace("--view", "--for 3 --virtual-time --report twin.json"), environment=path, cwd=folder)
+        code, said = run("sh", "-c", line.replace("--for 10", "--for 3 --virtual-time --report twin.json"), environment=path, cwd=folder)
         check(f"{words} works with the README's arm", code == 0, said)
     report = os.path.join(folder, "twin.json")
     touched = os.path.exists(report) and json.load(open(report))["models"]["sphere"]["contact_ticks"]
