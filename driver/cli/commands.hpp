@@ -9,7 +9,7 @@ using AddCommand = void(CLI::App& app, int& exit_code);
 
 // clang-format off: a command is a line
 AddCommand addCheck, addClient, addCompletion, addCtl, addDevice, addDeviceCalibrate, addDeviceControls, addDeviceDecode,
-    addDeviceKinematics, addDeviceNew, addDeviceRecord, addDoctor, addExplain, addExport, addImport, addManual, addPart,
+    addDeviceKinematics, addDeviceNew, addDeviceRecord, addDeviceTwin, addDoctor, addExplain, addExport, addImport, addManual, addPart,
     addPlot, addPlugin, addPluginCheck, addPluginNew, addReplay, addRun, addTop, addTrace, addTune, addView;
 
 /// A command that hangs under another one ("device calibrate") comes after it.
@@ -25,6 +25,7 @@ constexpr AddCommand* kCommands[] = {
     addDeviceKinematics,
     addDeviceNew,
     addDeviceRecord,
+    addDeviceTwin,
     addDoctor,
     addExplain,
     addExport,

@@ -27,7 +27,7 @@ struct CtlArguments {
   std::optional<double> seconds;
   double value = 0, tolerance = 0, hold = 1;
   uint32_t number = 0;
-  bool consent = false, follow = false;
+  bool consent = false, follow = false, tells_socket = false;
 };
 
 /// Writes the triangles of an answer.
@@ -53,13 +53,22 @@ std::string lineOf(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+/// `socket`: the path alone, for programs that speak to it; an error where nobody does.
+int showSocket(const CtlArguments& options) {
+  auto client = control::Client::connect(socketOf(options));
+  if (!client) return fail(kFailed, client.error());
+  std::printf("%s\n", socketOf(options).c_str());
+  return kWorked;
+}
+
 /// Prints an answer.
 int show(const CtlArguments& options, const Result<std::string>& answer) {
   if (!answer) return fail(kFailed, answer.error());
-  const Json json = Json::parse(*answer, nullptr, false);
+  Json json = Json::parse(*answer, nullptr, false);
   if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
   if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
   if (!options.obj.empty()) return saveObj(json, options.obj);
+  if (options.tells_socket) json["name"] = options.name, json["socket"] = socketOf(options);
   std::printf("%s\n", json.dump(2).c_str());
   return kWorked;
 }
@@ -120,6 +129,7 @@ std::string exampleOf(const std::string& word) {
   static const std::pair<const char*, const char*> kExamples[] = {
       {"status", "status"},
       {"list", "list"},
+      {"socket", "socket    # for socat: echo '{\"do\":\"list\"}' | socat - UNIX-CONNECT:$(hapticd ctl socket)"},
       {"enable", "enable teapot"},
       {"disable", "disable teapot"},
       {"remove", "remove teapot"},
@@ -315,7 +325,11 @@ void addCtl(CLI::App& app, int& exit_code) {
   ctl->require_subcommand(1);
   ctl->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
   const auto nothing = [](Json&) {};
-  addRequest(*ctl, "status", "Show the daemon's status.", options, exit_code, nothing);
+  addRequest(*ctl, "status", "Show the daemon's status.", options, exit_code,
+             [options](Json&) { options->tells_socket = true; });
+  CLI::App* socket = ctl->add_subcommand("socket", "Print the path of the daemon's socket.");
+  socket->footer(exampleOf("socket"));
+  socket->callback([options, &exit_code] { exit_code = showSocket(*options); });
   addRequest(*ctl, "list", "List the models and their live parameters.", options, exit_code, nothing);
   addModelRequests(*ctl, options, exit_code);
   addSceneRequests(*ctl, options, exit_code);

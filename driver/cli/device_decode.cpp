@@ -208,7 +208,8 @@ void addEncode(CLI::App& device, int& exit_code) {
   command->footer(
       "Each row of the CSV is one report. Its header names the columns: torque1,torque2 [N m, N], reference1, enable, "
       "follow,\n"
-      "calibrate; with --from-arm position1, velocity1, torque1, buttons, sequence, starts, fault, calibrated. Without "
+      "calibrate; with --from-arm position1, velocity1, torque1, buttons, sequence, starts, clock, fault, calibrated. "
+      "Without "
       "a\nheader they are the torques or, with --from-arm, the positions of all joints. Constants, counters, checksums "
       "and\nescapes are added.\n\n"
       "Example:\n  echo 0.1,0,-0.1 | hapticd device encode config/devices/woodenhaptics.yaml\n"

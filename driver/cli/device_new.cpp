@@ -27,11 +27,37 @@ namespace fs = std::filesystem;
 struct NewDeviceArguments {
   std::string name, out, bus = "hid", kind = "phantom", id = "1234:0006";
   std::string checksum;
-  std::vector<double> lengths;
+  std::vector<double> lengths, twists;
+  std::vector<double> counts{2000}, gear{10}, torque{0.5};  ///< one number for all joints, or one each
   int joints = 3, bits = 16, buttons = 1, report_id = 0;
-  double counts = 2000, gear = 10, torque = 0.5, force = 2;
+  double force = 2;
   bool no_questions = false;
 };
+
+double ofJoint(const std::vector<double>& list, int joint) {
+  return list[list.size() == 1 ? 0 : static_cast<size_t>(joint)];
+}
+
+/// A chain whose axes are all parallel: its tip stays in a plane, and no force across that plane can be felt.
+bool isPlanar(const NewDeviceArguments& o) {
+  const auto straight = [](double twist) { return std::abs(std::sin(twist)) < 1e-6; };
+  return o.kind == "chain" && o.joints > 1 && std::all_of(o.twists.begin(), o.twists.end(), straight);
+}
+
+std::string wrongLists(const NewDeviceArguments& o) {
+  const auto joints = static_cast<size_t>(o.joints);
+  for (const auto& [option, list] :
+       {std::pair{"--counts", &o.counts}, std::pair{"--gear", &o.gear}, std::pair{"--torque", &o.torque}}) {
+    if (list->size() != 1 && list->size() != joints)
+      return fmt::format("{}: {} numbers, expected one, or one for each of the {} joints", option, list->size(),
+                         o.joints);
+    if (!std::all_of(list->begin(), list->end(), [](double value) { return value > 0; }))
+      return fmt::format("{}: expected numbers above 0", option);
+  }
+  if (!o.twists.empty() && (o.kind != "chain" || o.twists.size() != joints))
+    return fmt::format("--twists: {} numbers, expected one for each joint of a chain", o.twists.size());
+  return "";
+}
 
 std::string wrongIn(const NewDeviceArguments& o) {
   const bool hid = o.bus == "hid", bulk = o.bus == "bulk";
@@ -44,8 +70,8 @@ std::string wrongIn(const NewDeviceArguments& o) {
   const size_t lengths = o.kind == "phantom" ? 2 : o.kind == "delta" ? 8 : static_cast<size_t>(o.joints);
   if (!o.lengths.empty() && o.lengths.size() != lengths)
     return fmt::format("--lengths: {} numbers, expected {} for a {}", o.lengths.size(), lengths, o.kind);
-  for (const double value : {o.counts, o.gear, o.torque, o.force})
-    if (!(value > 0)) return "--counts, --gear, --torque and --force: expected numbers above 0";
+  if (const std::string wrong = wrongLists(o); !wrong.empty()) return wrong;
+  if (!(o.force > 0)) return "--force: expected a number above 0";
   if (o.checksum.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") != std::string::npos)
     return "--checksum " + o.checksum + ": expected a name as in driver/docs/devices.md, such as crc16";
   if (o.buttons < 0 || o.buttons > 32) return "--buttons " + std::to_string(o.buttons) + ": expected 0 to 32";
@@ -62,11 +88,12 @@ std::string lengthsQuestion(const std::string& kind) {
   return "Lengths of the links [m], one for each joint, separated by commas [0.2 each]";
 }
 
-bool readLengths(const std::string& text, std::vector<double>& lengths) {
+bool readNumbers(const std::string& text, std::vector<double>& numbers) {
+  numbers.clear();
   for (const std::string& word : CLI::detail::split(text, ',')) {
     const auto number = document::toNumber(CLI::detail::trim_copy(word));
     if (!number || !std::isfinite(*number)) return false;
-    lengths.push_back(*number);
+    numbers.push_back(*number);
   }
   return true;
 }
@@ -93,14 +120,13 @@ class Questions {
 
   /// A list, such as 0.21, 0.17; no answer leaves the template's.
   template <class Wrong>
-  void askLengths(NewDeviceArguments& options, const Wrong& wrong) {
-    if (command_.count("--lengths") > 0) return;
-    for (;; options.lengths.clear()) {
-      std::cout << lengthsQuestion(options.kind) << ": " << std::flush;
+  void askList(const char* option, const std::string& question, std::vector<double>& list, const Wrong& wrong) {
+    if (command_.count(option) > 0) return;
+    for (const std::vector<double> before = list;; list = before) {
+      std::cout << question << ": " << std::flush;
       std::string answer;
       if (!std::getline(std::cin, answer) || answer.empty()) return;
-      const std::string what =
-          readLengths(answer, options.lengths) ? wrong() : "\"" + answer + "\" is no list of numbers";
+      const std::string what = readNumbers(answer, list) ? wrong() : "\"" + answer + "\" is no list of numbers";
       if (what.empty()) return;
       std::cout << "  " << what << "\n";
     }
@@ -118,12 +144,16 @@ void askAll(const CLI::App& command, NewDeviceArguments& options) {
   questions.ask("--kind", "Mechanism: phantom (two links on a turning base), delta, chain (any serial arm)",
                 options.kind, wrong);
   if (options.kind == "chain") questions.ask("--joints", "Joints", options.joints, wrong);
-  questions.askLengths(options, wrong);
-  questions.ask("--counts", "Encoder counts of one motor turn (four times its lines)", options.counts, wrong);
-  questions.ask("--gear", "Motor turns of one joint turn", options.gear, wrong);
+  questions.askList("--lengths", lengthsQuestion(options.kind), options.lengths, wrong);
+  if (options.kind == "chain")
+    questions.askList("--twists", "Twist alpha from each joint's axis to the next [rad], 0: parallel [all 0]",
+                      options.twists, wrong);
+  questions.askList("--counts", "Encoder counts of one motor turn (four times its lines), or one for each joint [2000]",
+                    options.counts, wrong);
+  questions.askList("--gear", "Motor turns of one joint turn, or one for each joint [10]", options.gear, wrong);
   questions.ask("--bits", "Bits of a position in a report", options.bits, wrong);
   questions.ask("--buttons", "Buttons", options.buttons, wrong);
-  questions.ask("--torque", "Largest torque of a joint [N m]", options.torque, wrong);
+  questions.askList("--torque", "Largest torque of a joint [N m], or one for each [0.5]", options.torque, wrong);
   questions.ask("--force", "Largest force at the tip, to begin with [N]", options.force, wrong);
 }
 
@@ -154,13 +184,20 @@ std::string armOf(const NewDeviceArguments& o) {
         "    dh:                           # a, alpha, d, theta: m, rad (standard Denavit-Hartenberg), one row per "
         "joint\n";
     for (int i = 0; i < o.joints; ++i)
-      text += fmt::format("      - [{:g}, 0, 0, 0]\n", o.lengths.empty() ? 0.2 : o.lengths[static_cast<size_t>(i)]);
+      text += fmt::format("      - [{:g}, {:.9g}, 0, 0]\n", o.lengths.empty() ? 0.2 : ofJoint(o.lengths, i),
+                          o.twists.empty() ? 0 : ofJoint(o.twists, i));
+    if (isPlanar(o))
+      text +=
+          "      # Every alpha is 0: all axes are parallel, and the tip stays in a plane. A base that turns about the\n"
+          "      # vertical has alpha 1.5707963 in the first row, and below: base_orientation: [0.7071068, -0.7071068, "
+          "0, "
+          "0]\n";
     text += "    # masses: [...]               # kg, one per row; left out: its weight is not carried\n";
   }
   text += fmt::format(
       "    # limits: [[-1, 1], ...]      # rad, one row per joint; left out: the mechanism's own\n"
-      "    max_torque: [{:g}]             # N m at the joint: the motor's, times its turns in one joint turn\n",
-      o.torque);
+      "    max_torque: {}             # N m at the joint: the motor's, times its turns in one joint turn\n",
+      listOf(o.torque));
   return text;
 }
 
@@ -183,7 +220,6 @@ std::string checksumOf(const NewDeviceArguments& o, int size) {
 
 std::string wireOf(const NewDeviceArguments& o) {
   const std::string id = o.report_id > 0 ? fmt::format("      id: {}\n", o.report_id) : std::string();
-  const double scale = 2 * M_PI / (o.counts * o.gear);
   std::string text = fmt::format(
       "  wire:                           # driver/docs/devices.md has every key\n"
       "    exchange: stream              # or poll: the arm answers each command\n    rate: 1000                    # "
@@ -195,8 +231,9 @@ std::string wireOf(const NewDeviceArguments& o) {
   std::string fields = "        - {is: counter, at: 0, type: u16}               # goes up with each report\n";
   for (int i = 0; i < o.joints; ++i, bit += o.bits) {
     const std::string place = bit % 8 == 0 ? fmt::format("at: {}", bit / 8) : fmt::format("bit_offset: {}", bit);
-    fields += fmt::format("        - {{is: position, joint: {}, {}, type: i{}, scale: {:.9g}{}}}\n", i + 1, place,
-                          o.bits, scale, o.bits <= 24 ? ", wraps: true" : "");
+    fields +=
+        fmt::format("        - {{is: position, joint: {}, {}, type: i{}, scale: {:.9g}{}}}\n", i + 1, place, o.bits,
+                    2 * M_PI / (ofJoint(o.counts, i) * ofJoint(o.gear, i)), o.bits <= 24 ? ", wraps: true" : "");
   }
   for (int i = 0; i < o.buttons; ++i, ++bit)
     fields += fmt::format("        - {{is: button, button: {}, bit_offset: {}, type: u1}}\n", i + 1, bit);
@@ -214,7 +251,7 @@ std::string wireOf(const NewDeviceArguments& o) {
       id, 2 * o.joints + 2);
   for (int i = 0; i < o.joints; ++i)
     text += fmt::format("        - {{is: torque, joint: {}, at: {}, type: i16, scale: {:.6g}}}\n", i + 1, 2 * i,
-                        o.torque / 32767);
+                        ofJoint(o.torque, i) / 32767);
   text += fmt::format("        - {{is: enable, at: {}, type: u8}}\n        - {{is: counter, at: {}, type: u8}}\n",
                       2 * o.joints, 2 * o.joints + 1);
   return text;
@@ -226,7 +263,9 @@ std::string textOf(const NewDeviceArguments& o) {
   return fmt::format(
       "# {0}. Written by `hapticd device new`; each number is a guess until you have measured it.\n"
       "hapticd-device: 1\nmodule: usb_{1}\nname: {0}\n"
-      "# mount: {{position: [0, 0, 0]}}        # where its frame stands in the world, m\n"
+      "{9}mount: {{position: [0, 0, 0.09]}}     # m: where its frame stands in the world; this one puts the tip at "
+      "rest\n"
+      "                                     # 9 cm in front of the origin, where the scenes have their shapes\n"
       "limits: {{force: {2:g}, passivity: true}}   # N: begin low, and raise it when the signs are right\n{8}"
       "parameters:\n  usb: {{id: \"{3}\"}}\n"
       "  # device: {{max_force: 5, max_stiffness: 1000, mass: 0.2}}      # what `check` and `tune` may rely on\n{4}"
@@ -236,7 +275,8 @@ std::string textOf(const NewDeviceArguments& o) {
       o.name, o.bus, o.force, o.id, armOf(o), pose, "               ", wireOf(o),
       o.buttons > 0 ? "# in limits: enable: {button: 0}   # forces only while it is held; here buttons count from 0, "
                       "in wire from 1\n"
-                    : "");
+                    : "",
+      o.kind == "phantom" ? "" : "# ");  // where another one rests, its numbers say
 }
 
 bool usableDeviceName(const std::string& name) {
@@ -270,9 +310,14 @@ int makeNew(const CLI::App& command, NewDeviceArguments options) {
       "  hapticd check %s                       # after each change\n"
       "  hapticd device decode %s CAPTURE       # captured bytes as joint positions\n"
       "  hapticd device record %s               # what the arm sends, motors off\n"
+      "  hapticd device twin %s                 # the same arm simulated, to feel a scene with before it is there\n"
       "  hapticd device calibrate %s\n"
       "  hapticd run SCENE.yaml --device %s --view       # the arm in a page\n",
-      name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str());
+      name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str());
+  if (isPlanar(options))
+    std::printf(
+        "\nnote: every axis of arm.dh is parallel, so the tip stays in a plane and feels no force across it\n"
+        "  fix: if your arm is not flat, its twists: --twists 1.5707963,0,0, or alpha in arm.dh\n");
   return kWorked;
 }
 
@@ -290,9 +335,13 @@ void addDeviceNew(CLI::App& app, int& exit_code) {
   command->add_option("--joints", options->joints, "joints of a chain")
       ->capture_default_str()
       ->check(CLI::Range(1, 16));
-  command->add_option("--lengths", options->lengths, "link lengths [m], separated by commas")->delimiter(',');
-  command->add_option("--counts", options->counts, "encoder counts of one motor turn")->capture_default_str();
-  command->add_option("--gear", options->gear, "motor turns of one joint turn")->capture_default_str();
+  const auto list = [command](const char* option, std::vector<double>& numbers, const char* doc) {
+    command->add_option(option, numbers, doc)->delimiter(',')->allow_extra_args(false);
+  };
+  list("--lengths", options->lengths, "link lengths [m], separated by commas");
+  list("--twists", options->twists, "of a chain: angles alpha from each joint's axis to the next [rad]; default: 0");
+  list("--counts", options->counts, "encoder counts of one motor turn, or one for each joint; default: 2000");
+  list("--gear", options->gear, "motor turns of one joint turn, or one for each joint; default: 10");
   command->add_option("--bits", options->bits, "bits of a position in a report")->capture_default_str();
   command->add_option("--report-id", options->report_id, "HID report id; 0: reports have none")
       ->capture_default_str()
@@ -300,7 +349,7 @@ void addDeviceNew(CLI::App& app, int& exit_code) {
   command->add_option("--checksum", options->checksum,
                       "of what the arm sends, by its name, such as crc16; default: none");
   command->add_option("--buttons", options->buttons, "buttons")->capture_default_str()->check(CLI::Range(0, 32));
-  command->add_option("--torque", options->torque, "largest torque of a joint [N m]")->capture_default_str();
+  list("--torque", options->torque, "largest torque of a joint [N m], or one for each; default: 0.5");
   command->add_option("--force", options->force, "limit of the force at the tip [N]")->capture_default_str();
   command->add_flag("--no-questions", options->no_questions, "ask nothing, take the defaults");
   command->footer(

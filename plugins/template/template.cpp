@@ -47,9 +47,9 @@ struct TemplateBall : hapticd::Shape {
     if (!profile_file.empty()) profile = readTable(profile_file);
     grips_.assign(activation.max_probes, Grip{});
     report.max_stiffness = law == 0 ? stiffness : steepest();
-    // Without friction it only pushes, and a run finds a pull to be a mistake. With friction nothing but `hapticd
-    // plugin check` finds a wrong sign. A shape that reads probe.velocity adds HSP_R_VELOCITY here: without it, it is
-    // zero.
+    // Without friction it only pushes, and a run silences it at its first pull. With friction `hapticd plugin check`
+    // finds a wrong sign, and a run tells of it only at its end. A shape that reads probe.velocity adds HSP_R_VELOCITY
+    // here: without it, it is zero.
     if (friction == 0) report.flags |= HSP_R_PUSHES;
     report.size_m = 2 * radius;
     report.typical_ns = 50;

@@ -16,20 +16,27 @@ struct Name {
 };
 
 /// [main] The value of that name; the first one, with a note in the tree, where there is none.
-template <class T, size_t N>
-T choiceOf(const Tree& tree, const Name<T> (&names)[N]) {
+/// @param fits true for values that the note shall offer
+template <class T, size_t N, class Fits>
+T choiceOf(const Tree& tree, const Name<T> (&names)[N], const Fits& fits) {
   const size_t before = tree.problems();
   const std::string text = tree.text();
   std::string all;
   std::vector<std::string> known;
   for (const Name<T>& name : names) {
     if (text == name.name) return name.value;
+    if (!fits(name.value)) continue;
     known.emplace_back(name.name);
     all += (all.empty() ? "" : ", ") + std::string(name.name);
   }
   if (tree.exists() && tree.problems() == before)
     tree.fail("\"" + text + "\", expected one of " + all + document::suggestion(text, known));
   return names[0].value;
+}
+
+template <class T, size_t N>
+T choiceOf(const Tree& tree, const Name<T> (&names)[N]) {
+  return choiceOf(tree, names, [](const T&) { return true; });
 }
 
 }  // namespace hapticd::codec

@@ -159,6 +159,10 @@ Verdict take(const Field& field, const uint8_t* bytes, State& state) noexcept {
       state.starts = static_cast<uint32_t>(raw.code);
       state.has_starts = true;
       break;
+    case Role::kTime:
+      state.clock = value;
+      state.has_clock = true;
+      break;
     case Role::kButton:
     case Role::kFault:
     case Role::kCalibrated:
@@ -192,6 +196,13 @@ void putSequence(const Field& field, uint32_t sequence, uint8_t* bytes) noexcept
   putCode(field, field.modulo != 0 ? sequence % field.modulo : sequence, bytes);
 }
 
+/// A clock begins anew when its bits are full.
+void putClock(const Field& field, double clock, uint8_t* bytes) noexcept {
+  const double raw = field.type == Type::kFloat ? clock / field.scale : std::nearbyint(clock / field.scale);
+  const double turn = std::ldexp(1, static_cast<int>(digitsOf(field)));
+  putNumber(field, field.type == Type::kFloat ? raw : std::fmod(std::max(raw, 0.0), turn), bytes);
+}
+
 /// As the arm would write it.
 void put(const Field& field, const State& state, uint8_t* bytes) noexcept {
   const auto flag = [&](bool on) {
@@ -214,6 +225,8 @@ void put(const Field& field, const State& state, uint8_t* bytes) noexcept {
       return putSequence(field, state.sequence, bytes);
     case Role::kStarts:
       return putCode(field, state.starts, bytes);
+    case Role::kTime:
+      return putClock(field, state.clock, bytes);
     case Role::kConstant:
     case Role::kFirmware:
       return putConstant(field, bytes);

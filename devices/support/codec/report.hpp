@@ -46,6 +46,7 @@ enum class Role : uint8_t {
   kReference,   ///< out: wanted position of joint `index` [rad or m]
   kFollow,      ///< out: the joints shall go to their references
   kStarts,      ///< in: counts how often the device started: another number means that it forgot everything
+  kTime,        ///< in: clock of the arm [s], which wraps
 };
 
 /// One field of a report. SI value = raw * scale + offset, in both directions.
@@ -82,7 +83,8 @@ struct Report {
 struct State {
   std::array<double, kMaxJoints> position{}, velocity{}, torque{};
   uint32_t buttons = 0, sequence = 0, starts = 0;
-  bool has_sequence = false, has_starts = false, fault = false, calibrated = false;
+  double clock = 0;  ///< [s] of the arm, which wraps
+  bool has_sequence = false, has_starts = false, has_clock = false, fault = false, calibrated = false;
 };
 
 /// What a report to the arm says.

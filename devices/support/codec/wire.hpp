@@ -4,6 +4,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -84,6 +85,16 @@ struct Wire {
   /// Its own watchdog takes a force away soon enough for a hand. A slower one counts as none: a guard process stands
   /// by.
   bool cutsSoon() const noexcept { return watchdog > 0 && watchdog <= 0.1; }
+  /// Reports carry a clock that is another in each of them: one with the same time is the same one again. It goes on at
+  /// least twice a report, wraps after more than two, and does not get coarser with the hours, as 32 bits of a float
+  /// do.
+  bool clockTells() const noexcept {
+    return std::any_of(input.fields.begin(), input.fields.end(), [this](const Field& field) {
+      const double ticks = 1 / (field.scale * rate);
+      return field.role == Role::kTime && ticks >= 2 &&
+             (field.type == Type::kFloat ? field.bits > 32 : 2 * ticks < std::ldexp(1, field.bits));
+    });
+  }
 };
 
 /// [main] Reads JSON text (the parameter `wire` of a device file). Throws std::invalid_argument: the key's path, what

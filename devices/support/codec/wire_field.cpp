@@ -17,13 +17,23 @@
 namespace hapticd::codec {
 namespace {
 
-constexpr Name<Role> kRoles[] = {
-    {"position", Role::kPosition},   {"velocity", Role::kVelocity},     {"torque", Role::kTorque},
-    {"button", Role::kButton},       {"sequence", Role::kSequence},     {"counter", Role::kSequence},
-    {"fault", Role::kFault},         {"calibrated", Role::kCalibrated}, {"firmware", Role::kFirmware},
-    {"constant", Role::kConstant},   {"checksum", Role::kChecksum},     {"enable", Role::kEnable},
-    {"calibrate", Role::kCalibrate}, {"reference", Role::kReference},   {"follow", Role::kFollow},
-    {"starts", Role::kStarts}};
+constexpr Name<Role> kRoles[] = {{"position", Role::kPosition},
+                                 {"velocity", Role::kVelocity},
+                                 {"torque", Role::kTorque},
+                                 {"button", Role::kButton},
+                                 {"sequence", Role::kSequence},
+                                 {"counter", Role::kSequence},
+                                 {"fault", Role::kFault},
+                                 {"calibrated", Role::kCalibrated},
+                                 {"firmware", Role::kFirmware},
+                                 {"constant", Role::kConstant},
+                                 {"checksum", Role::kChecksum},
+                                 {"enable", Role::kEnable},
+                                 {"calibrate", Role::kCalibrate},
+                                 {"reference", Role::kReference},
+                                 {"follow", Role::kFollow},
+                                 {"starts", Role::kStarts},
+                                 {"time", Role::kTime}};
 constexpr Name<bool> kOrders[] = {{"little", false}, {"big", true}};
 constexpr const char* kKeys[] = {"is",      "joint",         "button",         "at",        "type",
                                  "endian",  "bit",           "bit_offset",     "inverted",  "scale",
@@ -32,16 +42,21 @@ constexpr const char* kKeys[] = {"is",      "joint",         "button",         "
                                  "word",    "polynomial",    "initial",        "reflected", "final_xor",
                                  "negated", "over_id"};
 
+bool onlyIn(Role role) {
+  return role == Role::kPosition || role == Role::kVelocity || role == Role::kButton || role == Role::kFault ||
+         role == Role::kCalibrated || role == Role::kStarts || role == Role::kTime;
+}
+
+bool onlyOut(Role role) {
+  return role == Role::kEnable || role == Role::kCalibrate || role == Role::kReference || role == Role::kFollow;
+}
+
 bool readTarget(const Tree& tree, size_t joints, bool input, Field& field) {
   const size_t before = tree.problems();
   const Tree is = tree.at("is");
-  field.role = choiceOf(is, kRoles);
+  field.role = choiceOf(is, kRoles, [input](Role role) { return !(input ? onlyOut(role) : onlyIn(role)); });
   if (tree.problems() != before) return false;
-  const bool only_in = field.role == Role::kPosition || field.role == Role::kVelocity || field.role == Role::kButton ||
-                       field.role == Role::kFault || field.role == Role::kCalibrated || field.role == Role::kStarts;
-  const bool only_out = field.role == Role::kEnable || field.role == Role::kCalibrate ||
-                        field.role == Role::kReference || field.role == Role::kFollow;
-  if ((input && only_out) || (!input && only_in))
+  if (input ? onlyOut(field.role) : onlyIn(field.role))
     is.fail("\"" + is.text() + "\" in an " + (input ? "input" : "output") + " report, expected it in the other one");
   const double most = static_cast<double>(joints > 0 ? joints : kMaxJoints);
   if (ofJoint(field.role)) field.index = static_cast<uint8_t>(tree.at("joint").whole(1, most) - 1);
@@ -249,6 +264,16 @@ void readChecksum(const Tree& tree, const Report& report, bool placed, Field& fi
     tree.at("at").fail("lies inside the bytes that the checksum covers, expected it outside");
 }
 
+/// The clock of the arm: seconds of one raw unit.
+void readTime(const Tree& tree, Field& field) {
+  const Tree scale = tree.at("scale");
+  const size_t before = tree.problems();
+  field.scale = scale.number(0, 10);
+  if (tree.problems() != before || field.scale > 0) return;
+  scale.fail("0, expected the seconds of one raw unit: 1.0e-6 of a clock in microseconds");
+  field.scale = 1;
+}
+
 }  // namespace
 
 std::span<const char* const> fieldKeys() {
@@ -270,6 +295,7 @@ ReadField readField(const Tree& tree, const Report& report, size_t joints, bool 
   if (field.role == Role::kEnable || field.role == Role::kCalibrate || field.role == Role::kFollow)
     field.value = tree.has("value") ? tree.at("value").number(field.least, field.most) : 1;
   if (field.role == Role::kSequence || field.role == Role::kStarts) readSequence(tree, field);
+  if (field.role == Role::kTime) readTime(tree, field);
   if (field.role == Role::kChecksum) readChecksum(tree, report, read.placed, field);
   return read;
 }

@@ -16,7 +16,8 @@ bool isFlag(Role role) {
 
 /// A number that changes by itself: a switch on its bits would go on and off with it.
 bool isNumber(Role role) {
-  return ofJoint(role) || role == Role::kSequence || role == Role::kStarts || role == Role::kChecksum;
+  return ofJoint(role) || role == Role::kSequence || role == Role::kStarts || role == Role::kTime ||
+         role == Role::kChecksum;
 }
 
 /// Bits that two fields may not share. Flags may share a status byte, and constants may stand on anything that they

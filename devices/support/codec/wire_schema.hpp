@@ -35,7 +35,7 @@ inline constexpr const char* kWireSchema[] = {R"json({
     "input": {"type": "object", "additionalProperties": false, "required": ["size", "fields"], "properties": {
       "id": {"type": "integer", "minimum": 1, "maximum": 255}, "size": {"type": "integer", "minimum": 1, "maximum": 1023, "description": "bytes without the report id"},
       "fields": {"type": "array", "items": {"type": "object", "additionalProperties": false, "required": ["is", "type"], "properties": {
-        "is": {"enum": ["position", "velocity", "torque", "button", "sequence", "counter", "starts", "fault", "calibrated", "firmware", "constant", "checksum"]},
+        "is": {"enum": ["position", "velocity", "torque", "button", "sequence", "counter", "starts", "time", "fault", "calibrated", "firmware", "constant", "checksum"]},
         "joint": {"type": "integer", "minimum": 1, "maximum": 16}, "button": {"type": "integer", "minimum": 1, "maximum": 32, "description": "counted from 1; limits.enable.button counts from 0"},
         "at": {"type": "integer", "minimum": 0, "maximum": 1022, "description": "first byte, counted after the report id"},
         "bit_offset": {"type": "integer", "minimum": 0, "maximum": 8183, "description": "bits to skip from there: little endian from the lowest, big endian from the highest"},

@@ -48,7 +48,7 @@ const char* describe(Trouble trouble) noexcept {
 }
 
 Session::Session(const codec::Wire& wire, const SessionSettings& settings)
-    : wire_(wire), settings_(settings), framer_(wire.framing, wire.input.bytes()) {
+    : wire_(wire), settings_(settings), framer_(wire.framing, wire.input.bytes()), clock_tells_(wire.clockTells()) {
   for (const codec::Field& field : wire_.input.fields) {
     if (field.role != codec::Role::kPosition || !field.wraps) continue;
     const auto [least, most] = codec::rangeOf(field.type, field.bits);
@@ -104,8 +104,8 @@ bool Session::take(Nanoseconds now, std::span<const uint8_t> bytes) noexcept {
   if (verdict == codec::Verdict::kWrongId) return false;  // another report of the same device
   if (verdict != codec::Verdict::kGood) return reject(verdict), false;
   if (startedAnew(now)) have_raw_ = false;
-  if (state_.has_sequence && have_raw_ && state_.sequence == last_sequence_) return false;  // the same one again
-  last_sequence_ = state_.sequence;
+  if (have_raw_ && again()) return false;
+  last_sequence_ = state_.sequence, last_clock_ = state_.clock;
   if (!follow(now, state_)) return true;
   arrivals_[reports_++ % kRateWindow] = now;
   good_at_ = now;
@@ -122,6 +122,12 @@ bool Session::take(Nanoseconds now, std::span<const uint8_t> bytes) noexcept {
 void Session::recover(Nanoseconds now) noexcept {
   if (sample_.trouble == Trouble::kJump) return;
   if (sample_.sequence == 0 || seconds(trouble_at_, now) >= settings_.health.recovery) sample_.trouble = Trouble::kNone;
+}
+
+/// The same report again: by its counter or, without one, by a clock that must have gone on.
+bool Session::again() const noexcept {
+  if (state_.has_sequence) return state_.sequence == last_sequence_;
+  return state_.has_clock && clock_tells_ && state_.clock == last_clock_;
 }
 
 /// A board that starts anew counts from elsewhere: what was known of its joints is void.

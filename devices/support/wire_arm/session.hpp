@@ -95,6 +95,7 @@ class Session {
   void raise(Nanoseconds now, Trouble trouble) noexcept;
   void publish(Nanoseconds now, const codec::State& state) noexcept;
   bool startedAnew(Nanoseconds now) noexcept;
+  bool again() const noexcept;
 
   codec::Wire wire_;
   SessionSettings settings_;
@@ -107,6 +108,8 @@ class Session {
   uint64_t reports_ = 0, bad_reports_ = 0;
   Nanoseconds good_at_ = 0, trouble_at_ = 0, healthy_at_ = 0;
   uint32_t last_sequence_ = 0, last_starts_ = 0, sent_ = 0, attached_at_ = 0;
+  double last_clock_ = 0;
+  bool clock_tells_ = false;  ///< the arm's clock differs from report to report
   bool attached_ = false, have_raw_ = false, calibrated_ = false, calibrate_ = false;
   codec::Verdict last_bad_ = codec::Verdict::kGood;
 };

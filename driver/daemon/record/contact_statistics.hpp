@@ -48,6 +48,9 @@ class ContactStatistics {
   /// [rt] The same with a depth_m below 0: from outside, as a magnet does, or a depth of wrong sign.
   void addOutside(double force_n) noexcept HSP_RT { outside_.add(force_n); }
 
+  /// [rt] A tick of contact in which its force drew the probe deeper in.
+  void addPull(double force_n) noexcept HSP_RT { pulls_.add(force_n); }
+
   /// [rt] What is known of the foot of a tick. Not called in ticks without one.
   void addFoot(bool held, bool degraded) noexcept HSP_RT {
     ++(degraded ? degraded_feet_ : held ? held_feet_ : nearest_feet_);
@@ -57,6 +60,7 @@ class ContactStatistics {
   const Pushes& untraced() const noexcept { return untraced_; }      ///< without a surface
   const Pushes& depthless() const noexcept { return depthless_; }    ///< at a depth of exactly 0
   const Pushes& outside() const noexcept { return outside_; }        ///< at a depth below 0
+  const Pushes& pulls() const noexcept { return pulls_; }            ///< into the surface, in contact
   uint64_t nearestFeet() const noexcept { return nearest_feet_; }    ///< ticks whose foot is the nearest point
   uint64_t heldFeet() const noexcept { return held_feet_; }          ///< of a held contact; another point is nearer
   uint64_t degradedFeet() const noexcept { return degraded_feet_; }  ///< neither proved nor held
@@ -89,7 +93,7 @@ class ContactStatistics {
   uint64_t ticks_ = 0, buzz_ticks_ = 0, nearest_feet_ = 0, held_feet_ = 0, degraded_feet_ = 0;
   double mean_ = 0, spread_ = 0, max_depth_ = 0, force_sum_ = 0, max_force_ = 0, buzz_sum_ = 0;
   double window_ticks_ = 0, window_mean_ = 0, window_spread_ = 0, window_time_ = 0;
-  Pushes untraced_, depthless_, outside_;
+  Pushes untraced_, depthless_, outside_, pulls_;
   Histogram step_us_;
 };
 

@@ -43,6 +43,7 @@ Json modelJson(const ModelReport& model) {
   json["untraced"] = pushesJson(model.contact.untraced());
   json["depthless"] = pushesJson(model.contact.depthless());
   json["outside"] = pushesJson(model.contact.outside());
+  json["pulls"] = pushesJson(model.contact.pulls());
   json["step_ns"] = {{"p50", step.quantile(0.5) * kNs}, {"p99", step.quantile(0.99) * kNs}, {"max", step.max() * kNs}};
   for (const ArmContact& arm : model.arms) json["arms"][arm.device] = contactJson(arm.contact);
   return json;
@@ -79,16 +80,31 @@ std::string oddPushesText(const ModelReport& model) {
          told("outside", c.outside(), "from outside (depth_m below 0)", "contacts are told inside only");
 }
 
+/// A detent and a magnet pull for a part of a contact; a force of the wrong sign does for most of it.
+std::string pullText(const ModelReport& model) {
+  const Pushes& pulls = model.contact.pulls();
+  const uint64_t ticks = model.contact.contactTicks();
+  if (2 * pulls.ticks <= ticks) return "";
+  return fmt::format(
+      "  warning   {} pulled the hand in during {:.0f} % of its contact, with up to {:.2f} N: has its force the wrong "
+      "sign? hapticd plugin check tells\n",
+      model.name, 100 * static_cast<double>(pulls.ticks) / static_cast<double>(ticks), pulls.max_force);
+}
+
+/// [m] in a unit that reads well.
+std::string lengthText(double length) {
+  return length < 1e-3 ? fmt::format("{:.3g} um", length * 1e6) : fmt::format("{:.3g} mm", length * 1e3);
+}
+
 std::string modelText(const ModelReport& model, const RunReport& report) {
   const ContactStatistics& c = model.contact;
   std::string text = fmt::format("{} ({})\n", model.name, model.plugin);
   if (model.arms.empty()) text += contactText(c, report, "");
   for (const ArmContact& arm : model.arms) text += contactText(arm.contact, report, " by " + arm.device);
-  text += oddPushesText(model);
+  text += oddPushesText(model) + pullText(model);
   if (model.degraded_ticks > 0)
-    text += fmt::format(
-        "  degraded  {} ticks, to level {} of 3, so that the tick's budget holds; residual up to {:.3g} um\n",
-        model.degraded_ticks, model.coarsest, model.residual_m * 1e6);
+    text += fmt::format("  degraded  {} ticks, to level {} of 3, so that the tick's budget holds; residual up to {}\n",
+                        model.degraded_ticks, model.coarsest, lengthText(model.residual_m));
   if (c.heldFeet() + c.degradedFeet() > 0)
     text += fmt::format("  feet      {} nearest, {} held in contact, {} not proved\n", c.nearestFeet(), c.heldFeet(),
                         c.degradedFeet());

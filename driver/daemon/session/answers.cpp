@@ -225,6 +225,14 @@ std::string noSuchParameter(const hsp_class& plugin, const std::string& paramete
          document::listed(names) + document::suggestion(parameter.substr(0, 100), names);
 }
 
+std::string noSuchDevice(const scene::Scene& scene, const std::string& device) {
+  std::vector<std::string> names;
+  for (const scene::Device& one : scene.devices) names.push_back(one.name);
+  const std::string wanted = device.substr(0, 100);
+  return "there is no device \"" + wanted + "\", expected one of: " + document::listed(names) +
+         document::suggestion(wanted, names);
+}
+
 Result<std::string> valuesAnswer(const Session& session, uint32_t place, const std::string& parameter) {
   const hsp_class& plugin = session.runner.world().shapes()[place]->description();
   const scene::Model& model = session.places[place].model;

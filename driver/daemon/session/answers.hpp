@@ -53,6 +53,9 @@ std::string snapshotAnswer(const Session& session);
 /// @param flags HSP_P_LIVE: only live ones were meant; 0: all
 std::string noSuchParameter(const hsp_class& plugin, const std::string& parameter, uint32_t flags);
 
+/// [any] The words for a device that a scene does not have, with those that it has.
+std::string noSuchDevice(const scene::Scene& scene, const std::string& device);
+
 /// [main] The value of one parameter, or of all.
 Result<std::string> valuesAnswer(const Session& session, uint32_t place, const std::string& parameter);
 

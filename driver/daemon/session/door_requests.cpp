@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "document/suggestion.hpp"
 #include "session/request_handler.hpp"
 
 namespace hapticd::servo {
@@ -13,13 +12,9 @@ namespace hapticd::servo {
 using control::Request;
 
 Result<uint32_t> RequestHandler::armOf(const std::string& device) const {
-  std::vector<std::string> names;
-  for (uint32_t i = 0; i < runner_.scene().devices.size(); ++i) {
+  for (uint32_t i = 0; i < runner_.scene().devices.size(); ++i)
     if (runner_.scene().devices[i].name == device) return i;
-    names.push_back(runner_.scene().devices[i].name);
-  }
-  return refuse("unknown", "there is no device \"" + device.substr(0, 100) + "\"" +
-                               document::suggestion(device.substr(0, 100), names));
+  return refuse("unknown", noSuchDevice(runner_.scene(), device));
 }
 
 /// For the status page, and for the report of the run.

@@ -270,7 +270,7 @@ Result<void> RequestHandler::clear(const control::Peer& peer, const std::string&
     order.target = i;
     if (auto given = give(order); !given) return given;
   }
-  return found ? Result<void>() : refuse("unknown", "there is no device \"" + device.substr(0, 100) + "\"");
+  return found ? Result<void>() : refuse("unknown", noSuchDevice(runner_.scene(), device));
 }
 
 Result<std::string> RequestHandler::dump(const std::string& why) {

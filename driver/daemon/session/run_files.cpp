@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "document/suggestion.hpp"
 #include "log/log.hpp"
 #include "scene/load.hpp"
 #include "status/page_file.hpp"
@@ -42,6 +43,23 @@ void keepCrashed(const std::string& file, const std::string& name, const std::st
   if (std::filesystem::copy_file(file, kept, error))
     log::write(HSP_LOG_WARNING, "", "the last run was killed or crashed; its last seconds are in " + kept);
   std::filesystem::remove(file, error);
+}
+
+/// "models teapot, floor on simulated Premium 1.5; programs may push (clients: add)".
+std::string contents(const scene::Scene& scene) {
+  std::vector<std::string> models, devices;
+  for (const scene::Model& model : scene.models) models.push_back(model.name);
+  for (const scene::Device& device : scene.devices) devices.push_back(device.name);
+  std::string text = models.empty() ? "no model" : models.size() == 1 ? "model " : "models ";
+  text += document::listed(models, 6) + " on " + document::listed(devices) + "; ";
+  switch (scene.clients.mode) {
+    case scene::ClientMode::kOff:
+      return text + "no program may push (clients: off)";
+    case scene::ClientMode::kAdd:
+      return text + "programs may push (clients: add)";
+    default:
+      return text + "programs may push (clients: instead)";
+  }
 }
 
 }  // namespace
@@ -115,7 +133,8 @@ void RunFiles::serve(Runner& runner, const std::string& device_file, host::Catal
     return Error{text};
   };
   handler_ = std::make_unique<RequestHandler>(runner, load, log, stateFolder(folder_));
-  auto server = control::Server::listen(folder_ + "/" + name_ + ".sock", kGroup);
+  const std::string socket = folder_ + "/" + name_ + ".sock";
+  auto server = control::Server::listen(socket, kGroup);
   if (!server) {
     log::write(HSP_LOG_WARNING, "", server.error());
     return;
@@ -130,6 +149,7 @@ void RunFiles::serve(Runner& runner, const std::string& device_file, host::Catal
   service.urgent = [this](const control::Peer& peer, const std::string& line) { return handler_->urgent(peer, line); };
   service.left = [this](const control::Peer& peer) { handler_->left(peer); };
   server_->start(std::move(service));
+  log::write(HSP_LOG_INFO, "", "runs as " + name_ + ": " + contents(runner.scene()) + "; socket " + socket);
 }
 
 bool RunFiles::faulty() const {

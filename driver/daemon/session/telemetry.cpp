@@ -54,7 +54,7 @@ void Telemetry::tick(double t, double dt, Nanoseconds late, const Spent& spent, 
   lateness_us_.add(row.lateness_us);
   compute_us_.add(row.compute_us);
   arms_us_.add(static_cast<double>(spent.in_arms) * 1e-3);
-  bookModels(dt, core, row);
+  bookModels(dt, core, arms, row);
   if (flight_) flight_->tick(t, dt, late, spent.total, core, arms);
   if (status_) status_->tick({booked_, overruns_, missed_, t}, late, spent.total, core, arms, models_);
   ++booked_;
@@ -85,7 +85,15 @@ void Telemetry::bookArms(uint32_t index, double dt, const Core& core) noexcept H
   }
 }
 
-void Telemetry::bookModels(double dt, const Core& core, BlackBoxRow& row) noexcept HSP_RT {
+/// [N] What a contact pulls deeper in with; 0: it does not.
+double Telemetry::pullOf(const Contact& contact, const Arm& arm) noexcept HSP_RT {
+  const bool pulls = contact.world.depth_m > 0 && arm.probe().valid &&
+                     pullsIn(contact.world, arm.probe().position);
+  return pulls ? Eigen::Map<const Vector3d>(contact.world.force).norm() : 0;
+}
+
+void Telemetry::bookModels(double dt, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms,
+                           BlackBoxRow& row) noexcept HSP_RT {
   for (const uint32_t index : core.live()) {
     const ModelState& model = core.models()[index];
     if (model.status < row.status) row.status = model.status;
@@ -103,6 +111,7 @@ void Telemetry::bookModels(double dt, const Core& core, BlackBoxRow& row) noexce
       if (deep > depth) held = (contact.world.flags & HSP_OUT_HELD) != 0;
       depth = std::max(depth, deep);
       force = std::max(force, size);
+      if (probe < arms.size()) odd.pull = std::max(odd.pull, pullOf(contact, *arms[probe]));
       if (deep > 0) continue;
       double& shallow = deep < 0 ? odd.outside : odd.depthless;
       shallow = std::max(shallow, size);
@@ -110,7 +119,7 @@ void Telemetry::bookModels(double dt, const Core& core, BlackBoxRow& row) noexce
     models_[index].add(depth > 0, depth, force, dt, model.step_ns);
     if (depth > -HUGE_VAL && model.status >= HSP_OK) models_[index].addFoot(held, model.status == HSP_DEGRADED);
     // What a model in trouble fades out with is no answer of it.
-    const bool any = odd.untraced + odd.depthless + odd.outside > 0;
+    const bool any = odd.untraced + odd.depthless + odd.outside + odd.pull > 0;
     if (any && model.status >= HSP_OK && !model.guard.quarantined()) bookOdd(index, odd);
     bookArms(index, dt, core);
     if (depth > -HUGE_VAL && (row.model == UINT32_MAX || depth > row.depth_m)) {
@@ -124,6 +133,7 @@ void Telemetry::bookOdd(uint32_t index, const Odd& odd) noexcept HSP_RT {
   if (odd.untraced > 0) models_[index].addUntraced(odd.untraced);
   if (odd.depthless > 0) models_[index].addDepthless(odd.depthless);
   if (odd.outside > 0) models_[index].addOutside(odd.outside);
+  if (odd.pull > 0) models_[index].addPull(odd.pull);
 }
 
 void Telemetry::finish(uint64_t ticks, Nanoseconds elapsed, long page_faults, uint64_t allocations) noexcept {

@@ -92,12 +92,15 @@ class Telemetry final : public TickLog {
   void keep(const BlackBoxRow& row) noexcept HSP_RT;
   std::vector<record::ArmContact> armsOf(size_t place) const;
   void bookArms(uint32_t index, double dt, const Core& core) noexcept HSP_RT;
-  /// [N] What a model pushed with in a tick, the largest of all probes, though no contact can be told of it.
+  /// [N] What a model pushed with in a tick, the largest of all probes, though no contact can be told of it; and what
+  /// it pulled in with.
   struct Odd {
-    double untraced = 0, depthless = 0, outside = 0;
+    double untraced = 0, depthless = 0, outside = 0, pull = 0;
   };
   void bookOdd(uint32_t index, const Odd& odd) noexcept HSP_RT;
-  void bookModels(double dt, const Core& core, BlackBoxRow& row) noexcept HSP_RT;
+  static double pullOf(const Contact& contact, const Arm& arm) noexcept HSP_RT;
+  void bookModels(double dt, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms,
+                  BlackBoxRow& row) noexcept HSP_RT;
 
   std::vector<std::string> names_, plugins_;
   std::vector<record::ModelReport> left_;  ///< models that are not there any more

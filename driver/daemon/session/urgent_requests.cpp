@@ -39,7 +39,7 @@ Result<std::string> RequestHandler::hold(const std::string& device, const char*&
   for (size_t i = 0; i < devices.size() && i < 64; ++i)
     if (device.empty() || devices[i].name == device) arms |= uint64_t{1} << i;
   code = arms == 0 ? "unknown" : "timeout";
-  if (arms == 0) return Error{"there is no device \"" + device.substr(0, 100) + "\""};
+  if (arms == 0) return Error{noSuchDevice(runner_.scene(), device)};
   held_at_.store(monotonicNow());
   runner_.hold(arms);
   if (runner_.loop().ticks() == 0) return good();  // no force has come yet, and none will

@@ -145,10 +145,10 @@ std::vector<Column> columnsOf(const codec::Report& report, size_t joints) {
                                                {Role::kReference, "reference"}};
   for (const auto& [role, name] : each)
     for (size_t i = 0; has(report, role) && i < joints; ++i) columns.push_back({name + std::to_string(i + 1), role, i});
-  const std::pair<Role, const char*> once[] = {{Role::kButton, "buttons"},        {Role::kSequence, "sequence"},
-                                               {Role::kStarts, "starts"},         {Role::kFault, "fault"},
-                                               {Role::kCalibrated, "calibrated"}, {Role::kEnable, "enable"},
-                                               {Role::kCalibrate, "calibrate"},   {Role::kFollow, "follow"}};
+  const std::pair<Role, const char*> once[] = {
+      {Role::kButton, "buttons"}, {Role::kSequence, "sequence"},   {Role::kStarts, "starts"},
+      {Role::kTime, "clock"},     {Role::kFault, "fault"},         {Role::kCalibrated, "calibrated"},
+      {Role::kEnable, "enable"},  {Role::kCalibrate, "calibrate"}, {Role::kFollow, "follow"}};
   for (const auto& [role, name] : once)
     if (has(report, role)) columns.push_back({name, role, 0});
   return columns;
@@ -168,6 +168,8 @@ double valueOf(const codec::State& state, const Column& column) {
       return state.sequence;
     case Role::kStarts:
       return state.starts;
+    case Role::kTime:
+      return state.clock;
     case Role::kFault:
       return state.fault ? 1 : 0;
     default:
@@ -194,6 +196,9 @@ void put(codec::State& state, const Column& column, double value) {
       break;
     case Role::kStarts:
       state.starts = static_cast<uint32_t>(std::clamp(value, 0.0, 4294967295.0));
+      break;
+    case Role::kTime:
+      state.clock = value;
       break;
     case Role::kFault:
       state.fault = value != 0;
@@ -305,6 +310,7 @@ Result<std::vector<uint8_t>> encodeRow(const codec::Wire& wire, bool to_arm, con
   codec::Order order;
   codec::State state;
   order.sequence = state.sequence = sequence;
+  state.clock = sequence / wire.rate;
   order.enable = true;
   for (size_t i = 0; i < columns.size(); ++i) {
     const auto column = std::find_if(known.begin(), known.end(), [&](const Column& c) { return c.name == columns[i]; });

@@ -160,6 +160,8 @@ std::vector<ConformanceTest> contactTests() {
       {"contact-flags", "HSP_OUT_TRACED and HSP_OUT_CONTACT agree with depth and normal", &contactFlags, kFinite},
       {"force-from-zero", "the force grows from zero where the surface is met", &noStep, kFinite},
       {"stiffness-vs-claim", "forces are no steeper than claimed", &stiffnessClaim, kFinite},
+      {"drawing-where-felt", "triangles and bounds of hsp.geometry/1 are where the surface is felt", &drawingWhereFelt,
+       kFinite},
   };
 }
 

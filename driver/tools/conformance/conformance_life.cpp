@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <set>
+#include <vector>
 
 #include "base/clock.hpp"
 #include "conformance/conformance_parts.hpp"
@@ -127,19 +128,34 @@ std::string setOutOfRange(const Recipe& recipe, uint64_t) {
                                                                   : "";
 }
 
+/// "" or the parameter whose value went when another was set: two lines of a table that name one member.
+std::string sharedMember(Subject& subject, const std::vector<double>& values, uint32_t set) {
+  const hsp_class& c = subject.description();
+  for (uint32_t i = 0; i < set; ++i) {
+    hsp_value got{};
+    if (std::isnan(values[i]) || c.get(subject.handle(), i, &got) < 0 || got.number == values[i]) continue;
+    return std::string(paramAt(c, i).id) + " became " + text(got.number) + " when " + paramAt(c, set).id +
+           " was set; expected a member of its own for each line of the table";
+  }
+  return "";
+}
+
 std::string paramRoundtrip(const Recipe& recipe, uint64_t) {
   auto made = Subject::make(recipe);
   if (!made) return made.error();
   const hsp_class& c = (*made)->description();
+  std::vector<double> values(c.param_count, std::nan(""));
   for (uint32_t i = 0; i < c.param_count; ++i) {
     const hsp_param& p = paramAt(c, i);
     if (p.kind > HSP_ENUM) continue;
     hsp_value value{}, got{};
     value.kind = p.kind;
-    value.number = p.kind == HSP_REAL ? p.def + 0.25 * (std::min(p.max, p.def + 1) - p.def) : p.def;
+    value.number = p.kind == HSP_REAL ? p.def + (0.25 + 0.003 * i) * (std::min(p.max, p.def + 1) - p.def) : p.def;
     if (c.set((*made)->handle(), i, &value) < 0) return std::string(p.id) + " refused " + text(value.number);
     if (c.get((*made)->handle(), i, &got) < 0 || got.number != value.number)
       return std::string(p.id) + " returned " + text(got.number) + " for " + text(value.number);
+    if (std::string shared = sharedMember(**made, values, i); !shared.empty()) return shared;
+    values[i] = value.number;
   }
   return "";
 }

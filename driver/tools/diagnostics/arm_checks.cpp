@@ -74,7 +74,7 @@ std::optional<Finding> withoutRule(const ArmControls& found, const std::string& 
 
 std::optional<Finding> repeats(const ArmControls& found, const std::string& file) {
   if (!found.repeats_pass) return std::nullopt;
-  return Finding{found.arm, Verdict::kWarn, "its reports have no counter",
+  return Finding{found.arm, Verdict::kWarn, "its reports have no counter and no time",
                  "firmware that hangs and sends its last report for ever is not noticed",
                  "let the firmware count its reports (is: counter); all controls: hapticd device controls " + file};
 }

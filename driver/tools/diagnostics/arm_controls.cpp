@@ -59,9 +59,11 @@ void addReports(const std::optional<codec::Wire>& wire, std::vector<Control>& to
   to.push_back(
       {"H1", "a misread report is noticed", onIf(sum),
        sum ? "by its checksum" : "no checksum in wire.input: only by what the bus itself checks, and by the speed"});
-  to.push_back(
-      {"H3", "a repeated report is noticed", onIf(counter),
-       counter ? "by its counter" : "no counter in wire.input: firmware that hangs may send the last one for ever"});
+  const bool clock = wire->clockTells();
+  to.push_back({"H3", "a repeated report is noticed", onIf(counter || clock),
+                counter ? "by its counter"
+                : clock ? "by the arm's clock (time)"
+                        : "no counter in wire.input: firmware that hangs may send the last one for ever"});
 }
 
 /// @param buttons of the arm
@@ -154,9 +156,9 @@ std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog
   found.controls = controlsOf(*loaded.device, **device, found.opened);
   const uint32_t capabilities = found.opened ? (*device)->info().capabilities : 0;
   const auto wire = wireOf(*loaded.device, (*device)->kinematics().joint_count);
-  found.repeats_pass =
-      wire && std::none_of(wire->input.fields.begin(), wire->input.fields.end(),
-                           [](const codec::Field& field) { return field.role == codec::Role::kSequence; });
+  found.repeats_pass = wire && !wire->clockTells() &&
+                       std::none_of(wire->input.fields.begin(), wire->input.fields.end(),
+                                    [](const codec::Field& field) { return field.role == codec::Role::kSequence; });
   found.simulated = (capabilities & HDV_C_SIMULATED) != 0;
   found.watchdog = (capabilities & HDV_C_WATCHDOG) != 0 || (!found.opened && wire && wire->cutsSoon());
   found.silenced_after_us = (*device)->silenceable() || found.watchdog || found.simulated;

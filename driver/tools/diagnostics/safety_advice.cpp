@@ -117,6 +117,7 @@ std::set<std::string> keysOf(Role role) {
     add({"value"});
   else if (role == Role::kChecksum)
     add({"method", "from", "to", "word", "polynomial", "initial", "reflected", "final_xor", "negated", "over_id"});
+  if (role == Role::kTime) add({"scale"});
   return keys;
 }
 

@@ -30,7 +30,8 @@ enum class Slip {
   kClaims,        ///< to be quicker than any processor
   kAllocates,     ///< in contact
   kVibrates,      ///< on purpose, and says so: no slip
-  kLive           ///< a stiffness that changes without consent
+  kLive,          ///< a stiffness that changes without consent
+  kOneMember      ///< two lines of the table name it
 };
 
 template <class Derived, Slip kSlip>
@@ -39,10 +40,13 @@ struct Floor : hapticd::Shape {
   std::vector<double> heights = {0};
   volatile double kept = 0;  // so that the computing is done
   char* leaked = nullptr;
+  double offset = 0;
   static constexpr auto fields() {
-    return std::array{hapticd::Fields<Derived>::real("stiffness", &Derived::stiffness,
-                                                     kSlip == Slip::kUnit ? "N/mm" : "N/m", 0, 5000, 500, "Spring.",
-                                                     kSlip == Slip::kLive ? uint32_t{HSP_P_LIVE} : 0)};
+    using F = hapticd::Fields<Derived>;
+    return std::array{F::real("stiffness", &Derived::stiffness, kSlip == Slip::kUnit ? "N/mm" : "N/m", 0, 5000, 500,
+                              "Spring.", kSlip == Slip::kLive ? uint32_t{HSP_P_LIVE} : 0),
+                      F::real("offset", kSlip == Slip::kOneMember ? &Derived::stiffness : &Derived::offset, "", 0, 600,
+                              500, "None.")};
   }
   void activate(const hsp_activation&, hsp_report& report) {
     static std::vector<char> kept_over(kSlip == Slip::kSawtoothLate ? 100'000 : 0);
@@ -114,8 +118,9 @@ SHAPE("claims", Claims, kClaims)
 SHAPE("allocates", Allocates, kAllocates)
 SHAPE("vibrates", Vibrates, kVibrates)
 SHAPE("live", Live, kLive)
+SHAPE("one_member", OneMember, kOneMember)
 
 }  // namespace
 
 HAPTICD_SHAPES(Right, Prints, Asks, ReadsVelocity, Millimetres, Unit, Throws, Crashes, Nan, NormalInward, Shares,
-               NoInvalid, Computes, Leaks, Sawtooth, SawtoothLate, Claims, Allocates, Vibrates, Live)
+               NoInvalid, Computes, Leaks, Sawtooth, SawtoothLate, Claims, Allocates, Vibrates, Live, OneMember)

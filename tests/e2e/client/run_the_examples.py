@@ -53,7 +53,8 @@ def lead(kind):
     return kind(fd, 4096, lambda: None)
 nan = float("nan")
 for use, words in ((lambda: lead(ForceLead).put(1, [nan, 0, 0]), "not finite"), (lambda: lead(ForceLead).put(1, [0, 0]), "3 numbers"),
-                   (lambda: lead(PoseLead).put([nan, 0, 0]), "not finite"), (lambda: lead(PoseLead).put([0, 0, 0], [90, 0, 1, 0]), "unit quaternion")):
+                   (lambda: lead(PoseLead).put([nan, 0, 0]), "not finite"), (lambda: lead(PoseLead).put([11, 0, 0]), "farther than 10 m"),
+                   (lambda: lead(PoseLead).put([0, 0, 0], [90, 0, 1, 0]), "unit quaternion")):
     try:
         use()
         raise SystemExit(words + ": accepted")
@@ -66,6 +67,11 @@ lead(PoseLead).put([0.1, 0, 0])
 
 def alone():
     done = subprocess.run([sys.executable, "-c", ALONE], env=dict(os.environ, PYTHONPATH=CLIENT), capture_output=True, text=True, timeout=120)
+    words = re.search(r"kNames\[\] = \{(.*?)\};", open(os.path.join(SOURCE, "driver/daemon/record/picture.cpp")).read(), re.S)[1]
+    sys.path.insert(0, CLIENT)
+    from hapticd import FAULTS
+    words = re.findall(r'"([^"]*)"', words)
+    check("faults have the words of the pictures", [w.replace("stopped", "held or stopped") for w in words] == list(FAULTS) and len(words) == 13, (words, FAULTS))
     check("without numpy rows have names, and what the daemon would refuse raises", done.returncode == 0, done.stderr)
 
 

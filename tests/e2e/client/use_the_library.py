@@ -49,9 +49,13 @@ def examples(folder):
     check("spring.c tells of a daemon that is none", done.returncode == 1 and "hapticd run" in done.stderr, done)
 
 
-def leads_a_model():
+def leads_a_model(client):
+    before = client.models["door"].position
     done = subprocess.run([LEAD_MODEL, "door", "lib", "1"], env=environment, capture_output=True, text=True, timeout=60)
     check("lead_model.c", done.returncode == 0 and len(done.stdout.splitlines()) > 10 and " N" in done.stdout, done)
+    after = client.models["door"].position
+    far = max(abs(a - b) for a, b in zip(before, after))
+    check("it leads the model about where it was", far < 0.05, (before, after))
     done = subprocess.run([LEAD_MODEL, "window", "lib"], env=environment, capture_output=True, text=True, timeout=60)
     check("lead_model.c tells of a model that is none", done.returncode == 1 and "window" in done.stderr, done)
     done = subprocess.run([LEAD_MODEL, "door", "nobody"], env=environment, capture_output=True, text=True, timeout=60)
@@ -78,7 +82,7 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
     with open(scene, "w") as file:
         file.write(SCENE.format(source=SOURCE))
     with open(os.path.join(folder, "door.csv"), "w") as file:
-        file.write("t,x,y,z,qw,qx,qy,qz\n0,0,-0.3,0,1,0,0,0\n")
+        file.write("t,x,y,z,qw,qx,qy,qz\n0,0,-0.2,0,1,0,0,0\n")
     daemon = subprocess.Popen([HAPTICD, "run", scene, "--name", "lib"], env=environment, stdout=subprocess.DEVNULL,
                               stderr=subprocess.DEVNULL)
     for _ in range(600):
@@ -89,8 +93,8 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as folder:
     print(done.stdout, end="")
     check("every function of the library", done.returncode == 0, done.stdout[-2000:] + done.stderr)
     examples(folder)
-    leads_a_model()
     with hapticd.connect("lib", folder=folder) as client:
+        leads_a_model(client)
         links(client)
     daemon.terminate()
     check("the run ends in order", daemon.wait(timeout=30) == 0)

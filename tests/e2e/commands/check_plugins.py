@@ -90,7 +90,8 @@ SLIPS = {"prints": ("no-system-call-in-step", "it prints in"), "asks": ("no-syst
          "no_invalid": ("bad-sample", "return HSP_OK"), "computes": ("steps-end-in-time", "all of it computing"),
          "leaks": ("create-destroy-leak", "bytes in each life, from create() to destroy()"),
          "claims": ("step-cost-vs-claim", "the claimed worst is 1 (report.worst_ns)"),
-         "allocates": ("no-allocation-in-step", "::keepDepth")}
+         "allocates": ("no-allocation-in-step", "::keepDepth"),
+         "one_member": ("param-roundtrip", "expected a member of its own for each line of the table")}
 for shape, (test, words) in SLIPS.items():
     mine = [t for t in tests if t["plugin"] == shape and t["result"] == "fail"]
     check(f"{shape} fails by {test} first", mine and mine[0]["name"] == test and words in mine[0]["why"], mine)
@@ -116,6 +117,17 @@ for shape in ("throws", "no_invalid", "allocates"):
 said = subprocess.run([HAPTICD, "plugin", "check", os.path.join(BROKEN, "slips.so"), "--timeout", "15"], capture_output=True, text=True, timeout=280).stdout
 check("an exception is told once, and the rest is counted", said.count("vector::_M_range_check") == 1 and "tests were not run: first mend steps-end-in-time" in said, said)
 check("a number that is not one is told alone", "nan J" not in said and "-0 N at" not in said, said)
+
+# What is drawn is compared with what is felt.
+code, tests, failed, err = examined(os.path.join(BROKEN, "drawn.so"), "--timeout", "60")
+DRAWN = {"drawn_small_bounds": "a vertex at ", "drawn_millimetres": "lie away from the surface that is felt", "drawn_turned": "lie away from the surface",
+         "drawn_inside_out": "the triangles are inside out", "drawn_wrong_index": "there are only 2401 vertices"}
+for shape, words in DRAWN.items():
+    mine = [(t["name"], t["why"]) for t in tests if t["plugin"] == shape and t["result"] == "fail"]
+    check(f"{shape} fails by its drawing alone", [name for name, _ in mine] == ["drawing-where-felt"] and words in mine[0][1], mine)
+for shape in ("drawn_right", "drawn_in_contact"):
+    mine = [(t["name"], t["result"], t["why"]) for t in tests if t["plugin"] == shape and (t["result"] == "fail" or t["name"] == "drawing-where-felt")]
+    check(f"{shape} passes", [m[:2] for m in mine] == [("drawing-where-felt", "pass")], mine)
 
 # Parameters are checked as those of a scene, before any test runs, and all of them at once.
 NEEDY = os.path.join(BROKEN, "needy.so")

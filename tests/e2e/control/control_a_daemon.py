@@ -31,6 +31,7 @@ class Daemon:
         self.folder = folder
         self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
         self.run = subprocess.Popen([HAPTICD, "run", scene("teapot"), "--for", "100", "--name", "x", "--record", os.path.join(folder, "recording.h5"),
+                                     "--log-file", os.path.join(folder, "run.log"),
                                      "--report", os.path.join(folder, "report.json")], env=self.environment,
                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
@@ -67,6 +68,16 @@ class Daemon:
 def commands(daemon):
     check("top tells of the model", "teapot" in daemon.ask("top", "--once", "--json")[1])
     check("list tells of the model", "teapot" in daemon.models())
+    path = os.path.join(daemon.folder, "x.sock")
+    check("socket prints where the daemon listens", daemon.ask("socket") == (0, path + "\n", ""), daemon.ask("socket"))
+    status = json.loads(daemon.ask("status")[1])
+    check("and status has it", (status["name"], status["socket"]) == ("x", path), status)
+    begin = [line for line in open(os.path.join(daemon.folder, "run.log")) if "runs as x:" in line]
+    check("the log begins with what runs, once", len(begin) == 1 and all(word in begin[0] for word in (
+        "model teapot on simulated Premium 1.5", "no program may push (clients: off)", path)), begin)
+    for word in ("hold", "clear"):
+        code, _, err = daemon.ask(word, "nobody")
+        check(f"{word} of a device that is none names those that are", code == 1 and "expected one of: simulated Premium 1.5" in err, err)
     check("the hand comes to touch it", daemon.until(lambda: json.loads(daemon.ask("top", "--once", "--json")[1])["models"][0]["force_n"] > 0.3))
     feet = json.loads(daemon.ask("top", "--once", "--json")[1])["models"][0]["feet"]
     check("top counts what is known of its feet", set(feet) == {"nearest", "held", "degraded"} and feet["nearest"] + feet["held"] > 100, feet)

@@ -54,6 +54,10 @@ def own_shape(folder):
     code, said = run(HAPTICD, "run", file, "--for", "2", "--virtual-time", "--report", report, environment=environment)
     pulled = json.load(open(report))["models"]["ground"]["force_n"]["max"]
     check("and the run silences it before it pulls with 2 N", "wrong sign" in said and pulled < 2, (pulled, said))
+    open(os.path.join(folder, "floor.cpp"), "w").write(wrong.replace("report.flags = HSP_R_PUSHES;", ""))
+    subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
+    code, unclaimed = run(HAPTICD, "run", file, "--for", "2", "--virtual-time", environment=environment)
+    check("one that claims nothing pulls, and the run says so", re.search(r"warning   ground pulled the hand in during \d+ % of its contact", unclaimed), unclaimed)
     check("and says when, with what force and how deep", re.search(r"at \d+\.\d+ s with [\d.]+ N at a depth of [\d.]+ mm", said), said)
     open(os.path.join(folder, "floor.cpp"), "w").write(code_of_floor().replace("out.flags = HSP_OUT_TRACED;", ""))
     subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
@@ -144,9 +148,34 @@ def own_client(folder):
     except subprocess.TimeoutExpired:
         daemon.kill()
     check("and the run ends well", daemon.returncode == 0, daemon.stderr.read()[-500:])
-    for word in ("status", "list", "get", "set", "enable", "move", "add", "events", "stop", "hold", "geometry", "reload"):
+    program_of_the_readme(environment)
+    for word in ("status", "list", "socket", "get", "set", "enable", "move", "add", "events", "stop", "hold", "geometry", "reload"):
         code, said = run(HAPTICD, "ctl", word, "--help")
         check(f"ctl {word} --help has an example of its own", code == 0 and re.search(r"Example:\n  hapticd ctl (--name left )?" + word, said), said[-300:])
+
+
+def program_of_the_readme(environment):
+    """The README's lines of a shell and of Python, beside its run."""
+    part = README.split("## Write a program")[1].split("\n## ")[0]
+    scene = re.search(r"hapticd run (\S+)", part)[1]
+    code = re.sub(r"^    ", "", re.search(r"^    python3 -c '\n(.*?)'\n", part, re.M | re.S)[1], flags=re.M)
+    move = re.search(r"^    (hapticd ctl move .*)$", part, re.M)[1]
+    said = run(HAPTICD, "check", os.path.join(SOURCE, scene))
+    check("the scene for programs is in order", said[0] == 0 and "warning" not in said[1], said)
+    daemon = subprocess.Popen([HAPTICD, "run", scene, "--for", "100"], cwd=SOURCE, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    begin = daemon.stderr.readline()
+    while begin and "runs as" not in begin:
+        begin = daemon.stderr.readline()
+    check("a run begins with its name, models, arm, and that programs may push",
+          "runs as hapticd: model ball on simulated Premium 1.5; programs may push (clients: add); socket /" in begin, begin)
+    said = run("bash", "-c", move, environment=environment)
+    check("the README's move is obeyed", said[0] == 0 and '"ok": true' in said[1], said)
+    said = run(sys.executable, "-c", code.replace("sleep(5)", "sleep(1)"),
+               environment=dict(environment, PYTHONPATH=os.path.join(SOURCE, "driver/doors/client/python")))
+    check("and its program in Python reads and pushes", said[0] == 0 and "Parameter(id='stiffness'" in said[1], said)
+    daemon.terminate()
+    rest = daemon.communicate(timeout=30)[1]
+    check("the log tells of the push", "pushes on it" in rest, rest)
 
 
 def own_arm(folder):
@@ -158,6 +187,13 @@ def own_arm(folder):
     trip = re.search(r"^    (echo .* \| hapticd device encode .*)$", README, re.M)[1]
     code, said = run("sh", "-c", trip, environment=path, cwd=folder)
     check("and its numbers go to bytes and back", code == 0 and ",good,0.09990" in said, said)
+    for words in ("hapticd check config/scenes/sphere.yaml --device", "hapticd device twin", "hapticd run config/scenes/sphere.yaml --device"):
+        line = re.search(rf"^    ({words} [^#\n]*?) *(#.*)?$", README, re.M)[1].replace("config/scenes", os.path.join(SOURCE, "config/scenes"))
+        code, said = run("sh", "-c", line.replace("--for 10", "--for 3 --virtual-time --report twin.json"), environment=path, cwd=folder)
+        check(f"{words} works with the README's arm", code == 0, said)
+    report = os.path.join(folder, "twin.json")
+    touched = os.path.exists(report) and json.load(open(report))["models"]["sphere"]["contact_ticks"]
+    check("whose twin presses the sphere", touched and touched > 100, touched)
     field = re.search(r"`(\{is: position, joint: 1, at: 2, type: i24, scale: 1.7e-5\})`", README)[1]
     text = open(os.path.join(folder, "my-arm.yaml")).read()
     text = re.sub(r"\{is: position, joint: 1, .*?\}", field, text)

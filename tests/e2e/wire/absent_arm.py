@@ -38,7 +38,12 @@ with tempfile.TemporaryDirectory() as folder:
     check("and nothing of a counter that it has", "no counter" not in told, told)
     put(text.replace(COUNTER, "        - {is: constant, at: 0, type: u16, value: 0}"))
     code, told = run("doctor", arm, "--seconds", "0")
-    check("but that old reports pass without one", "its reports have no counter" in told, told)
+    check("but that old reports pass without one", "its reports have no counter and no time" in told, told)
+    put(text.replace(COUNTER, "        - {is: time, at: 0, type: u16, scale: 1.0e-5}"))
+    code, told = run("doctor", arm, "--seconds", "0")
+    check("a clock is as good", "no counter" not in told, told)
+    code, told = run("device", "controls", arm)
+    check("as controls say", re.search(r"on +a repeated report is noticed.*by the arm's clock", told), told)
 
     code, told = run("device", "info", arm)
     check("info says that no switch must be held", "enable     none" in told, told)

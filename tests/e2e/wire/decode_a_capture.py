@@ -7,10 +7,12 @@ import binascii
 import csv
 import functools
 import io
+import json
 import math
 import operator
 import os
 import pty
+import re
 import struct
 import subprocess
 import sys
@@ -245,6 +247,45 @@ with tempfile.TemporaryDirectory() as folder:
         code, out, err = run("new", "bad", "-o", os.path.join(folder, "bad.yaml"), "--no-questions", *bad)
         check(f"{' '.join(bad)} is refused", code == 2 and not os.path.exists(os.path.join(folder, "bad.yaml")), err)
 
+    # Numbers of each joint, and what a chain without twists cannot do.
+    own = os.path.join(folder, "own.yaml")
+    code, out, err = run("new", "--counts", "16384", "--gear", "10,20,5", "--torque", "1.2,1,0.4", "own", "-o", own, "--no-questions")
+    text = open(own).read() if os.path.exists(own) else err
+    scales = [float(word) for word in re.findall(r"is: position.*scale: ([0-9.e-]+)", text)]
+    check("each joint may have its own gear", [round(2 * math.pi / 16384 / scale) for scale in scales] == [10, 20, 5], text)
+    check("and its own torque", "max_torque: [1.2, 1, 0.4]" in text and len(set(re.findall(r"is: torque.*scale: (\S+)}", text))) == 3, text)
+    for bad in (["--gear", "10,20"], ["--torque", "1,0,1"], ["--twists", "1,0,0"], ["--kind", "chain", "--twists", "1,0"]):
+        code, out, err = run("new", "bad", "-o", os.path.join(folder, "bad.yaml"), "--no-questions", *bad)
+        check(f"{' '.join(bad)} is refused", code == 2 and bad[-2] in err and not os.path.exists(os.path.join(folder, "bad.yaml")), err)
+    flat, bent = os.path.join(folder, "flat.yaml"), os.path.join(folder, "bent.yaml")
+    code, out, err = run("new", "flat", "-o", flat, "--kind", "chain", "--no-questions")
+    check("a chain whose axes are parallel is told", code == 0 and b"the tip stays in a plane" in out and "the tip stays in a plane" in open(flat).read(), out)
+    code, out, err = run("new", "bent", "-o", bent, "--kind", "chain", "--twists", "1.5707963,0,0", "--lengths", "0,0.2,0.2", "--id", "1209:0a0b", "--no-questions")
+    check("one with twists is not", code == 0 and b"in a plane" not in out and "- [0, 1.5707963, 0, 0]" in open(bent).read(), out)
+
+    # A twin has the mechanism of its arm: the same tip for the same joints.
+    for arm, joints in ((own, "0.1,0.2,0.3"), (bent, "0.1,0.4,-0.7"), (os.path.join(SOURCE, "config/devices/woodenhaptics.yaml"), "0.1,1.5,1.4")):
+        twin, pose = os.path.join(folder, "twin.yaml"), os.path.join(folder, "pose.csv")
+        open(pose, "w").write("q1,q2,q3\n" + joints + "\n")
+        code, out, err = run("twin", arm, "-o", twin)
+        check(f"{os.path.basename(arm)} has a twin", code == 0 and b"--device" in out, err)
+        tips = [[float(row[axis]) for axis in "xyz"] for row in (rows(run("kinematics", file, "--joints", pose)[1])[0] for file in (arm, twin))]
+        check("with the same kinematics", max(abs(a - b) for a, b in zip(*tips)) < 1e-9, tips)
+        code, out, err = run("twin", arm, "-o", twin)
+        check("which is not overwritten", code == 2 and "exists already" in err, err)
+        os.remove(twin)
+    twin, report = os.path.join(folder, "twin.yaml"), os.path.join(folder, "twin.json")
+    code, out, err = run("twin", own, "-o", twin)
+    text = open(twin).read()
+    check("its encoders are those of the wire", code == 0 and "counts: [163840, 327680, 81920]" in text, text)
+    done = subprocess.run([HAPTICD, "run", os.path.join(SOURCE, "config/scenes/sphere.yaml"), "--device", twin, "--for", "3", "--virtual-time", "--report", report],
+                          capture_output=True, text=True, timeout=120)
+    touched = json.load(open(report))["models"]["sphere"]["contact_ticks"] if os.path.exists(report) else 0
+    check("and it presses the sphere", done.returncode == 0 and touched > 100, (touched, done.stdout[-800:], done.stderr[-800:]))
+    for file, words in (("falcon.yaml", "expected phantom or chain"), ("sarcos.yaml", "arm.others"), ("simulated-premium15.yaml", "simulated already")):
+        code, out, err = run("twin", os.path.join(SOURCE, "config/devices", file), "-o", os.path.join(folder, "none.yaml"))
+        check(f"{file} has none, and why", code == 2 and words in err and not os.path.exists(os.path.join(folder, "none.yaml")), err)
+
     # At a terminal: a wrong answer is asked for again, at once, and no other answer is lost.
     asked = os.path.join(folder, "asked.yaml")
     keyboard, screen = pty.openpty()
@@ -254,7 +295,7 @@ with tempfile.TemporaryDirectory() as folder:
     os.close(keyboard), os.close(screen)
     text = open(asked).read() if os.path.exists(asked) else ""
     check("wrong answers are asked for again", done.returncode == 0 and done.stdout.count("Bus: ") == 2 and done.stdout.count("Motor turns") == 2 and
-          "\"many\" is no number" in done.stdout and done.stdout.count("Lengths of upper arm") == 3, (done.stdout, done.stderr))
+          "\"many\" is no list of numbers" in done.stdout and done.stdout.count("Lengths of upper arm") == 3, (done.stdout, done.stderr))
     check("and the right ones are in the file", "16c0:0486" in text and f"scale: {2 * 3.14159265358979 / 38000:.6g}"[:14] in text and "type: i24" in text and
           "button: 2" in text and "lengths: [0.21, 0.17, 0, 0, 0]" in text, text)
     for command in ("calibrate", "record"):

@@ -3,6 +3,8 @@
 
 Usage: raw_captures.py HAPTICD       exit 1 when one is off
 """
+import csv
+import io
 import math
 import os
 import re
@@ -32,6 +34,7 @@ parameters:
       size: 20
       fields:
         - {is: counter, at: 0, type: u8}
+        - {is: time, at: 1, type: u16, scale: 1.0e-5}
         - {is: position, joint: 1, at: 4, type: i24, scale: @}
         - {is: position, joint: 2, at: 8, type: i24, scale: @}
         - {is: position, joint: 3, at: 12, type: i24, scale: @}
@@ -91,6 +94,8 @@ with tempfile.TemporaryDirectory() as folder:
     for changes, capture in (({}, OVER), ({}, text_of(OVER)), (plain, PLAIN)):
         code, out, err = decode(capture, changes)
         check("the right file has nothing to be told", code == 0 and "600 reports, 600 good" in err and err.count("\n") == 1, err)
+        rows = list(csv.DictReader(io.StringIO(out)))
+        check("the arm's own time is in its table", len(rows) == 600 and all(abs(float(row["clock"]) - i * 1e-3 % 0.65536) < 1e-9 for i, row in enumerate(rows)), rows[-1:])
 
     # The checksum: what it covers, where it is, and in which order.
     named("a checksum that covers the report id", OVER, plain, "the checksum of each of them is right with method: crc16, endian: little, over_id: true\n")
@@ -106,6 +111,16 @@ with tempfile.TemporaryDirectory() as folder:
     named("a checksum of an unknown method", bytes(b ^ 0x5A if i % 21 == 20 else b for i, b in enumerate(OVER)), {}, "no method that is known by name fits them either")
     code, out, err = decode(OVER[:21 * 300] + bytes(b ^ 0x5A if i % 21 == 20 else b for i, b in enumerate(OVER[21 * 300:])), {})
     check("no reason is looked for where half of them are good", code == 1 and "300 good" in err and "right with" not in err and "no method" not in err, err)
+
+    for change in ({", scale: 1.0e-5": ""}, {"scale: 1.0e-5": "scale: 0"}, {"is: time": "is: clock"}):
+        code, out, err = decode(OVER, change)
+        check(f"{change} is refused, and names of the other direction are not offered", code == 2 and ("scale" in err or "starts, time" in err) and "enable, calibrate" not in err, err)
+    done = subprocess.run([HAPTICD, "device", "encode", "--from-arm", os.path.join(folder, "arm.yaml")], input=b"0,0,0\n0,0,0\n", capture_output=True, timeout=120)
+    check("an input with a name that is none encodes nothing", done.returncode == 2 and not done.stdout, done)
+    decode(OVER, {})
+    done = subprocess.run([HAPTICD, "device", "encode", "--from-arm", os.path.join(folder, "arm.yaml")], input=b"0,0,0\n0,0,0\n", capture_output=True, timeout=120)
+    bodies = [bytes.fromhex(line) for line in done.stdout.decode().splitlines()]
+    check("encode lets the clock go on", len(bodies) == 2 and bodies[0][2:4] != bodies[1][2:4], done)
 
     # Id and size.
     for form, of in (("raw", bytes), ("text", text_of)):

@@ -162,6 +162,9 @@ TEST(SurfaceThatOnlyPushes, IsAClaimThatNobodyMustMake) {
   Scenario scenario({.models = {hostile("pulling", {value(1, HSP_BOOL, 0)})}, .limit = bare});
   EXPECT_GT(largest(press(scenario)), 3);
   EXPECT_EQ(scenario.trouble(), Trouble::kNone);
+  const record::ContactStatistics contact = scenario.telemetry().report({}).models[0].contact;
+  EXPECT_GT(2 * contact.pulls().ticks, contact.contactTicks()) << "but the report tells of its pull";
+  EXPECT_GT(contact.pulls().max_force, 3);
 }
 
 /// A shape that forgets HSP_OUT_TRACED is felt, and the report must not say that nothing was touched.

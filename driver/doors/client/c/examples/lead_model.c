@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* lead_model.c - moves a kinematic model up and down, and tells the force that the hand feels meanwhile.
+/* lead_model.c - moves a kinematic model up and down about where it is, and tells the force that the hand feels
+ * meanwhile.
  *
  *     cc lead_model.c -o lead_model $(pkg-config --cflags --libs hapticd-client) -lm
  *     hapticd run SCENE        with a model that has `motion: kinematic`
@@ -27,6 +28,22 @@ static long place(hapticd_client* client, int stream, const char* name) {
   return -1;
 }
 
+/* Where a model is, from the answer to `snapshot`, which is JSON without spaces. 0: it does not say. */
+static int pose_of(hapticd_client* client, const char* model, hapticd_target* pose, hapticd_error* error) {
+  static char answer[1 << 20];
+  char name[256];
+  double *p = pose->position, *q = pose->orientation;
+  const long length = hapticd_ask(client, "{\"do\":\"snapshot\"}", answer, sizeof answer, error);
+  if (length < 0) return 0;
+  snprintf(error->text, sizeof error->text, "the daemon does not tell where %s is", model);
+  snprintf(name, sizeof name, "{\"name\":\"%s\",", model);
+  const char* at = strstr(answer, name);
+  at = at != NULL ? strstr(at, "\"position\":[") : NULL;
+  if (at == NULL || sscanf(at, "\"position\":[%lf,%lf,%lf]", &p[0], &p[1], &p[2]) != 3) return 0;
+  at = strstr(at, "\"orientation\":[");
+  return at != NULL && sscanf(at, "\"orientation\":[%lf,%lf,%lf,%lf]", &q[0], &q[1], &q[2], &q[3]) == 4;
+}
+
 int main(int argc, char** argv) {
   const double seconds = argc > 3 ? atof(argv[3]) : 10, turn = 3.14159; /* rad/s */
   const struct timespec frame = {0, 16000000};
@@ -34,8 +51,9 @@ int main(int argc, char** argv) {
   if (argc < 2) return fprintf(stderr, "usage: lead_model MODEL [NAME [SECONDS]]\n"), 2;
   hapticd_client* client = hapticd_connect(argc > 2 ? argv[2] : NULL, &error);
   if (client == NULL) return fprintf(stderr, "error: %s\n", error.text), 1;
+  hapticd_target start = {.orientation = {1, 0, 0, 0}};
   hapticd_lead* lead = hapticd_lead_model(client, argv[1], &error);
-  if (lead == NULL) {
+  if (lead == NULL || !pose_of(client, argv[1], &start, &error)) {
     fprintf(stderr, "error: %s\n", error.text);
     hapticd_close(client);
     return 1;
@@ -45,10 +63,10 @@ int main(int argc, char** argv) {
   char row[4096];
   const double begun = now();
   for (double t = 0; t < seconds; t = now() - begun) {
-    const hapticd_target target = {.position = {0, -0.3 + 0.02 * sin(turn * t), 0},
-                                   .orientation = {1, 0, 0, 0},
-                                   .linear = {0, 0.02 * turn * cos(turn * t), 0},
-                                   .time = now()};
+    hapticd_target target = start;
+    target.position[1] += 0.02 * sin(turn * t);
+    target.linear[1] = 0.02 * turn * cos(turn * t);
+    target.time = now();
     hapticd_lead_put(lead, &target);
     uint64_t newest = hapticd_written(client, ticks) - 1;
     double felt;

@@ -18,7 +18,7 @@ from ._lead import ForceLead, Lead, PoseLead
 from ._models import Model, Parameter
 from ._push import ForceThread
 from ._rows import Column, Stream
-from ._state import State
+from ._state import FAULTS, State
 
-__all__ = ["Client", "Column", "Events", "ForceLead", "ForceThread", "HapticdError", "Lead", "Model", "NoForceWarning",
+__all__ = ["FAULTS", "Client", "Column", "Events", "ForceLead", "ForceThread", "HapticdError", "Lead", "Model", "NoForceWarning",
            "Parameter", "PoseLead", "Refused", "State", "Stream", "connect"]

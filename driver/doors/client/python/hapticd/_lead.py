@@ -17,6 +17,7 @@ _COUNT = struct.Struct("<Q")
 
 
 _UNIT = 1e-3  # of a quaternion's length, as the daemon has it
+_FAR = 10.0  # m, as the daemon has it
 
 
 def _finite(what: str, *numbers: float) -> None:
@@ -98,7 +99,10 @@ class PoseLead(Lead):
         except struct.error:
             raise ValueError(f"expected position, linear and angular of 3 numbers and orientation of 4, got "
                              f"{list(position)}, {list(linear)}, {list(angular)} and {list(orientation)}") from None
-        _finite("the target", *position, *orientation, *linear, *angular)
+        _finite("the target", *position, *orientation, *linear, *angular, stamp)
+        if max(map(abs, position)) > _FAR:
+            raise ValueError(f"the position {list(position)} is farther than {_FAR:g} m from the world's origin; the daemon would "
+                             f"refuse it: is it in m?")
         if abs(math.hypot(*orientation) - 1) > _UNIT:
             raise ValueError(f"the orientation {list(orientation)} has length {math.hypot(*orientation):g}, expected a "
                              f"unit quaternion w, x, y, z")

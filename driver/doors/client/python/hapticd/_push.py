@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Callable, Optional, Sequence
 
 from ._error import HapticdError, NoForceWarning
 from ._lead import ForceLead
-from ._state import Bell, State, StatePage
+from ._state import FAULTS, Bell, State, StatePage
 
 if TYPE_CHECKING:
     from ._client import Client
@@ -84,7 +84,7 @@ class ForceThread:
         if not why and fault == _STOPPED:
             return  # it is about to end
         # without a registry: also the second time
-        warnings.warn_explicit(why or f"device {self._device}: a fault ({fault}) ended its forces; see: hapticd ctl status",
+        warnings.warn_explicit(why or f"device {self._device}: a fault ({FAULTS[fault] if fault < len(FAULTS) else fault}) ended its forces; see: hapticd ctl status",
                                NoForceWarning, __file__, 0)
 
     def _answer(self) -> None:

@@ -20,6 +20,11 @@ _FUTEX = {"x86_64": 202, "aarch64": 98, "riscv64": 98}  # number of the system c
 _WORD = {"rows": 0, "state": 64}  # places in hapticd_bell, each with its flag behind it
 
 
+#: Words for the numbers of `State.fault` and of `code` in events of kind `fault`.
+FAULTS = ("", "not finite", "device lost", "device at fault", "stale samples", "too fast", "too late", "not calibrated",
+          "held or stopped", "stuck", "overheated", "jumped", "orientation not of length 1")
+
+
 class State(NamedTuple):
     """An arm before the shapes are felt. SI units, world frame."""
 
@@ -34,7 +39,12 @@ class State(NamedTuple):
     sent: tuple[float, float, float]  #: N, by the tick before
     good: bool  #: the sample was good; otherwise the pose is an older one
     buttons: int  #: bit i: button i is down
-    fault: int  #: why no force flows, 0: it does
+    fault: int  #: why no force flows, 0: it does; `fault_name` has a word for it
+
+    @property
+    def fault_name(self) -> str:
+        """"too fast", ...; "": a force flows. `h.status()` has the whole reason and its cure, as `no_force`."""
+        return FAULTS[self.fault] if self.fault < len(FAULTS) else f"fault {self.fault}"
 
 
 class StatePage:

@@ -220,6 +220,34 @@ TEST(Session, CountersThatWrapAreFollowed) {
   }
 }
 
+/// What becomes of reports of an arm without a counter whose clock stands still, after good ones.
+Trouble stopped(const char* scale, const char* type = "u16") {
+  const std::string text = std::string(R"({"rate":1000,"input":{"size":4,"fields":[)") +
+                           R"({"is":"position","joint":1,"at":0,"type":"i16","scale":0.001},)" +
+                           R"({"is":"time","at":2,"type":")" + type + R"(","scale":)" + scale +
+                           R"(}]},"output":{"size":2,"fields":[)" +
+                           R"({"is":"torque","joint":1,"at":0,"type":"i16","scale":0.001}]}})";
+  Session session(codec::readWire(text, 1), Rig::settings(Calibration::kNone));
+  Nanoseconds now = kMs;
+  session.attach(now, {}, true);
+  std::array<uint8_t, 64> out{};
+  std::vector<uint8_t> bytes(4, 0);
+  for (int i = 0; i < 500; ++i, now += kMs) {
+    if (i < 400) bytes[2] = static_cast<uint8_t>(i), bytes[3] = static_cast<uint8_t>(i >> 8);
+    session.receive(now, bytes);
+    (void)session.command(now, Wish{}, out);
+    session.watch(now);
+    if (i == 399 && session.trouble() != Trouble::kNone) return Trouble::kAbsent;
+  }
+  return session.trouble();
+}
+
+TEST(Session, AClockThatStandsStillIsTheSameReportAgain) {
+  EXPECT_EQ(stopped("0.0001"), Trouble::kStale);
+  EXPECT_EQ(stopped("0.001"), Trouble::kNone) << "so coarse that two good reports may have the same time";
+  EXPECT_EQ(stopped("0.0001", "u4"), Trouble::kNone) << "so narrow that it wraps from report to report";
+}
+
 /// Commands of a WoodenHaptics every `period`, of which it answers every `n`th. @return troubles met
 Trouble polled(Nanoseconds period, int n) {
   const auto wire = codec::readWire(emulator::wireOf(HAPTICD_SOURCE_DIR "/config/devices/woodenhaptics.yaml"), 3);

@@ -227,6 +227,31 @@ TEST_F(Report, TellsPeopleOfForceWithoutADepthAndFromOutside) {
   EXPECT_DOUBLE_EQ(ball.at("outside").at("force_max_n"), 0.25);
 }
 
+TEST_F(Report, TellsPeopleOfAPullThatLastsMostOfAContact) {
+  RunReport report = sample();
+  report.models[0].contact = {};
+  for (int i = 0; i < 10; ++i) report.models[0].contact.add(true, 0.001, 1.5, 1e-3, 0);
+  for (int i = 0; i < 5; ++i) report.models[0].contact.addPull(0.5);  // as a detent does
+  EXPECT_EQ(summary(report).find("pulled"), std::string::npos);
+  report.models[0].contact.addPull(1.5);
+  EXPECT_NE(
+      summary(report).find("warning   ball pulled the hand in during 60 % of its contact, with up to 1.50 N: has its "
+                           "force the wrong sign? hapticd plugin check tells"),
+      std::string::npos)
+      << summary(report);
+  ASSERT_TRUE(writeJson(report, file("r.json")));
+  EXPECT_EQ(nlohmann::json::parse(read(file("r.json"))).at("models").at("ball").at("pulls").at("ticks"), 6);
+}
+
+TEST_F(Report, TellsAResidualInAUnitThatReadsWell) {
+  RunReport report = sample();
+  report.models[0].degraded_ticks = 3;
+  report.models[0].residual_m = 7.39e-3;
+  EXPECT_NE(summary(report).find("residual up to 7.39 mm"), std::string::npos) << summary(report);
+  report.models[0].residual_m = 12e-6;
+  EXPECT_NE(summary(report).find("residual up to 12 um"), std::string::npos) << summary(report);
+}
+
 TEST_F(Report, DrawsEveryPeakAndEscapesNames) {
   std::vector<Sample> samples(5000);
   for (size_t i = 0; i < samples.size(); ++i) samples[i].t = static_cast<double>(i) * 1e-3;

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd device twin`: a simulated arm with the mechanism of a real one.
+#include "diagnostics/device_twin.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include "cli/command.hpp"
+#include "diagnostics/device_trial.hpp"
+#include "document/node.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+int makeTwin(const std::string& file, const std::string& wanted) {
+  namespace fs = std::filesystem;
+  document::Problems problems;
+  const auto root = document::parseFile(file, problems);
+  printProblems(problems, stderr);
+  if (!root) return kBadInput;
+  const auto text = diagnostics::twinOf(*root, fs::path(file).filename().string());
+  if (!text) return fail(kBadInput, text.error());
+  const std::string out = wanted.empty() ? fs::path(file).stem().string() + "-twin.yaml" : wanted;
+  std::error_code error;
+  if (fs::exists(out, error)) return fail(kBadInput, out + " exists already, expected the name of a new file");
+  std::ofstream stream(out);
+  stream << *text << std::flush;
+  if (!stream) return fail(kFailed, out + " is not writable");
+  problems = scene::loadDevice(out, catalog()).problems;
+  if (problems.empty()) problems = diagnostics::tryDevice(out, catalog());
+  printProblems(problems, stderr);
+  if (!problems.empty())
+    return fail(kFailed, out + " is written, but cannot be used yet\n  fix: hapticd check " + file +
+                             ", then write the twin anew");
+  std::printf("%s\n\nthen:\n  hapticd check SCENE.yaml --device %s\n  hapticd run SCENE.yaml --device %s --view\n",
+              out.c_str(), out.c_str(), out.c_str());
+  return kWorked;
+}
+
+}  // namespace
+
+void addDeviceTwin(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.get_subcommand("device")->add_subcommand(
+      "twin", "Write a device file of a simulated arm with the kinematics, limits and encoders of another file's arm.");
+  auto file = std::make_shared<std::string>(), out = std::make_shared<std::string>();
+  command->add_option("file", *file, "device file of the real arm (YAML)")->required();
+  command->add_option("-o,--out", *out, "file to write; default: FILE-twin.yaml in the current folder");
+  command->footer("Example:\n  hapticd device twin my-arm.yaml && hapticd run scene.yaml --device my-arm-twin.yaml");
+  command->callback([file, out, &exit_code] { exit_code = makeTwin(*file, *out); });
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+/// What a shape draws by hsp.geometry/1 against what it lets one feel: an eye that sees the surface elsewhere than the
+/// hand misleads both, and nothing else of a run compares the two.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "conformance/conformance_parts.hpp"
+
+namespace hapticd::conformance {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr size_t kMostTriangles = 96;
+constexpr double kDrawnChord = 0.0025, kDrawnReach = 0.005,
+                 kDrawnTolerance = 0.02;  // parts of the diagonal of the drawing
+
+/// The triangles, copied: they are valid until the next call alone.
+struct Drawing {
+  std::vector<Vector3d> corners;
+  std::vector<std::array<uint32_t, 3>> triangles;
+  Vector3d low = Vector3d::Zero(), high = Vector3d::Zero();  ///< of the corners [m]
+
+  double diagonal() const { return (high - low).norm(); }
+};
+
+/// How the triangles that were tried compare with the answers there.
+struct Compared {
+  size_t seen = 0, away = 0, outward = 0, inward = 0;
+  double distance = 0;             ///< [m] of the foot point that is farthest away
+  Vector3d at = Vector3d::Zero();  ///< the triangle that it belongs to
+};
+
+/// "" or what is wrong with the arrays as such.
+std::string readDrawing(const hsp_mesh& mesh, Drawing& to) {
+  if (mesh.vertex_count > 0 && mesh.xyz == nullptr) return "tessellate() counts vertices, and xyz is NULL";
+  if (mesh.triangle_count > 0 && mesh.indices == nullptr) return "tessellate() counts triangles, and indices is NULL";
+  for (size_t i = 0; i < mesh.vertex_count; ++i) {
+    const Vector3d p = Eigen::Map<const Eigen::Vector3f>(mesh.xyz + 3 * i).cast<double>();
+    if (!p.allFinite()) return "vertex " + std::to_string(i) + " is not finite";
+    to.low = i == 0 ? p : Vector3d(to.low.cwiseMin(p));
+    to.high = i == 0 ? p : Vector3d(to.high.cwiseMax(p));
+    to.corners.push_back(p);
+  }
+  for (size_t i = 0; i < mesh.triangle_count; ++i) {
+    const std::array<uint32_t, 3> corner{mesh.indices[3 * i], mesh.indices[3 * i + 1], mesh.indices[3 * i + 2]};
+    const uint32_t last = *std::max_element(corner.begin(), corner.end());
+    if (last >= mesh.vertex_count)
+      return "triangle " + std::to_string(i) + " has corner " + std::to_string(last) + ", but there are only " +
+             std::to_string(mesh.vertex_count) + " vertices (indices count from 0)";
+    to.triangles.push_back(corner);
+  }
+  return "";
+}
+
+/// "" or a corner that the box does not hold.
+std::string outsideBounds(const Drawing& drawing, const Vector3d& low, const Vector3d& high) {
+  if (!low.allFinite() || !high.allFinite() || (high - low).minCoeff() < 0)
+    return "bounds() gives from " + text(low) + " to " + text(high) + "; expected min below max, finite";
+  const double room = 1e-3 * drawing.diagonal();  // of floats, and of a chord
+  for (const Vector3d& p : drawing.corners)
+    if ((p - low).minCoeff() < -room || (p - high).maxCoeff() > room)
+      return "bounds() gives from " + text(low) + " to " + text(high) + ", but tessellate() has a vertex at " +
+             text(p) + "; expected a box that holds the model, in m, model frame";
+  return "";
+}
+
+/// The answer to a probe that comes to p and rests there.
+hsp_contact answerAtRest(Subject& subject, const Vector3d& p) {
+  subject.step({p}, kConformanceDt, HSP_IN_JUMP);
+  const Answer& answer = subject.step({p}, kConformanceDt);
+  return answer.status >= HSP_OK && finite(answer) ? answer.contacts[0] : hsp_contact{};
+}
+
+/// Probes close before and behind one triangle: both must find the surface there, and be deeper behind it.
+void compareTriangle(Subject& subject, const Drawing& drawing, size_t triangle, Compared& to) {
+  const auto& corner = drawing.triangles[triangle];
+  const Vector3d &a = drawing.corners[corner[0]], &b = drawing.corners[corner[1]], &c = drawing.corners[corner[2]];
+  const Vector3d across = (b - a).cross(c - a), middle = (a + b + c) / 3;
+  if (!(across.norm() > 1e-12 * drawing.diagonal() * drawing.diagonal())) return;  // no area, such as at a pole
+  const double reach = kDrawnReach * drawing.diagonal();
+  const Vector3d step = reach * across.normalized();
+  const hsp_contact before = answerAtRest(subject, middle + step), behind = answerAtRest(subject, middle - step);
+  double nearest = HUGE_VAL;
+  for (const hsp_contact* contact : {&before, &behind})
+    if ((contact->flags & HSP_OUT_TRACED) != 0) nearest = std::min(nearest, (Vector3d(contact->point) - middle).norm());
+  if (!std::isfinite(nearest)) return;  // it may say nothing outside of a contact
+  ++to.seen;
+  if (nearest > kDrawnTolerance * drawing.diagonal()) {
+    ++to.away;
+    if (nearest > to.distance) to.distance = nearest, to.at = middle;
+    return;
+  }
+  const auto depthOf = [&](const hsp_contact& contact) {
+    return (contact.flags & HSP_OUT_TRACED) != 0 ? contact.depth_m : -reach;
+  };
+  const double deeper = depthOf(behind) - depthOf(before);
+  if (deeper > reach / 2) ++to.outward;
+  if (deeper < -reach / 2) ++to.inward;  // in between: a thin wall, which is felt from either side
+}
+
+std::string verdictOf(const Compared& found) {
+  if (2 * found.away > found.seen)
+    return std::to_string(found.away) + " of " + std::to_string(found.seen) +
+           " triangles that were tried lie away from the surface that is felt: the one at " + text(found.at) + " is " +
+           text(found.distance) +
+           " m from the foot point there; expected both in m and in the model's frame, none turned or scaled";
+  if (found.inward > found.outward)
+    return "the triangles are inside out: " + std::to_string(found.inward) + " of " + std::to_string(found.seen) +
+           " that were tried have the solid on their front; expected indices counter-clockwise seen from outside";
+  return "";
+}
+
+}  // namespace
+
+std::string drawingWhereFelt(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  Subject& subject = *made.subject;
+  const auto* geometry = static_cast<const hsp_ext_geometry*>(subject.extension(HSP_EXT_GEOMETRY));
+  if (geometry == nullptr || geometry->tessellate == nullptr)
+    return "skip: it draws nothing (hsp.geometry/1), so the page of a run shows the arm and the foot point alone";
+  Vector3d low = Vector3d::Zero(), high = low;
+  hsp_mesh mesh{};
+  mesh.struct_size = sizeof mesh;
+  if (geometry->bounds == nullptr || geometry->bounds(subject.handle(), low.data(), high.data()) != HSP_OK)
+    return "skip: it gives no bounds()";
+  const double chord = kDrawnChord * std::max((high - low).norm(), 1e-6);
+  if (geometry->tessellate(subject.handle(), chord, &mesh) != HSP_OK) return "skip: tessellate() gives nothing";
+  Drawing drawing;
+  if (std::string wrong = readDrawing(mesh, drawing); !wrong.empty()) return wrong;
+  if (drawing.triangles.empty()) return "skip: tessellate() gives no triangle";
+  if (std::string wrong = outsideBounds(drawing, low, high); !wrong.empty()) return wrong;
+  if (subject.moves()) return "skip: it moves, and its surface with it";
+  Compared found;
+  const size_t tried = std::min(kMostTriangles, drawing.triangles.size());
+  constexpr double kGolden = 0.6180339887498949;  // even steps would meet the same column of a grid again and again
+  for (size_t i = 0; i < tried; ++i) {
+    const double part = std::fmod(kGolden * static_cast<double>(i), 1);
+    const auto triangle = static_cast<size_t>(part * static_cast<double>(drawing.triangles.size()));
+    compareTriangle(subject, drawing, triangle, found);
+  }
+  return verdictOf(found);
+}
+
+}  // namespace hapticd::conformance
