@@ -198,6 +198,18 @@ def many_files(daemon):
     resource.setrlimit(resource.RLIMIT_NOFILE, limits)
 
 
+def told_by_ctl(daemon):
+    """`ctl lead` outlives its daemon."""
+    line = subprocess.Popen([HAPTICD, "ctl", "--name", "trouble", "lead", "door"], env=daemon.environment, stdin=subprocess.PIPE,
+                            stderr=subprocess.PIPE, text=True)
+    with daemon.connect() as h:
+        until(lambda: h.models["door"].leader == line.pid)
+    daemon.run.kill()
+    daemon.run.wait()
+    _, told = line.communicate("0 -0.3 0\n", timeout=60)
+    check("ctl lead fails where its daemon was killed", line.returncode == 1 and "has ended" in told, (line.returncode, told))
+
+
 def dies(daemon):
     """The daemon is killed under a program in C and one in Python."""
     with daemon.connect() as h:
@@ -228,8 +240,7 @@ def dies(daemon):
     check("leaving the with tells it", raises(lambda: h.__exit__(None, None, None)))
     another = Daemon(daemon.folder)  # of the same name
     rest, _ = program.communicate("\n", timeout=120)
-    another.run.kill()
-    another.run.wait()
+    told_by_ctl(another)
     print(rest, end="")
     check("and every call in C", program.returncode == 0, rest)
 
