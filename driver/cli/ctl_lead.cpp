@@ -24,6 +24,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// What the servo would refuse is told here, where its line is known.
+Result<hapticd_target> checked(const hapticd_target& target) {
+  constexpr double kFarthest = 10, kUnitWithin = 1e-3;  // m; as in control.md
+  const auto length = [](const double* of, size_t count) {
+    double square = 0;
+    for (size_t i = 0; i < count; ++i) square += of[i] * of[i];
+    return std::sqrt(square);
+  };
+  if (!(length(target.position, 3) <= kFarthest)) return Error{"expected a position within 10 m of the origin, in m"};
+  if (!(std::abs(length(target.orientation, 4) - 1) <= kUnitWithin))
+    return Error{"expected a unit quaternion qw qx qy qz behind the position"};
+  return target;
+}
+
 /// Three numbers, or seven; an error says what the line has instead.
 Result<hapticd_target> targetOf(std::string line) {
   std::replace(line.begin(), line.end(), ',', ' ');
@@ -43,22 +57,24 @@ Result<hapticd_target> targetOf(std::string line) {
   target.orientation[0] = 1;
   std::copy_n(numbers.begin(), 3, target.position);
   if (numbers.size() == 7) std::copy_n(numbers.begin() + 3, 4, target.orientation);
-  return target;
+  return checked(target);
 }
 
-/// Each line is one target, put the moment it is read. @return false: a line is no target
-bool putLines(link::PoseSlot& slot) {
+int tellOfEnd() {
+  return fail(kFailed, "the daemon has ended, or it ended this lead: nothing follows any more");
+}
+
+/// Each line is one target, put the moment it is read. @return the exit code
+int putLines(const control::Client& client, link::PoseSlot& slot) {
   std::string line;
   for (int number = 1; std::getline(std::cin, line); ++number) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     const auto target = targetOf(line);
-    if (!target) {
-      std::fprintf(stderr, "error: line %d: %s\n", number, target.error().c_str());
-      return false;
-    }
+    if (!target) return fail(kBadInput, "line " + std::to_string(number) + ": " + target.error());
+    if (client.ended()) return tellOfEnd();
     slot.put(*target);
   }
-  return true;
+  return kWorked;
 }
 
 }  // namespace
@@ -75,11 +91,12 @@ int leadByLines(const LeadOptions& options) {
     return fail(kFailed, answer.is_object() ? answer.value("error", std::string("refused")) : reply->line);
   void* memory = mmap(nullptr, HAPTICD_LEAD_BYTES, PROT_READ | PROT_WRITE, MAP_SHARED, reply->descriptor.get(), 0);
   if (memory == MAP_FAILED) return fail(kFailed, std::string("cannot map the lead: ") + std::strerror(errno));
-  const bool good = putLines(*static_cast<link::PoseSlot*>(memory));
+  int exit_code = putLines(*client, *static_cast<link::PoseSlot*>(memory));
   RealClock clock(0);
-  if (good) clock.waitUntil(clock.now() + static_cast<Nanoseconds>(options.hold * 1e9));
+  if (exit_code == kWorked) clock.waitUntil(clock.now() + static_cast<Nanoseconds>(options.hold * 1e9));
   munmap(memory, HAPTICD_LEAD_BYTES);
-  return good ? kWorked : kBadInput;
+  if (exit_code == kWorked && client->ended()) exit_code = tellOfEnd();
+  return exit_code;
 }
 
 }  // namespace hapticd::cli

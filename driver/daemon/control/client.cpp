@@ -6,8 +6,11 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+
+#include "base/clock.hpp"
 
 namespace hapticd::control {
 
@@ -72,48 +75,96 @@ Result<void> Client::say(const std::string& line, std::span<const int> descripto
   for (size_t sent = 0; sent < out.size();) {
     const ssize_t now =
         sendWith(fd_, std::string_view(out).substr(sent), sent == 0 ? descriptors : std::span<const int>());
+    if (now < 0 && errno == EINTR) continue;
     if (now < 0 && errno == EAGAIN) return Error{"the daemon at " + file_ + " accepts no request"};
     if (now <= 0) break;
     sent += static_cast<size_t>(now);
   }
+  ++owed_;
   return {};
 }
 
-Result<Reply> Client::receive(double seconds) {
-  Reply reply;
-  pollfd polled{fd_, POLLIN, 0};
-  std::vector<Descriptor> descriptors;
-  while (heard_.find('\n') == std::string::npos && poll(&polled, 1, static_cast<int>(seconds * 1e3)) == 1) {
-    char buffer[4096];
-    const ssize_t got = receiveWith(fd_, buffer, descriptors);
-    if (got <= 0) break;
-    heard_.append(buffer, static_cast<size_t>(got));
+/// The daemon sends a descriptor with the first byte of its line, and the kernel gives out no byte of the next message
+/// with it: it belongs to the line that begins last.
+void Client::take(std::string_view bytes, std::vector<Descriptor> with) {
+  while (!bytes.empty()) {
+    const size_t end = bytes.find('\n');
+    const bool last = end == std::string_view::npos || end + 1 == bytes.size();
+    begun_.line.append(bytes.substr(0, end));
+    if (last && !with.empty()) begun_.descriptor = std::move(with.front());
+    if (end == std::string_view::npos) return;
+    lines_.push_back(std::exchange(begun_, Reply()));
+    bytes.remove_prefix(end + 1);
   }
-  if (!descriptors.empty()) reply.descriptor = std::move(descriptors.front());
-  const size_t end = heard_.find('\n');
-  if (end == std::string::npos) return Error{"the daemon at " + file_ + " did not answer"};
-  reply.line = heard_.substr(0, end);
-  heard_.erase(0, end + 1);
+}
+
+/// @return false: nothing more will come
+bool Client::receiveMore() {
+  char buffer[4096];
+  std::vector<Descriptor> with;
+  const ssize_t got = receiveWith(fd_, buffer, with);
+  if (got > 0) take({buffer, static_cast<size_t>(got)}, std::move(with));
+  return got > 0 || (got < 0 && errno == EINTR);
+}
+
+/// The next line, whatever it is.
+Result<Reply> Client::receive(double seconds) {
+  const Nanoseconds end = monotonicNow() + static_cast<Nanoseconds>(seconds * 1e9);
+  while (lines_.empty()) {
+    const Nanoseconds left = std::max<Nanoseconds>(end - monotonicNow(), 0);
+    pollfd polled{fd_, POLLIN, 0};
+    const int ready = poll(&polled, 1, static_cast<int>((left + 999'999) / 1'000'000));
+    if (ready < 0 && errno == EINTR) continue;  // a program may have signals of its own
+    if (ready != 1 || !receiveMore()) return Error{"the daemon at " + file_ + " did not answer"};
+  }
+  Reply reply = std::move(lines_.front());
+  lines_.pop_front();
   return reply;
+}
+
+/// The answer to the last request. Those to requests that were given up come before it.
+Result<Reply> Client::answer(double seconds) {
+  constexpr std::string_view kNews = R"({"event":)";
+  const Nanoseconds end = monotonicNow() + static_cast<Nanoseconds>(seconds * 1e9);
+  for (;;) {
+    auto reply = receive(static_cast<double>(end - monotonicNow()) * 1e-9);
+    if (!reply) return reply;
+    if (reply->line.compare(0, kNews.size(), kNews) != 0) {
+      owed_ -= std::min<size_t>(owed_, 1);
+      if (owed_ == 0) return reply;
+    } else {
+      news_.push_back(std::move(*reply));
+      if (news_.size() > kMostNews) news_.pop_front();
+    }
+  }
 }
 
 Result<Reply> Client::askForMore(const std::string& line, double seconds) {
   if (auto said = say(line); !said) return Error{said.error()};
-  return receive(seconds);
+  return answer(seconds);
+}
+
+void Client::leave(const std::string& line) {
+  (void)say(line);
 }
 
 Result<std::string> Client::ask(const std::string& line, double seconds) {
-  auto reply = askForMore(line, seconds);
-  if (!reply) return Error{reply.error()};
-  return std::move(reply->line);
+  return askWith(line, {}, seconds);
 }
 
 Result<std::string> Client::askWith(const std::string& line, std::span<const int> descriptors, double seconds) {
   if (auto said = say(line, descriptors); !said) return Error{said.error()};
-  return hear(seconds);
+  auto reply = answer(seconds);
+  if (!reply) return Error{reply.error()};
+  return std::move(reply->line);
 }
 
 Result<std::string> Client::hear(double seconds) {
+  if (!news_.empty()) {
+    Reply first = std::move(news_.front());
+    news_.pop_front();
+    return std::move(first.line);
+  }
   auto reply = receive(seconds);
   if (!reply) return Error{reply.error()};
   return std::move(reply->line);

@@ -63,6 +63,15 @@ static void asks(hapticd_client* c, const char* arm) {
         hapticd_ask(c, "{\"do\":\"status\"}", two, sizeof two, NULL) > 10 && strcmp(two, "{") == 0);
   check("a refusal has a code", hapticd_ask(c, "{\"do\":\"get\",\"model\":\"no such\"}", NULL, 0, &error) == -1 &&
                                     strcmp(error.code, "unknown") == 0 && strstr(error.text, "no such"));
+  check("who subscribed", hapticd_ask(c, "{\"do\":\"subscribe\"}", NULL, 0, &error) > 0);
+  for (int i = 0; i < 3; ++i) {
+    hapticd_lead* lead = hapticd_lead_force(c, arm, &error); /* two events */
+    usleep(50000);
+    check("gets answers among the events",
+          lead != NULL && hapticd_ask(c, "{\"do\":\"status\"}", answer, sizeof answer, &error) > 10 &&
+              strstr(answer, "missed_ticks"));
+    hapticd_lead_end(lead);
+  }
   check("two lines are no request", hapticd_ask(c, "{}\n{}", NULL, 0, &error) == -1);
   check("it tells of itself", strstr(hapticd_about(c), "\"columns\"") != NULL && strlen(hapticd_version()) >= 5);
   check("devices have numbers", hapticd_device(c, arm) == 0 && strcmp(hapticd_device_name(c, 0), arm) == 0 &&

@@ -3,11 +3,15 @@
 
 Usage: tell_of_trouble.py HAPTICD SOURCE OUTLIVES     prints one line per case; exit 1 when one is off.
 """
+import contextlib
 import os
+import resource
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
+import time
 import warnings
 
 HAPTICD, SOURCE, OUTLIVES = sys.argv[1:4]
@@ -49,7 +53,14 @@ class Daemon:
         with open(self.log, "w") as log:
             self.run = subprocess.Popen([HAPTICD, "run", scene, "--name", "trouble"], env=self.environment,
                                         stdout=subprocess.DEVNULL, stderr=log)
-        until(lambda: os.path.exists(os.path.join(folder, "trouble.sock")), 30)
+        until(lambda: os.path.exists(os.path.join(folder, "trouble.sock")) and self.connects(), 30)
+
+    def connects(self):
+        try:
+            self.connect().close()
+            return True
+        except hapticd.HapticdError:
+            return False
 
     def connect(self):
         return hapticd.connect("trouble", folder=self.folder)
@@ -127,12 +138,76 @@ def refused(daemon):
     check("who ends in order is told so", daemon.says(f"process {os.getpid()}", "pushes on it no more"), daemon.told())
 
 
-def raises(action):
+def raises(action, word="gone"):
     try:
         action()
     except hapticd.HapticdError as error:
-        return "gone" in str(error)
+        return word in str(error)
     return False
+
+
+def moves(h, lead, y):
+    """The door goes where its leader says."""
+    def there():
+        lead.put([0, y, 0])
+        return abs(h.models["door"].position[1] - y) < 1e-3
+    return until(there)
+
+
+def late(daemon):
+    """An answer that came too late for its request is no other's, and brings no memory for another."""
+    with daemon.connect() as h:
+        h.timeout = 0.2
+        daemon.run.send_signal(signal.SIGSTOP)
+        given_up = raises(lambda: h.lead_model("door"), "did not answer")
+        daemon.run.send_signal(signal.SIGCONT)
+        h.timeout = 10
+        h.ask(do="geometry", model="door", **{"as": "memory"})
+        h.clear()
+        with h.lead_model("door") as lead:
+            check("a model whose lead was given up can be led, by its own memory", given_up and moves(h, lead, -0.31))
+
+
+def forgotten(daemon):
+    """One that was silent while others wait for a place is told so, and not that the daemon is gone."""
+    with daemon.connect() as h:
+        lines = []
+
+        def full():
+            lines.append(socket.socket(socket.AF_UNIX))
+            with contextlib.suppress(OSError):  # others are sent away too
+                lines[-1].connect(os.path.join(daemon.folder, "trouble.sock"))
+                lines[-1].sendall(b'{"do":"snapshot"}\n')
+            time.sleep(0.05)
+            return h._line.ended()
+        check("a silent client makes room", until(full, 60))
+        check("and is told why", raises(h.status, "others waited for its place"))
+        for line in lines:
+            line.close()
+
+
+def many_files(daemon):
+    """A program may have more open files than select() can tell of."""
+    limits = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (min(2048, limits[1]), limits[1]))
+    files = [os.open(os.devnull, os.O_RDONLY) for _ in range(1100)]
+    with daemon.connect() as h:
+        check("more files than select() can tell of are no trouble", h.status()["ok"])
+    for file in files:
+        os.close(file)
+    resource.setrlimit(resource.RLIMIT_NOFILE, limits)
+
+
+def told_by_ctl(daemon):
+    """`ctl lead` outlives its daemon."""
+    line = subprocess.Popen([HAPTICD, "ctl", "--name", "trouble", "lead", "door"], env=daemon.environment, stdin=subprocess.PIPE,
+                            stderr=subprocess.PIPE, text=True)
+    with daemon.connect() as h:
+        until(lambda: h.models["door"].leader == line.pid)
+    daemon.run.kill()
+    daemon.run.wait()
+    _, told = line.communicate("0 -0.3 0\n", timeout=60)
+    check("ctl lead fails where its daemon was killed", line.returncode == 1 and "has ended" in told, (line.returncode, told))
 
 
 def dies(daemon):
@@ -156,12 +231,16 @@ def dies(daemon):
     check("a push learns that its daemon is gone", until(lambda: push.error is not None))
     check("and raises it", raises(push.end))
     check("old rows are not given out as new ones", raises(lambda: h.rows("ticks", last=1)))
+    check("nor an old state", raises(lambda: h.state(ARM)))
+    check("nor is a tick waited for", raises(lambda: h.wait(1 << 40)))
     check("a lead tells it", raises(lambda: lead.put([0, 0, 0])))
     check("and its end", raises(lead.end))
     check("who follows gets the last rows, then the news", raises(lambda: [None for _ in rows]))
     check("who waits for events too", raises(lambda: [None for _ in events]))
     check("leaving the with tells it", raises(lambda: h.__exit__(None, None, None)))
+    another = Daemon(daemon.folder)  # of the same name
     rest, _ = program.communicate("\n", timeout=120)
+    told_by_ctl(another)
     print(rest, end="")
     check("and every call in C", program.returncode == 0, rest)
 
@@ -171,5 +250,8 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     held(one)
     logged(one)
     refused(one)
+    late(one)
+    forgotten(one)
+    many_files(one)
     dies(one)
 finish()

@@ -58,10 +58,11 @@ static void of_frames(void) {
   check("joints are told, a gimbal that is none is 0", seen.joints[1] != 0 && seen.gimbal[0] == 0);
 }
 
+/* The first number of a parameter; some have one of each joint. */
 static double number(HDenum name) {
-  HDdouble value = -1;
-  hdGetDoublev(name, &value);
-  return value;
+  HDdouble values[16] = {-1};
+  hdGetDoublev(name, values);
+  return values[0];
 }
 
 static void of_arm(void) {

@@ -260,6 +260,10 @@ def answers(daemon):
         check("ctl lead moves a model", code == 0 and abs(height(client) + 0.2) < 1e-6, (err, height(client)))
         code, out, err = daemon.ctl("lead", "door", stdin="0 0\n")
         check("ctl lead tells of a line that is none", code == 2 and "line 1" in err, err)
+        code, out, err = daemon.ctl("lead", "door", stdin="0 -0.2 0\n0 -250 0\n")
+        check("and of one that is too far away, as in mm", code == 2 and "line 2" in err and "10 m" in err, err)
+        code, out, err = daemon.ctl("lead", "door", stdin="0 -0.2 0 1 1 0 0\n")
+        check("and of an orientation that is none", code == 2 and "line 1" in err and "unit quaternion" in err, err)
         code, out, err = daemon.ctl("lead")
         check("ctl lead needs a target", code == 2, err)
 

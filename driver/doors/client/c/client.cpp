@@ -98,9 +98,14 @@ using hapticd::client::tell;
 bool hapticd_client::ask(const std::string& request, Answer& answer, hapticd_error* error) {
   const std::lock_guard lock(asking);
   auto reply = line.askForMore(request);
-  if (!reply) return tell(error, "gone", reply.error()), false;
+  if (!reply) return tellOfSilence(reply.error(), error), false;
   answer = {std::move(reply->line), std::move(reply->descriptor)};
   return !hapticd::client::refused(answer.line, error);
+}
+
+void hapticd_client::leave(const std::string& request) {
+  const std::lock_guard lock(asking);
+  line.leave(request);
 }
 
 std::byte* hapticd_client::page(const char* request, hapticd::client::Mapping& kept, size_t least, int protection) {
@@ -114,9 +119,20 @@ std::byte* hapticd_client::page(const char* request, hapticd::client::Mapping& k
   return kept.data();
 }
 
+/// Why there was no answer: the daemon has ended, it ended this connection, or it takes too long.
+void hapticd_client::tellOfSilence(const std::string& problem, hapticd_error* error) {
+  if (!line.ended()) return tell(error, "timeout", problem);
+  constexpr useconds_t kMeanwhile = 20'000;  // [us] a daemon that ends closes its connections first
+  usleep(kMeanwhile);
+  if (ended() || access((base + ".sock").c_str(), F_OK) != 0) return tell(error, "gone", problem);
+  tell(
+      error, "too_many",
+      "the daemon ended this connection, because others waited for its place while it was silent\n  fix: connect anew");
+}
+
 /// A connection may end before the daemon does: where others need its place.
 bool hapticd_client::ended() {
-  return line.ended() && (!rows.isFile(base + ".blackbox.h5") || hapticd_alive(this) == 0);
+  return line.ended() && hapticd_alive(this) == 0;
 }
 
 const char* hapticd_version(void) {
@@ -141,6 +157,7 @@ void hapticd_close(hapticd_client* client) {
 }
 
 int hapticd_alive(hapticd_client* client) {
+  if (client->line.ended() && !client->rows.isFile(client->base + ".blackbox.h5")) return 0;  // another has its name
   const std::string file = client->base + ".lock";
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   // Another user's lock cannot be opened; its socket goes with it.

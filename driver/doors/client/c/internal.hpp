@@ -104,11 +104,15 @@ struct hapticd_client {
       : base(std::move(where)), line(std::move(on)), rows(std::move(box)) {}
   /// A request whose answer says that it was done.
   bool ask(const std::string& request, hapticd::client::Answer& answer, hapticd_error* error);
+  /// A request whose answer nobody waits for.
+  void leave(const std::string& request);
   /// The memory of a request, mapped once. nullptr: it cannot be had
   std::byte* page(const char* request, hapticd::client::Mapping& kept, size_t least, int protection);
 
   /// [any] The daemon that this is a client of has ended: its rows and states are old.
   bool ended();
+  void tellOfSilence(const std::string& problem, hapticd_error* error);
+
   std::string base;  ///< of the daemon's files, "/run/hapticd/NAME"
   hapticd::control::Client line;
   hapticd::client::Rows rows;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Leads: memory that this program writes and the servo looks at once a tick.
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "internal.hpp"
@@ -16,17 +17,24 @@ std::string noForce(const std::string& answer) {
   return json.is_object() && json.contains("no_force") ? json["no_force"].get<std::string>() : "";
 }
 
+std::string requestOf(const char* word, const char* what, const char* name) {
+  const nlohmann::json request = {{"do", word}, {what, name}};
+  return request.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 hapticd_lead* leadOf(hapticd_client* client, const char* what, const char* name, hapticd_error* error) try {
+  hapticd_error problem;
+  if (error == nullptr) error = &problem;
   tell(error, "", "");
-  nlohmann::json request = {{"do", "lead"}, {what, name}};
+  const std::string begin = requestOf("lead", what, name), end = requestOf("unlead", what, name);
   Answer answer;
-  if (!client->ask(request.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), answer, error))
+  if (!client->ask(begin, answer, error)) {
+    if (std::strcmp(error->code, "timeout") == 0) client->leave(end);  // it may be led yet, and by nobody
     return nullptr;
+  }
   hapticd::client::Mapping memory(answer.descriptor.get(), HAPTICD_LEAD_BYTES, PROT_READ | PROT_WRITE);
   if (memory.data() == nullptr) return tell(error, "damaged", "the memory of the lead cannot be mapped"), nullptr;
-  request["do"] = "unlead";
-  auto* lead = new hapticd_lead{client, request.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
-                                std::string_view(what) == "force", std::move(memory)};
+  auto* lead = new hapticd_lead{client, end, std::string_view(what) == "force", std::move(memory)};
   client->leads.push_back(lead);
   if (const std::string why = noForce(answer.line); !why.empty()) tell(error, "no_force", why);
   return lead;

@@ -5,12 +5,14 @@ from __future__ import annotations
 import array
 import fcntl
 import json
+import math
 import os
 import select
 import socket
 import stat
 import time
 import warnings
+from collections import deque
 from typing import Any, Callable, Iterator, Optional, Sequence
 
 from ._error import HapticdError, Named, NoForceWarning, Refused
@@ -67,8 +69,10 @@ class _Line:
         except OSError as error:
             self._socket.close()
             raise HapticdError(f"no daemon answers at {file}: {error.strerror}") from None
-        self._heard = b""
-        self._descriptors: list[int] = []
+        self._begun = b""  # a line whose end has not come yet
+        self._begun_with: list[int] = []  # and the descriptors that it brings
+        self._lines: deque[tuple[bytes, list[int]]] = deque()
+        self._descriptors: list[int] = []  # of the last line that was given out
 
     def say(self, request: dict[str, Any]) -> None:
         try:
@@ -83,26 +87,40 @@ class _Line:
     def hear(self, timeout: Optional[float]) -> Optional[dict[str, Any]]:
         """The next line; None: there was none in time."""
         end = None if timeout is None else time.monotonic() + timeout
-        while b"\n" not in self._heard:
+        while not self._lines:
             if self._socket.fileno() < 0:
                 return None
             left = None if end is None else max(end - time.monotonic(), 0)
-            if not select.select([self._socket], [], [], left)[0]:
+            ready = select.poll()  # select.select() takes no descriptor beyond 1023
+            ready.register(self._socket, select.POLLIN)
+            if not ready.poll(None if left is None else math.ceil(left * 1e3)):
                 return None
-            try:
-                data, ancillary, _, _ = self._socket.recvmsg(1 << 16, socket.CMSG_SPACE(16), socket.MSG_CMSG_CLOEXEC)
-            except OSError as error:
-                raise HapticdError(f"the daemon is gone: {error.strerror}") from None
-            for level, kind, content in ancillary:
-                if level == socket.SOL_SOCKET and kind == socket.SCM_RIGHTS:
-                    fds = array.array("i")
-                    fds.frombytes(content[:len(content) - len(content) % fds.itemsize])
-                    self._descriptors += fds
-            if not data or len(self._heard) > _MOST_LINE:
-                raise HapticdError("the daemon is gone")
-            self._heard += data
-        line, self._heard = self._heard.split(b"\n", 1)
+            self._receive()
+        line, descriptors = self._lines.popleft()
+        self._forget()
+        self._descriptors = descriptors
         return json.loads(line)
+
+    def _receive(self) -> None:
+        try:
+            data, ancillary, _, _ = self._socket.recvmsg(1 << 16, socket.CMSG_SPACE(16), socket.MSG_CMSG_CLOEXEC)
+        except OSError as error:
+            raise HapticdError(f"the daemon is gone: {error.strerror}") from None
+        fds = array.array("i")
+        for level, kind, content in ancillary:
+            if level == socket.SOL_SOCKET and kind == socket.SCM_RIGHTS:
+                fds.frombytes(content[:len(content) - len(content) % fds.itemsize])
+        if not data or len(self._begun) > _MOST_LINE:
+            raise HapticdError("the daemon is gone")
+        *whole, rest = data.split(b"\n")
+        for number, part in enumerate(whole):
+            # a descriptor comes with the first byte of its line, and nothing behind that message with it
+            last = not rest and number + 1 == len(whole)
+            self._lines.append((self._begun + part, self._begun_with + (list(fds) if last else [])))
+            self._begun, self._begun_with = b"", []
+        self._begun += rest
+        if rest:
+            self._begun_with += fds
 
     def ended(self) -> bool:
         """The other end is closed: the kernel tells at once, however its process ended."""
@@ -116,17 +134,20 @@ class _Line:
         """The one that came with the last line."""
         if not self._descriptors:
             raise HapticdError("the daemon sent no memory along with its answer")
-        fd, rest = self._descriptors[0], self._descriptors[1:]
-        self._descriptors = []
-        for other in rest:
-            os.close(other)
-        return fd
+        return self._descriptors.pop(0)
 
-    def close(self) -> None:
-        self._socket.close()
+    def _forget(self) -> None:
         for fd in self._descriptors:
             os.close(fd)
         self._descriptors = []
+
+    def close(self) -> None:
+        self._socket.close()
+        self._forget()
+        for fd in self._begun_with + [fd for _, fds in self._lines for fd in fds]:
+            os.close(fd)
+        self._begun_with = []
+        self._lines.clear()
 
 
 class Events:
@@ -257,7 +278,17 @@ class Client:
     def ask(self, **request: Any) -> dict[str, Any]:
         """Any request of control.md, as ask(do="set", model="teapot", ...). Raises Refused where the daemon refuses."""
         self._asked += 1
-        self._line.say(dict(request, id=self._asked))
+        try:
+            return self._answered(dict(request, id=self._asked))
+        except Refused:
+            raise
+        except HapticdError:
+            if why := self._lost():
+                raise HapticdError(why) from None
+            raise
+
+    def _answered(self, request: dict[str, Any]) -> dict[str, Any]:
+        self._line.say(request)
         while True:
             answer = self._line.hear(self.timeout)
             if answer is None:
@@ -306,14 +337,24 @@ class Client:
         return self._lead({"hand": device})
 
     def _lead(self, target: dict[str, str]) -> PoseLead:
-        answer = self.ask(do="lead", **target)
+        answer = self._begin(target)
         return PoseLead(self._line.descriptor(), answer["bytes"], lambda: self._unlead(target), self._lost_lead)
+
+    def _begin(self, target: dict[str, str]) -> dict[str, Any]:
+        try:
+            return self.ask(do="lead", **target)
+        except Refused:
+            raise
+        except HapticdError:
+            if not self._line.ended():
+                self._line.say({"do": "unlead", **target})  # it may be led yet, and by nobody
+            raise
 
     def lead_force(self, device: str) -> ForceLead:
         """Pushes on the hand of an arm, tick by tick; `push` does it in a thread. The scene must allow it (`clients`).
         Warns (NoForceWarning) where the arm gets no force now."""
         target = {"force": device}
-        answer = self.ask(do="lead", **target)
+        answer = self._begin(target)
         if answer.get("no_force"):
             warnings.warn(answer["no_force"], NoForceWarning, stacklevel=2)
         return ForceLead(self._line.descriptor(), answer["bytes"], lambda: self._unlead(target), self._lost_lead)
@@ -323,6 +364,16 @@ class Client:
         if not self._line.ended():
             return ""
         return self._gone() if self.ended() else "the daemon ended the connection, and with it this lead; connect anew"
+
+    def _lost(self) -> str:
+        """Why no answer comes on this connection; "": it may yet."""
+        if not self._line.ended():
+            return ""
+        time.sleep(0.02)  # a daemon that ends closes its connections first
+        if self.ended() or not os.path.exists(self._base + ".sock"):
+            return self._gone()
+        return ("the daemon ended this connection, because others waited for its place while it was silent\n"
+                "  fix: connect anew")
 
     def _no_force(self, device: str) -> str:
         """[any thread] Why an arm gets no force now, as the daemon says it; "": it gets what is asked for."""
@@ -341,7 +392,9 @@ class Client:
         return ForceThread(self, device, callback, priority)
 
     def state(self, device: str) -> State:
-        """The arm in the newest tick. The first call waits for the next tick, at most `timeout` of the client."""
+        """The arm in the newest tick. The first call waits for the next tick, at most `timeout` of the client. Raises
+        HapticdError once the daemon has ended: its newest tick is that of the past."""
+        self._check()
         if self._states is None:
             self._states = self._state_page()
         end, seen = time.monotonic() + self.timeout, 0
@@ -371,11 +424,13 @@ class Client:
         return [d["name"] for d in self.about["devices"]]
 
     def wait(self, tick: int, timeout: float = 1.0) -> bool:
-        """Sleeps until the rows of this tick are written, at most `timeout` seconds: whether they are."""
+        """Sleeps until the rows of this tick are written, at most `timeout` seconds: whether they are. Raises HapticdError
+        where the daemon ended before."""
         end = time.monotonic() + timeout
         rows = self._box.streams["ticks"]
         seen = rows.written
         while seen <= tick and (left := end - time.monotonic()) > 0:
+            self._check()
             self._ring().wait("rows", seen, min(left, 0.1))
             seen = rows.written
         return seen > tick

@@ -122,7 +122,8 @@ class ForceLead(Lead):
         try:
             record = _PUSH.pack(tick, *force, *torque, woke_ns, time.monotonic_ns())
         except struct.error:
-            raise ValueError(f"expected force and torque of 3 numbers, got {list(force)} and {list(torque)}") from None
+            raise ValueError(f"expected a tick from 0 on, force and torque of 3 numbers, got {tick}, {list(force)} and "
+                             f"{list(torque)}") from None
         _finite("the force or torque", *force, *torque)
         self._put(record)
 
