@@ -189,10 +189,11 @@ std::string armOf(const NewDeviceArguments& o) {
     if (isPlanar(o))
       text +=
           "      # Every alpha is 0: all axes are parallel, and the tip stays in a plane. A base that turns about the\n"
-          "      # vertical has alpha 1.5707963 in the first row, and below: base_orientation: [0.7071068, -0.7071068, "
-          "0, "
-          "0]\n";
-    text += "    # masses: [...]               # kg, one per row; left out: its weight is not carried\n";
+          "      # vertical has alpha 1.5707963 in the first row, and base_orientation below.\n";
+    text +=
+        "    # base_orientation: [0.7071068, -0.7071068, 0, 0]   # the first axis points up; left out: toward the "
+        "user\n"
+        "    # masses: [...]               # kg, one per row; left out: its weight is not carried\n";
   }
   text += fmt::format(
       "    # limits: [[-1, 1], ...]      # rad, one row per joint; left out: the mechanism's own\n"

@@ -90,6 +90,43 @@ Eigen::Vector3d originOf(const Node& mount) {
   return -(Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().conjugate() * position);
 }
 
+/// Tip of a chain in the middle of its limits, device frame (standard Denavit-Hartenberg): there it begins.
+Eigen::Vector3d restOf(const Node& arm) {
+  const auto vectorAt = [&arm](std::string_view key) {
+    const std::vector<double> p = numbersOf(below(arm, key), 3);
+    return p.empty() ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(p[0], p[1], p[2]);
+  };
+  Eigen::Isometry3d frame(Eigen::Translation3d(vectorAt("origin")));
+  if (const std::vector<double> q = numbersOf(below(arm, "base_orientation"), 4); !q.empty())
+    frame.rotate(Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized());
+  const std::vector<Node>&rows = below(arm, "dh").items, &limits = below(arm, "limits").items;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const std::vector<double> row = numbersOf(rows[i], 4);
+    const std::vector<double> limit = i < limits.size() ? numbersOf(limits[i], 2) : std::vector<double>();
+    if (row.empty()) continue;
+    const double joint = limit.empty() ? 0 : (limit[0] + limit[1]) / 2;
+    frame.rotate(Eigen::AngleAxisd(row[3] + joint, Eigen::Vector3d::UnitZ()));
+    frame.translate(Eigen::Vector3d(row[0], 0, row[2]));
+    frame.rotate(Eigen::AngleAxisd(row[1], Eigen::Vector3d::UnitX()));
+  }
+  return frame * vectorAt("tool_position");
+}
+
+/// Where the twin stands: as its arm does, or, of a chain that does not say, with its tip where scenes expect a hand.
+std::string mountOf(const Node& mount, const Node& arm, bool chain, Eigen::Vector3d& center) {
+  center = originOf(mount);
+  if (mount.isMap()) return "mount: " + toJson(mount) + "\n";
+  if (!chain) return "";
+  const auto rounded = [](double v) { return std::round(v * 1e6) * 1e-6 + 0.0; };
+  const Eigen::Vector3d at = (Eigen::Vector3d(0, 0, 0.09) - restOf(arm)).unaryExpr(rounded);
+  center = -at;
+  return fmt::format(
+      "mount: {{position: [{:g}, {:g}, {:g}]}}    # the arm's file has none: this puts its tip in the middle of "
+      "arm.limits "
+      "9 cm in front of the shapes\n",
+      at.x(), at.y(), at.z());
+}
+
 }  // namespace
 
 Result<std::string> twinOf(const Node& root, const std::string& file) {
@@ -104,13 +141,14 @@ Result<std::string> twinOf(const Node& root, const std::string& file) {
     return Error{file + ": parameters.arm.others: joints that do not carry the tip have no twin"};
   const Node &mount = below(root, "mount"), &limits = below(root, "limits");
   const double rate = document::toNumber(below(below(parameters, "wire"), "rate").scalar).value_or(1000);
-  const Eigen::Vector3d center = originOf(mount);
+  Eigen::Vector3d center;
+  const std::string stands = mountOf(mount, arm, kind == "chain", center);
   const auto zero = [](double v) { return v == 0 ? 0 : v; };  // no "-0"
   std::string text = fmt::format(
       "# A simulated arm with the mechanism of {}, written by `hapticd device twin`; it needs no hardware.\n"
       "hapticd-device: 1\nmodule: simulated\nname: twin of {}\n",
       file, below(root, "name").scalar);
-  if (mount.isMap()) text += "mount: " + toJson(mount) + "\n";
+  text += stands;
   if (limits.isMap())
     text += "limits: " + jsonWithout(limits, kButtons) +
             (below(limits, "enable").isNull() ? "\n" : "    # without enable: it has no buttons\n");

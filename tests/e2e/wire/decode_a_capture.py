@@ -282,6 +282,15 @@ with tempfile.TemporaryDirectory() as folder:
                           capture_output=True, text=True, timeout=120)
     touched = json.load(open(report))["models"]["sphere"]["contact_ticks"] if os.path.exists(report) else 0
     check("and it presses the sphere", done.returncode == 0 and touched > 100, (touched, done.stdout[-800:], done.stderr[-800:]))
+    # A chain that does not say where it stands is put where scenes expect a hand.
+    text = open(bent).read().replace("# limits: [[-1, 1], ...]", "limits: [[-1.5, 1.5], [-0.5, 1.5], [-2.57, -0.57]]").replace("# base_orientation", "base_orientation")
+    open(bent, "w").write(text)
+    os.remove(twin), os.remove(report)
+    code, out, err = run("twin", bent, "-o", twin)
+    done = subprocess.run([HAPTICD, "run", os.path.join(SOURCE, "config/scenes/sphere.yaml"), "--device", twin, "--for", "3", "--virtual-time", "--report", report],
+                          capture_output=True, text=True, timeout=120)
+    touched = json.load(open(report))["models"]["sphere"]["contact_ticks"] if os.path.exists(report) else 0
+    check("a chain's twin presses the sphere too", code == 0 and touched > 100, (touched, open(twin).read(), done.stdout[-800:], done.stderr[-800:]))
     for file, words in (("falcon.yaml", "expected phantom or chain"), ("sarcos.yaml", "arm.others"), ("simulated-premium15.yaml", "simulated already")):
         code, out, err = run("twin", os.path.join(SOURCE, "config/devices", file), "-o", os.path.join(folder, "none.yaml"))
         check(f"{file} has none, and why", code == 2 and words in err and not os.path.exists(os.path.join(folder, "none.yaml")), err)
