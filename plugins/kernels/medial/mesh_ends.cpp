@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Where a medial mesh ends.
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <map>
 
