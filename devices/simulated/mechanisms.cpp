@@ -11,15 +11,15 @@ using kinematics::ChainGeometry;
 using kinematics::ChainLink;
 
 void PhantomMechanism::evaluate(const Vector& q, const Vector& qd) noexcept {
-  dynamics_.evaluate(q, qd, M, bias);
-  tip = arm_.position(q);
-  J = arm_.positionJacobian(q);
-  bias += arm_.weight(q, gravity_);
+  const kinematics::PhantomAngles at(q);  // sines are a third of the work
+  dynamics_.evaluate(at, qd, M, bias);
+  tip = arm_.position(at);
+  J = arm_.positionJacobian(at);
+  bias += arm_.weight(at, gravity_);
   if (hand_mass_ <= 0) return;
   // (dJ/dt) qd: the tip's acceleration when no joint accelerates
   const double l1 = arm_.geometry().l1, l2 = arm_.geometry().l2;
-  const double s1 = std::sin(q[0]), c1 = std::cos(q[0]), s2 = std::sin(q[1]), c2 = std::cos(q[1]);
-  const double s3 = std::sin(q[2]), c3 = std::cos(q[2]);
+  const auto [s1, c1, s2, c2, s3, c3] = at;
   const double r = l1 * c2 + l2 * s3, r_rate = -l1 * s2 * qd[1] + l2 * c3 * qd[2];
   const double w1 = qd[0] * qd[0], w2 = qd[1] * qd[1], w3 = qd[2] * qd[2];
   const double out = -l1 * c2 * w2 - l2 * s3 * w3 - r * w1, aside = 2 * r_rate * qd[0];

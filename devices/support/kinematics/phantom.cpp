@@ -13,9 +13,9 @@ constexpr double kOpening = 55 * kDegree, kClosing = 65 * kDegree;
 
 /// Of the point (a c2 + b s3 out, a s2 - b c3 up) turned by q1: the tip with the link lengths for a and b, the centre
 /// of mass with the first moments.
-Eigen::Matrix3d planarJacobian(double a, double b, const Eigen::Vector3d& q) noexcept {
-  const double s1 = std::sin(q[0]), c1 = std::cos(q[0]), s2 = std::sin(q[1]), c2 = std::cos(q[1]);
-  const double s3 = std::sin(q[2]), c3 = std::cos(q[2]), r = a * c2 + b * s3;
+Eigen::Matrix3d planarJacobian(double a, double b, const PhantomAngles& at) noexcept {
+  const auto [s1, c1, s2, c2, s3, c3] = at;
+  const double r = a * c2 + b * s3;
   Eigen::Matrix3d J;
   J << r * c1, -a * s2 * s1, b * c3 * s1,  //
       0, a * c2, b * s3,                   //
@@ -58,10 +58,22 @@ Phantom::Phantom(const PhantomGeometry& geometry)
   limits_.max = Eigen::Vector3d(90, 119, 214) * kDegree;
 }
 
+PhantomAngles::PhantomAngles(const Eigen::Vector3d& q) noexcept
+    : s1(std::sin(q[0])),
+      c1(std::cos(q[0])),
+      s2(std::sin(q[1])),
+      c2(std::cos(q[1])),
+      s3(std::sin(q[2])),
+      c3(std::cos(q[2])) {}
+
+Eigen::Vector3d Phantom::position(const PhantomAngles& at) const noexcept {
+  const double r = geometry_.l1 * at.c2 + geometry_.l2 * at.s3;
+  const double h = geometry_.l1 * at.s2 - geometry_.l2 * at.c3;
+  return geometry_.origin + Eigen::Vector3d(r * at.s1, h + geometry_.l2, r * at.c1 - geometry_.l1);
+}
+
 Eigen::Vector3d Phantom::position(const Eigen::Vector3d& q) const noexcept {
-  const double r = geometry_.l1 * std::cos(q[1]) + geometry_.l2 * std::sin(q[2]);
-  const double h = geometry_.l1 * std::sin(q[1]) - geometry_.l2 * std::cos(q[2]);
-  return geometry_.origin + Eigen::Vector3d(r * std::sin(q[0]), h + geometry_.l2, r * std::cos(q[0]) - geometry_.l1);
+  return position(PhantomAngles(q));
 }
 
 bool Phantom::forward(const JointVector& q, Pose& tip) const noexcept {
@@ -70,8 +82,12 @@ bool Phantom::forward(const JointVector& q, Pose& tip) const noexcept {
   return true;
 }
 
+Eigen::Matrix3d Phantom::positionJacobian(const PhantomAngles& at) const noexcept {
+  return planarJacobian(geometry_.l1, geometry_.l2, at);
+}
+
 Eigen::Matrix3d Phantom::positionJacobian(const Eigen::Vector3d& q) const noexcept {
-  return planarJacobian(geometry_.l1, geometry_.l2, q);
+  return positionJacobian(PhantomAngles(q));
 }
 
 bool Phantom::jacobian(const JointVector& q, Jacobian& J) const noexcept {
@@ -80,8 +96,12 @@ bool Phantom::jacobian(const JointVector& q, Jacobian& J) const noexcept {
   return true;
 }
 
+Eigen::Vector3d Phantom::weight(const PhantomAngles& at, const Eigen::Vector3d& gravity) const noexcept {
+  return -planarJacobian(moment2_, moment3_, at).transpose() * gravity;
+}
+
 Eigen::Vector3d Phantom::weight(const Eigen::Vector3d& q, const Eigen::Vector3d& gravity) const noexcept {
-  return -planarJacobian(moment2_, moment3_, q).transpose() * gravity;
+  return weight(PhantomAngles(q), gravity);
 }
 
 bool Phantom::gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept {

@@ -25,6 +25,12 @@ struct PhantomGeometry {
 PhantomGeometry phantomGeometry(const std::vector<double>& lengths, const std::vector<double>& masses,
                                 const Eigen::Vector3d& origin);
 
+/// Sines and cosines of the joint angles: what is wanted of several functions below at one q is worked out once.
+struct PhantomAngles {
+  double s1, c1, s2, c2, s3, c3;
+  explicit PhantomAngles(const Eigen::Vector3d& q) noexcept;
+};
+
 /// Three joints. With c1 = cos q1, ...: r = l1 c2 + l2 s3 out from the axis and h = l1 s2 - l2 c3 up, turned by q1
 /// about the vertical. The published base frame (x out toward the user, y, z up) is the device frame with
 ///   z = x_published, x = y_published, y = z_published,
@@ -53,6 +59,9 @@ class Phantom : public Arm {
   Eigen::Vector3d position(const Eigen::Vector3d& q) const noexcept;          ///< [any] tip [m]
   Eigen::Matrix3d positionJacobian(const Eigen::Vector3d& q) const noexcept;  ///< [any] d position / d q
   Eigen::Vector3d weight(const Eigen::Vector3d& q, const Eigen::Vector3d& gravity) const noexcept;  ///< [any] gravity()
+  Eigen::Vector3d position(const PhantomAngles& at) const noexcept;
+  Eigen::Matrix3d positionJacobian(const PhantomAngles& at) const noexcept;
+  Eigen::Vector3d weight(const PhantomAngles& at, const Eigen::Vector3d& gravity) const noexcept;
 
   static double largestOpening() noexcept;  ///< [rad] of q3 - q2: the links touch
   static double largestClosing() noexcept;  ///< [rad] of q2 - q3

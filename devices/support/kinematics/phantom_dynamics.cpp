@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "kinematics/phantom_dynamics.hpp"
 
-#include <cmath>
-
 namespace hapticd::kinematics {
 
 PhantomDynamics::PhantomDynamics(const PhantomGeometry& g, const PhantomInertia& i) : rotor_(i.rotor) {
@@ -19,7 +17,12 @@ PhantomDynamics::PhantomDynamics(const PhantomGeometry& g, const PhantomInertia&
 
 void PhantomDynamics::evaluate(const Eigen::Vector3d& q, const Eigen::Vector3d& qd, Eigen::Matrix3d& M,
                                Eigen::Vector3d& c) const noexcept {
-  const double s2 = std::sin(q[1]), c2 = std::cos(q[1]), s3 = std::sin(q[2]), c3 = std::cos(q[2]);
+  evaluate(PhantomAngles(q), qd, M, c);
+}
+
+void PhantomDynamics::evaluate(const PhantomAngles& at, const Eigen::Vector3d& qd, Eigen::Matrix3d& M,
+                               Eigen::Vector3d& c) const noexcept {
+  const double s2 = at.s2, c2 = at.c2, s3 = at.s3, c3 = at.c3;
   const double sin_23 = s2 * c3 - c2 * s3, cos_23 = c2 * c3 + s2 * s3;
   M.setZero();
   M(0, 0) = base_ + upper_ * (c2 * c2 - s2 * s2) + fore_ * (c3 * c3 - s3 * s3) + 2 * cross_ * c2 * s3 + rotor_[0];

@@ -25,6 +25,8 @@ class PhantomDynamics {
   /// [rt] Mass matrix and Coriolis and centrifugal torques (Christoffel symbols of M, so that dM/dt - 2 C is skew).
   void evaluate(const Eigen::Vector3d& q, const Eigen::Vector3d& qd, Eigen::Matrix3d& M,
                 Eigen::Vector3d& c) const noexcept;
+  void evaluate(const PhantomAngles& at, const Eigen::Vector3d& qd, Eigen::Matrix3d& M,
+                Eigen::Vector3d& c) const noexcept;
 
  private:
   double base_, upper_, fore_, cross_;  ///< M11 = base + upper cos 2q2 + fore cos 2q3 + 2 cross c2 s3

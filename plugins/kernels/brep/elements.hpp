@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "kernels/brep/leaf_bow.hpp"
 #include "kernels/brep/piece_bow.hpp"
 #include "kernels/brep/trim.hpp"
 
@@ -76,6 +77,7 @@ struct Leaf {
   double bend_back = 0;   ///< likewise toward the other side
   std::uint32_t face = 0;
   std::uint32_t borders = 0;  ///< bit 2 axis + (0: lo, 1: hi): the surface ends there, or its loops' box
+  LeafBow bow;
 };
 
 /// A piece of an edge that is an ellipse or a spline.

@@ -33,6 +33,7 @@ class ModelBuilder {
     smoothNormals(part_, model_.smooth_corner_, model_.smooth_normals_);
     shapeFacesAndEdges();
     model_.bodies_.resize(part_.bodies.size());
+    model_.face_trees_.resize(part_.faces.size());
     for (std::uint32_t b = 0; b < part_.bodies.size(); ++b) plantTree(b);
     placeBodies();
     warn();
@@ -127,11 +128,55 @@ class ModelBuilder {
       add(ElementKind::kTriangle, body.first_triangle + i, box);
     }
     BodyTree& made = model_.bodies_[b];
-    made.tree.build(boxes_, body.kind == BodyKind::kMesh ? BodyTree::kMeshRow : 1);
-    made.elements.reserve(elements_.size());
-    for (const std::uint32_t i : made.tree.order()) made.elements.push_back(elements_[i]);
-    made.tree.forgetOrder();
+    arrange(made, boxes_, elements_, body.kind == BodyKind::kMesh ? BodyTree::kMeshRow : 1);
     if (body.kind == BodyKind::kMesh) flattenRows(made);
+    plantFaceTrees(body);
+  }
+
+  static void arrange(BodyTree& body, std::span<const AlignedBox3d> boxes, std::span<const Element> elements, int row) {
+    body.tree.build(boxes, row);
+    body.elements.reserve(elements.size());
+    for (const std::uint32_t i : body.tree.order()) body.elements.push_back(elements[i]);
+    body.tree.forgetOrder();
+  }
+
+  /// Faces that a look at an element concerns.
+  template <class F>
+  void forEachFaceOf(Element element, F&& use) const {
+    const auto of_edge = [&](std::uint32_t edge) {
+      for (std::uint32_t c = part_.edges[edge].first_coedge; c != kNone; c = part_.coedges[c].next)
+        use(part_.coedges[c].face);
+    };
+    switch (element.kind()) {
+      case ElementKind::kFace:
+        return use(element.index());
+      case ElementKind::kLeaf:
+        return use(model_.leaves_[element.index()].face);
+      case ElementKind::kPiece:
+        return of_edge(model_.pieces_[element.index()].edge);
+      case ElementKind::kTriangle:
+        return;
+      default:
+        of_edge(element.index());
+    }
+  }
+
+  /// A contact that holds a face asks for the nearest point of this one alone.
+  void plantFaceTrees(const Body& body) {
+    std::vector<std::vector<std::uint32_t>> places(body.face_count);
+    for (std::uint32_t i = 0; i < elements_.size(); ++i)
+      forEachFaceOf(elements_[i], [&](std::uint32_t face) {
+        if (face - body.first_face >= body.face_count) return;
+        std::vector<std::uint32_t>& of_face = places[face - body.first_face];
+        if (of_face.empty() || of_face.back() != i) of_face.push_back(i);  // a seam has two coedges on one face
+      });
+    std::vector<AlignedBox3d> boxes;
+    std::vector<Element> elements;
+    for (std::uint32_t f = 0; f < body.face_count; ++f) {
+      boxes.clear(), elements.clear();
+      for (const std::uint32_t i : places[f]) boxes.push_back(boxes_[i]), elements.push_back(elements_[i]);
+      arrange(model_.face_trees_[body.first_face + f], boxes, elements, 1);
+    }
   }
 
   void flattenRows(BodyTree& body) {
@@ -206,10 +251,11 @@ std::size_t Model::bytes() const noexcept {
   add(faces_), add(edges_), add(leaves_), add(pieces_), add(vertex_normals_), add(point_normals_);
   add(smooth_corner_), add(smooth_normals_), add(placements_);
   for (const FaceShape& face : faces_) sum += face.trim.bytes();
-  for (const BodyTree& body : bodies_) {
-    sum += body.tree.bytes();
-    add(body.elements), add(body.slabs);
-  }
+  for (const std::vector<BodyTree>* trees : {&bodies_, &face_trees_})
+    for (const BodyTree& tree : *trees) {
+      sum += sizeof tree + tree.tree.bytes();
+      add(tree.elements), add(tree.slabs);
+    }
   return sum + placement_tree_.bytes();
 }
 

@@ -35,6 +35,7 @@ struct LeafTask {
   std::uint32_t surface;  ///< of an offset: its basis, whose feet have the same parameters
   const Vector3d& p;
   int evaluations = 0;
+  bool arrived = true;  ///< the last descent ended at a minimum
 
   void at(const Array2d& uv, LeafState& state) noexcept {
     state.uv = uv;
@@ -68,12 +69,16 @@ Vector2d stepFrom(const LeafTask& task, const LeafState& s) noexcept {
 
 /// Newton from s on; the distance never grows. Leaves the last short step to the caller.
 Vector2d descend(LeafTask& task, LeafState& s) noexcept {
+  constexpr double kStuck = 1e-7;  // of the distance: a step that rounding of its square may make useless
   Vector2d d = stepFrom(task, s);
   LeafState trial;
+  task.arrived = false;
   for (int i = 0; i < kMostSteps; ++i) {
     Array2d target = (s.uv + d.array()).max(task.leaf.lo).min(task.leaf.hi);
     d = (target - s.uv).matrix();
-    if ((s.E.Su * d[0] + s.E.Sv * d[1]).squaredNorm() <= kShortStep * kShortStep) break;
+    const double step2 = (s.E.Su * d[0] + s.E.Sv * d[1]).squaredNorm();
+    task.arrived = step2 <= kShortStep * kShortStep + kStuck * kStuck * s.f;
+    if (step2 <= kShortStep * kShortStep) break;
     trial.E.span = s.E.span;
     task.at(target, trial);
     for (int halvings = 0; !(trial.f <= s.f) && halvings < 6; ++halvings) {
@@ -121,30 +126,34 @@ double take(const LeafTask& task, const FaceShape& face, const LeafState& s, con
   return d2;
 }
 
+/// Whether the probe is nearer to its foot than the leaf's centres of curvature on its side.
+bool isWithinFocus(const Leaf& leaf, const FaceShape& face, const LeafState& s, double offset) noexcept {
+  const double side = -face.outward * s.r.dot(s.E.Su.cross(s.E.Sv));
+  return (std::sqrt(s.f) + offset) * (side > 0 ? leaf.bend_front : leaf.bend_back) < 1;
+}
+
 }  // namespace
 
 PieceAnswer leafFoot(const Geometry& geometry, const Leaf& leaf, const FaceShape& face, std::uint32_t surface,
-                     const Vector3d& p, const Array2d& uv, Hit& hit) noexcept {
+                     const Vector3d& p, const LeafStart& start, Hit& hit) noexcept {
   const Surface& shape = geometry.part().surfaces[surface];
   const bool is_offset = shape.kind == SurfaceKind::kOffset;
   const double offset = is_offset ? shape.r[0] : 0;
   LeafTask task{geometry, leaf, is_offset ? shape.basis : surface, p};
   LeafState s;
-  task.at(uv.max(leaf.lo).min(leaf.hi), s);
+  task.at(start.uv.max(leaf.lo).min(leaf.hi), s);
   Vector2d d = descend(task, s);
   PieceAnswer answer;
   answer.d2 = take(task, face, s, d, offset, hit);
-  const double side = -face.outward * s.r.dot(s.E.Su.cross(s.E.Sv));
-  const double bend = side > 0 ? leaf.bend_front : leaf.bend_back;
-  answer.alone = (std::sqrt(s.f) + std::abs(offset)) * bend < 1;
-  if (!answer
-           .alone)  // the probe is beyond a centre of curvature: there may be several feet, so look from elsewhere too
-    for (int corner = 0; corner < 4; ++corner) {
-      const Array2d share(corner % 2 == 0 ? 0.1 : 0.9, corner < 2 ? 0.1 : 0.9);
-      task.at(leaf.lo + share * (leaf.hi - leaf.lo), s);
-      d = descend(task, s);
-      answer.d2 = std::min(answer.d2, take(task, face, s, d, offset, hit));
-    }
+  answer.alone = task.arrived && (start.feet != FeetOfLeaf::kUnknown || isWithinFocus(leaf, face, s, std::abs(offset)));
+  // Beyond a centre of curvature there may be several feet: look from elsewhere too.
+  for (int corner = 0; corner < 4 && !answer.alone && start.elsewhere; ++corner) {
+    const Array2d share(corner % 2 == 0 ? 0.1 : 0.9, corner < 2 ? 0.1 : 0.9);
+    task.at(leaf.lo + share * (leaf.hi - leaf.lo), s);
+    d = descend(task, s);
+    answer.d2 = std::min(answer.d2, take(task, face, s, d, offset, hit));
+    ++answer.starts;
+  }
   answer.evaluations = task.evaluations;
   return answer;
 }

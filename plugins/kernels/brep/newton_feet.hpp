@@ -10,12 +10,20 @@ struct PieceAnswer {
   double d2 = std::numeric_limits<double>::infinity();  ///< [m^2] of the nearest foot found, also if it was not taken
   bool alone = true;                                    ///< no other point of the element can be nearer than both
   int evaluations = 0;
+  int starts = 1;  ///< of Newton
 };
 
-/// [rt] Foot of p on a leaf, from (u, v) on. A foot that lies on a border of the surface, or of the box of the loops,
-/// without being stationary there, is refused: the edge there tells more exactly.
+/// How to look for a foot on a leaf.
+struct LeafStart {
+  Eigen::Array2d uv;
+  FeetOfLeaf feet = FeetOfLeaf::kUnknown;  ///< what the probe sees of the leaf
+  bool elsewhere = true;                   ///< where there may be several feet, look from the corners too
+};
+
+/// [rt] Foot of p on a leaf. A foot that lies on a border of the surface, or of the box of the loops, without being
+/// stationary there, is refused: the edge there tells more exactly.
 PieceAnswer leafFoot(const Geometry& geometry, const Leaf& leaf, const FaceShape& face, std::uint32_t surface,
-                     const Eigen::Vector3d& p, const Eigen::Array2d& uv, Hit& hit) noexcept;
+                     const Eigen::Vector3d& p, const LeafStart& start, Hit& hit) noexcept;
 
 /// [rt] Foot of p on a piece of a curve, from t on.
 PieceAnswer pieceFoot(const Geometry& geometry, const CurvePiece& piece, const Eigen::Vector3d& p, double t,

@@ -135,6 +135,7 @@ class FaceCutter {
       if (hi[axis] >= last[axis]) leaf.borders |= 2u << (2 * axis);
     }
     measureBend(leaf);
+    leaf.bow = leafBowOf(geometry_, face_.surface, leaf.lo, leaf.hi, leaf.borders);
     made.box = box;
     leaves_.push_back(made);
   }

@@ -13,40 +13,8 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr int kMostRestarts = 8;  ///< leaves that Newton looks at from several places in one search
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-struct AllElements {
-  bool operator()(Element) const noexcept { return true; }
-};
-
-/// Elements of one face: itself, its leaves, its edges.
-struct OfFace {
-  const Model& model;
-  std::uint32_t face;
-
-  bool edgeOf(std::uint32_t edge) const noexcept {
-    const Part& part = model.part();
-    for (std::uint32_t c = part.edges[edge].first_coedge; c != kNone; c = part.coedges[c].next)
-      if (part.coedges[c].face == face) return true;
-    return false;
-  }
-  bool operator()(Element element) const noexcept {
-    switch (element.kind()) {
-      case ElementKind::kFace:
-        return element.index() == face;
-      case ElementKind::kLeaf:
-        return model.leaf(element.index()).face == face;
-      case ElementKind::kPiece:
-        return edgeOf(model.piece(element.index()).edge);
-      case ElementKind::kLine:
-      case ElementKind::kCircle:
-      case ElementKind::kPole:
-        return edgeOf(element.index());
-      default:
-        return false;
-    }
-  }
-};
 
 /// A vertex at which an edge has no length. Returns the squared distance; `hit` is replaced where it is nearer.
 inline double poleFoot(const Part& part, std::uint32_t edge, const Vector3d& p, Hit& hit) noexcept {
@@ -127,8 +95,23 @@ double Search::edgeFoot(Element element, const Vector3d& p, Hit& hit) const noex
   return d2;
 }
 
+/// Foot on a leaf. Where the last one is known, what the probe sees of the leaf is not.
+double Search::leafOf(Element element, const Vector3d& p, Look& look, Hit& hit) const noexcept {
+  const Leaf& leaf = model_.leaf(element.index());
+  LeafStart start{look.uv, look.feet, look.elsewhere};
+  if (look.start != nullptr) {
+    start.uv = Eigen::Array2d(look.start->u, look.start->v);
+    start.feet = feetSeenFrom(leaf.bow, leaf.bow.local(p));
+  }
+  const std::uint32_t surface = model_.part().faces[leaf.face].surface;
+  const PieceAnswer answer = leafFoot(model_.geometry(), leaf, model_.face(leaf.face), surface, p, start, hit);
+  look.alone = answer.alone;
+  look.starts = answer.starts;
+  return answer.d2;
+}
+
 /// A lower bound of the squared distance to an element; `hit` is replaced where the element is nearer.
-double Search::evaluate(Element element, const Vector3d& p, const Hit* start, Hit& hit, bool& alone) const noexcept {
+double Search::evaluate(Element element, const Vector3d& p, Look& look, Hit& hit) const noexcept {
   const std::uint32_t i = element.index();
   switch (element.kind()) {
     case ElementKind::kFace:
@@ -136,19 +119,13 @@ double Search::evaluate(Element element, const Vector3d& p, const Hit* start, Hi
     case ElementKind::kLine:
     case ElementKind::kCircle:
       return edgeFoot(element, p, hit);
-    case ElementKind::kLeaf: {
-      const Leaf& leaf = model_.leaf(i);
-      const Eigen::Array2d uv = start != nullptr ? Eigen::Array2d(start->u, start->v) : 0.5 * (leaf.lo + leaf.hi);
-      const std::uint32_t surface = model_.part().faces[leaf.face].surface;
-      const PieceAnswer answer = leafFoot(model_.geometry(), leaf, model_.face(leaf.face), surface, p, uv, hit);
-      alone = answer.alone;
-      return answer.d2;
-    }
+    case ElementKind::kLeaf:
+      return leafOf(element, p, look, hit);
     case ElementKind::kPiece: {
       const CurvePiece& piece = model_.piece(i);
-      const double t = start != nullptr ? start->u : 0.5 * (piece.t0 + piece.t1);
+      const double t = look.start != nullptr ? look.start->u : 0.5 * (piece.t0 + piece.t1);
       const PieceAnswer answer = pieceFoot(model_.geometry(), piece, p, t, hit);
-      alone = answer.alone;
+      look.alone = answer.alone;
       return answer.d2;
     }
     case ElementKind::kPole:
@@ -160,14 +137,33 @@ double Search::evaluate(Element element, const Vector3d& p, const Hit* start, Hi
   }
 }
 
+/// False if a leaf cannot hold the nearest point: it is farther than `limit2`, or no foot lies on it. `bound2` grows to
+/// what is known of its distance.
+bool Search::mayHold(Element element, const Vector3d& p, double limit2, double& bound2, Look& look) const noexcept {
+  const LeafBow& bow = model_.leaf(element.index()).bow;
+  const Vector3d q = bow.local(p);
+  bound2 = std::max(bound2, leafDistance2(bow, q));
+  if (bound2 > limit2) return false;
+  look.feet = feetSeenFrom(bow, q);
+  if (look.feet == FeetOfLeaf::kNowhere) return false;
+  look.uv = footNear(bow, q);
+  return true;
+}
+
 /// Looks at one element, whose box is at least bound2 away.
 void Search::look(std::uint32_t place, Element element, const Vector3d& p, double bound2, Run& run) noexcept {
   Nearest& best = run.best;
   const double before = best.hit.d2;
-  bool alone = true;
+  Look look;
+  look.elsewhere = run.restarts > 0;
+  if (element.kind() == ElementKind::kLeaf && !mayHold(element, p, before, bound2, look)) {
+    run.others2 = std::min(run.others2, bound2);
+    return;
+  }
   ++best.elements;
-  const double d2 = evaluate(element, p, nullptr, best.hit, alone);
-  if (!alone) run.open2 = std::min(run.open2, bound2);
+  const double d2 = evaluate(element, p, look, best.hit);
+  if (!look.alone) run.open2 = std::min(run.open2, bound2);
+  if (look.starts > 1) --run.restarts;
   if (best.hit.d2 < before) {
     run.others2 = std::min(run.others2, before);
     run.tied = false;
@@ -179,9 +175,7 @@ void Search::look(std::uint32_t place, Element element, const Vector3d& p, doubl
   }
 }
 
-template <class Filter>
-void Search::searchBody(std::uint32_t place, const Vector3d& p, Run& run, const Filter& wanted) noexcept {
-  const BodyTree& body = model_.body(model_.placements()[place].body);
+void Search::searchTree(const BodyTree& body, std::uint32_t place, const Vector3d& p, Run& run) noexcept {
   if (body.tree.empty()) return;
   Nearest& best = run.best;
   const Element first = run.first_place == place ? run.first : Element();  // has been looked at already
@@ -206,8 +200,7 @@ void Search::searchBody(std::uint32_t place, const Vector3d& p, Run& run, const 
       if (discIsFarther(body, entry.row, probe, best.hit.d2, run.others2)) continue;
       const ElementRow row = BoxTree::rowOf(entry.child);
       for (std::uint32_t i = row.first; i < row.first + row.count; ++i)
-        if (const Element element = body.elements[i]; !(element == first) && wanted(element))
-          look(place, element, p, bound, run);
+        if (const Element element = body.elements[i]; !(element == first)) look(place, element, p, bound, run);
       continue;
     }
     ++best.nodes;
@@ -236,7 +229,8 @@ void Search::searchPlaces(const Vector3d& p, Run& run) noexcept {
       const ElementRow row = BoxTree::rowOf(entry.child);
       for (std::uint32_t i = row.first; i < row.first + row.count; ++i) {
         const std::uint32_t place = tree.order()[i];
-        searchBody(place, model_.placements()[place].toBody(p), run, AllElements{});
+        const Placement& at = model_.placements()[place];
+        searchTree(model_.body(at.body), place, at.toBody(p), run);
       }
       continue;
     }
@@ -264,14 +258,15 @@ bool Search::goesOn(const Vector3d& p, const Run& run) noexcept {
 /// Looks at the last element: a near start spares most of the search.
 void Search::begin(const Vector3d& p, Run& run) noexcept {
   if (!last_.found()) return;
-  bool alone = true;
-  evaluate(last_.hit.element, model_.placements()[last_.place].toBody(p), &last_.hit, run.best.hit, alone);
+  Look look;
+  look.start = &last_.hit;
+  evaluate(last_.hit.element, model_.placements()[last_.place].toBody(p), look, run.best.hit);
   run.best.elements = 1;
   if (run.best.hit.d2 < kInfinity) {
     run.best.hit.element = last_.hit.element;
     run.best.place = last_.place;
   }
-  if (!alone) return;
+  if (!look.alone) return;
   run.first = last_.hit.element;
   run.first_place = last_.place;
 }
@@ -288,19 +283,21 @@ void Search::finish(Run& run) noexcept {
 Hit Search::refine(std::uint32_t place, const Hit& last, const Vector3d& p) noexcept {
   Hit hit = last;
   hit.d2 = kInfinity;
-  bool alone = true;
-  evaluate(last.element, model_.placements()[place].toBody(p), &last, hit, alone);
+  Look look;
+  look.start = &last;
+  evaluate(last.element, model_.placements()[place].toBody(p), look, hit);
   return hit;
 }
 
 const Nearest& Search::nearest(const Vector3d& p, const SearchBudget& budget) noexcept {
   Run run;
   run.budget = budget;
+  run.restarts = kMostRestarts;
   begin(p, run);
   if (goesOn(p, run)) return last_;
   if (!searchNear(p, run)) {
     if (model_.placements().size() == 1)
-      searchBody(0, model_.placements()[0].toBody(p), run, AllElements{});
+      searchTree(model_.body(model_.placements()[0].body), 0, model_.placements()[0].toBody(p), run);
     else
       searchPlaces(p, run);
   }
@@ -314,19 +311,18 @@ Nearest Search::nearestOf(std::uint32_t place, std::uint32_t face, const Vector3
                           const SearchBudget& budget) noexcept {
   Run run;
   run.budget = budget;
+  run.restarts = kMostRestarts;
   const Vector3d p_body = model_.placements()[place].toBody(p);
   if (start.element.kind() != ElementKind::kNothing) {
-    bool alone = true;
-    evaluate(start.element, p_body, &start, run.best.hit, alone);
+    Look look;
+    look.start = &start;
+    evaluate(start.element, p_body, look, run.best.hit);
     if (run.best.hit.d2 < kInfinity) {
       run.best.hit.element = start.element;
       run.best.place = place;
     }
   }
-  if (face == kNone)
-    searchBody(place, p_body, run, AllElements{});
-  else
-    searchBody(place, p_body, run, OfFace{model_, face});
+  searchTree(face == kNone ? model_.body(model_.placements()[place].body) : model_.ofFace(face), place, p_body, run);
   finish(run);
   return run.best;
 }

@@ -70,6 +70,16 @@ class Search {
     double others2 = std::numeric_limits<double>::infinity();  ///< nearest bound of anything but the best
     double open2 = std::numeric_limits<double>::infinity();    ///< nearest bound of what may hide a nearer foot
     bool tied = false;  ///< another element than the best is just as near, and neither was looked at first
+    int restarts = 0;   ///< leaves that Newton may yet look at from several places
+  };
+  /// A look at one element.
+  struct Look {
+    const Hit* start = nullptr;  ///< the last foot; null: none is known
+    FeetOfLeaf feet = FeetOfLeaf::kUnknown;
+    Eigen::Array2d uv{0, 0};  ///< of a leaf: where to start
+    bool elsewhere = true;    ///< LeafStart::elsewhere
+    bool alone = true;        ///< out: nothing nearer hides in the element
+    int starts = 1;           ///< out
   };
 
   void begin(const Eigen::Vector3d& p, Run& run) noexcept;
@@ -77,12 +87,13 @@ class Search {
   bool searchNear(const Eigen::Vector3d& p, Run& run) noexcept;
   bool gatherNear(const Eigen::Vector3d& p, double way, double distance) noexcept;
   bool lookAtNear(const Eigen::Vector3d& p, Run& run) noexcept;
-  template <class Filter>
-  void searchBody(std::uint32_t place, const Eigen::Vector3d& p, Run& run, const Filter& wanted) noexcept;
+  void searchTree(const BodyTree& body, std::uint32_t place, const Eigen::Vector3d& p, Run& run) noexcept;
   void searchPlaces(const Eigen::Vector3d& p, Run& run) noexcept;
   void look(std::uint32_t place, Element element, const Eigen::Vector3d& p, double bound2, Run& run) noexcept;
   double edgeFoot(Element element, const Eigen::Vector3d& p, Hit& hit) const noexcept;
-  double evaluate(Element element, const Eigen::Vector3d& p, const Hit* start, Hit& hit, bool& alone) const noexcept;
+  bool mayHold(Element element, const Eigen::Vector3d& p, double limit2, double& bound2, Look& look) const noexcept;
+  double evaluate(Element element, const Eigen::Vector3d& p, Look& look, Hit& hit) const noexcept;
+  double leafOf(Element element, const Eigen::Vector3d& p, Look& look, Hit& hit) const noexcept;
   static void finish(Run& run) noexcept;
 
   const Model& model_;

@@ -58,7 +58,7 @@ void expectAsNearAsTraceFinds(const std::string& file, double tolerance) {
   }
   std::printf("%s: excess at most %.2g m, nearer by at most %.2g m, %.1f %% proved\n", file.c_str(), worse, better,
               100.0 * proved / queries);
-  EXPECT_GT(proved, 0.25 * queries);  // many are far inside, beyond centres of curvature
+  EXPECT_GT(proved, 0.7 * queries);  // some are far inside, at centres of curvature
 }
 
 TEST(SplineFeet, OfTheTeapot) {

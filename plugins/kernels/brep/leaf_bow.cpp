@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/brep/leaf_bow.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hapticd::brep {
+namespace {
+
+using Eigen::Array2d;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using spline::SurfacePoint;
+
+constexpr int kBowIntervals = 6;       ///< between samples along an axis
+constexpr double kBowBetween = 1.25;   ///< what is measured at samples may be larger by this between them
+constexpr double kSagBetween = 1.5;    ///< the same of second derivatives
+constexpr double kBowRounding = 1e-9;  ///< of the terms that are compared
+constexpr double kSmoothKink = 1e-6;   ///< [rad] normals that differ by less across a border are one
+
+/// Derivatives along the two directions of a leaf, in its frame.
+struct LeafSample {
+  Vector3d S, first[2], second[3];  ///< second: 11, 22, 12
+};
+
+/// First and second derivatives along fixed directions of the parameter plane.
+LeafSample leafSample(const LeafBow& bow, const SurfacePoint& E) {
+  const auto second = [&](const Array2d& a, const Array2d& b) {
+    return Vector3d(bow.frame * (a[0] * b[0] * E.Suu + (a[0] * b[1] + a[1] * b[0]) * E.Suv + a[1] * b[1] * E.Svv));
+  };
+  LeafSample sample;
+  sample.S = bow.local(E.S);
+  for (int i = 0; i < 2; ++i) sample.first[i] = bow.frame * (bow.along[i][0] * E.Su + bow.along[i][1] * E.Sv);
+  sample.second[0] = second(bow.along[0], bow.along[0]);
+  sample.second[1] = second(bow.along[1], bow.along[1]);
+  sample.second[2] = second(bow.along[0], bow.along[1]);
+  return sample;
+}
+
+/// Frame and directions from the middle of a leaf; false if the surface is not regular there.
+bool turnToPrincipal(LeafBow& bow, const SurfacePoint& E) {
+  const Vector3d across = E.Su.cross(E.Sv);
+  const double su = E.Su.norm(), area = across.norm();
+  if (!(area > 1e-9 * su * E.Sv.norm()) || !(su > 0)) return false;
+  const Vector3d n = across / area, t1 = E.Su / su, t2 = n.cross(t1);
+  const double lean = E.Sv.dot(t1), rise = E.Sv.dot(t2);
+  const Array2d first(1 / su, 0), second(-lean / (su * rise), 1 / rise);
+  const double l = n.dot(E.Suu), m = n.dot(E.Suv), k = n.dot(E.Svv);
+  const auto form = [&](const Array2d& a, const Array2d& b) {
+    return a[0] * b[0] * l + (a[0] * b[1] + a[1] * b[0]) * m + a[1] * b[1] * k;
+  };
+  const double angle = 0.5 * std::atan2(2 * form(first, second), form(first, first) - form(second, second));
+  const double c = std::cos(angle), s = std::sin(angle);
+  bow.along[0] = c * first + s * second;
+  bow.along[1] = c * second - s * first;
+  bow.frame.row(0) = c * t1 + s * t2;
+  bow.frame.row(1) = c * t2 - s * t1;
+  bow.frame.row(2) = n;
+  bow.center = E.S;
+  return bow.frame.allFinite() && bow.along[0].allFinite() && bow.along[1].allFinite();
+}
+
+/// Widens a term by what one sample says.
+void extendTerm(LeafBow::Term& term, double value, const Vector3d& vector) {
+  term.low = std::min(term.low, value);
+  term.high = std::max(term.high, value);
+  term.off = term.off.cwiseMax((vector - term.middle).cwiseAbs());
+}
+
+void extendBow(LeafBow& bow, const LeafSample& s) {
+  for (int i = 0; i < 2; ++i) {
+    const Vector3d from = s.S - bow.focus[i] * Vector3d::UnitZ();
+    extendTerm(bow.slope[i], from.dot(s.first[i]), s.first[i]);
+    extendTerm(bow.bend[i], s.first[i].squaredNorm() + from.dot(s.second[i]), s.second[i]);
+  }
+  extendTerm(bow.twist, s.first[0].dot(s.first[1]) + s.S.dot(s.second[2]), s.second[2]);
+  bow.low = bow.low.cwiseMin(s.S);
+  bow.high = bow.high.cwiseMax(s.S);
+}
+
+/// The middle of a leaf: all terms begin with it.
+void beginBow(LeafBow& bow, const LeafSample& s, double size) {
+  constexpr double kStraight = 1e-4;  // of the leaf's size times its curvature: the centre would be rounding
+  for (int i = 0; i < 2; ++i) {
+    const double curvature = s.second[i].z();
+    bow.focus[i] = std::abs(curvature) * size > kStraight ? 1 / curvature : 0;
+    bow.slope[i].middle = s.first[i];
+    bow.bend[i].middle = s.second[i];
+    bow.bend[i].low = LeafBow::kEndless;
+    bow.bend[i].high = -LeafBow::kEndless;
+  }
+  bow.twist.middle = s.second[2];
+  bow.low = bow.high = s.S;
+}
+
+/// Room for what lies between the samples. @param sag [m] of a chord between two of them, in the frame
+void widenBow(LeafBow& bow, const Vector3d& sag) {
+  for (LeafBow::Term* term : {&bow.slope[0], &bow.slope[1], &bow.bend[0], &bow.bend[1], &bow.twist}) {
+    const double more = (kBowBetween - 1) * (term->high - term->low);
+    term->low -= more;
+    term->high += more;
+    term->off *= kBowBetween;
+  }
+  const Vector3d rounding = Vector3d::Constant(1e-12 * (1 + bow.center.norm()));
+  bow.low -= sag + rounding;
+  bow.high += sag + rounding;
+}
+
+/// Whether the normal turns nowhere on a border, from one side of it to the other.
+bool isSmoothAcross(const Geometry& geometry, std::uint32_t surface, const Array2d& lo, const Array2d& hi, int axis,
+                    bool at_high) {
+  constexpr int kPlaces = 5;
+  constexpr double kBeside = 1e-8;  // of the leaf's width: its curvature turns the normal far less there
+  for (int k = 0; k < kPlaces; ++k) {
+    std::array<Vector3d, 2> normals;
+    for (std::size_t side = 0; side < 2; ++side) {
+      Array2d at = lo + (k + 0.5) / kPlaces * (hi - lo);
+      at[axis] = (at_high ? hi : lo)[axis] + (side == 0 ? -kBeside : kBeside) * (hi - lo)[axis];
+      SurfacePoint E;
+      geometry.surface(surface, at[0], at[1], E);
+      normals[side] = E.Su.cross(E.Sv).normalized();
+    }
+    if (!((normals[0] - normals[1]).norm() < 0.1 * kSmoothKink)) return false;
+  }
+  return true;
+}
+
+/// The same for all borders but those where the surface ends.
+bool goesOnSmoothly(const Geometry& geometry, std::uint32_t surface, const Array2d& lo, const Array2d& hi,
+                    std::uint32_t ends) {
+  for (int axis = 0; axis < 2; ++axis)
+    for (const bool at_high : {false, true})
+      if ((ends & (at_high ? 2u : 1u) << (2 * axis)) == 0 && !isSmoothAcross(geometry, surface, lo, hi, axis, at_high))
+        return false;
+  return true;
+}
+
+/// The expression of a term, seen from where `from` is o - p.
+void rangeOfTerm(const LeafBow::Term& term, const Vector3d& from, double& low, double& high) noexcept {
+  const double known = from.dot(term.middle), off = from.cwiseAbs().dot(term.off);
+  const double rounding = kBowRounding * (std::abs(known) + off);
+  low = term.low + known - off - rounding;
+  high = term.high + known + off + rounding;
+}
+
+}  // namespace
+
+LeafBow leafBowOf(const Geometry& geometry, std::uint32_t surface, const Array2d& lo, const Array2d& hi,
+                  std::uint32_t ends) {
+  LeafBow bow;
+  if (geometry.part().surfaces[surface].kind == SurfaceKind::kOffset) return bow;
+  SurfacePoint E;
+  bow.middle = 0.5 * (lo + hi);
+  geometry.surface(surface, bow.middle[0], bow.middle[1], E);
+  if (!turnToPrincipal(bow, E)) return bow;
+  const double size = (hi - lo).matrix().cwiseProduct(Eigen::Vector2d(E.Su.norm(), E.Sv.norm())).norm();
+  beginBow(bow, leafSample(bow, E), size);
+  const Array2d step = (hi - lo) / kBowIntervals;
+  const Array2d end = hi - 1e-9 * (hi - lo);  // derivatives at a knot are those of the span to its right
+  Vector3d sag = Vector3d::Zero();
+  for (int i = 0; i <= kBowIntervals; ++i)
+    for (int j = 0; j <= kBowIntervals; ++j) {
+      const Array2d uv = (lo + Array2d(i, j) * step).min(end);
+      geometry.surface(surface, uv[0], uv[1], E);
+      extendBow(bow, leafSample(bow, E));
+      const Vector3d bent = step[0] * step[0] * (bow.frame * E.Suu).cwiseAbs() +
+                            2 * step[0] * step[1] * (bow.frame * E.Suv).cwiseAbs() +
+                            step[1] * step[1] * (bow.frame * E.Svv).cwiseAbs();
+      sag = sag.cwiseMax(kSagBetween / 8 * bent);
+    }
+  widenBow(bow, sag);
+  bow.smooth = goesOnSmoothly(geometry, surface, lo, hi, ends);
+  return bow;
+}
+
+FeetOfLeaf feetSeenFrom(const LeafBow& bow, const Vector3d& q) noexcept {
+  double low[3], high[3];
+  for (int i = 0; i < 2; ++i) {
+    const Vector3d from(-q[0], -q[1], bow.focus[i] - q[2]);
+    double least, most;
+    rangeOfTerm(bow.slope[i], from, least, most);
+    const double kink = kSmoothKink * q.lpNorm<1>();
+    if (bow.smooth && (least > kink || most < -kink)) return FeetOfLeaf::kNowhere;
+    rangeOfTerm(bow.bend[i], from, low[i], high[i]);
+    if (bow.smooth && high[i] < -kBowRounding) return FeetOfLeaf::kNowhere;
+  }
+  rangeOfTerm(bow.twist, -q, low[2], high[2]);
+  const double twist = std::max(std::abs(low[2]), std::abs(high[2]));
+  const bool convex = low[0] > 0 && low[1] > 0 && low[0] * low[1] > twist * twist;
+  return convex ? FeetOfLeaf::kOne : FeetOfLeaf::kUnknown;
+}
+
+double leafDistance2(const LeafBow& bow, const Vector3d& q) noexcept {
+  return (1 - 1e-12) * (bow.low - q).cwiseMax(q - bow.high).cwiseMax(0).squaredNorm();
+}
+
+Array2d footNear(const LeafBow& bow, const Vector3d& q) noexcept {
+  constexpr double kLeastBend = 0.2;  // below it the quadratic model leads too far
+  Array2d uv = bow.middle;
+  for (int i = 0; i < 2; ++i) {
+    const double bend = 1 - q[2] * bow.bend[i].middle[2];
+    uv += q[i] / (bend > kLeastBend ? bend : 1) * bow.along[i];
+  }
+  return uv;
+}
+
+}  // namespace hapticd::brep

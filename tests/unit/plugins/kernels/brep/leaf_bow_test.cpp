@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+/// What a probe is told of a leaf without a foot, against a dense grid of the leaf.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "kernels/brep/model.hpp"
+#include "kernels/brep/newton_feet.hpp"
+#include "sample_splines.hpp"
+#include "traced_shape/model_file.hpp"
+
+namespace hapticd::brep {
+namespace {
+
+using Eigen::Array2d;
+using Eigen::Vector3d;
+
+constexpr int kGrid = 24;  ///< intervals along each axis
+
+/// Points of a leaf, and what the distances from a probe to them say.
+class LeafGrid {
+ public:
+  LeafGrid(const Model& model, const Leaf& leaf) {
+    spline::SurfacePoint E;
+    for (int i = 0; i <= kGrid; ++i)
+      for (int j = 0; j <= kGrid; ++j) {
+        const Array2d uv = leaf.lo + Array2d(i, j) / kGrid * (leaf.hi - leaf.lo);
+        model.geometry().surface(model.part().faces[leaf.face].surface, uv[0], uv[1], E);
+        points_.push_back(E.S);
+      }
+  }
+  void lookFrom(const Vector3d& p) {
+    d2_.clear();
+    for (const Vector3d& point : points_) d2_.push_back((point - p).squaredNorm());
+  }
+  double least() const { return *std::min_element(d2_.begin(), d2_.end()); }
+  /// (u, v) of the points inside that are nearer than all eight about them.
+  std::vector<Array2d> minimaInside(const Leaf& leaf) const {
+    std::vector<Array2d> minima;
+    for (int i = 1; i < kGrid; ++i)
+      for (int j = 1; j < kGrid; ++j)
+        if (isMinimum(i, j)) minima.emplace_back(leaf.lo + Array2d(i, j) / kGrid * (leaf.hi - leaf.lo));
+    return minima;
+  }
+
+ private:
+  double at(int i, int j) const { return d2_[static_cast<std::size_t>(i * (kGrid + 1) + j)]; }
+  bool isMinimum(int i, int j) const {
+    for (int a = -1; a <= 1; ++a)
+      for (int b = -1; b <= 1; ++b)
+        if ((a != 0 || b != 0) && !(at(i, j) < at(i + a, j + b))) return false;
+    return true;
+  }
+
+  std::vector<Vector3d> points_;
+  std::vector<double> d2_;
+};
+
+struct LeafTally {
+  int nowhere = 0, one = 0, unknown = 0;
+};
+
+/// Newton over the whole leaf: no border is the surface's, no trim leaves anything out. False: it gave up, and says so.
+bool footFrom(const Model& model, Leaf leaf, const Array2d& uv, const Vector3d& p, Hit& hit) {
+  leaf.borders = 0;
+  const LeafStart start{uv, FeetOfLeaf::kOne, false};
+  return leafFoot(model.geometry(), leaf, model.face(leaf.face), model.part().faces[leaf.face].surface, p, start, hit)
+      .alone;
+}
+
+/// Whether a foot lies inside the leaf; a narrow valley that only looks like one on the grid leads to the border.
+bool hasFootInside(const Model& model, const Leaf& leaf, const LeafGrid& grid, const Vector3d& p) {
+  const Array2d rounding = 1e-6 * (leaf.hi - leaf.lo);
+  for (const Array2d& uv : grid.minimaInside(leaf)) {
+    Hit hit;
+    if (!footFrom(model, leaf, uv, p, hit)) continue;
+    const Array2d at(hit.u, hit.v);
+    if ((at > leaf.lo + rounding).all() && (at < leaf.hi - rounding).all()) return true;
+  }
+  return false;
+}
+
+void lookAtLeaf(const Model& model, const Leaf& leaf, const Vector3d& p, LeafGrid& grid, LeafTally& tally) {
+  const Vector3d q = leaf.bow.local(p);
+  grid.lookFrom(p);
+  EXPECT_LE(leafDistance2(leaf.bow, q), grid.least() * (1 + 1e-9)) << p.transpose();
+  switch (feetSeenFrom(leaf.bow, q)) {
+    case FeetOfLeaf::kNowhere:
+      ++tally.nowhere;
+      EXPECT_FALSE(hasFootInside(model, leaf, grid, p)) << p.transpose();
+      break;
+    case FeetOfLeaf::kOne: {
+      ++tally.one;
+      Hit hit;
+      const bool arrived = footFrom(model, leaf, footNear(leaf.bow, q), p, hit);
+      EXPECT_TRUE(!arrived || hit.d2 <= grid.least() * (1 + 1e-9) + 1e-18) << p.transpose();
+      break;
+    }
+    default:
+      ++tally.unknown;
+  }
+}
+
+void expectTrueOf(const std::string& file) {
+  const Model model(samples::sheetOf(readModelFile(HAPTICD_SOURCE_DIR "/config/models/" + file).surfaces));
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  LeafTally tally;
+  for (std::uint32_t i = 0; i < model.leafCount(); ++i) {
+    const Leaf& leaf = model.leaf(i);
+    LeafGrid grid(model, leaf);
+    for (const double away : {1e-4, 1e-3, 1e-2, 0.1})  // of the probe from the middle of the leaf
+      for (int k = 0; k < 6; ++k) {
+        const Vector3d aside(normal(random), normal(random), normal(random));
+        const Vector3d p = k < 3
+                               ? Vector3d(leaf.bow.center + away * aside)
+                               : Vector3d(leaf.bow.center + away * normal(random) * leaf.bow.frame.row(2).transpose() +
+                                          0.1 * away * aside);
+        lookAtLeaf(model, leaf, p, grid, tally);
+      }
+  }
+  const int all = tally.nowhere + tally.one + tally.unknown;
+  std::printf("%s: %zu leaves; of %d looks %.1f %% see no foot, %.1f %% one, %.1f %% are not sure\n", file.c_str(),
+              model.leafCount(), all, 100.0 * tally.nowhere / all, 100.0 * tally.one / all,
+              100.0 * tally.unknown / all);
+  EXPECT_GT(tally.nowhere, 0);
+  EXPECT_GT(tally.one, 0);
+  EXPECT_LT(tally.unknown, 0.5 * all);  // near poles, and at centres of curvature
+}
+
+TEST(LeafBow, OfTheTeapot) {
+  expectTrueOf("teapot.yaml");
+}
+TEST(LeafBow, OfTheGoblet) {
+  expectTrueOf("goblet.yaml");
+}
+TEST(LeafBow, OfTheTorus) {
+  expectTrueOf("torus.yaml");
+}
+
+}  // namespace
+}  // namespace hapticd::brep
