@@ -70,7 +70,7 @@ struct Limits {
   double force = 0;                ///< [N] 0: the device's own maximum
   double torque = 0;               ///< [N m] on the hand; 0: no limit but the motors'
   double slew = 2000;              ///< [N/s] fastest growth of force; 0: none
-  double torque_slew = 0;          ///< [N m/s] fastest growth of torque; 0: none
+  double torque_slew = 200;        ///< [N m/s] fastest growth of torque; 0: none. As `slew`, 0.1 m from the tip
   double power = 0;                ///< [W] most that the arm gives to the hand; 0: none
   double impulse = 0;              ///< [N s] most within any tenth of a second; 0: none
   std::optional<double> velocity;  ///< [m/s] faster than this latches a fault; 0: none; none: 5, of real hardware

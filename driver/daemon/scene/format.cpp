@@ -141,7 +141,7 @@ constexpr Key kLimitKeys[] = {
     real<&Limits::force>("force", {0, 1000, "N"}, "0", "Largest force on the hand; 0: the device's own maximum."),
     real<&Limits::torque>("torque", {0, 1000, "N m"}, "0", "Largest torque on the hand; 0: the motors' limit alone."),
     real<&Limits::slew>("slew", {0, 1e6, "N/s"}, "2000", "Fastest growth of the force; 0: no limit."),
-    real<&Limits::torque_slew>("torque_slew", {0, 1e6, "N m/s"}, "0", "Fastest growth of the torque; 0: no limit."),
+    real<&Limits::torque_slew>("torque_slew", {0, 1e6, "N m/s"}, "200", "Fastest growth of the torque; 0: no limit."),
     real<&Limits::power>("power", {0, 1e4, "W"}, "0", "Largest power that the arm gives to the hand; 0: no limit."),
     real<&Limits::impulse>(
         "impulse", {0, 100, "N s"}, "0",

@@ -177,6 +177,7 @@ record::About aboutRun(const scene::Scene& scene, const World& world, const std:
                {"ticks", facts.ticks},
                {"virtual_time", facts.virtual_time},
                {"enable_released_first", !facts.found_pressed},
+               {"claims_hold_torques", !facts.former_claims},
                {"models", std::move(models)},
                {"devices", std::move(devices)},
                {"files", filesJson(scene)}};
@@ -197,6 +198,7 @@ Result<RecordedRun> readAbout(const std::string& json_text) {
     run.facts.ticks = json.at("ticks");
     run.facts.virtual_time = json.at("virtual_time");
     run.facts.found_pressed = !json.value("enable_released_first", false);
+    run.facts.former_claims = !json.value("claims_hold_torques", false);
     run.version = json.at("hapticd");
     run.started = json.at("started");
     run.instructions = json.value("instructions", "");

@@ -317,6 +317,7 @@ Result<std::unique_ptr<Replay>> Replay::prepare(const record::Recording& recordi
   options.rate = replay->run_.facts.rate;
   options.probe_count = static_cast<uint32_t>(scene.devices.size());
   options.max_force = maxForceOf(scene, replay->run_.devices);
+  options.former_claims = replay->run_.facts.former_claims;
   auto world = World::build(scene, options, log);
   if (!world) return Error{world.error()};
   replay->world_ = std::move(*world);

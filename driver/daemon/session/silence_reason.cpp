@@ -59,6 +59,10 @@ std::string silenceReason(const std::string& model, Trouble trouble, int32_t fai
       return who +
              "gave forces that jumped beyond its claimed stiffness; it was silenced; test it with: hapticd plugin "
              "check FILE.so";
+    case Trouble::kTwists:
+      return who +
+             "gave torques that jumped beyond its claimed stiffness; it was silenced; test it with: hapticd plugin "
+             "check FILE.so";
     case Trouble::kNotUnit:
       return who + "gave a pose whose quaternion is not of unit length; it was silenced";
     case Trouble::kPulls:

@@ -69,6 +69,7 @@ Result<std::unique_ptr<World>> World::build(const scene::Scene& scene, const Wor
   settings.measure = options.measure;
   settings.evaluation_ns = options.evaluation_ns;
   settings.spare_models = options.spare_models;
+  settings.former_claims = options.former_claims;
   world->core_ = std::make_unique<Core>(models, scene, options.probe_count, settings, *world->link_);
   world->shapes_.resize(models.size() + options.spare_models);
   return world;

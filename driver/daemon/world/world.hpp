@@ -18,11 +18,12 @@ namespace hapticd::servo {
 struct WorldOptions {
   double rate = 1000;  ///< [Hz]
   uint32_t probe_count = 1;
-  uint32_t spare_models = 0;  ///< places for models that come while it runs
-  bool measure = false;       ///< take the CPU time of every step
-  bool budgets = false;       ///< tell every step how much CPU time is left of the tick
-  double evaluation_ns = 0;   ///< > 0: costs are counted, so much an evaluation, instead of measured
-  double max_force = 0;       ///< [N] that any arm lets through to the hand; 0: unknown
+  uint32_t spare_models = 0;   ///< places for models that come while it runs
+  bool measure = false;        ///< take the CPU time of every step
+  bool budgets = false;        ///< tell every step how much CPU time is left of the tick
+  double evaluation_ns = 0;    ///< > 0: costs are counted, so much an evaluation, instead of measured
+  double max_force = 0;        ///< [N] that any arm lets through to the hand; 0: unknown
+  bool former_claims = false;  ///< as in recordings that know no other, see CoreSettings
 };
 
 class World {

@@ -81,6 +81,7 @@ std::string forceContinuous(const Recipe& recipe, uint64_t) {
     step.out = contact.flags;
     step.in = answer.jumped ? HSP_IN_JUMP : 0;
     if (answer.jumped) step.velocity.setZero();
+    step.former = true;  // nothing is searched here: after a jump a shape has its surface at once
     last = p, force = step.force;
     bool held = false;
     claim.judge(step, bounds, kConformanceDt, held);

@@ -27,6 +27,13 @@ double delayOf(const scene::Velocity& velocity, double rate) {
   return velocity.parameter / (2 * rate);
 }
 
+/// An arm that only pushes has no torque to follow.
+scene::Limits limitsOf(const scene::Limits& described, const hdv_info& info) {
+  scene::Limits limits = described;
+  if (info.joint_count <= 3) limits.torque_slew = 0;
+  return limits;
+}
+
 /// What programs of the HDAPI are to see, and the device has not; "": it has all of it.
 std::string refusalOf(const std::optional<scene::HdArm>& hd, const hdv_info& info) {
   const auto told = [](const std::string& key, uint32_t wrong, uint32_t count, const char* things) {
@@ -62,7 +69,7 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   if (!device) return Error{device.error()};
   (*device)->playBack(options.playback);
   if (auto opened = (*device)->open(); !opened) return Error{opened.error()};
-  const Limiter limiter(described.limits, (*device)->info().max_force);
+  const Limiter limiter(limitsOf(described.limits, (*device)->info()), (*device)->info().max_force);
   std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter, options));
   arm->as_found_ = options.found_pressed;
   if (options.found_pressed) arm->limiter_.enableByFoundPressed();

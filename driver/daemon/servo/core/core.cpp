@@ -26,6 +26,7 @@ Core::Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& 
       inputs_(probe_count),
       outputs_(probe_count),
       last_position_(probe_count, Vector3d::Zero()),
+      last_orientation_(probe_count, Eigen::Quaterniond::Identity()),
       jumped_(probe_count),
       seen_(probe_count),
       forces_(probe_count, Vector3d::Zero()),
@@ -33,6 +34,7 @@ Core::Core(const std::vector<host::ShapeInstance*>& models, const scene::Scene& 
       exchanges_(probe_count),
       present_(static_cast<uint32_t>(models.size())) {
   serve(Uses{});
+  claim_step_.former = settings.former_claims;
   for (size_t i = 0; i < models.size(); ++i) models_[i] = stateOf(*models[i], scene.models[i]);
   live_.reserve(models_.size());
   loads_.reserve(models_.size());
@@ -66,6 +68,7 @@ ModelState Core::stateOf(host::ShapeInstance& shape, const scene::Model& describ
 void Core::serve(const Uses& uses) {
   uses_ = uses;
   uses_.max_force.resize(probe_count_, 0);
+  uses_.max_torque.resize(probe_count_, 0);
 }
 
 void Core::publish(double t, std::span<const Probe> probes) noexcept HSP_RT {
@@ -164,6 +167,7 @@ void Core::findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT {
     }
     seen_[i] = 1;
     last_position_[i] = probes[i].position;
+    last_orientation_[i] = probes[i].orientation;
   }
 }
 

@@ -78,6 +78,7 @@ struct CoreSettings {
   uint32_t spare_models = 0;    ///< empty places for models that come while it runs
   bool measure = false;         ///< take the CPU time of each step
   double evaluation_ns = 0;     ///< > 0: a step costs so much for each evaluation, instead of what it takes
+  bool former_claims = false;   ///< torques, and steps after a parameter was set, are held to no claim, as once
 };
 
 /// What the arms make of a tick's answers; settled before the first. What nobody uses is not computed.
@@ -86,6 +87,7 @@ struct Uses {
   bool exchange = true;  ///< an arm has a passivity controller
   /// [N] What each arm lets through at most, by probe; 0 or missing: unknown.
   std::vector<double> max_force = {};
+  std::vector<double> max_torque = {};  ///< [N m] the same
 };
 
 class Core {
@@ -161,7 +163,8 @@ class Core {
   Trouble judge(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT;
   void fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP_RT;
   Trouble holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT;
-  bool holdToClaim(ModelState& model, uint32_t index, uint32_t probe, double dt) noexcept HSP_RT;
+  Trouble holdToClaim(ModelState& model, uint32_t index, uint32_t probe, double dt) noexcept HSP_RT;
+  bool holdTorque(const ModelState& model, Claim& claim, uint32_t probe, double dt) noexcept HSP_RT;
   bool pulls(ModelState& model) noexcept HSP_RT;
   Trouble holdToTime(ModelState& model) noexcept HSP_RT;
   Trouble takePose(ModelState& model, hsp_pose pose) noexcept HSP_RT;
@@ -190,7 +193,8 @@ class Core {
   // Bounded: a flood of records must not make a tick late; the rest waits for the next.
   std::array<link::ActivationRecord, 1024> received_;
   size_t received_count_ = 0;
-  std::vector<Vector3d> last_position_;  // of the last good sample
+  std::vector<Vector3d> last_position_;               // of the last good sample
+  std::vector<Eigen::Quaterniond> last_orientation_;  // the same
   std::vector<uint8_t> jumped_, seen_;
   std::vector<Vector3d> forces_, torques_;
   std::vector<passivity::Exchange> exchanges_;

@@ -38,10 +38,26 @@ bool finite(const hsp_contact& c) noexcept HSP_RT {
 
 }  // namespace
 
-/// True if the force of the answer to this probe was beyond the claim: it is then what the claim explains. This and
-/// what calls it go into judge(): they are asked of every answer in every tick, and calls cost as much as they do.
-[[gnu::always_inline]] inline bool Core::holdToClaim(ModelState& model, uint32_t index, uint32_t probe,
-                                                     double dt) noexcept HSP_RT {
+/// True if the torque of the answer to this probe was beyond the claim: it is then what the claim explains. Before the
+/// force is, which tells the claim where the probe was.
+bool Core::holdTorque(const ModelState& model, Claim& claim, uint32_t probe, double dt) noexcept HSP_RT {
+  ClaimStep& step = claim_step_;
+  hsp_contact& out = outputs_[probe];
+  const bool reads = (model.shape->report().flags & HSP_R_ORIENTATION) != 0;
+  step.torque = model.frame.vectorToWorld(ConstMap(out.torque));
+  step.max_torque = uses_.max_torque[probe];
+  step.orientation = Eigen::Vector4d::UnitW();
+  if (reads) step.orientation = last_orientation_[probe].coeffs();
+  bool held = false;
+  const Vector3d let = claim.judgeTorque(step, model.claims, dt, held);
+  if (held) Map(out.torque) = model.frame.vectorToModel(let);
+  return held;
+}
+
+/// What of the answer to this probe was beyond the claim: it is then what the claim explains. This and what calls it go
+/// into judge(): they are asked of every answer in every tick, and calls cost as much as they do.
+[[gnu::always_inline]] inline Trouble Core::holdToClaim(ModelState& model, uint32_t index, uint32_t probe,
+                                                        double dt) noexcept HSP_RT {
   hsp_contact& out = outputs_[probe];
   const hsp_probe& in = inputs_[probe];
   ClaimStep& step = claim_step_;
@@ -57,12 +73,16 @@ bool finite(const hsp_contact& c) noexcept HSP_RT {
     step.p_model = model.frame.pointToModel(step.p_world);
     step.origin = model.frame.origin_world;
   }
+  Claim& claim = claims_[size_t{index} * probe_count_ + probe];
+  const bool twists = uses_.torque && !settings_.former_claims && holdTorque(model, claim, probe, dt);
   bool held = false;
-  const Vector3d let = claims_[size_t{index} * probe_count_ + probe].judge(step, model.claims, dt, held);
-  if (!held) return false;
-  Map(out.force) = model.frame.vectorToModel(let);
-  Map(out.torque) *= std::min(1.0, let.norm() / step.force.norm());
-  return true;
+  const Vector3d let = claim.judge(step, model.claims, dt, held);
+  if (!held && !twists) return Trouble::kNone;
+  if (held) {
+    Map(out.force) = model.frame.vectorToModel(let);
+    Map(out.torque) *= std::min(1.0, let.norm() / step.force.norm());
+  }
+  return claim.excused() ? Trouble::kNone : held ? Trouble::kJump : Trouble::kTwists;
 }
 
 /// What a healthy answer may still break: the time it was given, and what was claimed for it.
@@ -71,8 +91,8 @@ bool finite(const hsp_contact& c) noexcept HSP_RT {
   Trouble trouble = Trouble::kNone;
   if (model.moves) turn_.noalias() = model.frame.R_world_model * model.before.R_world_model.transpose();
   for (uint32_t i = 0; i < probe_count_; ++i) {
-    if (!holdToClaim(model, index, i, dt)) continue;
-    trouble = model.guard.strike(Trouble::kJump, kJumps);
+    const Trouble beyond = holdToClaim(model, index, i, dt);
+    if (beyond != Trouble::kNone) trouble = model.guard.strike(beyond, kJumps);
   }
   if ((model.shape->report().flags & HSP_R_PUSHES) != 0 && pulls(model)) return model.guard.enter(Trouble::kPulls);
   return trouble == Trouble::kNone ? holdToTime(model) : trouble;

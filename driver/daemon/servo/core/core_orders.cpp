@@ -68,7 +68,13 @@ bool Core::change(ModelState& model, const Order& order) noexcept HSP_RT {
   if (host::stiffens(plugin, order.param) && claims.stiffness > 0)
     claims.stiffness = std::max(claims.stiffness, order.value);
   // What was asked for may change the force under a probe that rests: no jump of the plugin's own making.
-  for (uint32_t i = 0; i < probe_count_; ++i) claims_[size_t{order.target} * probe_count_ + i].forget();
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    Claim& claim = claims_[size_t{order.target} * probe_count_ + i];
+    if (settings_.former_claims)
+      claim.forget();
+    else
+      claim.expectChange();
+  }
   return true;
 }
 

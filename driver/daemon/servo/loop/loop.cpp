@@ -39,11 +39,12 @@ Arm* pacingArm(const scene::Servo& servo, const Arms& arms) {
 }
 
 Uses usesOf(const Arms& arms) {
-  Uses uses{false, false, {}};
+  Uses uses{false, false, {}, {}};
   for (const auto& arm : arms) {
     uses.torque |= arm->turns();
     uses.exchange |= arm->passivity() != nullptr;
     uses.max_force.push_back(arm->limiter().maxForce());
+    uses.max_torque.push_back(arm->limiter().maxTorque());
   }
   return uses;
 }

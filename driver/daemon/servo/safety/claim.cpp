@@ -30,20 +30,20 @@ Vector3d Claim::judge(const ClaimStep& step, const ClaimBounds& bounds, double d
   if (const double most = step.max_force, square = let.squaredNorm(); most > 0 && square > most * most)
     let *= most / std::sqrt(square);
   passes_ = std::min(kPasses, passes_ + kPassesPerSecond * dt);
+  asked_passes_ = std::min(kAsked, asked_passes_ + kAskedPerSecond * dt);
+  excused_ -= dt;
+  finds_anew_ -= dt;
   held = false;
   Vector3d from = let;
   double follows = 1;  // the share of the change that explained_ goes along with
   if (known_ && (step.in & (HSP_IN_JUMP | HSP_IN_INVALID)) == 0) {
-    const double turned = step.turn != nullptr ? turn(*step.turn, bounds, dt) : 0;
+    const double turned = step.turn != nullptr ? turn(explained_, *step.turn, bounds, dt) : 0;
     from = nearestPart(explained_, let);
     const Vector3d change = let - from;
     const double square = change.squaredNorm();
     if (!surelyExplained(square, step, bounds)) {
-      const double moved = explained(step, bounds, dt) + turned, most = moved + std::max(kStep, bounds.jump);
-      const double size = std::sqrt(square);
-      held = size > most && !takePass(step);
-      if (held) let = from + change * (most / size);
-      if (held || (size <= most && size > moved + kDrift * dt)) follows = (moved + kDrift * dt) / std::min(size, most);
+      const Room room{explained(step, bounds, dt) + turned, std::max(kStep, bounds.jump), kDrift * dt};
+      follows = holdBack(let, from, change, room, step, dt, held);
     }
   }
   explained_ = follows < 1 ? Vector3d(from + follows * (let - from)) : Vector3d(from + (let - from));
@@ -59,12 +59,33 @@ bool Claim::surelyExplained(double square, const ClaimStep& step, const ClaimBou
   return square <= per_metre * per_metre * (step.p_model - p_model_).squaredNorm();
 }
 
-/// [N] What the turn of the model since the last step explains beside its way. The force of a model that the host turns
-/// turns with it.
-double Claim::turn(const Eigen::Matrix3d& turn, const ClaimBounds& bounds, double dt) noexcept HSP_RT {
-  const Vector3d carried = turn * explained_;
-  if (bounds.moves_itself) return std::min((carried - explained_).norm(), kOwnTurn * dt * explained_.norm());
-  explained_ = carried;
+/// Holds `let` back to what there is room for. The share of the change that what is explained goes along with.
+double Claim::holdBack(Vector3d& let, const Vector3d& from, const Vector3d& change, const Room& room,
+                       const ClaimStep& step, double dt, bool& held) noexcept HSP_RT {
+  const double size = change.norm(), most = room.moved + room.jump, follows = room.moved + room.drift;
+  held = size > most && !mayJump(step);
+  if (held) let = from + change * (most / size);
+  if (!held && (size > most || size <= follows)) return 1;
+  // What somebody asked for comes slowly: until it is there, it is not the plugin that goes too far.
+  if (asked_ && dt > 0) excused_ = std::max(excused_, std::min(kExcused, size / room.drift * dt));
+  return follows / std::min(size, most);
+}
+
+/// One change of a step that nothing explains, of the force and the torque alike.
+bool Claim::mayJump(const ClaimStep& step) noexcept HSP_RT {
+  jumps_ = jumps_ || takePass(step);
+  if (jumps_ || !asked_ || asked_passes_ < 1) return jumps_;
+  asked_passes_ -= 1;
+  return jumps_ = true;
+}
+
+/// [N] or [N m] What the turn of the model since the last step explains beside its way. The force of a model that the
+/// host turns turns with it.
+double Claim::turn(Vector3d& explained, const Eigen::Matrix3d& turn, const ClaimBounds& bounds,
+                   double dt) noexcept HSP_RT {
+  const Vector3d carried = turn * explained;
+  if (bounds.moves_itself) return std::min((carried - explained).norm(), kOwnTurn * dt * explained.norm());
+  explained = carried;
   return 0;
 }
 
@@ -93,7 +114,7 @@ double Claim::ownWay(const ClaimStep& step, double dt) const noexcept HSP_RT {
 
 bool Claim::takePass(const ClaimStep& step) noexcept HSP_RT {
   if ((step.out & HSP_OUT_TRACED) == 0 || passes_ < 1) return false;
-  if (traced_ && step.normal.dot(normal_) > std::cos(kEdge)) return false;
+  if (traced_ && !(finds_anew_ > 0) && step.normal.dot(normal_) > std::cos(kEdge)) return false;
   passes_ -= 1;
   return true;
 }
@@ -101,6 +122,8 @@ bool Claim::takePass(const ClaimStep& step) noexcept HSP_RT {
 /// Only what the next step is compared with: this is done for each shape, probe and tick.
 void Claim::remember(const ClaimStep& step, const ClaimBounds& bounds) noexcept HSP_RT {
   known_ = (step.in & HSP_IN_INVALID) == 0;
+  asked_ = jumps_ = false;
+  if ((step.in & (HSP_IN_JUMP | HSP_IN_INVALID)) != 0 && !step.former) finds_anew_ = kFindsAnew;
   traced_ = (step.out & HSP_OUT_TRACED) != 0;
   p_model_ = step.p_model;
   velocity_ = step.velocity;
@@ -108,6 +131,39 @@ void Claim::remember(const ClaimStep& step, const ClaimBounds& bounds) noexcept 
   if (!bounds.moves_itself) return;
   p_world_ = step.p_world;
   origin_ = step.origin;
+}
+
+/// Torques are held to a claim as forces are: a stiffness k at a handle of length l turns the hand back by k l^2 for
+/// each radian, and a force that jumps by f is a torque that jumps by f l.
+Vector3d Claim::judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT {
+  Vector3d let = step.torque;
+  if (const double size = let.norm(); step.max_torque > 0 && size > step.max_torque) let *= step.max_torque / size;
+  held = false;
+  Vector3d from = let;
+  double follows = 1;  // the share of the change that explained_torque_ goes along with
+  if (torque_known_ && (step.in & (HSP_IN_JUMP | HSP_IN_INVALID)) == 0) {
+    const double turned = step.turn != nullptr ? turn(explained_torque_, *step.turn, bounds, dt) : 0;
+    from = nearestPart(explained_torque_, let);
+    const double round = angle(step, bounds), speed = dt > 0 ? round / dt : 0;
+    const double moved =
+        explained(step, bounds, dt) + kHandle * (stiffnessOf(bounds) * round + kMargin * bounds.damping * speed);
+    const Room room{kHandle * moved + turned, kHandle * std::max(kStep, bounds.jump), kHandle * kDrift * dt};
+    follows = holdBack(let, from, let - from, room, step, dt, held);
+  }
+  explained_torque_ = from + follows * (let - from);
+  torque_known_ = (step.in & HSP_IN_INVALID) == 0;
+  orientation_ = step.orientation;
+  return held ? let : step.torque;
+}
+
+/// [rad] How far the probe turned in the frame of the model since the last step, at least. A turn that is the shape's
+/// own word explains nothing but that its torque turns along: what a body can do at the probe is in explained().
+double Claim::angle(const ClaimStep& step, const ClaimBounds& bounds) const noexcept HSP_RT {
+  constexpr double kOfChord = 2.3;    // an angle up to half a turn over the distance of its quaternion from none
+  constexpr double kOfMatrix = 0.72;  // a small angle over the distance of matrices
+  const double chord = std::min((step.orientation - orientation_).norm(), (step.orientation + orientation_).norm());
+  const bool carried = step.turn != nullptr && !bounds.moves_itself;
+  return kOfChord * chord + (carried ? kOfMatrix * (*step.turn - Eigen::Matrix3d::Identity()).norm() : 0);
 }
 
 bool pullsIn(const hsp_contact& contact, const Vector3d& p) noexcept HSP_RT {

@@ -2,7 +2,7 @@
 /// A plugin claims how stiff its shape is at most, how much it damps, and how far its force may jump on purpose. These
 /// claims and the motion of the probe bound the change of the force. A force that changes by more is let through only
 /// as far as the bound. Forces are compared as vectors in the world frame, after every rotation, whether the model is
-/// traced or not.
+/// traced or not. So are torques: by the same numbers, at the length of a handle.
 #pragma once
 #include <Eigen/Core>
 
@@ -30,6 +30,12 @@ struct ClaimStep {
   const Eigen::Matrix3d* turn = nullptr;               ///< of the model since its last step; nullptr: it does not turn
   double max_force = 0;      ///< [N] that the arm lets through; 0: unknown. Forces are compared no further.
   uint32_t in = 0, out = 0;  ///< HSP_IN_*, HSP_OUT_*
+  // Looked at by judgeTorque() alone.
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m] on the probe
+  /// x y z w of the probe in the world; the same in each step where the shape does not read how the probe is turned.
+  Eigen::Vector4d orientation = Eigen::Vector4d::UnitW();
+  double max_torque = 0;  ///< [N m] that the arm lets through; 0: unknown. Torques are compared no further.
+  bool former = false;    ///< a jump of the probe excuses nothing, as once
 };
 
 /// What is remembered of one model and one probe.
@@ -47,29 +53,64 @@ class Claim {
   static constexpr double kPasses = 3, kPassesPerSecond = 20;
   static constexpr double kEdge = 0.1;     ///< [rad] a normal that turns farther in one step has gone over an edge
   static constexpr double kSurely = 0.99;  ///< of what stiffness explains: what is below needs no second look
+  /// [m] From the tip to where a hand holds the handle: a force there is a torque of so much.
+  static constexpr double kHandle = 0.1;
+  /// A live parameter that somebody set may change the force at once: kAsked such changes may come together, and
+  /// kAskedPerSecond per second. Who sets one in every tick must not open a door for a plugin that kicks.
+  static constexpr double kAsked = 3, kAskedPerSecond = 2;
+  static constexpr double kExcused = 1;  ///< [s] for which what was asked for may be held back and blames nobody
+  /// [s] After a jump of the probe or a bad sample the search finds the surface anew, some ticks later. The force comes
+  /// by a pass then, whatever the normal was, and what is held back is no fault of the plugin.
+  static constexpr double kFindsAnew = 0.1;
 
   /// [rt] How much of the force of `step` may be let through, world frame: all of it, or what the claim explains.
   /// @param dt [s] since the last step  @param held true if the force was held back
   Eigen::Vector3d judge(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
 
+  /// [rt] The same of the torque of `step`. Before judge(), which remembers where the probe was.
+  Eigen::Vector3d judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
+
+  /// [rt] Somebody set a live parameter of the model: in the next step the force may change with nothing to explain it.
+  void expectChange() noexcept HSP_RT { asked_ = true; }
+
+  /// [rt] What was held back in the last step was asked for by somebody, or the probe jumped: it is no fault of the
+  /// plugin.
+  bool excused() const noexcept HSP_RT { return excused_ > 0 || finds_anew_ > 0; }
+
   /// [any] The next step is compared with nothing.
-  void forget() noexcept { known_ = false; }
+  void forget() noexcept { known_ = torque_known_ = false; }
 
  private:
+  /// What may become of a change, [N] or [N m].
+  struct Room {
+    double moved;  ///< that motion explains
+    double jump;   ///< beyond it
+    double drift;  ///< in this step, with nothing to explain it
+  };
+  double holdBack(Eigen::Vector3d& let, const Eigen::Vector3d& from, const Eigen::Vector3d& change, const Room& room,
+                  const ClaimStep& step, double dt, bool& held) noexcept HSP_RT;
+  bool mayJump(const ClaimStep& step) noexcept HSP_RT;
+  double angle(const ClaimStep& step, const ClaimBounds& bounds) const noexcept HSP_RT;
   bool surelyExplained(double square, const ClaimStep& step, const ClaimBounds& bounds) const noexcept HSP_RT;
-  double turn(const Eigen::Matrix3d& turn, const ClaimBounds& bounds, double dt) noexcept HSP_RT;
+  static double turn(Eigen::Vector3d& explained, const Eigen::Matrix3d& turn, const ClaimBounds& bounds,
+                     double dt) noexcept HSP_RT;
   double explained(const ClaimStep& step, const ClaimBounds& bounds, double dt) const noexcept HSP_RT;
   double ownWay(const ClaimStep& step, double dt) const noexcept HSP_RT;
   bool takePass(const ClaimStep& step) noexcept HSP_RT;
   void remember(const ClaimStep& step, const ClaimBounds& bounds) noexcept HSP_RT;
 
   bool known_ = false, traced_ = false;
-  double passes_ = kPasses;
+  bool torque_known_ = false;
+  bool asked_ = false, jumps_ = false;  // of this step: a parameter was set; it was let jump
+  double passes_ = kPasses, asked_passes_ = kAsked;
+  double excused_ = 0, finds_anew_ = 0;  // [s] for which it still is
   /// [N] The force that motion explains, world: what was let through is never farther from it than a jump.
   Eigen::Vector3d explained_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_world_ = Eigen::Vector3d::Zero(), p_model_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero(), normal_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d explained_torque_ = Eigen::Vector3d::Zero();  // [N m] as explained_
+  Eigen::Vector4d orientation_ = Eigen::Vector4d::UnitW();
 };
 
 /// A pull of a surface that reports to push only.

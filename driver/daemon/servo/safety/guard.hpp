@@ -17,7 +17,8 @@ enum class Trouble : uint8_t {
   kOverrun,    ///< its steps took longer than all shapes may in a tick, again and again: never trusted again
   kJump,       ///< its force jumped beyond the stiffness it claims, again and again: never trusted again
   kNotUnit,    ///< a pose whose quaternion turns and stretches: never trusted again
-  kPulls       ///< a surface that only pushes pulled the probe in: never trusted again
+  kPulls,      ///< a surface that only pushes pulled the probe in: never trusted again
+  kTwists      ///< its torque jumped as kJump says of a force: never trusted again
 };
 
 /// Fades the force of one shape. All times in seconds of the tick.

@@ -90,6 +90,7 @@ class Limiter {
   double rampOut() const noexcept { return limits_.ramp_out; }   ///< [s] from full force to none, at a planned end
   const Clips& clips() const noexcept { return clips_; }         ///< [main] after the run
   double maxForce() const noexcept { return max_force_; }        ///< [N] 0: none
+  double maxTorque() const noexcept { return limits_.torque; }   ///< [N m] 0: none
   /// [rt] The share of a full force that the ramps let flow in this tick, after apply(): 0 to 1.
   double allowed() const noexcept { return fault() == Fault::kNone ? ramp_ : fade_ * ramp_; }
   bool silent() const noexcept { return fault() != Fault::kNone && fade_ == 0; }  ///< ramped all the way down

@@ -88,17 +88,51 @@ struct Misbehaving : hapticd::Shape {
   }
 };
 
-/// Pushes and turns the hand.
+/// Pushes and turns the hand; or turns it round in each tick from the tenth on.
 struct Turning : hapticd::Shape {
-  int unused;
+  int ticks = 0;
+  double kick;
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.turning", "turning", "1.0.0", "MIT", "Turns."};
   static constexpr auto fields() {
-    return std::array{Fields<Turning>::integer("unused", &Turning::unused, "", 0, 1, 0, "Nothing.")};
+    return std::array{Fields<Turning>::real("kick", &Turning::kick, "N m", 0, 1e6, 0, "That turns round.")};
   }
   void activate(const hsp_activation&, hsp_report&) {}
   hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
     out.force[1] = 1;
     out.torque[0] = 0.25;
+    if (kick > 0 && ++ticks > 10) out.torque[0] = ticks % 2 == 0 ? kick : -kick;
+    return HSP_OK;
+  }
+};
+
+/// Turns the hand back toward where it was at first, by 2 N m for each radian.
+struct Aligning : hapticd::Shape {
+  int unused;
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.aligning", "aligning", "1.0.0", "MIT", "Aligns."};
+  static constexpr auto fields() {
+    return std::array{Fields<Aligning>::integer("unused", &Aligning::unused, "", 0, 1, 0, "Nothing.")};
+  }
+  void activate(const hsp_activation&, hsp_report& report) { report.flags = HSP_R_ORIENTATION; }
+  hsp_status touch(const hsp_probe& in, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
+    for (int i = 0; i < 3; ++i) out.torque[i] = -4 * in.orientation[1 + i];
+    return HSP_OK;
+  }
+};
+
+/// Pushes as it is told while it runs; or also turns round in each tick.
+struct Obliging : hapticd::Shape {
+  double wish;
+  bool kicks;
+  int ticks = 0;
+  static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.obliging", "obliging", "1.0.0", "MIT", "Obliges."};
+  static constexpr auto fields() {
+    using F = Fields<Obliging>;
+    return std::array{F::real("wish", &Obliging::wish, "N", 0, 1e3, 0, "Force.", HSP_P_LIVE),
+                      F::boolean("kicks", &Obliging::kicks, false, "It takes each tick as its chance.")};
+  }
+  void activate(const hsp_activation&, hsp_report&) {}
+  hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
+    out.force[1] = kicks && ++ticks % 2 == 0 ? -wish : wish;
     return HSP_OK;
   }
 };
@@ -218,4 +252,4 @@ struct Throwing : hapticd::Shape {
 
 }  // namespace
 
-HAPTICD_SHAPES(Wall, Pulling, Misbehaving, Sliding, Allocating, Throwing, Deadly, Turning, Rude)
+HAPTICD_SHAPES(Wall, Pulling, Misbehaving, Sliding, Allocating, Throwing, Deadly, Turning, Rude, Aligning, Obliging)

@@ -46,9 +46,18 @@ struct Recorded : Rig {
     ASSERT_TRUE(arms[0]->start(0, Eigen::Vector3d(0, -9.81, 0)));
   }
 
+  /// As in versions in which neither torques nor steps after a set were held to a claim.
+  void holdToFormerClaims() {
+    former_claims = true;
+    WorldOptions options;
+    options.former_claims = true;
+    world = std::move(*World::build(scene, options, quiet));
+    loop = std::make_unique<Loop>(world->core(), world->lockstep(), arms, clock, settings, *telemetry);
+  }
+
   void record() {
     const auto streams = flightStreams(scene, arms, 1000, 1, 0);
-    const RunFacts facts{1000, settings.period_ns, settings.ticks, true, found_pressed};
+    const RunFacts facts{1000, settings.period_ns, settings.ticks, true, found_pressed, former_claims};
     about = aboutRun(scene, *world, arms, facts, streams);
     telemetry->attach(std::make_unique<Flight>(std::move(*record::FlightRing::create(streams, about)), arms, 8));
     loop->run();
@@ -66,7 +75,7 @@ struct Recorded : Rig {
   }
 
   record::About about;
-  bool found_pressed = false;
+  bool found_pressed = false, former_claims = false;
 };
 
 void expectSame(const ReplayOutcome& outcome) {
@@ -135,6 +144,33 @@ TEST(Replay, LetsAButtonThatWasFoundPressedEnableAsItDidOnce) {
   about.erase("enable_released_first");
   rig.about.json = about.dump();
   expectSame(rig.replay());
+}
+
+/// Sets the first parameter of the first model before each tick, up and down.
+void animate(Recorded& rig) {
+  rig.every = [&rig, tick = 0](Nanoseconds) mutable {
+    Order order;
+    order.kind = Order::Kind::kSet;
+    order.value = 3 + ++tick % 2;
+    rig.loop->give(order);
+  };
+}
+
+/// A recording that says nothing of the rule was made before there was one: what kicked then kicks again.
+TEST(Replay, IsTheSameWhereAParameterWasSetInEveryTickUnderEitherLaw) {
+  for (const bool former : {false, true}) {
+    Recorded rig("obliging", {number(0, HSP_REAL, 3), number(1, HSP_BOOL, 1)});
+    if (former) rig.holdToFormerClaims();
+    animate(rig);
+    rig.record();
+    const Vector3d last = rig.world->core().force(0);
+    EXPECT_EQ(last.norm() >= 3, former) << last.transpose();
+    auto about = nlohmann::json::parse(rig.about.json);
+    ASSERT_EQ(about.at("claims_hold_torques"), !former);
+    if (former) about.erase("claims_hold_torques");
+    rig.about.json = about.dump();
+    expectSame(rig.replay());
+  }
 }
 
 /// A wall that a program leads into the hand, and the program's memory as it was then.

@@ -23,6 +23,7 @@ class Reference {
     const bool beyond = step.max_force > 0 && asked > step.max_force;
     Vector3d let = beyond ? Vector3d(step.force * (step.max_force / asked)) : step.force;
     passes_ = std::min(Claim::kPasses, passes_ + Claim::kPassesPerSecond * dt);
+    finds_anew_ -= dt;
     held = false;
     Vector3d from = let;
     double follows = 1;
@@ -40,6 +41,7 @@ class Reference {
     explained_ = from + std::min(1.0, follows) * (let - from);
     last_ = step;
     known_ = (step.in & HSP_IN_INVALID) == 0;
+    if ((step.in & (HSP_IN_JUMP | HSP_IN_INVALID)) != 0) finds_anew_ = Claim::kFindsAnew;
     return held ? let : step.force;
   }
 
@@ -75,13 +77,13 @@ class Reference {
   bool takePass(const ClaimStep& step) {
     const bool traced = (step.out & HSP_OUT_TRACED) != 0, was = (last_.out & HSP_OUT_TRACED) != 0;
     if (!traced || passes_ < 1) return false;
-    if (was && step.normal.dot(last_.normal) > std::cos(Claim::kEdge)) return false;
+    if (was && finds_anew_ <= 0 && step.normal.dot(last_.normal) > std::cos(Claim::kEdge)) return false;
     passes_ -= 1;
     return true;
   }
 
   bool known_ = false;
-  double passes_ = Claim::kPasses;
+  double passes_ = Claim::kPasses, finds_anew_ = 0;
   Vector3d explained_ = Vector3d::Zero();
   ClaimStep last_;
 };

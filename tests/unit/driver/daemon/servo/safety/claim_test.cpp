@@ -1,36 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "servo/safety/claim.hpp"
-
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
 #include <cmath>
 #include <random>
+
+#include "claim_rig.hpp"
 
 namespace hapticd::servo {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kTick = 1e-3;
-
-ClaimStep at(const Vector3d& p, const Vector3d& force) {
-  ClaimStep step;
-  step.p_world = step.p_model = p;
-  step.force = force;
-  return step;
-}
-
-/// A claim that has seen a probe at rest at the origin, with a force of its own.
-struct Rested {
-  explicit Rested(const Vector3d& force = Vector3d::Zero(), ClaimBounds given = {}) : bounds(given) {
-    claim.judge(at(Vector3d::Zero(), force), bounds, 0, held);
-    EXPECT_FALSE(held) << "the first is compared with nothing";
-  }
-  Vector3d next(const ClaimStep& step, double dt = kTick) { return claim.judge(step, bounds, dt, held); }
-  ClaimBounds bounds;
-  Claim claim;
-  bool held = false;
-};
 
 TEST(Claim, LetsAClickThrough) {
   Rested click;
@@ -210,6 +188,34 @@ TEST(Claim, AFootMayGoOverAnEdgeThreeTimesAndThenTwentyTimesASecond) {
   hidden.out = 0;
   untraced.next(hidden);
   EXPECT_TRUE(untraced.held) << "what is not traced has no edges";
+}
+
+/// The search finds the surface some ticks after the probe jumped: the force that then comes is not the plugin's jump.
+TEST(Claim, ASurfaceThatIsFoundAnewAfterAJumpBlamesNobody) {
+  for (const uint32_t flag : {HSP_IN_JUMP, HSP_IN_INVALID}) {
+    for (const bool former : {false, true}) {
+      Rested found(Vector3d(0, 1, 0));
+      found.next(traced(1, 1));
+      ClaimStep jump = traced(1, 0);
+      jump.in = flag;
+      jump.former = former;
+      found.next(jump);
+      for (int i = 0; i < 5; ++i) found.next(traced(1, 0));
+      EXPECT_EQ(found.next(traced(1)).y() == 8, !former) << "by a pass, though the normal is as it was";
+      EXPECT_EQ(found.claim.excused(), !former);
+    }
+  }
+  Rested hidden;  // without a surface it comes late, and is excused for a tenth of a second
+  ClaimStep step = at({0, 0, 0}, {0, 0, 0});
+  step.in = HSP_IN_JUMP;
+  hidden.next(step);
+  int excused = 0;
+  for (int i = 0; i < 1000; ++i) {
+    hidden.next(at({0, 0, 0}, {0, i % 2 == 0 ? 8.0 : -8.0, 0}));
+    ASSERT_TRUE(hidden.held);
+    excused += hidden.claim.excused() ? 1 : 0;
+  }
+  EXPECT_NEAR(excused, Claim::kFindsAnew / kTick, 2);
 }
 
 TEST(Claim, WhatPassedIsWhereTheNextStepBegins) {

@@ -8,7 +8,7 @@ namespace hapticd::servo {
 inline scene::Limits generous() {
   scene::Limits limits;
   limits.ramp_in = 0;
-  limits.slew = 0;
+  limits.slew = limits.torque_slew = 0;
   return limits;
 }
 

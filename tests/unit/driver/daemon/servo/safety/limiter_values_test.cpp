@@ -224,5 +224,18 @@ TEST(Limiter, AClearBeginsTheRampAnew) {
   EXPECT_NEAR(applied(limiter, {4, 0, 0}).force.x(), 0.04, 1e-9);
 }
 
+TEST(Limiter, ATorqueGrowsNoFasterThanItsDefaultSlew) {
+  scene::Limits limits;
+  limits.ramp_in = 0;
+  Limiter limiter(limits, 8.5);
+  double last = 0;
+  for (int i = 0; i < 20; ++i) {
+    Vector3d force = Vector3d::Zero(), torque(0, 5, 0);
+    limiter.apply(force, torque, Vector3d::Zero(), kTick);
+    EXPECT_NEAR(torque.y() - last, 0.2, 1e-9) << "2000 N/s at 0.1 m, in a millisecond";
+    last = torque.y();
+  }
+}
+
 }  // namespace
 }  // namespace hapticd::servo
