@@ -247,11 +247,9 @@ def dies(daemon):
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     one = Daemon(scratch)
-    held(one)
-    logged(one)
-    refused(one)
-    late(one)
-    forgotten(one)
-    many_files(one)
-    dies(one)
+    try:
+        for case in (held, logged, refused, late, forgotten, many_files, dies):
+            case(one)
+    finally:
+        one.run.kill()  # also where a case did not come to its end
 finish()
