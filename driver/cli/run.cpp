@@ -168,6 +168,7 @@ int conclude(const RunArguments& options, servo::Runner& runner, const std::vect
   std::fputs(
       (record::summary(report) + record::paceText(report, options.rate.value_or(runner.scene().servo.rate))).c_str(),
       stdout);
+  std::fflush(stdout);  // a plugin that crashes as it is taken down must not take the report along
   warnOfHeat(runner, report.rate_hz);
   if (const record::Recorder* recorder = runner.recorder())
     std::printf("  recorded  %s: %llu ticks, %llu rows lost\n", options.record.c_str(),

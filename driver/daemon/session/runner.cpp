@@ -48,6 +48,23 @@ class CrashGuard {
   CrashGuard& operator=(const CrashGuard&) = delete;
 };
 
+/// A run that has ended, as the crash handler sees it: the motors are off.
+class EndedServo final : public watch::Watched {
+ public:
+  uint64_t ticks() const noexcept override { return 0; }
+  Nanoseconds tickBegun() const noexcept override { return 0; }
+  Nanoseconds nextTick() const noexcept override { return 0; }
+  Nanoseconds cpuTime() const noexcept override { return 0; }
+  bool simulated() const noexcept override { return true; }
+  void stop() noexcept override {}
+  Nanoseconds stopAsked() const noexcept override { return 0; }
+  void cut(double) noexcept override {}
+  bool cutLeft() const noexcept override { return true; }
+  const Owner* inServo() const noexcept override { return nullptr; }
+  const void* blackBox() const noexcept override { return nullptr; }
+  size_t blackBoxBytes() const noexcept override { return 0; }
+};
+
 Nanoseconds spinFor(const scene::Servo& servo) {
   // Spinning buys regularity on bare metal; in a virtual machine the pauses come from outside.
   constexpr double kBareMetalSpinUs = 50;
@@ -76,6 +93,19 @@ const Owner* keepsTheEnd() {
 }
 
 }  // namespace
+
+Runner::~Runner() {
+  const Working working(Worker::kMain);
+  EndedServo ended;
+  const CrashGuard crash(ended, options_.state_dir);
+  recorder_.reset();
+  loop_.reset();
+  clock_.reset();
+  event_log_.reset();
+  telemetry_.reset();
+  arms_.clear();
+  world_.reset();
+}
 
 Result<std::unique_ptr<World>> Runner::buildWorld(const scene::Scene& scene, const RunOptions& options,
                                                   const host::Services::Log& log) {
@@ -209,7 +239,7 @@ void Runner::lookAfter(sim::ProximityThread& proximity, bool anyhow, const std::
       every(*this);
     }
     clock.waitUntil(clock.now() + proximity.turn(kStatusPeriod));
-    if (guard_) tellGuard();
+    if (guard_) keepGuard();
     if (suspend_) stopProcess();
   }
 }
@@ -295,6 +325,19 @@ void Runner::startGuard() {
   if (!guard) return warnings_.push_back(guard.error());
   guard_ = std::move(*guard);
   loop_->beatOn(guard_->ticks());
+}
+
+/// A guard that was killed, as by a machine short of memory, is one that nobody would miss until it is needed.
+void Runner::keepGuard() {
+  constexpr uint32_t kMost = 8;
+  if (guards_ended_ > kMost) return;
+  if (guard_->alive()) return tellGuard();
+  const bool again = ++guards_ended_ <= kMost;
+  const Result<void> begun = again ? guard_->restart() : Error{"it ended again and again"};
+  log::write(begun ? HSP_LOG_WARNING : HSP_LOG_ERROR, "",
+             begun ? "the guard process ended; another watches in its place"
+                   : "the guard process ended, and there is no other: " + begun.error());
+  if (!begun) guards_ended_ = kMost + 1;
 }
 
 /// Arms come and go: each has another way in when it was found anew.

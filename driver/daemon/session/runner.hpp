@@ -46,6 +46,11 @@ class Runner {
   static Result<std::unique_ptr<World>> buildWorld(const scene::Scene& scene, const RunOptions& options,
                                                    const host::Services::Log& log);
 
+  /// [main] Takes models and arms down; a module that crashes in it is named and remembered as in a run.
+  ~Runner();
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
+
   /// [main] Opens the devices. A failure is that of the hardware, or of a virtual run that names some.
   static Result<std::unique_ptr<Runner>> prepare(const scene::Scene& scene, const RunOptions& options,
                                                  std::unique_ptr<World> world, const host::Services::Log& log);
@@ -122,6 +127,7 @@ class Runner {
   bool needsGuard() const;
   void startGuard();
   void tellGuard();
+  void keepGuard();
   void openEventLog();
   void lockMemory();
   std::vector<std::string> enterRealTime() const;  ///< servo thread. @return what was refused
@@ -138,6 +144,7 @@ class Runner {
   std::unique_ptr<Loop> loop_;
   std::unique_ptr<record::Recorder> recorder_;
   std::unique_ptr<watch::GuardProcess> guard_;  ///< nullptr: no arm needs one, or can be switched off from outside
+  uint32_t guards_ended_ = 0;
   std::atomic<bool> suspend_{false};
   std::vector<std::string> warnings_;
   Nanoseconds wall_time_ = 0;

@@ -6,6 +6,7 @@
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -33,37 +34,54 @@ int above(int fd) {
   return moved;
 }
 
+/// 0: it is open no more.
+uint64_t inodeOf(int fd) {
+  struct stat what{};
+  return fd >= 0 && fstat(fd, &what) == 0 ? what.st_ino : 0;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<GuardProcess>> GuardProcess::start(int priority, Nanoseconds patience) {
   std::unique_ptr<GuardProcess> guard(new GuardProcess);
-  int ends[2] = {-1, -1};
-  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) return cannot("socketpair");
-  guard->socket_ = Descriptor(ends[0]);
-  const Descriptor other(above(ends[1]));
-  const Descriptor memory(above(memfd_create("hapticd-heartbeat", MFD_CLOEXEC)));
-  if (!memory || ftruncate(memory.get(), sizeof(Heartbeat)) != 0) return cannot("memfd_create");
-  void* mapped = mmap(nullptr, sizeof(Heartbeat), PROT_READ | PROT_WRITE, MAP_SHARED, memory.get(), 0);
+  guard->priority_ = priority;
+  guard->patience_ = patience;
+  guard->memory_ = Descriptor(above(memfd_create("hapticd-heartbeat", MFD_CLOEXEC)));
+  const int memory = guard->memory_.get();
+  if (!guard->memory_ || ftruncate(memory, sizeof(Heartbeat)) != 0) return cannot("memfd_create");
+  guard->memory_is_ = inodeOf(memory);
+  void* mapped = mmap(nullptr, sizeof(Heartbeat), PROT_READ | PROT_WRITE, MAP_SHARED, memory, 0);
   if (mapped == MAP_FAILED) return cannot("mmap");
   guard->beat_ = new (mapped) Heartbeat;
-  if (auto spawned = guard->spawn(priority, patience, other.get(), memory.get()); !spawned)
-    return Error{spawned.error()};
+  if (auto begun = guard->restart(); !begun) return Error{begun.error()};
   return guard;
 }
 
-Result<void> GuardProcess::spawn(int priority, Nanoseconds patience, int socket, int memory) {
+/// The memory stays: the servo counts its ticks there.
+Result<void> GuardProcess::restart() {
+  errno = EBADF;
+  if (inodeOf(memory_.get()) != memory_is_) return cannot("its memory was closed");
+  int ends[2] = {-1, -1};
+  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) return cannot("socketpair");
+  socket_ = Descriptor(ends[0]);
+  told_.clear();
+  const Descriptor other(above(ends[1]));
+  return spawn(other.get());
+}
+
+Result<void> GuardProcess::spawn(int socket) {
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(&files, socket, kGuardSocket);
-  posix_spawn_file_actions_adddup2(&files, memory, kGuardMemory);
+  posix_spawn_file_actions_adddup2(&files, memory_.get(), kGuardMemory);
   posix_spawn_file_actions_addclosefrom_np(&files, kGuardMemory + 1);
   posix_spawnattr_t how;
   posix_spawnattr_init(&how);
   posix_spawnattr_setflags(&how, POSIX_SPAWN_SETSID);  // Ctrl-C and Ctrl-Z are for the daemon alone
-  std::array<std::string, 4> words = {"hapticd-guard", kGuardArgument, std::to_string(priority),
-                                      std::to_string(patience)};
+  std::array<std::string, 4> words = {"hapticd-guard", kGuardArgument, std::to_string(priority_),
+                                      std::to_string(patience_)};
   char* arguments[] = {words[0].data(), words[1].data(), words[2].data(), words[3].data(), nullptr};
   errno = posix_spawn(&process_, "/proc/self/exe", &files, &how, arguments, environ);
   posix_spawn_file_actions_destroy(&files);

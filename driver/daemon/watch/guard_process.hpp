@@ -30,13 +30,18 @@ class GuardProcess {
   std::atomic<uint64_t>& ticks() noexcept { return beat_->ticks; }
   /// [main] It lives.
   bool alive() noexcept;
+  /// [main] Another process in place of one that has ended. It must be told of every arm anew.
+  Result<void> restart();
 
  private:
   GuardProcess() = default;
-  Result<void> spawn(int priority, Nanoseconds patience, int socket, int memory);
+  Result<void> spawn(int socket);
 
+  int priority_ = 0;
+  Nanoseconds patience_ = 0;
   Heartbeat* beat_ = nullptr;
-  Descriptor socket_;
+  Descriptor socket_, memory_;
+  uint64_t memory_is_ = 0;  ///< its inode: somebody else may have closed the descriptor
   int process_ = -1;
   std::map<uint32_t, uint64_t> told_;  ///< epoch by arm
 };

@@ -35,6 +35,16 @@ def blamed(where):
              run.quarantined())]
 
 
+def blamed_at_the_end(where):
+    """After the motors are off, while the models are taken down; the report of the run is out before."""
+    run = daemon(BAD.format(where), arguments=("--rate", "1000", "--for", "0.5"))
+    code, said = run.end()
+    return [(f"{where}: its plugin is named after the report", code == 1 and "plugin 'broken' of model 'bad' was ended by" in said and
+             "good (nurbs_rigid)" in said and not run.arm.motors_on(), (code, said)),
+            (f"{where}: it alone is in quarantine", [line.split("\t")[0] for line in run.quarantined().splitlines()] == ["broken"],
+             run.quarantined())]
+
+
 def device(fault):
     run = daemon(rig={"paces": "true"}, servo="{pace: device}", arguments=("--rate", "1000"))
     check(f"{fault[0]}: a force comes", run.arm.wait_for_force())
@@ -48,6 +58,7 @@ def device(fault):
 
 for checks in ThreadPool(2).imap(lambda call: call[0](call[1]),
                                  [(blamed, where) for where in ("reset", "stored", "search", "start_tracing")] +
+                                 [(blamed_at_the_end, where) for where in ("taken_down", "destroyed")] +
                                  [(device, fault) for fault in (("a read that hangs", HANG_IN_READ), ("a write that hangs", HANG_IN_WRITE),
                                                                 ("a wait for samples that hangs", HANG_IN_WAIT))]):
     for told in checks:

@@ -106,13 +106,19 @@ struct Slow : hapticd::Shape {
 /// Crashes in one of its functions; or answers surfaces that it does not have.
 struct Broken : hapticd::Shape {
   int where, surfaces, steps = 0;
-  static constexpr const char* kWheres[] = {"nowhere", "set_up",        "reset", "stored",
-                                            "search",  "start_tracing", "lies",  "thread"};
+  static constexpr const char* kWheres[] = {"nowhere",       "set_up", "reset",  "stored",     "search",
+                                            "start_tracing", "lies",   "thread", "taken_down", "destroyed"};
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.broken", "broken", "1.0.0", "MIT", "Crashes."};
   static constexpr auto fields() {
     using F = Fields<Broken>;
     return std::array{F::choice("where", &Broken::where, kWheres, 0, "Where it crashes, after some steps."),
                       F::integer("surfaces", &Broken::surfaces, "", 1, 2000000000, 4, "That it says it has.")};
+  }
+  ~Broken() {
+    if (is("destroyed")) crash();
+  }
+  void deactivate() {
+    if (is("taken_down")) crash();
   }
   void activate(const hsp_activation&, hsp_report&) {
     if (is("set_up")) crash();

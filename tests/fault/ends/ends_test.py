@@ -95,6 +95,33 @@ check("a daemon that stands still: the guard switches the motors off", run.arm.s
 code, said = run.end()
 check("and ends it after a while", code == -signal.SIGKILL and "the servo stands still" in said, (code, said))
 
+def guards(run):
+    """Processes whose parent is the daemon, and which are no zombies."""
+    found = []
+    for name in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{name}/stat") as stat:
+                state, parent = stat.read().rsplit(")", 1)[1].split()[:2]
+        except OSError:
+            continue
+        if int(parent) == run.process.pid and state != "Z":
+            found.append(int(name))
+    return found
+
+
+run = run_of("never")
+check("a guard that dies: a force comes", run.arm.wait_for_force())
+first = guards(run)
+os.kill(first[0], signal.SIGKILL)
+end = time.monotonic() + 20
+while guards(run) in ([], first) and time.monotonic() < end:
+    time.sleep(0.02)
+time.sleep(1)  # until it has been told of the arm
+check("another takes its place, and the force stays", len(guards(run)) == 1 and guards(run) != first and run.arm.motors_on(), (first, guards(run)))
+run.process.kill()
+code, said = run.end()
+check("and switches the motors off", run.arm.silent_after(10) is not None and "the guard process ended; another watches" in said, (code, said))
+
 run = run_of("never", rig={"guarded": "false"})
 check("without a guard: a force comes", run.arm.wait_for_force())
 run.process.kill()
