@@ -23,20 +23,20 @@ std::string requestOf(const char* word, const char* what, const char* name) {
 }
 
 hapticd_lead* leadOf(hapticd_client* client, const char* what, const char* name, hapticd_error* error) try {
-  hapticd_error problem;
-  if (error == nullptr) error = &problem;
-  tell(error, "", "");
+  hapticd_error unread;
+  hapticd_error* const told = error == nullptr ? &unread : error;
+  tell(told, "", "");
   const std::string begin = requestOf("lead", what, name), end = requestOf("unlead", what, name);
   Answer answer;
-  if (!client->ask(begin, answer, error)) {
-    if (std::strcmp(error->code, "timeout") == 0) client->leave(end);  // it may be led yet, and by nobody
+  if (!client->ask(begin, answer, told)) {
+    if (std::strcmp(told->code, "timeout") == 0) client->leave(end);  // it may be led yet, and by nobody
     return nullptr;
   }
   hapticd::client::Mapping memory(answer.descriptor.get(), HAPTICD_LEAD_BYTES, PROT_READ | PROT_WRITE);
-  if (memory.data() == nullptr) return tell(error, "damaged", "the memory of the lead cannot be mapped"), nullptr;
+  if (memory.data() == nullptr) return tell(told, "damaged", "the memory of the lead cannot be mapped"), nullptr;
   auto* lead = new hapticd_lead{client, end, std::string_view(what) == "force", std::move(memory)};
   client->leads.push_back(lead);
-  if (const std::string why = noForce(answer.line); !why.empty()) tell(error, "no_force", why);
+  if (const std::string why = noForce(answer.line); !why.empty()) tell(told, "no_force", why);
   return lead;
 } catch (const std::exception& problem) {
   tell(error, "failed", problem.what());
