@@ -193,7 +193,10 @@ std::string armOf(const NewDeviceArguments& o) {
     text +=
         "    # base_orientation: [0.7071068, -0.7071068, 0, 0]   # the first axis points up; left out: toward the "
         "user\n"
-        "    # masses: [...]               # kg, one per row; left out: its weight is not carried\n";
+        "    # masses: [...]               # kg, one per row; left out: its weight is not carried\n"
+        "    # centers: [[-0.1, 0, 0], ...] # m, one per row: the link's centre of mass, from its far end, in its "
+        "frame;\n"
+        "                                  # left out: each mass is at the far end of its link, which is too heavy\n";
   }
   text += fmt::format(
       "    # limits: [[-1, 1], ...]      # rad, one row per joint; left out: the mechanism's own\n"

@@ -35,6 +35,8 @@ int makeTwin(const std::string& file, const std::string& wanted) {
   if (!problems.empty())
     return fail(kFailed, out + " is written, but cannot be used yet\n  fix: hapticd check " + file +
                              ", then write the twin anew");
+  if (const std::string borrowed = diagnostics::borrowedByTwin(*root); !borrowed.empty())
+    std::fprintf(stderr, "warning: %s: %s\n", file.c_str(), borrowed.c_str());
   std::printf("%s\n\nthen:\n  hapticd check SCENE.yaml --device %s\n  hapticd run SCENE.yaml --device %s --view\n",
               out.c_str(), out.c_str(), out.c_str());
   return kWorked;

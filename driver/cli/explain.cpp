@@ -145,7 +145,7 @@ void explainFiles(const scene::Scene& scene) {
 }
 
 struct ExplainArguments {
-  std::string scene;
+  std::string scene, device;
   bool cost = false, json = false;
 };
 
@@ -157,7 +157,7 @@ int explainCost(const ExplainArguments& options, const scene::Scene& scene) {
 }
 
 int explain(const ExplainArguments& options) {
-  auto scene = loadSceneOrReport(options.scene);
+  auto scene = loadSceneOrReport(options.scene, options.device);
   if (!scene) return kBadInput;
   if (options.cost || options.json) return explainCost(options, *scene);
   const SetupErrors once;
@@ -186,6 +186,7 @@ void addExplain(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
       "explain", "Show what the daemon loads, starts and computes for a scene, why, and at what cost.");
   command->add_option("scene", options->scene, "scene file (YAML)")->required();
+  command->add_option("--device", options->device, "device file; replaces the devices of the scene");
   command->add_flag("--cost", options->cost,
                     "print a table of every part with its line in the scene, and the ns per tick and bytes that it "
                     "costs; also of what is not needed");

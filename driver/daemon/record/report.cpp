@@ -75,9 +75,11 @@ std::string oddPushesText(const ModelReport& model) {
   };
   const ContactStatistics& c = model.contact;
   const std::string untraced = told("warning", c.untraced(), "without HSP_OUT_TRACED", "no contact is told of these");
-  if (c.contactTicks() > 0) return untraced;  // it does fill in a depth
-  return untraced + told("warning", c.depthless(), "with depth_m left at 0", "no contact is told of these") +
-         told("outside", c.outside(), "from outside (depth_m below 0)", "contacts are told inside only");
+  const std::string outside =
+      told("outside", c.outside(), "from outside (depth_m below 0)", "contacts are told inside only");
+  // It does fill in a depth. What lingers for a moment outside, as friction may, is no news.
+  if (c.contactTicks() > 0) return untraced + (c.outside().ticks > c.contactTicks() ? outside : "");
+  return untraced + told("warning", c.depthless(), "with depth_m left at 0", "no contact is told of these") + outside;
 }
 
 /// A detent and a magnet pull for a part of a contact; a force of the wrong sign does for most of it.
@@ -145,7 +147,7 @@ std::string untouchedText(const RunReport& report) {
 
 std::string limitText(const LimitReport& device, uint64_t ticks) {
   if (device.any == 0 || ticks == 0) return "";
-  std::string text = fmt::format("limits of {}: the force was cut in {:.2g} % of the ticks (", device.device,
+  std::string text = fmt::format("limits of {}: the force was cut in {:.3g} % of the ticks (", device.device,
                                  100.0 * static_cast<double>(device.any) / static_cast<double>(ticks));
   for (size_t i = 0; i < device.ticks.size(); ++i)
     text += fmt::format("{}{}: {}", i > 0 ? ", " : "", device.ticks[i].first, device.ticks[i].second);

@@ -97,7 +97,9 @@ void PusherLog::lookAtRefusals(Told& told, const ClientForces::Client& client, d
 
 void PusherLog::lookAtBound(Told& told, const ClientForces::Client& client, double bound,
                             std::vector<Message>& messages) {
+  constexpr double kRounding = 1e-3;  // a program that clamps by itself, as libHD does, asks for no more
   if (told.bounded || client.bounded.load(kRelaxed) == 0) return;
+  if (client.asked.load(kRelaxed) <= bound * (1 + kRounding)) return;
   told.bounded = true;
   messages.push_back(
       {HSP_LOG_WARNING,

@@ -60,7 +60,8 @@ std::string forceOutward(const Recipe& recipe, uint64_t) {
     return "the sign is wrong: pressed at " + text(f.x()) + ", " + text(f.y()) + ", " + text(f.z()) +
            " m, the forces pull the hand in, with " + text(-most) + " N at a depth of " + text(depth * 1e3) +
            " mm; expected a force that points out of the shape" +
-           (normal < 0 ? ": its normal points into the shape as well, so turn the sign of normal first"
+           (normal < 0 ? ": its normal points into the shape as well; where depth_m is above 0 outside, turn depth_m, "
+                         "else turn the sign of normal first"
                        : ", as its normal does: turn the sign of force");
   });
 }
@@ -121,7 +122,8 @@ std::string stiffnessClaim(const Recipe& recipe, uint64_t) {
     if (measured <= kRoom * claimed + kNoise) return std::string();
     const std::string claim = claimed > 0 ? "claims " + text(claimed) + " N/m" : "claims no stiffness";
     return "it " + claim + ", but its force grows by " + text(measured) +
-           " N/m; expected report.max_stiffness of at least that in activate()";
+           " N/m; expected report.max_stiffness of at least that in activate(), or, where the force vibrates or snaps, "
+           "hapticd::reportJumps(report, NEWTONS) there";
   });
 }
 
@@ -130,10 +132,10 @@ std::string noStep(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   const hsp_report& report = made.subject->report();
-  if ((report.flags & HSP_R_JUMPS) != 0) return "skip: it claims that its force jumps (HSP_R_JUMPS)";
   if (made.subject->moves()) return "skip: it moves, and its force with it";
   const double stiffness = report.max_stiffness > 0 ? report.max_stiffness : servo::Claim::kUnclaimed;
-  return atEachPlace(recipe, [stiffness](Subject& subject, const Place& place) {
+  const double jumps = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
+  return atEachPlace(recipe, [stiffness, jumps](Subject& subject, const Place& place) {
     constexpr double kRoom = 0.1;  // [N] not felt as a step
     bool known = false, inside = false;
     Vector3d force = Vector3d::Zero(), at = Vector3d::Zero();
@@ -143,7 +145,7 @@ std::string noStep(const Recipe& recipe, uint64_t) {
       const bool entered = known && !inside && c.depth_m > 0;
       const double jump = (Vector3d(c.force) - force).norm(), way = (step.p - at).norm();
       known = true, inside = c.depth_m > 0, force = Vector3d(c.force), at = step.p;
-      if (!entered || jump <= servo::Claim::kMargin * stiffness * way + kRoom) return std::string();
+      if (!entered || jump <= servo::Claim::kMargin * stiffness * way + kRoom + jumps) return std::string();
       return "the force jumps by " + text(jump) + " N within " + text(way * 1e6) +
              " um where the surface is met; expected it to grow from 0 with the depth (a jump on purpose is claimed: "
              "HSP_R_JUMPS and max_jump)";

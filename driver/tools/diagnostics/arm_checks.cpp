@@ -68,7 +68,8 @@ std::optional<Finding> withoutRule(const ArmControls& found, const std::string& 
   if (hasRule(lowerCase(found.usb_id.substr(0, colon)), lowerCase(found.usb_id.substr(colon + 1)))) return std::nullopt;
   return Finding{found.arm, Verdict::kWarn, "no installed udev rule names its id " + found.usb_id,
                  "only root can open it",
-                 "udev/generate-rules " + file + " | sudo tee /etc/udev/rules.d/70-" + fs::path(file).stem().string() +
+                 "in the folder of hapticd's sources: udev/generate-rules " + fs::absolute(file).string() +
+                     " | sudo tee /etc/udev/rules.d/70-" + fs::path(file).stem().string() +
                      ".rules && sudo udevadm control --reload && sudo udevadm trigger"};
 }
 

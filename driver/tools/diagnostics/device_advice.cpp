@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <optional>
@@ -53,6 +54,19 @@ void massesOfAnotherArm(const Node& root, const std::string& file, document::Pro
                                delta ? "a Falcon" : "a Premium 1.5", delta ? "0, 0, 0" : "0, 0, 0, 0"));
 }
 
+/// Masses at the far ends of their links weigh about twice as much about the joints: the arm would be pushed up.
+void massesAtTheEnds(const Node& root, const std::string& file, document::Problems& warnings) {
+  const Node *masses = find(root, {"parameters", "arm", "masses"}), *kind = find(root, {"parameters", "arm", "kind"});
+  if (kind == nullptr || kind->scalar != "chain" || masses == nullptr || !masses->isSequence()) return;
+  if (find(root, {"parameters", "arm", "centers"}) != nullptr) return;
+  const auto weighs = [](const Node& mass) { return document::toNumber(mass.scalar).value_or(0) != 0; };
+  if (std::none_of(masses->items.begin(), masses->items.end(), weighs)) return;
+  document::report(
+      warnings, file, masses->line, masses->column, "parameters.arm.centers",
+      "not given, so each of these masses is carried as if it were at the far end of its link, and the arm "
+      "is pushed up; expected one [x, y, z] for each link, in m from its far end, in its frame");
+}
+
 void restOutsideWorkspace(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                           document::Problems& warnings) {
   const Node* limit = find(root, {"limits", "workspace"});
@@ -79,6 +93,7 @@ document::Problems adviseDevice(const std::filesystem::path& file, host::Catalog
   if (!root) return warnings;
   countsWithoutScale(*root, file.string(), warnings);
   massesOfAnotherArm(*root, file.string(), warnings);
+  massesAtTheEnds(*root, file.string(), warnings);
   adviseUnits(*root, file.string(), warnings);
   if (const auto arm = host::DeviceInstance::create(*loaded.device, nullptr)) {
     adviseLimits(*root, *loaded.device, **arm, warnings);

@@ -69,15 +69,16 @@ std::string countsOf(const Node& parameters) {
   }
   if (counts.empty()) return "";
   return fmt::format(
-      "  joint: {{counts: [{:.0f}]}}    # of one joint turn, as wire has them; friction, rotor: see below\n",
+      "  joint: {{counts: [{:.0f}]}}    # of one joint turn, as wire has them; without friction and rotors\n",
       fmt::join(counts, ", "));
 }
 
+constexpr std::array<std::string_view, 4> kCapabilities{"max_force", "continuous_force", "max_stiffness", "mass"};
+
 std::string deviceOf(const Node& device, double rate) {
-  static constexpr std::array<std::string_view, 4> kSame{"max_force", "continuous_force", "max_stiffness", "mass"};
   std::string text = fmt::format("  device: {{rate: {:g}", rate);
   for (const document::Entry& entry : device.entries)
-    if (listed(kSame, entry.key.scalar)) text += ", " + entry.key.scalar + ": " + toJson(entry.value);
+    if (listed(kCapabilities, entry.key.scalar)) text += ", " + entry.key.scalar + ": " + toJson(entry.value);
   return text + "}\n";
 }
 
@@ -129,6 +130,16 @@ std::string mountOf(const Node& mount, const Node& arm, bool chain, Eigen::Vecto
 
 }  // namespace
 
+std::string borrowedByTwin(const Node& root) {
+  const Node& device = below(below(root, "parameters"), "device");
+  std::vector<std::string_view> lacking;
+  for (const std::string_view key : kCapabilities)
+    if (below(device, key).isNull()) lacking.push_back(key);
+  return lacking.empty() ? ""
+                         : fmt::format("parameters.device of this arm has no {}: the twin has those of a Premium 1.5",
+                                       fmt::join(lacking, ", "));
+}
+
 Result<std::string> twinOf(const Node& root, const std::string& file) {
   static constexpr std::array<std::string_view, 1> kButtons{"enable"};
   const Node &parameters = below(root, "parameters"), &arm = below(parameters, "arm");
@@ -153,6 +164,7 @@ Result<std::string> twinOf(const Node& root, const std::string& file) {
     text += "limits: " + jsonWithout(limits, kButtons) +
             (below(limits, "enable").isNull() ? "\n" : "    # without enable: it has no buttons\n");
   text += "parameters:\n  substep: 0.0002               # s, of the integration\n";
+  if (const std::string borrowed = borrowedByTwin(root); !borrowed.empty()) text += "  # " + borrowed + "\n";
   text += deviceOf(below(parameters, "device"), rate) + armOfTwin(arm, kind == "chain") + countsOf(parameters);
   return text + fmt::format(
                     "# The hand that holds it, device frame: it presses a sphere of 0.05 m about the world's origin. "

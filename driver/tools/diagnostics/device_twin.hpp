@@ -14,4 +14,7 @@ namespace hapticd::diagnostics {
 /// @param file its name, for the comment
 Result<std::string> twinOf(const document::Node& root, const std::string& file);
 
+/// [main] Which numbers the twin has from elsewhere, since the arm's file lacks them; "": none.
+std::string borrowedByTwin(const document::Node& root);
+
 }  // namespace hapticd::diagnostics

@@ -147,7 +147,8 @@ Finding checkUdev() {
       "udev", Verdict::kWarn,
       found.empty() ? "no rule for haptic devices is installed" : found + " sorts after 73 or does not end in .rules",
       "only root can open devices; simulated devices need no rule",
-      "sudo install -m 644 udev/70-hapticd.rules /etc/udev/rules.d/ && sudo udevadm control --reload && sudo udevadm "
+      "in the folder of hapticd's sources: sudo install -m 644 udev/70-hapticd.rules /etc/udev/rules.d/ && sudo "
+      "udevadm control --reload && sudo udevadm "
       "trigger"};
 }
 

@@ -12,6 +12,7 @@ enum class Mistake {
   kPulls,       ///< the force has the wrong sign
   kInnerPulls,  ///< the same, on the side of the ring that faces its axis alone
   kStep,        ///< 2 N from depth 0 on
+  kSmallJump,   ///< the same, where a jump of 0.2 N is claimed
   kNoContact,   ///< HSP_OUT_CONTACT is forgotten
   kNoTraced,    ///< HSP_OUT_TRACED is forgotten
   kNoClaim,     ///< no stiffness is claimed
@@ -53,6 +54,7 @@ struct Touched : hapticd::Shape {
   }
   void activate(const hsp_activation&, hsp_report& report) {
     if (kMistake != Mistake::kNoClaim) report.max_stiffness = stiffness * (kMistake == Mistake::kSmallClaim ? 0.25 : 1);
+    if (kMistake == Mistake::kSmallJump) hapticd::reportJumps(report, 0.2);
   }
   hsp_status touch(const hsp_probe& in, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
     if ((in.flags & HSP_IN_INVALID) != 0 || kMistake == Mistake::kSilent) return HSP_OK;
@@ -62,7 +64,7 @@ struct Touched : hapticd::Shape {
     if (kMistake == Mistake::kNeverDeep) at.depth = -std::fabs(at.depth);
     if (kMistake != Mistake::kNoTraced) out.flags = HSP_OUT_TRACED;
     out.depth_m = at.depth;
-    double force = kMistake == Mistake::kStep ? 2 : stiffness * at.depth;
+    double force = kMistake == Mistake::kStep || kMistake == Mistake::kSmallJump ? 2 : stiffness * at.depth;
     const bool inner = std::hypot(p.x, p.z) < 0.04;
     if (kMistake == Mistake::kPulls || (kMistake == Mistake::kInnerPulls && inner)) force = -force;
     for (int i = 0; i < 3; ++i) {
@@ -93,6 +95,7 @@ SHAPE("far_ball_pulls", FarBallPulls, kPulls, ball({p.x - 0.3, p.y, p.z + 0.2}, 
 SHAPE("floor_right", FloorRight, kNone, ground(p))
 SHAPE("floor_pulls", FloorPulls, kPulls, ground(p))
 SHAPE("ring_steps", RingSteps, kStep, ring(p, 0.04, 0.015))
+SHAPE("ring_steps_far", RingStepsFar, kSmallJump, ring(p, 0.04, 0.015))
 SHAPE("ring_no_contact", RingNoContact, kNoContact, ring(p, 0.04, 0.015))
 SHAPE("ring_no_traced", RingNoTraced, kNoTraced, ring(p, 0.04, 0.015))
 SHAPE("ring_no_claim", RingNoClaim, kNoClaim, ring(p, 0.04, 0.015))

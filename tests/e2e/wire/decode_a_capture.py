@@ -278,10 +278,17 @@ with tempfile.TemporaryDirectory() as folder:
     code, out, err = run("twin", own, "-o", twin)
     text = open(twin).read()
     check("its encoders are those of the wire", code == 0 and "counts: [163840, 327680, 81920]" in text, text)
+    check("numbers that it borrows are told", "has no max_force, continuous_force, max_stiffness, mass: the twin has those of a Premium 1.5" in err and err.split("own.yaml: ")[-1].strip() in text, (err, text))
     done = subprocess.run([HAPTICD, "run", os.path.join(SOURCE, "config/scenes/sphere.yaml"), "--device", twin, "--for", "3", "--virtual-time", "--report", report],
                           capture_output=True, text=True, timeout=120)
     touched = json.load(open(report))["models"]["sphere"]["contact_ticks"] if os.path.exists(report) else 0
     check("and it presses the sphere", done.returncode == 0 and touched > 100, (touched, done.stdout[-800:], done.stderr[-800:]))
+    # A chain with masses that does not say where they are would be pushed up.
+    heavy = os.path.join(folder, "heavy.yaml")
+    for centers, warned in (("", True), ("    centers: [[0, 0, 0], [-0.1, 0, 0], [-0.1, 0, 0]]\n", False)):
+        open(heavy, "w").write(re.sub(r"    # masses:.*\n", "    masses: [0.5, 0.3, 0.2]\n" + centers, open(bent).read()))
+        done = subprocess.run([HAPTICD, "check", heavy], capture_output=True, text=True, timeout=60)
+        check(f"masses with{'out' if warned else ''} centers", ("far end of its link" in done.stdout + done.stderr) == warned, (done.stdout, done.stderr))
     # A chain that does not say where it stands is put where scenes expect a hand.
     text = open(bent).read().replace("# limits: [[-1, 1], ...]", "limits: [[-1.5, 1.5], [-0.5, 1.5], [-2.57, -0.57]]").replace("# base_orientation", "base_orientation")
     open(bent, "w").write(text)

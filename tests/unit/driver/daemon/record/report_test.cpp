@@ -225,6 +225,13 @@ TEST_F(Report, TellsPeopleOfForceWithoutADepthAndFromOutside) {
   const auto ball = nlohmann::json::parse(read(file("r.json"))).at("models").at("ball");
   EXPECT_EQ(ball.at("depthless").at("ticks"), 2);
   EXPECT_DOUBLE_EQ(ball.at("outside").at("force_max_n"), 0.25);
+
+  // Beside contacts, what lasts longer than they do is told, and no more.
+  report.models[0].contact = sample().models[0].contact;
+  report.models[0].contact.addOutside(0.25);
+  EXPECT_EQ(summary(report).find("outside"), std::string::npos);
+  for (uint64_t i = 0; i < report.models[0].contact.contactTicks(); ++i) report.models[0].contact.addOutside(1);
+  EXPECT_NE(summary(report).find("outside   ball pushed in "), std::string::npos);
 }
 
 TEST_F(Report, TellsPeopleOfAPullThatLastsMostOfAContact) {
