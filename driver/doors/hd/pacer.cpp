@@ -45,7 +45,7 @@ Pacer::Lead Pacer::first() const {
 uint64_t Pacer::wait() {
   const std::lock_guard waiting(waiting_);
   const Lead lead = first();
-  if (lead.link != followed_) {
+  if (lead.link != followed_.lock()) {
     followed_ = lead.link;
     seen_ = UINT64_MAX, silent_since_ns_ = 0, lost_ = false;
   }

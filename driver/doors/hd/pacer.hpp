@@ -37,7 +37,7 @@ class Pacer {
 
   Library& library_;
   std::mutex waiting_;
-  std::shared_ptr<Link> followed_;  ///< the arm that the ticks are those of
+  std::weak_ptr<Link> followed_;  ///< the arm that the ticks are those of; its device closes it
   uint64_t seen_ = UINT64_MAX, silent_since_ns_ = 0, looked_ns_ = 0;
   bool lost_ = false;  ///< and told so
   std::atomic<unsigned> listen_us_{0};

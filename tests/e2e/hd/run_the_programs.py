@@ -84,8 +84,9 @@ class Daemon:
             file.write(text)
 
     def start(self):
-        self.run = subprocess.Popen([HAPTICD, "run", self.scene, "--name", self.name], env=self.environment,
-                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        with open(os.path.join(self.folder, self.name + ".log"), "a") as log:
+            self.run = subprocess.Popen([HAPTICD, "run", self.scene, "--name", self.name], env=self.environment,
+                                        stdout=subprocess.DEVNULL, stderr=log)
         until(self.answers, 30)
         return self
 
@@ -96,6 +97,10 @@ class Daemon:
             return False
 
     __enter__ = start
+
+    def log(self):
+        with open(os.path.join(self.folder, self.name + ".log")) as log:
+            return log.read()
 
     def stop(self, how=signal.SIGTERM):
         self.run.send_signal(how)
@@ -167,6 +172,7 @@ def spring(daemon):
     off = abs(force + 200 * position)[full].max()
     check("0.2 N/mm over millimetres is 200 N/m of that tick's position", off < 1e-9, off)
     check("no force stays behind", until(lambda: client_force(daemon) == 0))
+    check("a program that closes its device ends in order", until(lambda: "(hd_forces) pushes on it no more" in daemon.log()), daemon.log())
 
 
 def sleeps_by_the_clock(daemon, listen):
