@@ -114,5 +114,5 @@ struct BadId : RingRight {
 }  // namespace
 
 HAPTICD_SHAPES(BadId, RingRight, RingPulls, RingPullsInside, LargeRingPulls, BallRight, BallPulls, MiddleBallPulls,
-               LargeBallPulls, FarBallPulls, FloorRight, FloorPulls, RingSteps, RingNoContact, RingNoTraced,
-               RingNoClaim, RingSmallClaim, RingSilent, RingNeverDeep)
+               LargeBallPulls, FarBallPulls, FloorRight, FloorPulls, RingSteps, RingStepsFar, RingNoContact,
+               RingNoTraced, RingNoClaim, RingSmallClaim, RingSilent, RingNeverDeep)

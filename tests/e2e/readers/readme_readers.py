@@ -54,7 +54,7 @@ def own_shape(folder):
     code, said = run(HAPTICD, "run", file, "--for", "2", "--virtual-time", "--report", report, environment=environment)
     pulled = json.load(open(report))["models"]["ground"]["force_n"]["max"]
     check("and the run silences it before it pulls with 2 N", "wrong sign" in said and pulled < 2, (pulled, said))
-    open(os.path.join(folder, "floor.cpp"), "w").write(wrong.replace("report.flags = HSP_R_PUSHES;", ""))
+    open(os.path.join(folder, "floor.cpp"), "w").write(wrong.replace("report.flags |= HSP_R_PUSHES;", ""))
     subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
     code, unclaimed = run(HAPTICD, "run", file, "--for", "2", "--virtual-time", environment=environment)
     check("one that claims nothing pulls, and the run says so", re.search(r"warning   ground pulled the hand in during \d+ % of its contact", unclaimed), unclaimed)
@@ -71,7 +71,7 @@ def own_shape(folder):
     code, said = run(HAPTICD, "run", file, "--for", "5", "--virtual-time", environment=environment)
     check("a floor that leaves depth_m at 0 and only pushes is silenced, and the run says why",
           "its depth_m was left at 0 inside" in said and "touched no model" not in said, said)
-    open(os.path.join(folder, "floor.cpp"), "w").write(depthless.replace("report.flags = HSP_R_PUSHES;", ""))
+    open(os.path.join(folder, "floor.cpp"), "w").write(depthless.replace("report.flags |= HSP_R_PUSHES;", ""))
     subprocess.run(line.replace("g++", CXX, 1), shell=True, cwd=folder, capture_output=True, timeout=200)
     code, said = run(HAPTICD, "run", file, "--for", "5", "--virtual-time", environment=environment)
     check("one that claims nothing is felt, and the run says so",
