@@ -87,8 +87,7 @@ void Telemetry::bookArms(uint32_t index, double dt, const Core& core) noexcept H
 
 /// [N] What a contact pulls deeper in with; 0: it does not.
 double Telemetry::pullOf(const Contact& contact, const Arm& arm) noexcept HSP_RT {
-  const bool pulls = contact.world.depth_m > 0 && arm.probe().valid &&
-                     pullsIn(contact.world, arm.probe().position);
+  const bool pulls = contact.world.depth_m > 0 && arm.probe().valid && pullsIn(contact.world, arm.probe().position);
   return pulls ? Eigen::Map<const Vector3d>(contact.world.force).norm() : 0;
 }
 

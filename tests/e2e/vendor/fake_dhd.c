@@ -72,4 +72,6 @@ const char* dhdGetSystemName(char id) {
   return "fake omega";
 }
 
-const char* dhdErrorGetLastStr(void) { return "no such arm"; }
+const char* dhdErrorGetLastStr(void) {
+  return "no such arm";
+}

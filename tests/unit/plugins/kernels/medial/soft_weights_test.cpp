@@ -160,8 +160,7 @@ TEST(MeshEnds, WeightsAreContinuousAndLevelAtTheRim) {
     const CornerWeights weights = weightsTowardEnds(mesh, ends, foot.element, foot.parameter);
     std::fill(here.begin(), here.end(), 0);
     for (std::size_t i = 0; i < 3; ++i) here[mesh.elements()[foot.element].vertex[i]] += weights.value[i];
-    for (std::size_t i = 0; i < here.size(); ++i)
-      ASSERT_LT(k > -1000 ? std::fabs(here[i] - before[i]) : 0, 4e-4) << k;
+    for (std::size_t i = 0; i < here.size(); ++i) ASSERT_LT(k > -1000 ? std::fabs(here[i] - before[i]) : 0, 4e-4) << k;
     if (std::fabs(foot.center.y()) < 1e-9 || std::fabs(foot.center.y() - .03) < 1e-9) {
       const MedialMesh::Element& e = mesh.elements()[foot.element];
       const auto center = [&](std::size_t i) { return mesh.vertices()[e.vertex[i]].center; };
