@@ -50,18 +50,27 @@ bool Watchdog::judge(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcep
   }
   counted_ = std::min(overdue, counted_ + seen);
   if (cut_in_ == phase) {
-    // Counted in looks, not in time: a machine that was asleep comes back to a tick that is still good. A servo that
-    // merely gets no processor is no thread that hangs.
-    const bool hangs = !phase.waits || servo_.inServo() != nullptr;
-    if (hangs && ++checks_since_cut_ == kHungAfter / kCheckEvery) hung_();
+    watchHung(phase);
     return false;
   }
   if (counted_ <= patience(phase) || mayBePaused(phase, overdue)) return false;
   servo_.cut(static_cast<double>(overdue) * kSecondsPerNanosecond);
   cut_in_ = phase;
   checks_since_cut_ = 0;
+  hung_told_ = false;
   ++cuts_;
   return true;
+}
+
+/// Counted in looks, not in time: a machine that was asleep comes back to a tick that is still good. A servo that
+/// merely gets no processor is no thread that hangs.
+void Watchdog::watchHung(Phase phase) noexcept {
+  if (hung_told_ || (phase.waits && servo_.inServo() == nullptr)) return;
+  const Nanoseconds looked = ++checks_since_cut_ * kCheckEvery;
+  const bool starved = servo_.simulated() && servo_.cpuTime() - cpu_at_phase_ < kHungAfter;
+  if (looked < (starved ? kHungSimulated : kHungAfter)) return;
+  hung_told_ = true;
+  hung_();
 }
 
 Nanoseconds Watchdog::patience(Phase phase) const noexcept {

@@ -25,7 +25,10 @@ class Watchdog {
   static constexpr Nanoseconds kStuckSimulated = 60'000'000;
   /// The tick to come is so late. A virtual machine has its processors paused one by one.
   static constexpr Nanoseconds kMissedAfter = 2'500'000, kMissedInVirtualMachine = 50'000'000;
-  static constexpr Nanoseconds kHungAfter = 500'000'000;       ///< nothing comes back after that
+  static constexpr Nanoseconds kHungAfter = 500'000'000;  ///< nothing comes back after that
+  /// Nor does a simulation. Until then it may be a servo that gets no processor, which is no module's doing: before,
+  /// only one that had kHungAfter of processor time hangs.
+  static constexpr Nanoseconds kHungSimulated = 5'000'000'000;
   static constexpr Nanoseconds kEndWithin = 900'000'000;       ///< from the moment that the end was asked for
   static constexpr Nanoseconds kSimulatedPause = 200'000'000;  ///< a busy machine may pause a simulation so long
 
@@ -61,6 +64,7 @@ class Watchdog {
   bool judge(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcept;
   void watchEnd() noexcept;
   Nanoseconds patience(Phase phase) const noexcept;
+  void watchHung(Phase phase) noexcept;
   bool mayBePaused(Phase phase, Nanoseconds stuck) const noexcept;
 
   Watched& servo_;
@@ -70,6 +74,7 @@ class Watchdog {
   Phase cut_in_;  ///< that phase was cut, once
   Phase phase_;
   Nanoseconds checks_since_cut_ = 0, checks_since_stop_ = 0;
+  bool hung_told_ = false;
   Nanoseconds cpu_at_phase_ = 0;
   Nanoseconds looked_at_ = 0;  ///< the last time
   Nanoseconds counted_ = 0;    ///< of the phase, as far as it was watched

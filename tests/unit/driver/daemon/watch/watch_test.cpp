@@ -263,6 +263,35 @@ TEST(Watchdog, EndsAServoThatNeverComesBack) {
   EXPECT_EQ(hung, 1);
 }
 
+/// How many seconds of looks on time it takes until a thread is said to hang that never comes back.
+/// @param share of a processor that the servo gets meanwhile
+double namedAfter(bool simulated, double share) {
+  Fake servo;
+  servo.harmless = simulated;
+  int hung = 0;
+  Watchdog watchdog(servo, [&hung] { ++hung; });
+  servo.begun = kMs;
+  Nanoseconds now = kMs, named = 0;
+  for (; now < 20'000 * kMs; now += Watchdog::kCheckEvery) {
+    servo.cpu = static_cast<Nanoseconds>(share * static_cast<double>(now - servo.begun));
+    watchdog.check(now);
+    if (hung == 1 && named == 0) named = now - servo.begun;
+  }
+  EXPECT_EQ(hung, 1);
+  return static_cast<double>(named) * 1e-9;
+}
+
+/// A busy machine keeps a simulation waiting for seconds, and whoever it was in would be named, and end the process.
+TEST(Watchdog, NamesNobodyForASimulationThatGetsNoProcessor) {
+  for (const double share : {0.0, 0.02, 0.09}) {
+    EXPECT_GT(namedAfter(true, share), 5) << share;
+    EXPECT_LT(namedAfter(true, share), 5.3) << "it never comes back: " << share;
+  }
+  EXPECT_LT(namedAfter(true, 1), 0.6) << "it spins";
+  EXPECT_LT(namedAfter(true, 0.5), 1.1) << "it spins on a busy machine";
+  for (const double share : {0.0, 0.5, 1.0}) EXPECT_LT(namedAfter(false, share), 0.51) << "a real arm: " << share;
+}
+
 #ifndef HAPTICD_SANITIZED  // the sanitizers handle these signals themselves
 
 /// A device whose cut crashes, or never comes back.
