@@ -61,7 +61,8 @@ Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& desc
       clients_(options.clients, limiter.maxForce(), described.limits.torque, 1 / options.rate),
       limiter_(std::move(limiter)),
       heat_(described.limits.motors),
-      weight_(described.limits, limiter_.maxForce()) {}
+      weight_(described.limits, limiter_.maxForce()),
+      former_passivity_(options.former_passivity) {}
 
 Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const scene::Servo& servo,
                                        const ArmOptions& options, const host::Services::Log& log) {
@@ -201,9 +202,10 @@ bool Arm::comply(double dt, const Eigen::Vector3d& force, const Weight::Torques&
 }
 
 void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque,
-                const passivity::Exchange& exchange) noexcept HSP_RT {
+                passivity::Exchange exchange) noexcept HSP_RT {
   if (endsByItself(limiter_.fault())) recover(dt, !force.isZero(0) || !torque.isZero(0));
   limiter_.trustSample(trustIn(now - fresh_at_));
+  exchange.pushed &= !former_passivity_;
   if (passivity_ && probe_.valid) force = passivity_->update(probe_.position, force, dt, exchange);
   limiter_.apply(force, torque, probe_.position - origin_world_, dt);
   if (passivity_) passivity_->applied(force);

@@ -32,6 +32,7 @@ struct ArmOptions {
   const host::Playback* playback = nullptr;  ///< samples from a recording instead of the hardware
   scene::Clients clients = {};               ///< whether programs may push on it
   bool found_pressed = false;                ///< a hold button that was down before the run enables, as it did once
+  bool former_passivity = false;  ///< a steady push of a program counts as energy from nothing, as it once did
 };
 
 class Arm {
@@ -53,7 +54,7 @@ class Arm {
   /// [rt] Limits a wrench (N, N m, world frame), maps it to torques (tau = J^T W + gravity) and hands it to the device.
   /// @param exchange what the scene says of its energy, for the passivity controller
   void write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque,
-             const passivity::Exchange& exchange = {}) noexcept HSP_RT;
+             passivity::Exchange exchange = {}) noexcept HSP_RT;
 
   /// [any] Motors free at once, while the servo is stuck or dying; async-signal-safe. They stay so until clear().
   /// @param after [s] that the servo was stuck
@@ -159,7 +160,8 @@ class Arm {
   std::atomic<bool> cut_{false}, taken_{false};  // taken: a thread is inside the module
   std::atomic<double> cut_after_{0};
   std::atomic<bool> found_pressed_{false};
-  bool as_found_ = false;  // ArmOptions::found_pressed
+  bool as_found_ = false;          // ArmOptions::found_pressed
+  bool former_passivity_ = false;  // likewise
   CutFound cut_found_ = CutFound::kNo;
   bool cut_known_ = false, cut_in_write_ = false;
   hdv_sample sample_{};

@@ -300,6 +300,7 @@ void Loop::write(uint32_t index, const TickTime& tick) noexcept HSP_RT {
     return arm.write(tick.time, tick.dt, core_.force(index), core_.torque(index), core_.exchange(index));
   passivity::Exchange exchange = core_.exchange(index);
   exchange.recoverable = std::numeric_limits<double>::infinity();  // what a program has stored, nobody knows
+  exchange.pushed = true;
   arm.write(tick.time, tick.dt, clients.share() * core_.force(index) + clients.force(),
             clients.share() * core_.torque(index) + clients.torque(), exchange);
 }

@@ -14,6 +14,13 @@ constexpr double kRise = 5e-3;         ///< [s] of the damping, when a debt asks
 constexpr double kFall = 0.1;          ///< [s] of the damping, when it is paid: longer than a turn of what a hand feels
 constexpr double kMemory = 0.1;        ///< [s] that a debt outlives its contact
 
+// Under a program's push:
+constexpr double kSteady = 0.1;       ///< [s] what changes more slowly than this is the program's to give
+constexpr double kSwingMemory = 0.5;  ///< [s] of the book of what swings: counts of an encoder add up to no vibration
+constexpr double kFirm = 1;           ///< [N] force whose work over a step of the encoder is no debt yet
+constexpr double kPlay = 1.5;         ///< steps of the encoder to and fro that are no motion
+constexpr double kLively = 0.02;      ///< [s] after which a probe within this play is at rest
+
 double part(double dt, double time) noexcept {
   return std::min(1.0, dt / time);
 }
@@ -26,7 +33,8 @@ double stableDamping(double mass, double period) noexcept {
 
 void PassivityController::reset() noexcept {
   started_ = false;
-  energy_ = damping_ = 0;
+  energy_ = swing_ = damping_ = 0;
+  pushed_ = false;
   smoothed_.setZero();
   velocity_.setZero();
   share_ = 1;
@@ -50,8 +58,9 @@ Eigen::Vector3d PassivityController::update(const Eigen::Vector3d& position, con
   dissipated_ -= added_.dot(way);
   if (std::isfinite(exchange.supplied)) energy_ += share_ * exchange.supplied;
   if (exchange.recoverable >= 0) energy_ = std::min(energy_, exchange.recoverable);
-  follow(way, dt);
-  if (!std::isfinite(energy_) || !velocity_.allFinite()) reset();
+  follow(moved(way, dt, exchange.pushed), dt);
+  bookSwing(way, dt, exchange);
+  if (!std::isfinite(energy_) || !std::isfinite(swing_) || !velocity_.allFinite()) reset();
   if (force.squaredNorm() == 0) leaveContact(dt);
   settle(force, dt);
   added_ = resistance(force);
@@ -67,16 +76,51 @@ void PassivityController::follow(const Eigen::Vector3d& way, double dt) noexcept
   velocity_ += share * (smoothed_ - velocity_);
 }
 
+/// The way gone, for what resists it. Under a push, to and fro by a step of the encoder is none: the damping lags
+/// behind it, and would feed such a flicker instead of ending it.
+Eigen::Vector3d PassivityController::moved(const Eigen::Vector3d& way, double dt, bool pushed) noexcept {
+  if (!pushed || (position_ - rest_).norm() > kPlay * resolution_) {
+    rest_ = position_;
+    lively_ = 1;
+    return way;
+  }
+  lively_ -= part(dt, kLively) * lively_;
+  return lively_ * way;
+}
+
+/// The books once more, of what is left of force and motion without the slow part of both. One filter takes it off
+/// both: what is passive stays passive in these books, and what makes energy as it swings makes it here too, as does
+/// the damping that is added against it.
+void PassivityController::bookSwing(const Eigen::Vector3d& way, double dt, const Exchange& exchange) noexcept {
+  if (!exchange.pushed || !pushed_) {
+    if (pushed_) energy_ = std::max(energy_, swing_);  // a push that ends leaves no debt but that
+    swing_ = std::min(0.0, energy_);                   // and one that begins pays none
+    steady_ = held_;
+    drift_ = velocity_;
+    pushed_ = exchange.pushed;
+    return;
+  }
+  const double share = part(dt, kSteady);
+  steady_ += share * (held_ - steady_);
+  drift_ += share * (way / dt - drift_);
+  const Eigen::Vector3d swung = way - dt * drift_;
+  swing_ += device_damping_ * swung.squaredNorm() / dt - (held_ - steady_).dot(swung);
+  if (std::isfinite(exchange.supplied)) swing_ += share_ * exchange.supplied;
+  swing_ *= 1 - part(dt, kSwingMemory);
+}
+
 /// What a contact left is nobody's credit. A debt is remembered for a while: a wall that throws the hand off and is met
 /// again at once is the vibration that shall end.
 void PassivityController::leaveContact(double dt) noexcept {
   energy_ = std::min(0.0, energy_) * (1 - part(dt, kMemory));
+  swing_ = std::min(0.0, swing_);
 }
 
 /// The damping rises while there is a debt and falls slowly once it is paid. A debt paid in one tick would be a blow of
 /// force each time the book is a count of an encoder below zero.
 void PassivityController::settle(const Eigen::Vector3d& force, double dt) noexcept {
-  const double debt = -energy_ - resolution_ * force.norm(), rate = kRepayment * velocity_.squaredNorm();
+  const double book = pushed_ ? std::max(energy_, swing_) : energy_, firm = pushed_ ? kFirm : 0;
+  const double debt = -book - resolution_ * (force.norm() + firm), rate = kRepayment * velocity_.squaredNorm();
   const double wanted = debt <= 0 ? 0 : debt < max_damping_ * rate ? debt / rate : max_damping_;
   damping_ += part(dt, wanted > damping_ ? kRise : kFall) * (wanted - damping_);
 }

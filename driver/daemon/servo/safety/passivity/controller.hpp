@@ -15,6 +15,9 @@ struct Exchange {
   /// [J] The most that the contacts can still give back. A long stroke with damping pays in far more than that; kept in
   /// the book, it would hide a vibration that begins later.
   double recoverable = std::numeric_limits<double>::infinity();
+  /// A program's push is in the force. What of it is steady or changes slowly is its to give, as a weight is: only what
+  /// swings is held against it.
+  bool pushed = false;
 };
 
 /// [any] The most damping [N s/m] that the controller may add to an arm of this mass [kg] without being the cause of an
@@ -41,20 +44,27 @@ class PassivityController {
   void reset() noexcept;  ///< [rt]
 
   double energy() const noexcept { return energy_; }          ///< [rt] [J] put in minus given back, since contact began
+  double swing() const noexcept { return swing_; }            ///< [rt] [J] likewise, of what swings under a push alone
   double damping() const noexcept { return damping_; }        ///< [rt] [N s/m] that it is ready to add
   double dissipated() const noexcept { return dissipated_; }  ///< [rt] [J] taken by the controller, ever
 
  private:
   void follow(const Eigen::Vector3d& way, double dt) noexcept;
+  Eigen::Vector3d moved(const Eigen::Vector3d& way, double dt, bool pushed) noexcept;
+  void bookSwing(const Eigen::Vector3d& way, double dt, const Exchange& exchange) noexcept;
   void leaveContact(double dt) noexcept;
   void settle(const Eigen::Vector3d& force, double dt) noexcept;
   Eigen::Vector3d resistance(const Eigen::Vector3d& force) const noexcept;
 
   double max_damping_, device_damping_, resolution_;
   double energy_ = 0, damping_ = 0, dissipated_ = 0;
-  double share_ = 1;  ///< of the scene's force that the limits let through in the tick that ended
+  double swing_ = 0;   ///< [J] as energy_, without the slow part of force and motion
+  double lively_ = 1;  ///< 1: the probe moves; 0: it rests but for counts of the encoder
+  double share_ = 1;   ///< of the scene's force that the limits let through in the tick that ended
   Eigen::Vector3d position_{0, 0, 0}, held_{0, 0, 0}, added_{0, 0, 0}, smoothed_{0, 0, 0}, velocity_{0, 0, 0};
-  bool started_ = false;
+  Eigen::Vector3d rest_{0, 0, 0};                     ///< [m] where it was when it moved last
+  Eigen::Vector3d steady_{0, 0, 0}, drift_{0, 0, 0};  ///< [N], [m/s] slow parts of force and motion
+  bool started_ = false, pushed_ = false;
 };
 
 }  // namespace hapticd::passivity
