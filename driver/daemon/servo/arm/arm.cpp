@@ -219,7 +219,7 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
   command.mode = HDV_OFF;
   const bool located = std::isfinite(sample_.position[0]) &&
                        kinematics.jacobian(device_->handle(), sample_.position, J.data()) == HSP_OK && J.allFinite();
-  if (!located) limiter_.sentNothing();
+  if (!located) sendsNothing();
   const Weight::Torques weight = located ? weightTorques(J.topRows<3>(), dt) : Weight::Torques{};
   if (located && !limiter_.silent() && !comply(dt, force, weight)) {
     command.mode = HDV_TORQUE;
@@ -237,6 +237,15 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
   if (wrote) device_->cut();
   trip(Fault::kDeviceLost);
   limiter_.cut(Fault::kDeviceLost, 0);
+}
+
+/// A force that no torque stands for is not sent. Where the tip is known and its Jacobian is not, the module is at
+/// fault.
+void Arm::sendsNothing() noexcept HSP_RT {
+  limiter_.sentNothing();
+  if (!probe_.valid) return;
+  limiter_.trip(Fault::kNotFinite);
+  force_.setZero();
 }
 
 void Arm::send(Nanoseconds now) noexcept HSP_RT {

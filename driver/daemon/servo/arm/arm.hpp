@@ -143,6 +143,7 @@ class Arm {
   void scaleToMotors(const Weight::Torques& gravity, hdv_command& command) noexcept HSP_RT;
   void heatMotors(double dt) noexcept HSP_RT;
   void send(Nanoseconds now) noexcept HSP_RT;
+  void sendsNothing() noexcept HSP_RT;
 
   std::unique_ptr<host::DeviceInstance> device_;
   Eigen::Matrix3d R_world_device_;
