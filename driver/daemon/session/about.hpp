@@ -18,8 +18,9 @@ struct RunFacts {
   double rate = 1000;  ///< [Hz]
   uint64_t period_ns = 1'000'000, ticks = 0;
   bool virtual_time = false;
-  bool found_pressed = false;  ///< a hold button that was down before the run enabled, as it did once
-  bool former_claims = false;  ///< torques, and steps after a parameter was set, were held to no claim
+  bool found_pressed = false;   ///< a hold button that was down before the run enabled, as it did once
+  bool former_claims = false;   ///< torques, and steps after a parameter was set, were held to no claim
+  bool full_when_slow = false;  ///< real arms pushed with their full force however slow they were
 };
 
 /// [main] @param streams of flightStreams

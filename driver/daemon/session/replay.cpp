@@ -326,7 +326,7 @@ Result<std::unique_ptr<Replay>> Replay::prepare(const record::Recording& recordi
     replay->playbacks_[i]->info = replay->run_.devices[i];
     auto arm = Arm::open(scene.devices[i], scene.servo,
                          {options.rate, replay->world_->needsVelocity(), replay->playbacks_[i].get(), scene.clients,
-                          replay->run_.facts.found_pressed},
+                          replay->run_.facts.found_pressed, replay->run_.facts.full_when_slow},
                          log);
     if (!arm) return Error{arm.error()};
     replay->arms_.push_back(std::move(*arm));

@@ -20,6 +20,14 @@ TEST(PowerBound, IsPowerOverSpeedWhereNothingLagsAndNothingAccelerates) {
   EXPECT_EQ(bound.most(-kAlong, 1), HUGE_VAL) << "what the hand does is its own";
 }
 
+TEST(PowerBound, TakesTheFirstEstimateForNoAcceleration) {
+  PowerBound bound;
+  bound.expect(2e-3, 0);
+  bound.pass(1e-3);
+  bound.watch({0.5, 0, 0});  // after a pause, the hand in full motion
+  EXPECT_NEAR(bound.most(kAlong, 1), 2, 1e-12);
+}
+
 TEST(PowerBound, ReckonsWithTheLagAndTheAccelerationsOfLate) {
   PowerBound bound;
   bound.expect(2e-3, 0);
