@@ -59,6 +59,8 @@ TEST(HeldCommand, TellsWhyAnArmPushesLessAndTheCure) {
             "which gives a free arm 5 mJ and 1 mm; expected at least 715 Hz for all of its force");
   EXPECT_NE(describeSlow(100, 100, 0, 0).find("its own rate is low: after a fault one command may stay on for 20 ms"),
             std::string::npos);
+  EXPECT_EQ(describeSlow(100, 1000, 8.5, 0.5), "");
+  EXPECT_NE(describeSlow(100, 0, 0, 0).find("the servo's rate"), std::string::npos) << "an arm that names none";
   EXPECT_NE(describeSlow(1000, 0.5, 0, 0).find("its own rate"), std::string::npos);
   EXPECT_NE(describeSlow(100, 200, 0, 0).find("the servo's rate"), std::string::npos) << "both are as slow";
 }
