@@ -52,13 +52,13 @@ void addTimes(const host::DeviceInstance& device, bool opened, const std::option
                 : rate > 0 ? "fades after " + numberText(2000 / rate) + " ms"
                            : "held for up to 50 ms: give the rate of the arm"});
   if (opened && (info.capabilities & HDV_C_SIMULATED) != 0) return;
-  const double share = servo::shareHeld(rate > 0 ? servo::longestHeld(kFastServo, rate) : 0);
+  const double most = rate > 0 ? servo::mostForceAt(kFastServo, rate, info.max_force) : HUGE_VAL;
   to.push_back({"H21", "force that suits the arm's rate", known ? onIf(rate > 0) : ControlState::kUnknown,
-                !known      ? "the arm itself says its rate"
-                : rate <= 0 ? "only the servo's rate counts: give the rate of the arm"
-                : share < 1 ? "at most " + numberText(std::round(1e3 * share) / 10) + " % of its force at " +
-                                  numberText(rate) + " Hz; all of it from 715 Hz on"
-                            : "all of its force; below 358 Hz of the servo less"});
+                !known            ? "the arm itself says its rate"
+                : rate <= 0       ? "only the servo's rate counts: give the rate of the arm"
+                : most < HUGE_VAL ? "at most " + numberText(std::round(1e3 * most) * 1e-3) + " N at " +
+                                        numberText(rate) + " Hz; all of it from 715 Hz on"
+                                  : "all of its force; below 358 Hz of the servo less"});
 }
 
 /// What a report carries so that a wrong or an old one is seen.
