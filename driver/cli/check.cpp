@@ -12,6 +12,7 @@
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/hand_start.hpp"
 #include "diagnostics/model_trial.hpp"
+#include "diagnostics/slow_arm.hpp"
 #include "diagnostics/unit_advice.hpp"
 #include "document/node.hpp"
 #include "document/reader.hpp"
@@ -141,7 +142,7 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   if (!scene || !found.empty()) return verdict;
   const scene::Scene full = withArm(*scene);
   document::Problems more = unstable(full, trial.stiffness);
-  for (const auto& found_by : {&farModels, &quarantinedModels})
+  for (const auto& found_by : {&farModels, &quarantinedModels, &slowArms})
     for (const document::Problem& one : found_by(full)) more.push_back(one);
   document::Problems unread;
   if (const auto root = document::parseFile(file, unread)) adviseZeros(*root, file, more);

@@ -25,6 +25,7 @@ constexpr Against kAgainst[] = {{"H4 H6 H8 H9 H13 H17 H21", "wrong numbers, faul
                                 {"H23", "a weight that pushes"},
                                 {"H26 H33", "a daemon that stands still"},
                                 {"H30 H32", "a daemon that is gone"},
+                                {"H21", "energy after a fault"},
                                 {"H30", "a machine that stops"},
                                 {"H3", "an arm that falls silent"},
                                 {"H22", "a contact that buzzes"},

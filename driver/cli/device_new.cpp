@@ -270,7 +270,7 @@ std::string textOf(const NewDeviceArguments& o) {
       "{9}mount: {{position: [0, 0, 0.09]}}     # m: where its frame stands in the world; this one puts the tip at "
       "rest\n"
       "                                     # 9 cm in front of the origin, where the scenes have their shapes\n"
-      "limits: {{force: {2:g}, passivity: true}}   # N: begin low, and raise it when the signs are right\n{8}"
+      "limits: {{force: {2:g}, {10}passivity: true}}   # N: begin low, and raise it when the signs are right\n{8}"
       "parameters:\n  usb: {{id: \"{3}\"}}\n"
       "  # device: {{max_force: 5, max_stiffness: 1000, mass: 0.2}}      # what `check` and `tune` may rely on\n{4}"
       "  calibration:\n    method: pose                  # or none: absolute encoders; device: it finds its zero "
@@ -280,7 +280,8 @@ std::string textOf(const NewDeviceArguments& o) {
       o.buttons > 0 ? "# in limits: enable: {button: 0}   # forces only while it is held; here buttons count from 0, "
                       "in wire from 1\n"
                     : "",
-      o.kind == "phantom" ? "" : "# ");  // where another one rests, its numbers say
+      o.kind == "phantom" ? "" : "# ",                                      // where another one rests, its numbers say
+      o.joints > 3 ? fmt::format("torque: {:.2g}, ", 0.1 * o.force) : "");  // N m: that force at a handle of 0.1 m
 }
 
 bool usableDeviceName(const std::string& name) {

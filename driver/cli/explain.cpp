@@ -12,6 +12,7 @@
 #include "base/os.hpp"
 #include "cli/command.hpp"
 #include "diagnostics/explain_cost.hpp"
+#include "diagnostics/slow_arm.hpp"
 #include "document/reader.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "world/world.hpp"
@@ -141,6 +142,7 @@ void explainFiles(const scene::Scene& scene) {
   for (const scene::Device& device : scene.devices) {
     const std::string reason = device.chosen_by_default ? "the scene names none" : where(device.place);
     std::printf("  %s  (%s, %s)\n", device.name.c_str(), device.module.c_str(), reason.c_str());
+    if (const std::string slow = slownessOf(device, scene.servo.rate); !slow.empty()) say("  less force", slow);
   }
 }
 

@@ -207,8 +207,13 @@ void warnOfSettings(servo::Runner& runner, double rate) {
   for (const auto& shape : runner.world().shapes())
     if (shape != nullptr) stiffness.push_back(shape->report().max_stiffness);
   printWarnings(tune::fastPaths(scene), stderr);
-  for (size_t i = 0; i < runner.arms().size(); ++i)
+  for (size_t i = 0; i < runner.arms().size(); ++i) {
+    document::Problems slow;
+    if (const std::string& why = runner.arms()[i]->slowness(); !why.empty())
+      document::report(slow, scene.devices[i].place, "servo.rate", scene.devices[i].name + ": " + why);
+    printWarnings(slow, stderr);
     printWarnings(tune::unstableSettings(scene, scene.devices[i], runner.arms()[i]->info(), stiffness), stderr);
+  }
 }
 
 /// Into the log, except for what the message that ends the set-up will say anyway.

@@ -55,9 +55,19 @@ struct Recorded : Rig {
     loop = std::make_unique<Loop>(world->core(), world->lockstep(), arms, clock, settings, *telemetry);
   }
 
+  /// A loop of 100 Hz. @param full the arm pushes with all of its force, as in versions before slow ones pushed less
+  void slowDown(bool full) {
+    rate = 100;
+    full_when_slow = full;
+    settings.period_ns = 10'000'000;
+    arms[0] = std::move(*Arm::open(scene.devices[0], scene.servo, {rate, false, nullptr, {}, false, full}, quiet));
+    ASSERT_TRUE(arms[0]->start(0, Eigen::Vector3d(0, -9.81, 0)));
+    loop = std::make_unique<Loop>(world->core(), world->lockstep(), arms, clock, settings, *telemetry);
+  }
+
   void record() {
-    const auto streams = flightStreams(scene, arms, 1000, 1, 0);
-    const RunFacts facts{1000, settings.period_ns, settings.ticks, true, found_pressed, former_claims};
+    const auto streams = flightStreams(scene, arms, rate, 1, 0);
+    const RunFacts facts{rate, settings.period_ns, settings.ticks, true, found_pressed, former_claims, full_when_slow};
     about = aboutRun(scene, *world, arms, facts, streams);
     telemetry->attach(std::make_unique<Flight>(std::move(*record::FlightRing::create(streams, about)), arms, 8));
     loop->run();
@@ -75,7 +85,8 @@ struct Recorded : Rig {
   }
 
   record::About about;
-  bool found_pressed = false, former_claims = false;
+  double rate = 1000;
+  bool found_pressed = false, former_claims = false, full_when_slow = false;
 };
 
 void expectSame(const ReplayOutcome& outcome) {
@@ -144,6 +155,24 @@ TEST(Replay, LetsAButtonThatWasFoundPressedEnableAsItDidOnce) {
   about.erase("enable_released_first");
   rig.about.json = about.dump();
   expectSame(rig.replay());
+}
+
+/// A recording that says nothing of the rule was made when a slow arm pushed with all of its force.
+TEST(Replay, IsTheSameOnASlowArmUnderEitherLaw) {
+  for (const bool full : {false, true}) {
+    Recorded rig("wall", {number(0, HSP_REAL, 2000)}, {number(4, HSP_BOOL, 1)});
+    rig.slowDown(full);
+    double most = 0;
+    rig.every = [&](Nanoseconds) { most = std::max(most, rig.arms[0]->force().norm()); };
+    rig.record();
+    EXPECT_EQ(most > 2, full) << most;
+    EXPECT_EQ(rig.arms[0]->slowness().empty(), full);
+    auto about = nlohmann::json::parse(rig.about.json);
+    ASSERT_EQ(about.at("slow_arms_push_less"), !full);
+    if (full) about.erase("slow_arms_push_less");
+    rig.about.json = about.dump();
+    expectSame(rig.replay());
+  }
 }
 
 /// Sets the first parameter of the first model before each tick, up and down.
