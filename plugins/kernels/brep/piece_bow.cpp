@@ -11,8 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kBetweenSamples = 1.5;  ///< what is measured at samples may be larger by this between them
-constexpr double kTermRounding = 1e-9;   ///< of the terms that are compared
+constexpr double kTermRounding = 1e-9;  ///< of the terms that are compared
 
 struct Bend {
   Vector3d C, T, K;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "kernels/brep/piece_bow.hpp"
 #include "kernels/spline/refinement.hpp"
 #include "kernels/trace/box_tree.hpp"
 
@@ -19,7 +20,6 @@ using spline::CurvePoint;
 using spline::SurfacePoint;
 
 constexpr double kMostTurn = 0.44;  ///< [rad] of the normals of a leaf, 25 degrees; of the tangents of a curve's piece
-constexpr double kBetween = 1.5;    ///< what is measured at samples may be larger by this between them
 
 /// Principal curvatures at a point, toward Su x Sv positive; false where the tangents vanish.
 bool curvatures(const SurfacePoint& E, double& least, double& most) {
@@ -115,7 +115,7 @@ class FaceCutter {
                        (h[0] * h[0] * E.Suu.norm() + 2 * h[0] * h[1] * E.Suv.norm() + h[1] * h[1] * E.Svv.norm()) / 8);
       }
     const double extent = box.diagonal().norm() / kSamples;
-    const Vector3d margin = Vector3d::Constant(kBetween * sag + 0.1 * extent);
+    const Vector3d margin = Vector3d::Constant(kBetweenSamples * sag + 0.1 * extent);
     return {box.min() - margin, box.max() + margin};
   }
 
@@ -153,8 +153,8 @@ class FaceCutter {
         front = std::max(front, shape_.outward > 0 ? most : -least);
         back = std::max(back, shape_.outward > 0 ? -least : most);
       }
-    leaf.bend_front = kBetween * front;
-    leaf.bend_back = kBetween * back;
+    leaf.bend_front = kBetweenSamples * front;
+    leaf.bend_back = kBetweenSamples * back;
   }
 
   const Geometry& geometry_;
@@ -218,7 +218,7 @@ class EdgeCutter {
       halve(0.5 * (t0 + t1), t1, depth + 1);
       return;
     }
-    add(t0, t1, kBetween * bend);
+    add(t0, t1, kBetweenSamples * bend);
   }
 
   void add(double t0, double t1, double bend) {
