@@ -53,7 +53,7 @@ void addTimes(const host::DeviceInstance& device, bool opened, const std::option
                            : "held for up to 50 ms: give the rate of the arm"});
   if (opened && (info.capabilities & HDV_C_SIMULATED) != 0) return;
   const double most = rate > 0 ? servo::mostForceAt(kFastServo, rate, info.max_force) : HUGE_VAL;
-  to.push_back({"H21", "force that suits the arm's rate", known ? onIf(rate > 0) : ControlState::kUnknown,
+  to.push_back({"H21", "force that suits its rate", known ? onIf(rate > 0) : ControlState::kUnknown,
                 !known            ? "the arm itself says its rate"
                 : rate <= 0       ? "only the servo's rate counts: give the rate of the arm"
                 : most < HUGE_VAL ? "at most " + numberText(std::round(1e3 * most) * 1e-3) + " N at " +

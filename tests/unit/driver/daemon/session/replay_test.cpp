@@ -66,7 +66,7 @@ struct Recorded : Rig {
   }
 
   void record() {
-    const auto streams = flightStreams(scene, arms, rate, 1, 0);
+    const auto streams = flightStreams(scene, arms, rate, 1000 / rate, 0);
     const RunFacts facts{rate, settings.period_ns, settings.ticks, true, found_pressed, former_claims, full_when_slow};
     about = aboutRun(scene, *world, arms, facts, streams);
     telemetry->attach(std::make_unique<Flight>(std::move(*record::FlightRing::create(streams, about)), arms, 8));
