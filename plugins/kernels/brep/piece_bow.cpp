@@ -60,6 +60,12 @@ PieceBow bowOf(const Geometry& geometry, std::uint32_t curve, double t0, double 
   return bow;
 }
 
+double leastBendSeenFrom(const PieceBow& bow, const Vector3d& p) noexcept {
+  const Vector3d from = bow.centre - p;
+  const double aside = from.dot(bow.across), flat = (from - aside * bow.across).norm();
+  return bow.turn_low + from.dot(bow.bow) - flat * bow.bow_off - std::abs(aside) * bow.bow_off_across;
+}
+
 FeetOfPiece feetSeenFrom(const PieceBow& bow, const Vector3d& p) noexcept {
   const Vector3d from = bow.centre - p;
   const double aside = from.dot(bow.across), flat = (from - aside * bow.across).norm();

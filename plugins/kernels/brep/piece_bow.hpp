@@ -34,6 +34,10 @@ enum class FeetOfPiece : std::uint8_t {
   kUnknown
 };
 
+/// [rt] The least second derivative along the arc that half of the squared distance to p has on the piece; where it is
+/// not above 0, nothing is known.
+double leastBendSeenFrom(const PieceBow& bow, const Eigen::Vector3d& p) noexcept;
+
 /// [any] What p sees of the piece.
 FeetOfPiece feetSeenFrom(const PieceBow& bow, const Eigen::Vector3d& p) noexcept;
 
