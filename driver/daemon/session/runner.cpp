@@ -15,6 +15,7 @@
 #include "session/watched_servo.hpp"
 #include "sim/proximity_thread.hpp"
 #include "watch/crash.hpp"
+#include "watch/ended.hpp"
 #include "watch/notify.hpp"
 #include "watch/watchdog.hpp"
 #include "world/arm_force.hpp"
@@ -48,23 +49,6 @@ class CrashGuard {
   CrashGuard& operator=(const CrashGuard&) = delete;
 };
 
-/// A run that has ended, as the crash handler sees it: the motors are off.
-class EndedServo final : public watch::Watched {
- public:
-  uint64_t ticks() const noexcept override { return 0; }
-  Nanoseconds tickBegun() const noexcept override { return 0; }
-  Nanoseconds nextTick() const noexcept override { return 0; }
-  Nanoseconds cpuTime() const noexcept override { return 0; }
-  bool simulated() const noexcept override { return true; }
-  void stop() noexcept override {}
-  Nanoseconds stopAsked() const noexcept override { return 0; }
-  void cut(double) noexcept override {}
-  bool cutLeft() const noexcept override { return true; }
-  const Owner* inServo() const noexcept override { return nullptr; }
-  const void* blackBox() const noexcept override { return nullptr; }
-  size_t blackBoxBytes() const noexcept override { return 0; }
-};
-
 Nanoseconds spinFor(const scene::Servo& servo) {
   // Spinning buys regularity on bare metal; in a virtual machine the pauses come from outside.
   constexpr double kBareMetalSpinUs = 50;
@@ -92,11 +76,22 @@ const Owner* keepsTheEnd() {
   return nullptr;
 }
 
+/// [main] A watchdog that names whom a run waits for in vain. @param may_lag late ticks are nobody's fault here
+std::unique_ptr<watch::Watchdog> watchdogOf(watch::Watched& watched, bool may_lag) {
+  using watch::Watchdog;
+  const auto hung = [&watched] { watch::dieOf("a step that did not come back", watched.inServo()); };
+  auto watchdog =
+      std::make_unique<Watchdog>(watched, hung, may_lag ? Watchdog::kMissedInVirtualMachine : Watchdog::kMissedAfter,
+                                 may_lag ? Watchdog::kStuckInVirtualMachine : Watchdog::kStuckAfter);
+  watchdog->onLateEnd([] { watch::endAnyway(keepsTheEnd()); });
+  return watchdog;
+}
+
 }  // namespace
 
 Runner::~Runner() {
   const Working working(Worker::kMain);
-  EndedServo ended;
+  watch::Ended ended;
   const CrashGuard crash(ended, options_.state_dir);
   recorder_.reset();
   loop_.reset();
@@ -260,13 +255,8 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   lockMemory();
   const os::DmaLatencyHold awake;
   std::atomic<bool> ready{false};
-  const bool may_lag = mayLag();
-  const auto hung = [&watched] { watch::dieOf("a step that did not come back", watched.inServo()); };
-  using watch::Watchdog;
-  Watchdog watchdog(watched, hung, may_lag ? Watchdog::kMissedInVirtualMachine : Watchdog::kMissedAfter,
-                    may_lag ? Watchdog::kStuckInVirtualMachine : Watchdog::kStuckAfter);
-  watchdog.onLateEnd([] { watch::endAnyway(keepsTheEnd()); });
-  if (const auto code = watchdog.start(options_.priority + 1))
+  const auto watchdog = watchdogOf(watched, mayLag());
+  if (const auto code = watchdog->start(options_.priority + 1))
     return Error{"cannot start the watchdog thread: " + code.message()};
   std::vector<std::string> refused;  // the servo thread's until `ready`, then this thread's
   const bool anyhow = onlySimulated() || options_.allow_non_rt, locked = warnings_.empty();
@@ -292,7 +282,7 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   host::Services::passOn(log::write);
   event_log_->tell(*telemetry_->flight());
   ended();
-  watchdog.stop();
+  watchdog->stop();
   if (!loop_->finished()) return Error{warnings_.back() + "\n  forces stay off (--allow-non-rt allows them)"};
   return {};
 }
