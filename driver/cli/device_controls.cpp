@@ -55,13 +55,13 @@ int controls(const std::string& file) {
 
 }  // namespace
 
-void addDeviceControls(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.get_subcommand("device")->add_subcommand(
+void addDeviceControls(const Command& app, int& exit_code) {
+  const Command command = app.subcommand("device").addSubcommand(
       "controls", "Show which controls of hazards an arm has. Opens the arm if it is plugged in, but moves nothing.");
   auto file = std::make_shared<std::string>();
-  command->add_option("file", *file, "device file (YAML)")->required();
-  command->footer("Example:\n  hapticd device controls config/devices/premium15.yaml");
-  command->callback([file, &exit_code] { exit_code = controls(*file); });
+  command.addOption("file", *file, "device file (YAML)").required();
+  command.footer("Example:\n  hapticd device controls config/devices/premium15.yaml");
+  command.callback([file, &exit_code] { exit_code = controls(*file); });
 }
 
 }  // namespace hapticd::cli

@@ -187,18 +187,18 @@ int encode(const DecodeArguments& options) {
   return writeOut(options.out, *out);
 }
 
-void addDecode(CLI::App& device, int& exit_code) {
+void addDecode(const Command& device, int& exit_code) {
   auto options = std::make_shared<DecodeArguments>();
-  CLI::App* command =
-      device.add_subcommand("decode", "Show a captured stream of an arm as numbers, as its device file reads it.");
-  command->add_option("file", options->file, "device file (YAML)")->required();
-  command->add_option("capture", options->input, "captured bytes; - for standard input")->capture_default_str();
-  auto* hex =
-      command->add_flag("--hex", options->hex, "the capture is text: one transfer per line, two digits per byte");
-  command->add_flag("--raw", options->raw, "the capture is the bytes themselves, even if they read as text")
-      ->excludes(hex);
-  command->add_option("-o,--out", options->out, "CSV file to write; - for standard output");
-  command->footer(
+  const Command command =
+      device.addSubcommand("decode", "Show a captured stream of an arm as numbers, as its device file reads it.");
+  command.addOption("file", options->file, "device file (YAML)").required();
+  command.addOption("capture", options->input, "captured bytes; - for standard input").showDefault();
+  const Option hex =
+      command.addFlag("--hex", options->hex, "the capture is text: one transfer per line, two digits per byte");
+  command.addFlag("--raw", options->raw, "the capture is the bytes themselves, even if they read as text")
+      .excludes(hex);
+  command.addOption("-o,--out", options->out, "CSV file to write; - for standard output");
+  command.footer(
       "A capture is raw bytes, or text with one transfer per line: \"01 ff 3c\", the E: lines of hid-recorder, or "
       "what\n"
       "`hapticd device record` writes. The output has one row per report: positions, torques and buttons in SI units,\n"
@@ -206,18 +206,18 @@ void addDecode(CLI::App& device, int& exit_code) {
       "Examples:\n  hapticd device decode my-arm.yaml capture.bin\n"
       "  printf '00 01 00 02 00 03 00 00 00 00 00 00 00 00\\n' | hapticd device decode "
       "config/devices/woodenhaptics.yaml --hex");
-  command->callback([options, &exit_code] { exit_code = decode(*options); });
+  command.callback([options, &exit_code] { exit_code = decode(*options); });
 }
 
-void addEncode(CLI::App& device, int& exit_code) {
+void addEncode(const Command& device, int& exit_code) {
   auto options = std::make_shared<DecodeArguments>();
-  CLI::App* command = device.add_subcommand("encode", "Write numbers as the bytes of an arm's reports.");
-  command->add_option("file", options->file, "device file (YAML)")->required();
-  command->add_option("csv", options->input, "CSV file with the numbers; - for standard input")->capture_default_str();
-  command->add_flag("--from-arm", options->from_arm, "write what the arm would send, instead of what it is sent");
-  command->add_flag("--raw", options->raw, "write the bytes themselves instead of hexadecimal text");
-  command->add_option("-o,--out", options->out, "file to write; - for standard output");
-  command->footer(
+  const Command command = device.addSubcommand("encode", "Write numbers as the bytes of an arm's reports.");
+  command.addOption("file", options->file, "device file (YAML)").required();
+  command.addOption("csv", options->input, "CSV file with the numbers; - for standard input").showDefault();
+  command.addFlag("--from-arm", options->from_arm, "write what the arm would send, instead of what it is sent");
+  command.addFlag("--raw", options->raw, "write the bytes themselves instead of hexadecimal text");
+  command.addOption("-o,--out", options->out, "file to write; - for standard output");
+  command.footer(
       "Each row of the CSV is one report. Its header names the columns: torque1,torque2 [N m, N], reference1, enable, "
       "follow,\n"
       "calibrate; with --from-arm position1, velocity1, torque1, buttons, sequence, starts, clock, fault, calibrated. "
@@ -228,14 +228,14 @@ void addEncode(CLI::App& device, int& exit_code) {
       "Example:\n  echo 0.1,0,-0.1 | hapticd device encode config/devices/woodenhaptics.yaml\n"
       "  echo 0.1,1.5,1.6 | hapticd device encode --from-arm config/devices/woodenhaptics.yaml | "
       "hapticd device decode config/devices/woodenhaptics.yaml");
-  command->callback([options, &exit_code] { exit_code = encode(*options); });
+  command.callback([options, &exit_code] { exit_code = encode(*options); });
 }
 
 }  // namespace
 
-void addDeviceDecode(CLI::App& app, int& exit_code) {
-  addDecode(*app.get_subcommand("device"), exit_code);
-  addEncode(*app.get_subcommand("device"), exit_code);
+void addDeviceDecode(const Command& app, int& exit_code) {
+  addDecode(app.subcommand("device"), exit_code);
+  addEncode(app.subcommand("device"), exit_code);
 }
 
 }  // namespace hapticd::cli

@@ -44,14 +44,14 @@ int makeTwin(const std::string& file, const std::string& wanted) {
 
 }  // namespace
 
-void addDeviceTwin(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.get_subcommand("device")->add_subcommand(
+void addDeviceTwin(const Command& app, int& exit_code) {
+  const Command command = app.subcommand("device").addSubcommand(
       "twin", "Write a device file of a simulated arm with the kinematics, limits and encoders of another file's arm.");
   auto file = std::make_shared<std::string>(), out = std::make_shared<std::string>();
-  command->add_option("file", *file, "device file of the real arm (YAML)")->required();
-  command->add_option("-o,--out", *out, "file to write; default: FILE-twin.yaml in the current folder");
-  command->footer("Example:\n  hapticd device twin my-arm.yaml && hapticd run scene.yaml --device my-arm-twin.yaml");
-  command->callback([file, out, &exit_code] { exit_code = makeTwin(*file, *out); });
+  command.addOption("file", *file, "device file of the real arm (YAML)").required();
+  command.addOption("-o,--out", *out, "file to write; default: FILE-twin.yaml in the current folder");
+  command.footer("Example:\n  hapticd device twin my-arm.yaml && hapticd run scene.yaml --device my-arm-twin.yaml");
+  command.callback([file, out, &exit_code] { exit_code = makeTwin(*file, *out); });
 }
 
 }  // namespace hapticd::cli

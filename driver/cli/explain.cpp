@@ -183,18 +183,18 @@ int explain(const ExplainArguments& options) {
 
 }  // namespace
 
-void addExplain(CLI::App& app, int& exit_code) {
+void addExplain(const Command& app, int& exit_code) {
   auto options = std::make_shared<ExplainArguments>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.addSubcommand(
       "explain", "Show what the daemon loads, starts and computes for a scene, why, and at what cost.");
-  command->add_option("scene", options->scene, "scene file (YAML)")->required();
-  command->add_option("--device", options->device, "device file; replaces the devices of the scene");
-  command->add_flag("--cost", options->cost,
-                    "print a table of every part with its line in the scene, and the ns per tick and bytes that it "
-                    "costs; also of what is not needed");
-  command->add_flag("--json", options->json, "print the same table as JSON");
-  command->footer("Example:\n  hapticd explain config/scenes/teapot.yaml --cost");
-  command->callback([options, &exit_code] { exit_code = explain(*options); });
+  command.addOption("scene", options->scene, "scene file (YAML)").required();
+  command.addOption("--device", options->device, "device file; replaces the devices of the scene");
+  command.addFlag("--cost", options->cost,
+                  "print a table of every part with its line in the scene, and the ns per tick and bytes that it "
+                  "costs; also of what is not needed");
+  command.addFlag("--json", options->json, "print the same table as JSON");
+  command.footer("Example:\n  hapticd explain config/scenes/teapot.yaml --cost");
+  command.callback([options, &exit_code] { exit_code = explain(*options); });
 }
 
 }  // namespace hapticd::cli

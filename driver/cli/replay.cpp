@@ -21,6 +21,8 @@ namespace {
 
 constexpr int kPartly = 3;  ///< exit code: what was replayed is the same, and not all can be
 
+using Json = nlohmann::ordered_json;
+
 struct ReplayArguments {
   std::string file;
   std::vector<std::string> changes;
@@ -113,7 +115,6 @@ int print(const servo::ReplayOutcome& outcome) {
 }
 
 int printJson(const servo::ReplayOutcome& outcome) {
-  using Json = nlohmann::ordered_json;
   Json json{{"same", !outcome.first.has_value()},
             {"ticks", outcome.ticks},
             {"recorded_ticks", outcome.recorded_ticks},
@@ -151,17 +152,17 @@ int replay(const ReplayArguments& options) {
 
 }  // namespace
 
-void addReplay(CLI::App& app, int& exit_code) {
+void addReplay(const Command& app, int& exit_code) {
   auto options = std::make_shared<ReplayArguments>();
-  CLI::App* command = app.add_subcommand("replay", "Run a recording again and compare every force to the last bit.");
-  command->add_option("file", options->file, "recording made by `hapticd run --record`")->required();
-  command->add_option("--set", options->changes, "change a parameter: MODEL.PARAMETER=NUMBER; may be repeated");
-  command->add_flag("--json", options->json, "print the outcome as JSON");
-  command->footer(
+  const Command command = app.addSubcommand("replay", "Run a recording again and compare every force to the last bit.");
+  command.addOption("file", options->file, "recording made by `hapticd run --record`").required();
+  command.addOption("--set", options->changes, "change a parameter: MODEL.PARAMETER=NUMBER; may be repeated");
+  command.addFlag("--json", options->json, "print the outcome as JSON");
+  command.footer(
       "Exit codes: 0 every bit is the same, 1 something differs, 2 the recording cannot be replayed, 3 every bit is "
       "the same\nup to a tick in which models were added or removed; the rest cannot be replayed.\n\nExample:\n  "
       "hapticd run config/scenes/teapot.yaml --for 10 --record run.h5\n  hapticd replay run.h5");
-  command->callback([options, &exit_code] { exit_code = replay(*options); });
+  command.callback([options, &exit_code] { exit_code = replay(*options); });
 }
 
 }  // namespace hapticd::cli
