@@ -146,7 +146,7 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   document::Problems unread;
   if (const auto root = document::parseFile(file, unread)) adviseZeros(*root, file, more);
   if (!options.files_only)
-    for (const document::Problem& inside : startsInside(full)) more.push_back(inside);
+    for (const document::Problem& one : adviseHands(full)) more.push_back(one);
   verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());
   return verdict;
 }

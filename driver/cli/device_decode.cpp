@@ -15,6 +15,7 @@
 #include "capture/report_table.hpp"
 #include "capture/saturation.hpp"
 #include "cli/command.hpp"
+#include "cli/encode_columns.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "document/csv.hpp"
 #include "document/node.hpp"
@@ -33,6 +34,7 @@ struct Described {
   codec::Wire wire;
   size_t joints = 0;
   capture::ArmFacts arm;
+  std::unique_ptr<host::DeviceInstance> device;
 };
 
 capture::ArmFacts factsOf(const scene::Device& device, size_t joints) {
@@ -61,7 +63,8 @@ std::optional<Described> describedIn(const std::string& file, int& exit_code) {
   for (const scene::Value& value : loaded.device->parameters)
     if (value.id == "wire") {
       const size_t joints = (*device)->kinematics().joint_count;
-      return Described{codec::readWire(value.text, joints), joints, factsOf(*loaded.device, joints)};
+      return Described{codec::readWire(value.text, joints), joints, factsOf(*loaded.device, joints),
+                       std::move(*device)};
     }
   exit_code = fail(kBadInput, file + ": its module " + loaded.device->module +
                                   " has no parameter wire, expected a device file of usb_hid, usb_bulk or vme");
@@ -136,6 +139,28 @@ std::vector<std::string> namesIn(const std::string& text, const std::vector<std:
   return names;
 }
 
+/// Every row as a report, raw or in hexadecimal digits.
+Result<std::string> encodeTable(const DecodeArguments& options, const Described& described,
+                                const EncodeColumns& columns, const document::CsvTable& table) {
+  std::string out;
+  std::vector<double> joints(HDV_MAX_JOINTS, 0.0);
+  for (size_t i = 0; i < table.rows(); ++i) {
+    const std::string line = options.input + ": line " + std::to_string(table.lines[i]) + ": ";
+    const auto values = columns.row(table.row(i), *described.device, joints);
+    if (!values) return Error{line + values.error()};
+    const auto bytes = capture::encodeRow(described.wire, !options.from_arm, columns.names, values->data(),
+                                          static_cast<uint32_t>(i + 1));
+    if (!bytes) return Error{bytes.error()};
+    for (const std::string& what : capture::saturated(described.wire, !options.from_arm, columns.names, values->data()))
+      std::fprintf(stderr, "warning: %s%s\n", line.c_str(), what.c_str());
+    if (options.raw)
+      out.append(bytes->begin(), bytes->end());
+    else
+      out += capture::hexText(bytes->data(), bytes->size()) + "\n";
+  }
+  return out;
+}
+
 int encode(const DecodeArguments& options) {
   int exit_code = kWorked;
   const auto described = describedIn(options.file, exit_code);
@@ -149,30 +174,17 @@ int encode(const DecodeArguments& options) {
                 options.input + ": \"" + line.substr(0, 40) + "\", expected commas between the numbers: 0.1,0,0");
   const auto known = capture::columnsOf(described->wire, described->joints, !options.from_arm);
   const auto names = namesIn(*text, known, described->joints);
-  std::string header, all;
+  const auto columns = encodeColumns(names, known, described->joints, !options.from_arm);
+  if (!columns) return fail(kBadInput, options.input + ": " + columns.error());
+  std::string header;
   for (const std::string& name : names) header += (header.empty() ? "" : ",") + name;
-  for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
-  for (const std::string& name : names)
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      return fail(kBadInput, options.input + ": its first line has \"" + name.substr(0, 40) +
-                                 "\", which is no number and no column of the report; expected columns among " + all);
   document::Problems problems;
   const auto table = document::parseCsv(*text, options.input, {{header}}, problems);
   printProblems(problems, stderr);
   if (!table) return kBadInput;
-  std::string out;
-  for (size_t i = 0; i < table->rows(); ++i) {
-    const auto bytes =
-        capture::encodeRow(described->wire, !options.from_arm, names, table->row(i), static_cast<uint32_t>(i + 1));
-    if (!bytes) return fail(kBadInput, bytes.error());
-    for (const std::string& what : capture::saturated(described->wire, !options.from_arm, names, table->row(i)))
-      std::fprintf(stderr, "warning: %s: line %d: %s\n", options.input.c_str(), table->lines[i], what.c_str());
-    if (options.raw)
-      out.append(bytes->begin(), bytes->end());
-    else
-      out += capture::hexText(bytes->data(), bytes->size()) + "\n";
-  }
-  return writeOut(options.out, out);
+  const auto out = encodeTable(options, *described, *columns, *table);
+  if (!out) return fail(kBadInput, out.error());
+  return writeOut(options.out, *out);
 }
 
 void addDecode(CLI::App& device, int& exit_code) {
@@ -211,7 +223,8 @@ void addEncode(CLI::App& device, int& exit_code) {
       "calibrate; with --from-arm position1, velocity1, torque1, buttons, sequence, starts, clock, fault, calibrated. "
       "Without "
       "a\nheader they are the torques or, with --from-arm, the positions of all joints. Constants, counters, checksums "
-      "and\nescapes are added.\n\n"
+      "and\nescapes are added. Tables of `device kinematics` are understood: tau1,... are the torques, q1,... the "
+      "positions with\n--from-arm, or x,y,z those of a tip in the device frame; its other columns are left out.\n\n"
       "Example:\n  echo 0.1,0,-0.1 | hapticd device encode config/devices/woodenhaptics.yaml\n"
       "  echo 0.1,1.5,1.6 | hapticd device encode --from-arm config/devices/woodenhaptics.yaml | "
       "hapticd device decode config/devices/woodenhaptics.yaml");

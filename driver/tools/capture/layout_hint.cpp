@@ -25,6 +25,14 @@ std::string idLacks(int id) {
          "wire.input id: " + std::to_string(id) + "; size and offsets do not count it\n";
 }
 
+/// The same of raw bytes, which may be those of a stream without ids.
+std::string idOrMarkLacks(int id) {
+  std::string words = idLacks(id);
+  words.pop_back();
+  return words + ". Of a stream without ids: framing: {start: " + hexByte(id) +
+         "}, with size and all offsets one larger\n";
+}
+
 std::string idIsMissing(int id) {
   return "each has one byte too few: if they were captured without the report id, put " + hexByte(id) +
          " in front of each, or leave wire.input id out\n";
@@ -89,7 +97,7 @@ std::string withoutAnId(const codec::Wire& wire, const Capture& capture, const B
   const auto first = everyFirst(bytes, size + 1);
   if (first && *first != 0 && !everyFirst(bytes, size) &&
       goodWith(wire, *first, size, capture).value_or(1) > kNearlyAll)
-    return idLacks(*first);
+    return idOrMarkLacks(*first);
   for (size_t other = 1; other <= std::min(2 * size, codec::kMaxReportBytes - 1); ++other)
     if (other != size && bytes.size() % other == 0 && bytes.size() / other >= kRepeated &&
         goodWith(wire, -1, other, capture).value_or(0) > kNearlyAll)

@@ -14,6 +14,7 @@
 #include "diagnostics/limit_advice.hpp"
 #include "diagnostics/node_path.hpp"
 #include "diagnostics/safety_advice.hpp"
+#include "diagnostics/travel_advice.hpp"
 #include "diagnostics/unit_advice.hpp"
 #include "diagnostics/wire_advice.hpp"
 #include "document/node.hpp"
@@ -100,6 +101,7 @@ document::Problems adviseDevice(const std::filesystem::path& file, host::Catalog
     adviseSafety(*root, *loaded.device, **arm, warnings);
     restOutsideWorkspace(*root, *loaded.device, **arm, warnings);
     adviseWire(*root, *loaded.device, (*arm)->kinematics().joint_count, warnings);
+    adviseTravel(*root, *loaded.device, **arm, warnings);
   }
   document::sortByPlace(warnings);
   return warnings;
