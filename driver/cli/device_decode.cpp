@@ -10,11 +10,13 @@
 #include <sstream>
 #include <string>
 
+#include "capture/course_hint.hpp"
 #include "capture/hints.hpp"
 #include "capture/plausible.hpp"
 #include "capture/report_table.hpp"
 #include "capture/saturation.hpp"
 #include "cli/command.hpp"
+#include "cli/decoded_table.hpp"
 #include "cli/encode_columns.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "document/csv.hpp"
@@ -44,6 +46,7 @@ capture::ArmFacts factsOf(const scene::Device& device, size_t joints) {
     if (value.id == "arm.limits") facts.limits = value.numbers;
     if (value.id == "calibration.method") facts.zeroed = value.number > 1;  // pose
     if (value.id == "health.max_speed") facts.max_speed = value.number;
+    if (value.id == "health.least_rate") facts.least_rate = value.number;
   }
   return facts;
 }
@@ -98,11 +101,12 @@ int decode(const DecodeArguments& options) {
   if (const int failed = writeOut(options.out, capture::csvOf(described->wire, described->joints, decoded));
       failed != 0)
     return failed;
-  std::fprintf(stderr, "read as %s: %s\n%s%s", taken->text ? "hexadecimal text" : "raw bytes",
+  std::fprintf(stderr, "read as %s: %s\n%s%s%s", taken->text ? "hexadecimal text" : "raw bytes",
                capture::summaryOf(decoded).c_str(), capture::hintsOf(described->wire, *taken, decoded).c_str(),
+               capture::courseHints(described->wire, decoded, described->arm.least_rate).c_str(),
                capture::implausible(described->wire, described->arm, decoded).c_str());
   if (decoded.reports.empty())
-    return fail(kFailed, "no report in " + std::to_string(bytes->size()) + " bytes, expected " +
+    return fail(kFailed, "no report in " + std::to_string(taken->bytes()) + " bytes, expected " +
                              std::to_string(described->wire.input.bytes()) + " bytes per report");
   return decoded.good() == decoded.reports.size() && decoded.lost == 0 ? kWorked : kFailed;
 }
@@ -144,6 +148,7 @@ Result<std::string> encodeTable(const DecodeArguments& options, const Described&
                                 const EncodeColumns& columns, const document::CsvTable& table) {
   std::string out;
   std::vector<double> joints(HDV_MAX_JOINTS, 0.0);
+  capture::Saturation saturation;
   for (size_t i = 0; i < table.rows(); ++i) {
     const std::string line = options.input + ": line " + std::to_string(table.lines[i]) + ": ";
     const auto values = columns.row(table.row(i), *described.device, joints);
@@ -151,27 +156,43 @@ Result<std::string> encodeTable(const DecodeArguments& options, const Described&
     const auto bytes = capture::encodeRow(described.wire, !options.from_arm, columns.names, values->data(),
                                           static_cast<uint32_t>(i + 1));
     if (!bytes) return Error{bytes.error()};
-    for (const std::string& what : capture::saturated(described.wire, !options.from_arm, columns.names, values->data()))
-      std::fprintf(stderr, "warning: %s%s\n", line.c_str(), what.c_str());
+    saturation.look(described.wire, !options.from_arm, columns.names, values->data(), table.lines[i]);
     if (options.raw)
       out.append(bytes->begin(), bytes->end());
     else
       out += capture::hexText(bytes->data(), bytes->size()) + "\n";
   }
+  for (const std::string& what : saturation.told())
+    std::fprintf(stderr, "warning: %s: %s\n", options.input.c_str(), what.c_str());
   return out;
+}
+
+/// The table that is given, numbers alone; all that is wrong is told.
+std::optional<std::string> tableOf(const DecodeArguments& options) {
+  const auto text = contentOf(options.input);
+  if (!text)
+    return (void)fail(kBadInput, options.input +
+                                     ": cannot be read, expected a CSV file; numbers come on standard input: echo "
+                                     "0.1,0,0 | hapticd device encode " +
+                                     options.file),
+           std::nullopt;
+  if (const std::string line = firstLine(*text); lacksCommas(line))
+    return (void)fail(kBadInput,
+                      options.input + ": \"" + line.substr(0, 40) + "\", expected commas between the numbers: 0.1,0,0"),
+           std::nullopt;
+  PlainTable plain = plainTable(*text);
+  if (plain.left_out > 0)
+    std::fprintf(stderr, "note: %s: rows that are no good report are left out: %zu\n", options.input.c_str(),
+                 plain.left_out);
+  return std::move(plain.text);
 }
 
 int encode(const DecodeArguments& options) {
   int exit_code = kWorked;
   const auto described = describedIn(options.file, exit_code);
   if (!described) return exit_code;
-  const auto text = contentOf(options.input);
-  if (!text)
-    return fail(kBadInput, options.input + ": cannot be read, expected a CSV file; numbers come on standard input: " +
-                               "echo 0.1,0,0 | hapticd device encode " + options.file);
-  if (const std::string line = firstLine(*text); lacksCommas(line))
-    return fail(kBadInput,
-                options.input + ": \"" + line.substr(0, 40) + "\", expected commas between the numbers: 0.1,0,0");
+  const auto text = tableOf(options);
+  if (!text) return kBadInput;
   const auto known = capture::columnsOf(described->wire, described->joints, !options.from_arm);
   const auto names = namesIn(*text, known, described->joints);
   const auto columns = encodeColumns(names, known, described->joints, !options.from_arm);
@@ -224,7 +245,9 @@ void addEncode(const Command& device, int& exit_code) {
       "Without "
       "a\nheader they are the torques or, with --from-arm, the positions of all joints. Constants, counters, checksums "
       "and\nescapes are added. Tables of `device kinematics` are understood: tau1,... are the torques, q1,... the "
-      "positions with\n--from-arm, or x,y,z those of a tip in the device frame; its other columns are left out.\n\n"
+      "positions with\n--from-arm, or x,y,z those of a tip in the device frame; its other columns are left out. Of a "
+      "table of `device "
+      "decode`\nthe good reports are taken.\n\n"
       "Example:\n  echo 0.1,0,-0.1 | hapticd device encode config/devices/woodenhaptics.yaml\n"
       "  echo 0.1,1.5,1.6 | hapticd device encode --from-arm config/devices/woodenhaptics.yaml | "
       "hapticd device decode config/devices/woodenhaptics.yaml");

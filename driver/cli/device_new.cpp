@@ -263,15 +263,25 @@ std::string wireOf(const NewDeviceArguments& o) {
   return text;
 }
 
+/// Where another mechanism rests, its numbers say.
+std::string mountOf(const NewDeviceArguments& o) {
+  if (o.kind == "phantom")
+    return "mount: {position: [0, 0, 0.09]}     # m: where its frame stands in the world; this one puts the tip at "
+           "rest\n"
+           "                                     # 9 cm in front of the origin, where the scenes have their shapes\n";
+  return "# mount: {position: [0, 0, 0]}      # m: where its frame stands in the world; scenes have their shapes about "
+         "the\n"
+         "                                     # origin: (0, 0, 0.09) less the tip at rest, as `device kinematics` has "
+         "it\n";
+}
+
 std::string textOf(const NewDeviceArguments& o) {
   std::string pose;
   for (int i = 0; i < o.joints; ++i) pose += i > 0 ? ", 0" : "0";
   return fmt::format(
       "# {0}. Written by `hapticd device new`; each number is a guess until you have measured it.\n"
       "hapticd-device: 1\nmodule: usb_{1}\nname: {0}\n"
-      "{9}mount: {{position: [0, 0, 0.09]}}     # m: where its frame stands in the world; this one puts the tip at "
-      "rest\n"
-      "                                     # 9 cm in front of the origin, where the scenes have their shapes\n"
+      "{9}"
       "limits: {{force: {2:g}, {10}passivity: true}}   # N: begin low, and raise it when the signs are right\n{8}"
       "parameters:\n  usb: {{id: \"{3}\"}}\n"
       "  # device: {{max_force: 5, max_stiffness: 1000, mass: 0.2}}      # what `check` and `tune` may rely on\n{4}"
@@ -282,7 +292,7 @@ std::string textOf(const NewDeviceArguments& o) {
       o.buttons > 0 ? "# in limits: enable: {button: 0}   # forces only while it is held; here buttons count from 0, "
                       "in wire from 1\n"
                     : "",
-      o.kind == "phantom" ? "" : "# ",                                      // where another one rests, its numbers say
+      mountOf(o),
       o.joints > 3 ? fmt::format("torque: {:.2g}, ", 0.1 * o.force) : "");  // N m: that force at a handle of 0.1 m
 }
 
@@ -312,15 +322,20 @@ int makeNew(const Command& command, NewDeviceArguments options) {
   if (!problems.empty())
     return fail(kFailed,
                 name + " is written, but cannot be used yet\n  fix: what is said above, then hapticd check " + name);
+  const std::string twin = options.kind == "delta"
+                               ? ""  // the simulated arm has no such mechanism
+                               : "  hapticd device twin " + name +
+                                     "                 # the same arm simulated, to feel a scene with before it is "
+                                     "there\n";
   std::printf(
       "%s\n\nthen, step by step (driver/docs/devices.md, \"A new arm, step by step\"):\n"
       "  hapticd check %s                       # after each change\n"
       "  hapticd device decode %s CAPTURE       # captured bytes as joint positions\n"
       "  hapticd device record %s               # what the arm sends, motors off\n"
-      "  hapticd device twin %s                 # the same arm simulated, to feel a scene with before it is there\n"
+      "%s"
       "  hapticd device calibrate %s\n"
       "  hapticd run SCENE.yaml --device %s --view       # the arm in a page\n",
-      name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str());
+      name.c_str(), name.c_str(), name.c_str(), name.c_str(), twin.c_str(), name.c_str(), name.c_str());
   if (isPlanar(options))
     std::printf(
         "\nnote: every axis of arm.dh is parallel, so the tip stays in a plane and feels no force across it\n"

@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "codec/bits.hpp"
 #include "codec/checksum_start.hpp"
 
 namespace hapticd::capture {
@@ -36,15 +37,35 @@ struct Fit {
   size_t count = 0;
 };
 
-std::vector<codec::NamedCrc> methodsFor(const Field& field) {
-  std::vector<codec::NamedCrc> all(codec::namedCrcs().begin(), codec::namedCrcs().end());
-  const auto add = [&all](const char* name, Checksum method, unsigned bits) {
+/// A method as the file would name it.
+struct Method {
+  std::string words;
+  codec::Check check;
+};
+
+std::string onesText(unsigned bits) {
+  return "0x" + std::string(bits / 4, 'f');
+}
+
+std::vector<Method> methodsFor(const Field& field) {
+  std::vector<Method> all;
+  for (const codec::NamedCrc& named : codec::namedCrcs()) all.push_back({named.name, named.check});
+  const auto add = [&all](const std::string& name, Checksum method, unsigned bits) {
     codec::Check plain;
     plain.method = method, plain.bits = static_cast<uint8_t>(bits);
-    all.push_back({name, plain, 0});
+    all.push_back({name, plain});
   };
   add("sum", Checksum::kSum, field.bits), add("xor", Checksum::kXor, field.bits);
   if (field.bits > 8) add("sum8", Checksum::kSum, 8), add("xor8", Checksum::kXor, 8);
+  for (size_t i = codec::namedCrcs().size(), plain = all.size(); i < plain; ++i) {
+    const Method method = all[i];
+    if (method.check.method == Checksum::kSum)
+      all.push_back(method), all.back().check.negated = true, all.back().words += ", negated: true";
+    if (method.check.bits % 4 != 0) continue;
+    all.push_back(method);
+    all.back().check.final_xor = codec::onesOf(method.check.bits);
+    all.back().words += ", final_xor: " + onesText(method.check.bits);
+  }
   return all;
 }
 
@@ -58,7 +79,7 @@ struct Range {
 /// (-1: there is none).
 void tryMethods(const Range& range, const Reports& reports, int id, Fit& best) {
   Field field = range.field;
-  for (const codec::NamedCrc& one : methodsFor(field))
+  for (const Method& one : methodsFor(field))
     for (int way = 0; way < (id < 0 ? 2 : 4); ++way) {
       const bool big = way % 2 == 1, over_id = way >= 2;
       if (one.check.bits > field.bits || (big && field.bits <= 8)) continue;
@@ -66,7 +87,7 @@ void tryMethods(const Range& range, const Reports& reports, int id, Fit& best) {
       field.check.big_endian = field.big_endian = big;
       const size_t count = fitting(field, reports);
       if (count <= best.count) continue;
-      best.words = "method: " + std::string(one.name) + ", endian: " + (big ? "big" : "little") + range.words;
+      best.words = "method: " + one.words + ", endian: " + (big ? "big" : "little") + range.words;
       if (id >= 0) best.words += over_id ? ", over_id: true" : ", over_id: false";
       best.count = count;
     }

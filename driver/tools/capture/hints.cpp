@@ -2,6 +2,7 @@
 #include "capture/hints.hpp"
 
 #include "capture/checksum_hint.hpp"
+#include "capture/framing_hint.hpp"
 #include "capture/layout_hint.hpp"
 #include "capture/stream_hint.hpp"
 
@@ -9,6 +10,7 @@ namespace hapticd::capture {
 
 std::string hintsOf(const codec::Wire& wire, const Capture& capture, const Decoded& decoded) {
   std::string layout = layoutHint(wire, capture, decoded);
+  if (layout.empty()) layout = framingHint(wire, capture, decoded);
   if (layout.empty()) layout = streamHint(wire, capture, decoded);
   return layout.empty() ? checksumHint(wire, decoded) : layout;  // whatever else is wrong follows from the layout
 }
