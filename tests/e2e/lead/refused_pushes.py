@@ -47,6 +47,12 @@ def python(client):
         check(f"Python raises for {force}", said in told, told)
 
 
+def counted(client):
+    rows = client.streams["ticks"]
+    for name, action in (("read(-1)", lambda: rows.read(-1, 3)), ("read(0, -1)", lambda: rows.read(0, -1)), ("last(-5)", lambda: client.rows(last=-5))):
+        check(f"{name} is no number of rows", "expected how many" in raises(action) or "counted from 0" in raises(action))
+
+
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     scene = os.path.join(scratch, "scene.yaml")
     with open(scene, "w") as file:
@@ -60,6 +66,7 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
         warnings.simplefilter("ignore")
         with hapticd.connect("refuses", folder=scratch) as client:
             python(client)
+            counted(client)
     run.send_signal(signal.SIGTERM)
     check("the run ends in order", run.wait(timeout=30) == 0)
 finish()
