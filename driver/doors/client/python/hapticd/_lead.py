@@ -18,6 +18,7 @@ _COUNT = struct.Struct("<Q")
 
 _UNIT = 1e-3  # of a quaternion's length, as the daemon has it
 _FAR = 10.0  # m, as the daemon has it
+_LARGEST = 1e6  # N and N m, as the daemon has it
 
 
 def _finite(what: str, *numbers: float) -> None:
@@ -132,6 +133,9 @@ class ForceLead(Lead):
             raise ValueError(f"expected a tick from 0 on, force and torque of 3 numbers, got {tick}, {list(force)} and "
                              f"{list(torque)}") from None
         _finite("the force or torque", *force, *torque)
+        if max(map(abs, (*force, *torque))) > _LARGEST:
+            raise ValueError(f"{list(force)} N and {list(torque)} N m: a number is beyond {_LARGEST:g}; the daemon would refuse "
+                             f"it: is it in N?")
         self._put(record)
 
     def __enter__(self) -> "ForceLead":

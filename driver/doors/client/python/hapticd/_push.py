@@ -104,7 +104,9 @@ class ForceThread(Ending):
             if force is None:
                 self.unanswered += 1
                 continue
-            self._lead.put(state.tick, force[:3], force[3:6] if len(force) >= 6 else (0.0, 0.0, 0.0), woke)
+            if len(force) not in (3, 6):
+                raise ValueError(f"the callback gave back {len(force)} numbers, expected 3 (force in N) or 6 (and torque in N m)")
+            self._lead.put(state.tick, force[:3], force[3:] if len(force) == 6 else (0.0, 0.0, 0.0), woke)
             self.answers += 1
             self.late += time.monotonic_ns() - woke > _TOO_OLD
 

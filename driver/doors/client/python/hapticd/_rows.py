@@ -79,6 +79,8 @@ class Stream:
     def read(self, first: int, most: Optional[int] = None) -> tuple[int, Any]:
         """Rows from number `first` on, at most `most`. Those that are not kept any more are left out: gives back the
         number of the first row that it has, and the rows. Never waits."""
+        if first < 0 or (most is not None and most < 0):
+            raise ValueError(f"rows are counted from 0: read({first}, {most}); the newest n are last(n)")
         while True:
             written = self.written
             first = min(self._kept(first, written), written)
@@ -89,6 +91,8 @@ class Stream:
 
     def last(self, count: int) -> Any:
         """The newest rows, oldest first."""
+        if count < 0:
+            raise ValueError(f"last={count}: expected how many of the newest rows, 0 or more")
         return self.read(max(self.written - count, 0))[1]
 
     def _copy(self, first: int, count: int) -> bytearray:
