@@ -16,7 +16,7 @@ using codec::Checksum;
 using codec::Field;
 
 /// Fewer reports than that agree with some method by chance.
-constexpr size_t kEnough = 3;
+constexpr size_t kEnoughSums = 3;
 /// Of the reports whose checksum is wrong: some of them are really damaged.
 constexpr double kMost = 0.8;
 
@@ -26,7 +26,7 @@ size_t fitting(const Field& field, const Reports& reports) {
   size_t count = 0, seen = 0;
   for (const BadReport* bad : reports) {
     count += codec::codeAt(field, bad->bytes) == codec::checksumAt(field, bad->bytes) ? 1 : 0;
-    if (++seen == 2 * kEnough && count == 0) return 0;
+    if (++seen == 2 * kEnoughSums && count == 0) return 0;
   }
   return count;
 }
@@ -131,7 +131,7 @@ const Field* onlyChecksum(const Decoded& decoded, Reports& sums) {
     sums.push_back(&bad);
     different.insert(hexText(bad.bytes.data(), bad.bytes.size()));
   }
-  return different.size() < kEnough ? nullptr : field;
+  return different.size() < kEnoughSums ? nullptr : field;
 }
 
 }  // namespace
