@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <optional>
 #include <vector>
+
+#include "capture/layout_hint.hpp"
 
 namespace hapticd::capture {
 namespace {
@@ -14,21 +15,14 @@ using codec::Escape;
 using codec::Field;
 using codec::Role;
 
-constexpr double kNearlyAll = 0.8;    ///< of the reports
-constexpr size_t kEnough = 5;         ///< reports: fewer are good by chance
-constexpr size_t kLooked = 8 * 1024;  ///< bytes: each of a thousand framings is tried on them
-
-std::string hexByte(int byte) {
-  char text[8];
-  std::snprintf(text, sizeof text, "0x%02x", static_cast<unsigned>(byte));
-  return text;
-}
+constexpr size_t kFewestGood = 5;         ///< reports: fewer are good by chance
+constexpr size_t kTriedBytes = 8 * 1024;  ///< bytes: each of a thousand framings is tried on them
 
 /// The beginning of the capture, which stands for all of it.
 Capture beginOf(const Capture& capture) {
   Capture begin;
   begin.text = capture.text;
-  size_t left = kLooked;
+  size_t left = kTriedBytes;
   for (const Transfer& transfer : capture.transfers) {
     if (left == 0) break;
     begin.transfers.push_back(transfer);
@@ -65,7 +59,7 @@ bool judges(const codec::Wire& wire) {
 double goodWith(const codec::Wire& wire, const Capture& begin) {
   const Decoded decoded = decodeCapture(wire, begin);
   const size_t good = decoded.good();
-  if (good < kEnough) return 0;
+  if (good < kFewestGood) return 0;
   const double lost = static_cast<double>(decoded.lost) / static_cast<double>(wire.input.bytes());
   return static_cast<double>(good) / (static_cast<double>(decoded.reports.size()) + lost);
 }
