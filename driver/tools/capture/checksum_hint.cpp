@@ -16,17 +16,17 @@ using codec::Checksum;
 using codec::Field;
 
 /// Fewer reports than that agree with some method by chance.
-constexpr size_t kEnoughSums = 3;
+constexpr size_t kFewestDifferent = 3;
 /// Of the reports whose checksum is wrong: some of them are really damaged.
 constexpr double kMost = 0.8;
 
-using Reports = std::vector<const BadReport*>;
+using BadReports = std::vector<const BadReport*>;
 
-size_t fitting(const Field& field, const Reports& reports) {
+size_t fitting(const Field& field, const BadReports& reports) {
   size_t count = 0, seen = 0;
   for (const BadReport* bad : reports) {
     count += codec::codeAt(field, bad->bytes) == codec::checksumAt(field, bad->bytes) ? 1 : 0;
-    if (++seen == 2 * kEnoughSums && count == 0) return 0;
+    if (++seen == 2 * kFewestDifferent && count == 0) return 0;
   }
   return count;
 }
@@ -77,7 +77,7 @@ struct Range {
 
 /// The method and byte order that agree with most of them over one range of bytes, also with the report id in front
 /// (-1: there is none).
-void tryMethods(const Range& range, const Reports& reports, int id, Fit& best) {
+void tryMethods(const Range& range, const BadReports& reports, int id, Fit& best) {
   Field field = range.field;
   for (const Method& one : methodsFor(field))
     for (int way = 0; way < (id < 0 ? 2 : 4); ++way) {
@@ -107,7 +107,7 @@ std::optional<Range> otherRange(const codec::Wire& wire, const Field& field, int
 }
 
 /// Other places and ranges, first with the method of the file, whose numbers may be its own.
-void tryRanges(const codec::Wire& wire, const Field& field, const Reports& reports, Fit& best) {
+void tryRanges(const codec::Wire& wire, const Field& field, const BadReports& reports, Fit& best) {
   for (const int at : {0, 1, -1})
     for (const int from : {int{field.from}, 0, field.from + 1, field.from - 1})
       for (const int to : {field.at + at, int{field.to}, field.to + 1, field.to - 1}) {
@@ -121,7 +121,7 @@ void tryRanges(const codec::Wire& wire, const Field& field, const Reports& repor
 }
 
 /// The bad reports, where one checksum is what is wrong with all of them.
-const Field* onlyChecksum(const Decoded& decoded, Reports& sums) {
+const Field* onlyChecksum(const Decoded& decoded, BadReports& sums) {
   const Field* field = nullptr;
   std::set<std::string> different;
   for (const BadReport& bad : decoded.bad) {
@@ -131,7 +131,7 @@ const Field* onlyChecksum(const Decoded& decoded, Reports& sums) {
     sums.push_back(&bad);
     different.insert(hexText(bad.bytes.data(), bad.bytes.size()));
   }
-  return different.size() < kEnoughSums ? nullptr : field;
+  return different.size() < kFewestDifferent ? nullptr : field;
 }
 
 }  // namespace
@@ -139,7 +139,7 @@ const Field* onlyChecksum(const Decoded& decoded, Reports& sums) {
 std::string checksumHint(const codec::Wire& wire, const Decoded& decoded) {
   // A wrong method is right now and then, by chance: one report in 256 where both bytes are equal.
   if (static_cast<double>(decoded.good()) > (1 - kMost) * static_cast<double>(decoded.reports.size())) return "";
-  Reports sums;
+  BadReports sums;
   const Field* field = onlyChecksum(decoded, sums);
   if (field == nullptr) return "";
   const double needed = kMost * static_cast<double>(sums.size());

@@ -12,7 +12,7 @@ using codec::Field;
 using codec::Role;
 using codec::Verdict;
 
-constexpr size_t kEnoughGood = 20;  ///< reports
+constexpr size_t kFewestReports = 20;  ///< reports
 
 const Field* fieldOf(const codec::Wire& wire, Role role) {
   const auto found = std::find_if(wire.input.fields.begin(), wire.input.fields.end(),
@@ -27,15 +27,15 @@ std::vector<const DecodedReport*> goodOnes(const Decoded& decoded) {
   return good;
 }
 
-using GoodReports = std::vector<const DecodedReport*>;
+using DecodedReports = std::vector<const DecodedReport*>;
 
 template <class Says>
-size_t howMany(const GoodReports& reports, const Says& says) {
+size_t howMany(const DecodedReports& reports, const Says& says) {
   return static_cast<size_t>(
       std::count_if(reports.begin(), reports.end(), [&](const DecodedReport* one) { return says(one->state); }));
 }
 
-std::string flags(const codec::Wire& wire, const GoodReports& reports) {
+std::string flags(const codec::Wire& wire, const DecodedReports& reports) {
   const std::string all = "all " + std::to_string(reports.size()) + " reports";
   std::string text;
   const Field *fault = fieldOf(wire, Role::kFault), *calibrated = fieldOf(wire, Role::kCalibrated);
@@ -53,7 +53,7 @@ std::string flags(const codec::Wire& wire, const GoodReports& reports) {
 }
 
 /// A device that starts anew in each report is a counter or a clock.
-std::string starts(const codec::Wire& wire, const GoodReports& reports) {
+std::string starts(const codec::Wire& wire, const DecodedReports& reports) {
   if (fieldOf(wire, Role::kStarts) == nullptr) return "";
   size_t changes = 0;
   for (size_t i = 1; i < reports.size(); ++i)
@@ -65,7 +65,7 @@ std::string starts(const codec::Wire& wire, const GoodReports& reports) {
 }
 
 /// The other byte order of a counter that does not count.
-std::string counter(const codec::Wire& wire, const Decoded& decoded, const GoodReports& reports) {
+std::string counter(const codec::Wire& wire, const Decoded& decoded, const DecodedReports& reports) {
   const Field* field = fieldOf(wire, Role::kSequence);
   if (field == nullptr || field->bits % 8 != 0 || field->bits < 16 || field->bits > 32 || field->bit_skip != 0 ||
       codec::isText(field->type) || 2 * (decoded.gaps + decoded.repeats) < reports.size())
@@ -83,12 +83,12 @@ std::string counter(const codec::Wire& wire, const Decoded& decoded, const GoodR
 }
 
 /// Of the times of the capture: the median, as a pause in a recording says nothing of the arm.
-std::string rate(const codec::Wire& wire, const GoodReports& reports, double least_rate) {
+std::string rate(const codec::Wire& wire, const DecodedReports& reports, double least_rate) {
   std::vector<double> between;
   for (size_t i = 1; i < reports.size(); ++i)
     if (reports[i - 1]->time >= 0 && reports[i]->time >= reports[i - 1]->time)
       between.push_back(reports[i]->time - reports[i - 1]->time);
-  if (between.size() < kEnoughGood || wire.exchange == codec::Exchange::kPoll) return "";
+  if (between.size() < kFewestReports || wire.exchange == codec::Exchange::kPoll) return "";
   std::nth_element(between.begin(), between.begin() + static_cast<long>(between.size() / 2), between.end());
   const double period = between[between.size() / 2];
   if (!(period > 0)) return "";  // several of them came together
@@ -113,8 +113,8 @@ std::string rate(const codec::Wire& wire, const GoodReports& reports, double lea
 }  // namespace
 
 std::string courseHints(const codec::Wire& wire, const Decoded& decoded, double least_rate) {
-  const GoodReports reports = goodOnes(decoded);
-  if (reports.size() < kEnoughGood) return "";
+  const DecodedReports reports = goodOnes(decoded);
+  if (reports.size() < kFewestReports) return "";
   return flags(wire, reports) + starts(wire, reports) + counter(wire, decoded, reports) +
          rate(wire, reports, least_rate);
 }

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <optional>
 #include <vector>
+
+#include "capture/layout_hint.hpp"
 
 namespace hapticd::capture {
 namespace {
@@ -14,21 +15,14 @@ using codec::Escape;
 using codec::Field;
 using codec::Role;
 
-constexpr double kNearlyAllBytes = 0.8;    ///< of the reports
-constexpr size_t kEnoughFramed = 5;        ///< reports: fewer are good by chance
-constexpr size_t kLookedBytes = 8 * 1024;  ///< bytes: each of a thousand framings is tried on them
-
-std::string hexMark(int byte) {
-  char text[8];
-  std::snprintf(text, sizeof text, "0x%02x", static_cast<unsigned>(byte));
-  return text;
-}
+constexpr size_t kFewestGood = 5;         ///< reports: fewer are good by chance
+constexpr size_t kTriedBytes = 8 * 1024;  ///< bytes: each of a thousand framings is tried on them
 
 /// The beginning of the capture, which stands for all of it.
 Capture beginOf(const Capture& capture) {
   Capture begin;
   begin.text = capture.text;
-  size_t left = kLookedBytes;
+  size_t left = kTriedBytes;
   for (const Transfer& transfer : capture.transfers) {
     if (left == 0) break;
     begin.transfers.push_back(transfer);
@@ -62,10 +56,10 @@ bool judges(const codec::Wire& wire) {
 }
 
 /// Part of the bytes that are in good reports, as far as that can be said.
-double goodFramed(const codec::Wire& wire, const Capture& begin) {
+double goodWith(const codec::Wire& wire, const Capture& begin) {
   const Decoded decoded = decodeCapture(wire, begin);
   const size_t good = decoded.good();
-  if (good < kEnoughFramed) return 0;
+  if (good < kFewestGood) return 0;
   const double lost = static_cast<double>(decoded.lost) / static_cast<double>(wire.input.bytes());
   return static_cast<double>(good) / (static_cast<double>(decoded.reports.size()) + lost);
 }
@@ -95,7 +89,7 @@ struct Best {
   double part;  ///< of the bytes, that must be in good reports
   std::string words;
   void look(const codec::Wire& wire, const std::string& how) {
-    const double good = goodFramed(wire, begin);
+    const double good = goodWith(wire, begin);
     if (good > part) part = good, words = how;
   }
 };
@@ -106,7 +100,7 @@ void tryEscapes(const codec::Wire& wire, Best& best) {
   const auto look = [&](int mark, int flip) {
     if (!isMark(wire, mark))
       best.look(withEscape(wire, static_cast<uint8_t>(mark), static_cast<uint8_t>(flip)),
-                "with framing.escape: {mark: " + hexMark(mark) + ", xor: " + hexMark(flip) + "}");
+                "with framing.escape: {mark: " + hexByte(mark) + ", xor: " + hexByte(flip) + "}");
   };
   for (int flip = 1; escape.used && flip < 256; ++flip) look(escape.mark, flip);
   for (const int flip : {0x20, 0xff, 0x80, 0x40})
@@ -126,9 +120,9 @@ void tryMarks(const codec::Wire& wire, Best& best) {
     if (framing.escape.used && mark == framing.escape.mark) continue;
     if (framing.start >= 0)
       best.look(withMarks(wire, mark, both ? mark : framing.end),
-                "with framing.start" + std::string(both ? " and end: " : ": ") + hexMark(mark));
+                "with framing.start" + std::string(both ? " and end: " : ": ") + hexByte(mark));
     if (framing.end >= 0 && !both)
-      best.look(withMarks(wire, framing.start, mark), "with framing.end: " + hexMark(mark));
+      best.look(withMarks(wire, framing.start, mark), "with framing.end: " + hexByte(mark));
   }
 }
 
@@ -144,7 +138,7 @@ std::string missingMark(const codec::Wire& wire, const Capture& capture) {
   const auto counts = countsOf(capture);
   for (const auto& [key, mark] : {std::pair{"start", wire.framing.start}, std::pair{"end", wire.framing.end}})
     if (mark >= 0 && counts[static_cast<size_t>(mark)] == 0)
-      return "no byte of the capture is framing." + std::string(key) + " " + hexMark(mark) +
+      return "no byte of the capture is framing." + std::string(key) + " " + hexByte(mark) +
              ": see what its reports begin and end with\n";
   return "";
 }
@@ -157,12 +151,12 @@ std::string framingHint(const codec::Wire& wire, const Capture& capture, const D
   const Capture begin = beginOf(capture);
   if (judges(wire)) {
     constexpr double kBetter = 0.005;  // bytes that must be escaped are rare: without them all is good
-    const double now = goodFramed(wire, begin);
-    Best best{begin, std::max(kNearlyAllBytes, now + kBetter), ""};
+    const double now = goodWith(wire, begin);
+    Best best{begin, std::max(kNearlyAll, now + kBetter), ""};
     tryEscapes(wire, best);
-    if (best.words.empty() && now < kNearlyAllBytes) tryMarks(wire, best);
+    if (best.words.empty() && now < kNearlyAll) tryMarks(wire, best);
     if (!best.words.empty())
-      return (now < kNearlyAllBytes ? "nearly all reports are good " : "more reports are good ") + best.words + "\n";
+      return (now < kNearlyAll ? "nearly all reports are good " : "more reports are good ") + best.words + "\n";
   }
   if (const std::string missing = missingMark(wire, capture); !missing.empty()) return missing;
   return 2 * decoded.lost < bytes

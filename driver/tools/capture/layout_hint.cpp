@@ -11,14 +11,7 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-constexpr size_t kRepeated = 3;     ///< reports: by chance fewer look alike
-constexpr double kNearlyAll = 0.8;  ///< of them
-
-std::string hexByte(int byte) {
-  char text[8];
-  std::snprintf(text, sizeof text, "0x%02x", static_cast<unsigned>(byte));
-  return text;
-}
+constexpr size_t kRepeated = 3;  ///< reports: by chance fewer look alike
 
 std::string idLacks(int id) {
   return "each begins with " + hexByte(id) + " and has one byte too many: if this is the report id, give " +
@@ -170,6 +163,12 @@ std::string otherIdHint(const codec::Wire& wire, const Decoded& decoded) {
 }
 
 }  // namespace
+
+std::string hexByte(int byte) {
+  char text[8];
+  std::snprintf(text, sizeof text, "0x%02x", static_cast<unsigned>(byte));
+  return text;
+}
 
 std::string layoutHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded) {
   if (wire.framing.used) return "";

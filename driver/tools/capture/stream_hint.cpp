@@ -11,7 +11,7 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-constexpr size_t kEnough = 20;  ///< reports: by chance fewer have one byte in common
+constexpr size_t kFewestAlike = 20;  ///< reports: by chance fewer have one byte in common
 
 /// A byte that stands once in every report, and hardly anywhere else.
 struct Header {
@@ -31,7 +31,7 @@ std::optional<Header> headerAt(const Bytes& bytes, size_t size, size_t at) {
 }
 
 std::optional<Header> headerOf(const Bytes& bytes, size_t size) {
-  if (bytes.size() / size < kEnough) return std::nullopt;
+  if (bytes.size() / size < kFewestAlike) return std::nullopt;
   for (size_t at = 0; at < size; ++at)
     if (const auto header = headerAt(bytes, size, at)) return header;
   return std::nullopt;

@@ -256,7 +256,7 @@ class EdgeCutter {
       const Vector3d q = turned.frame * C.C - middle;
       inner = std::min(inner, std::hypot(q[0], q[2]));
       outer = std::max(outer, std::hypot(q[0], q[2]));
-      sag = std::max(sag, kBetween / 8 * step * step * C.C2.norm());
+      sag = std::max(sag, kBetweenSamples / 8 * step * step * C.C2.norm());
     }
     turned.focus = {middle[0], middle[2]};
     turned.inner = std::max(0.0, inner - sag);
