@@ -148,6 +148,9 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   if (const auto root = document::parseFile(file, unread)) adviseZeros(*root, file, more);
   if (!options.files_only)
     for (const document::Problem& one : adviseHands(full)) more.push_back(one);
+  if (!options.device.empty())  // what its own check says
+    for (const scene::Device& device : full.devices)
+      for (const document::Problem& one : adviseDevice(device.file, catalog())) more.push_back(one);
   verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());
   return verdict;
 }

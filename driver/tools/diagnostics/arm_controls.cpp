@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "codec/wire_overlap.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/enable_button.hpp"
 #include "diagnostics/slow_arm.hpp"
@@ -68,10 +69,12 @@ void addReports(const std::optional<codec::Wire>& wire, std::vector<Control>& to
     return std::any_of(wire->input.fields.begin(), wire->input.fields.end(),
                        [role](const codec::Field& field) { return field.role == role; });
   };
-  const bool sum = has(codec::Role::kChecksum), counter = has(codec::Role::kSequence);
-  to.push_back(
-      {"H1", "a misread report is noticed", onIf(sum),
-       sum ? "by its checksum" : "no checksum in wire.input: only by what the bus itself checks, and by the speed"});
+  const bool sum = has(codec::Role::kChecksum), whole = codec::outsideChecksum(wire->input).empty(),
+             counter = has(codec::Role::kSequence);
+  to.push_back({"H1", "a misread report is noticed", onIf(sum && whole),
+                sum && !whole ? "its checksum leaves out positions: see from and to of the checksum"
+                : sum         ? "by its checksum"
+                              : "no checksum in wire.input: only by what the bus itself checks, and by the speed"});
   const bool clock = wire->clockTells();
   to.push_back({"H3", "a repeated report is noticed", onIf(counter || clock),
                 counter ? "by its counter"

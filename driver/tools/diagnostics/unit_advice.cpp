@@ -60,6 +60,16 @@ void twistInDegrees(const Node* rows, const std::string& file, document::Problem
   }
 }
 
+/// Lengths are in metres, and their decimals may slip: what limits and masses are told follows from it.
+void linkTooLong(const Node* lengths, const std::string& file, document::Problems& warnings) {
+  constexpr double kLong = 2;  // m: longer than the arm of a person, and of what a person leads
+  const double most = largest(numbersIn(lengths));
+  if (most <= kLong) return;
+  document::report(warnings, file, lengths->line, lengths->column, "parameters.arm.lengths",
+                   fmt::format("{:g} m is longer than an arm that a hand leads; expected metres: {:g} mm are {:g} m",
+                               most, most, most / 1000));
+}
+
 void mountFarAway(const Node* position, const std::string& file, document::Problems& warnings) {
   constexpr double kFar = 5;  // m: farther than anybody reaches
   const double most = largest(numbersIn(position));
@@ -101,6 +111,7 @@ void adviseUnits(const Node& root, const std::string& file, document::Problems& 
   beyondATurn(find(root, {"parameters", "arm", "limits"}), "parameters.arm.limits", file, warnings);
   beyondATurn(find(root, {"parameters", "calibration", "pose"}), "parameters.calibration.pose", file, warnings);
   twistInDegrees(find(root, {"parameters", "arm", "dh"}), file, warnings);
+  linkTooLong(find(root, {"parameters", "arm", "lengths"}), file, warnings);
   mountFarAway(find(root, {"mount", "position"}), file, warnings);
   quaternionTurnedRound(find(root, {"mount", "orientation"}), file, warnings);
 }
