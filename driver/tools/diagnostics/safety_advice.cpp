@@ -90,7 +90,6 @@ void slowWatchdog(const File& file, const codec::Wire& wire) {
 
 /// Only the arm is judged: the scene has the rate of the servo.
 void slowSamples(const File& file, const codec::Wire& wire) {
-  constexpr double kFastServo = 1e4;  // Hz
   const Node* rate = find(file.root, {"parameters", "wire", "rate"});
   if (const std::string slow = slownessOf(file.device, kFastServo); rate != nullptr && !slow.empty())
     file.warn(*rate, "parameters.wire.rate", fmt::format("{:g} Hz: ", wire.rate) + slow);
