@@ -21,8 +21,6 @@ namespace {
 
 using document::numberText;
 
-constexpr double kFastServo = 1e4;  ///< [Hz] here the arm alone is judged
-
 ControlState onIf(bool has) {
   return has ? ControlState::kOn : ControlState::kOff;
 }

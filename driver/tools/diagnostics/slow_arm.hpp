@@ -9,6 +9,8 @@
 
 namespace hapticd::diagnostics {
 
+inline constexpr double kFastServo = 1e4;  ///< [Hz] where an arm is judged without a scene
+
 /// [main] [Hz] of the samples of an arm that is not opened, by its file; 0: only the arm itself says it.
 double namedRate(const scene::Device& device);
 
