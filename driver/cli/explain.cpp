@@ -11,6 +11,7 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
+#include "cli/guarded_command.hpp"
 #include "diagnostics/explain_cost.hpp"
 #include "diagnostics/slow_arm.hpp"
 #include "document/reader.hpp"
@@ -161,6 +162,7 @@ int explainCost(const ExplainArguments& options, const scene::Scene& scene) {
 int explain(const ExplainArguments& options) {
   auto scene = loadSceneOrReport(options.scene, options.device);
   if (!scene) return kBadInput;
+  const GuardedCommand guarded;
   if (options.cost || options.json) return explainCost(options, *scene);
   const SetupErrors once;
   Details details;

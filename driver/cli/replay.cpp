@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/guarded_command.hpp"
 #include "document/node.hpp"
 #include "document/suggestion.hpp"
 #include "record/recording.hpp"
@@ -143,6 +144,7 @@ int replay(const ReplayArguments& options) {
   warnOfChanges(*run);
   if (!(*recording)->closed())
     std::fprintf(stderr, "note: the recording ends early because its writer was killed; replaying what was written\n");
+  const GuardedCommand guarded;
   const SetupErrors once;
   auto again = servo::Replay::prepare(**recording, *run, logToTerminal);
   if (!again) return fail(kBadInput, options.file + ": " + again.error());

@@ -15,6 +15,7 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
+#include "cli/guarded_command.hpp"
 #include "cli/view_process.hpp"
 #include "diagnostics/enable_button.hpp"
 #include "document/node.hpp"
@@ -289,6 +290,7 @@ int runScene(const RunArguments& options, scene::Scene& scene) {
     if (auto shown = showPage(options, files.get(), scene); !shown) return fail(kFailed, shown.error());
   const std::vector<std::string> left_out = leaveOutQuarantined(scene, watch::stateFolder());
   for (const std::string& text : left_out) log::write(HSP_LOG_WARNING, "", text);
+  const GuardedCommand guarded(how.state_dir);  // in the set-up, and whenever the run itself does not watch
   const SetupErrors once;
   auto world = servo::Runner::buildWorld(scene, how, logOfRun);
   if (!world) return fail(kBadInput, world.error());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/guarded_command.hpp"
 #include "cli/probe_path.hpp"
 #include "cli/trace_writer.hpp"
 #include "servo/loop/lockstep.hpp"
@@ -74,6 +75,7 @@ int trace(const TraceArguments& options) {
   if (!rows) return fail(kBadInput, rows.error());
   auto models = chosenModels(*scene, options.models);
   if (!models) return fail(kBadInput, models.error());
+  const GuardedCommand guarded;
   const SetupErrors once;
   auto world = servo::World::build(*scene, {.rate = scene->servo.rate}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());

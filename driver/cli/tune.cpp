@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
+#include "cli/guarded_command.hpp"
 #include "cli/probe_path.hpp"
 #include "record/recording.hpp"
 #include "tune/page.hpp"
@@ -30,8 +32,10 @@ struct TuneArguments {
 
 std::atomic<bool> stopped{false};
 
-void stopTuning(int) {
-  stopped = true;
+/// Ctrl-C ends the search and keeps what it found. A plugin that does not come back lets nothing end: a second one, and
+/// whatever is sent by no hand, ends the command.
+void stopTuning(int signal) {
+  if (stopped.exchange(true) || signal != SIGINT) watch::endAnyway(calledHere());
 }
 
 /// The motion of a path file, brought to the scene's rate.
@@ -161,6 +165,7 @@ int tuneScene(const TuneArguments& options) {
   auto scene = loadSceneOrReport(options.scene);
   if (!scene) return kBadInput;
   if (scene->models.empty()) return fail(kBadInput, options.scene + ": the scene has no model, expected one to tune");
+  const GuardedCommand guarded;
   auto world = servo::World::build(*scene, {.rate = scene->servo.rate}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   const bool uses_velocity = (*world)->needsVelocity();
@@ -181,6 +186,7 @@ int tuneScene(const TuneArguments& options) {
   findings.limit_seconds = options.limit_seconds;
 
   os::onStopSignal(stopTuning);
+  const GuardedCommand in_front;  // of that handler too
   auto tuning =
       tune::search(*scene, *motion, findings.knobs, {findings.goal, options.limit_seconds, showProgress, quiet});
   if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
@@ -243,7 +249,8 @@ void addTune(const Command& app, int& exit_code) {
   addOutputs(command, options);
   command.footer(
       "Errors are measured against a converged reference; the largest over the motion counts. Ctrl-C ends the "
-      "measurement\nand keeps the results so far. The exit code is 1 if no setting reaches the goal.\n\nExample:\n  "
+      "measurement\nand keeps the results so far; a second one ends the command at once. The exit code is 1 if no "
+      "setting reaches the goal.\n\nExample:\n  "
       "hapticd tune config/scenes/teapot.yaml --tolerance-um 1 --page tune.html --write");
   command.callback([options, &exit_code] { exit_code = tuneScene(*options); });
 }

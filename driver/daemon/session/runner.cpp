@@ -15,6 +15,7 @@
 #include "session/watched_servo.hpp"
 #include "sim/proximity_thread.hpp"
 #include "watch/crash.hpp"
+#include "watch/end_watch.hpp"
 #include "watch/ended.hpp"
 #include "watch/notify.hpp"
 #include "watch/watchdog.hpp"
@@ -29,25 +30,6 @@ constexpr Nanoseconds kReadyPoll = 1'000'000;
 constexpr uint64_t kReadyTicks = 2;          ///< the servo lives: the service manager may say so
 constexpr uint64_t kDryCycles = 2000;        ///< with motors off, to judge the machine before a hand relies on it
 constexpr uint64_t kLongestRunUs = 100'000;  ///< of CPU time without sleep; a tick takes a hundredth of it
-
-/// Handles crashes of plugins while one lives. The sanitizers have handlers of their own.
-class CrashGuard {
- public:
-  CrashGuard(watch::Watched& watched, const std::filesystem::path& dir) {
-#ifndef HAPTICD_SANITIZED
-    watch::guardAgainstCrash(watched, dir);
-#else
-    (void)watched, (void)dir;
-#endif
-  }
-  ~CrashGuard() {
-#ifndef HAPTICD_SANITIZED
-    watch::forgetCrash();
-#endif
-  }
-  CrashGuard(const CrashGuard&) = delete;
-  CrashGuard& operator=(const CrashGuard&) = delete;
-};
 
 Nanoseconds spinFor(const scene::Servo& servo) {
   // Spinning buys regularity on bare metal; in a virtual machine the pauses come from outside.
@@ -87,12 +69,19 @@ std::unique_ptr<watch::Watchdog> watchdogOf(watch::Watched& watched, bool may_la
   return watchdog;
 }
 
+Result<void> runInVirtualTime(Loop& loop, const watch::Watched& watched) {
+  watch::EndWatch end(watched, [] { watch::endAnyway(keepsTheEnd()); });
+  if (const auto code = end.start()) return Error{"cannot start the thread that watches the end: " + code.message()};
+  loop.run();
+  return {};
+}
+
 }  // namespace
 
 Runner::~Runner() {
   const Working working(Worker::kMain);
   watch::Ended ended;
-  const CrashGuard crash(ended, options_.state_dir);
+  const watch::CrashGuard crash(ended, options_.state_dir);
   recorder_.reset();
   loop_.reset();
   clock_.reset();
@@ -194,11 +183,11 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every, const 
     if (const auto code = recorder_->start()) return Error{"cannot start the recording thread: " + code.message()};
   const Working working(Worker::kMain);
   WatchedServo watched(*loop_, arms_, *telemetry_);
-  const CrashGuard crash(watched, options_.state_dir);
+  const watch::CrashGuard crash(watched, options_.state_dir);
   os::prepareSignalStack();  // this thread may search, which runs plugins
   if (options_.virtual_time) {
     const Nanoseconds begun = monotonicNow();
-    loop_->run();
+    done = runInVirtualTime(*loop_, watched);
     wall_time_ = monotonicNow() - begun;
     stopArms();
     ended();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// A run that has ended, as the crash handler sees it: no tick is to come, and the motors are off.
+/// No servo, as the crash handler sees it: a run that has ended, modules that are set up, or a command without an arm.
+/// No tick is to come, and the motors are off.
 ///
 /// Watched itself has no defaults, so that the compiler names what a running servo forgot to answer.
 #pragma once
@@ -14,6 +15,7 @@ class Ended final : public Watched {
   Nanoseconds nextTick() const noexcept override { return 0; }
   Nanoseconds cpuTime() const noexcept override { return 0; }
   bool simulated() const noexcept override { return true; }
+  bool drives() const noexcept override { return false; }
   void stop() noexcept override {}
   Nanoseconds stopAsked() const noexcept override { return 0; }
   void cut(double) noexcept override {}
