@@ -115,6 +115,20 @@ TEST(KickOnPurpose, IsBoundedByTheReport) {
   EXPECT_EQ(kicked.scenario.core().models()[0].guard.trouble(), Trouble::kJump);
 }
 
+/// A click that somebody wants must be told by how much it was too large, and what to report.
+TEST(KickOnPurpose, ThatIsNotReportedIsToldWithItsSizeItsTimeAndTheCure) {
+  Kicked kicked(kicking(kSteps, 8));
+  const ModelState& model = kicked.scenario.core().models()[0];
+  EXPECT_EQ(model.guard.trouble(), Trouble::kJump);
+  EXPECT_NEAR(model.pull.force, 8, 1e-9) << "out of nothing";
+  EXPECT_NEAR(model.pull.t, 0.1, 2e-3) << "after a hundred ticks of peace";
+  const std::string why = silenceReason(model);
+  EXPECT_NE(why.find(", the largest by 8 N at 0.1"), std::string::npos) << why;
+  EXPECT_NE(why.find("if on purpose: reportJumps(report, 8)"), std::string::npos) << why;
+  Kicked reported(kicking(kSteps, 8, 8));
+  EXPECT_EQ(reported.scenario.core().models()[0].guard.trouble(), Trouble::kNone) << "the cure holds";
+}
+
 /// 1 mN became 8.5 N.
 TEST(PoseThatStretches, IsRefusedAndNamed) {
   Kicked kicked(kicking(kStretches, 0), 0.3);
