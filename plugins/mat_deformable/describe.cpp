@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
+#include <string_view>
+#include <utility>
 
 #include "kernels/medial/passive.hpp"
 #include "mat_deformable.hpp"
@@ -98,6 +101,13 @@ std::string line(const Group& group, const std::string& spring) {
   return text;
 }
 
+/// The default of a parameter.
+double usual(std::string_view id) {
+  for (const auto& field : MatDeformable::fields())
+    if (id == field.param.id) return field.param.def;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 }  // namespace
 
 void MatDeformable::say(int level, const std::string& text) const {
@@ -110,6 +120,11 @@ void MatDeformable::describe(const MedialFile& file, double tick) const {
   say(description.warning ? HSP_LOG_WARNING : HSP_LOG_INFO, description.text);
   if (!(body_->greatestRadius() > 0)) say(HSP_LOG_WARNING, geometry_ + ": all radii are 0: nothing will be felt");
   describeMaterial(file, tick);
+  // What stands in the scene for a file that has none: nobody would feel that it is left aside.
+  for (const auto& [id, given] : {std::pair("stiffness", stiffness_), std::pair("mass", mass_)})
+    if (!geometry_.ends_with(".ma") && given != usual(id))
+      say(HSP_LOG_WARNING, std::string(id) + ": has no effect: " + geometry_ +
+                               " says what its points have; expected it with a medial mesh without materials (.ma)");
   const double size = body_->bounds().sizes().maxCoeff();
   if (!(size > kLarge)) return;
   char text[128];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Work that may crash or hang, done by a child process.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -12,6 +13,24 @@ namespace hapticd::host {
 /// [main] Runs `work` in a fork of this process, which must have one thread only, and returns its bytes. The error says
 /// how the child ended ("crashed: Segmentation fault", "took longer than 5 s") and is meant to follow "it ".
 Result<std::string> runInChild(const std::function<std::string()>& work, int limit_ms);
+
+/// How far a child came, known to its parent even where it crashes. Made before the child.
+class Trail {
+ public:
+  Trail();
+  ~Trail();
+  Trail(const Trail&) = delete;
+  Trail& operator=(const Trail&) = delete;
+
+  /// [any] The child is at piece `item` of its work. @param call in static storage
+  void mark(uint32_t item, const char* call) noexcept;
+  uint32_t item() const noexcept;
+  const char* call() const noexcept;  ///< "": nothing was marked, or there is no memory for it
+
+ private:
+  struct Mark;
+  Mark* mark_;  ///< in memory of both; nullptr: there is none
+};
 
 /// [any] Starts a program that ends with answerParent() and returns its bytes, with the same errors. Nothing of this
 /// process is copied, as a fork does it: that would cost each of its threads a page fault at the next write to a page.

@@ -25,6 +25,17 @@ std::optional<FileStamp> stampOf(const std::filesystem::path&) {
   return std::nullopt;
 }
 
+// Where there are no children, nobody asks how far one came.
+Trail::Trail() : mark_(nullptr) {}
+Trail::~Trail() = default;
+void Trail::mark(uint32_t, const char*) noexcept {}
+uint32_t Trail::item() const noexcept {
+  return 0;
+}
+const char* Trail::call() const noexcept {
+  return "";
+}
+
 Result<std::string> runInChild(const std::function<std::string()>& work, int) {
   return work();
 }

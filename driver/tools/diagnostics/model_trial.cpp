@@ -27,6 +27,19 @@ hsp_activation activationOf(const scene::Scene& scene, const scene::Model& model
   return activation;
 }
 
+/// The value that a plugin's words begin with, as "stiffness: has no effect"; `text` keeps the rest. nullptr: none.
+const scene::Value* valueNamed(const scene::Model& model, std::string& text) {
+  const std::string before = "model '" + model.name + "': cannot be set up: ";
+  const size_t begin = text.rfind(before, 0) == 0 ? before.size() : 0, colon = text.find(": ", begin);
+  if (colon == std::string::npos) return nullptr;
+  for (const scene::Value& value : model.parameters)
+    if (text.compare(begin, colon - begin, value.id) == 0 && value.place.line > 0) {
+      text.erase(begin, colon + 2 - begin);
+      return &value;
+    }
+  return nullptr;
+}
+
 /// Texts about models, each with the number of its model, as they travel from the child.
 class Remarks {
  public:
@@ -44,9 +57,13 @@ class Remarks {
     document::Problems problems;
     for (uint32_t left = in.count(); left > 0 && in.good(); --left) {
       const uint32_t index = in.count();
-      const std::string text = in.text();
+      std::string text = in.text();
       if (index >= scene.models.size()) break;
-      document::report(problems, scene.models[index].place, "models[" + std::to_string(index) + "]", text);
+      const scene::Model& model = scene.models[index];
+      const scene::Value* value = valueNamed(model, text);
+      const std::string key = "models[" + std::to_string(index) + "]";
+      document::report(problems, value != nullptr ? value->place : model.place,
+                       value != nullptr ? key + ".parameters." + value->id : key, text);
     }
     return problems;
   }
@@ -66,7 +83,21 @@ void adviseMotion(const scene::Model& model, size_t index, document::Problems& w
                          "parameters makes it do so, where the plugin has that");
 }
 
-std::string tryAll(const scene::Scene& scene, double max_force) {
+/// A crash, an exit or a hang, with the model whose plugin did it.
+void reportEnd(const std::string& how, const host::Trail& trail, const scene::Scene& scene,
+               document::Problems& problems) {
+  const uint32_t index = trail.item();
+  if (*trail.call() == '\0' || index >= scene.models.size())
+    return document::report(problems, scene.file.string(), 1, 1, "models", "setting them up " + how);
+  const scene::Model& model = scene.models[index];
+  const bool more = index + 1 < scene.models.size();
+  document::report(problems, model.place, "models[" + std::to_string(index) + "]",
+                   "plugin '" + model.plugin + "' of model '" + model.name + "' " + how + ", in its " + trail.call() +
+                       "()" + (more ? "; the models after it were not tried" : "") +
+                       "; hapticd plugin check FILE.so looks for the cause");
+}
+
+std::string tryAll(const scene::Scene& scene, double max_force, host::Trail& trail) {
   Remarks problems, warnings;
   host::Packer claims;
   for (size_t i = 0; i < scene.models.size(); ++i) {
@@ -75,14 +106,17 @@ std::string tryAll(const scene::Scene& scene, double max_force) {
     const auto log = [&](int level, const std::string&, const std::string& text) {
       if (level == HSP_LOG_WARNING) warnings.add(i, text);
     };
+    trail.mark(static_cast<uint32_t>(i), "create() or set");
     if (auto shape = host::ShapeInstance::create(scene.models[i], log); !shape) {
       problems.add(i, shape.error());
-    } else if (const auto activated = (*shape)->activate(activationOf(scene, scene.models[i], max_force)); !activated) {
-      problems.add(i, activated.error());
-    } else {
+    } else if (trail.mark(static_cast<uint32_t>(i), "activate");
+               const auto activated = (*shape)->activate(activationOf(scene, scene.models[i], max_force))) {
       stiffness = (*shape)->report().max_stiffness;
       const bool may_move = ((*shape)->description().flags & HSP_C_MOVES) != 0;
       idle = may_move && ((*shape)->report().flags & HSP_R_MOVES) == 0;
+      trail.mark(static_cast<uint32_t>(i), "deactivate() or destroy");
+    } else {
+      problems.add(i, activated.error());
     }
     claims.number(stiffness);
     claims.number(uint32_t{idle ? 1u : 0u});
@@ -95,9 +129,10 @@ std::string tryAll(const scene::Scene& scene, double max_force) {
 ModelTrial tryModels(const scene::Scene& scene, double max_force) {
   ModelTrial trial;
   if (scene.models.empty()) return trial;
-  const auto told = host::runInChild([&] { return tryAll(scene, max_force); }, kTrialLimitMs);
+  host::Trail trail;
+  const auto told = host::runInChild([&] { return tryAll(scene, max_force, trail); }, kTrialLimitMs);
   if (!told) {
-    document::report(trial.problems, scene.file.string(), 1, 1, "models", "setting them up " + told.error());
+    reportEnd(told.error(), trail, scene, trial.problems);
     return trial;
   }
   host::Unpacker in(*told);
