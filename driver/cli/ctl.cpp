@@ -13,6 +13,7 @@
 #include "cli/ctl_lead.hpp"
 #include "cli/named_files.hpp"
 #include "control/client.hpp"
+#include "document/node.hpp"
 #include "status/page_file.hpp"
 
 namespace hapticd::cli {
@@ -22,10 +23,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct CtlArguments {
-  std::string name = "hapticd", model, device, hand, parameter, file, line, obj;
+  std::string name = "hapticd", model, device, hand, parameter, value, file, line, obj;
   std::vector<double> position, orientation;
   std::optional<double> seconds;
-  double value = 0, tolerance = 0, hold = 1;
+  double tolerance = 0, hold = 1;
   uint32_t number = 0;
   bool consent = false, follow = false, tells_socket = false;
 };
@@ -265,12 +266,14 @@ void addModelRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& o
 
   const Command set =
       addRequest(ctl, "set", "Set a live parameter of a model.", options, exit_code, [options](Json& json) {
-        json["model"] = options->model, json["parameter"] = options->parameter, json["value"] = options->value;
+        json["model"] = options->model, json["parameter"] = options->parameter;
+        const auto number = document::toNumber(options->value);
+        json["value"] = number ? Json(*number) : Json(options->value);
         if (options->consent) json["consent"] = true;
       });
   set.addOption("model", options->model, "name of the model").required();
   set.addOption("parameter", options->parameter, "a live parameter; `hapticd ctl list` shows them").required();
-  set.addOption("value", options->value, "a number in the parameter's unit").required();
+  set.addOption("value", options->value, "a number in the parameter's unit, or a word of a choice").required();
   set.addFlag("--consent", options->consent,
               "the person who holds the arm agrees; needed where the change may be felt suddenly");
 

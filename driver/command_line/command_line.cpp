@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 
 namespace hapticd::command_line {
@@ -200,10 +201,25 @@ void Program::version(const std::string& text) const {
   app_->set_version_flag("--version", text);
 }
 
+namespace {
+
+/// "Could not convert: value = abc", of CLI11, as the other messages have it. Only numbers are converted.
+std::string unreadable(const std::string& told) {
+  const size_t colon = told.find(": "), equals = told.find(" = ");
+  if (colon == std::string::npos || equals == std::string::npos || equals < colon) return "error: " + told;
+  const std::string name = told.substr(colon + 2, equals - colon - 2);
+  return "error: " + name + ": \"" + told.substr(equals + 3) + "\" cannot be read, expected a number; see --help";
+}
+
+}  // namespace
+
 std::optional<int> Program::parse(int argc, const char* const* argv) const {
   try {
     app_->parse(argc, argv);
     return std::nullopt;
+  } catch (const CLI::ConversionError& error) {
+    std::fprintf(stderr, "%s\n", unreadable(error.what()).c_str());
+    return kBadUsage;
   } catch (const CLI::ParseError& error) {
     return app_->exit(error) == 0 ? 0 : kBadUsage;
   }

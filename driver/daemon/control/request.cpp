@@ -2,6 +2,7 @@
 #include "control/request.hpp"
 
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -91,6 +92,14 @@ class Taker {
     if (!(given >= low && given <= high))
       return complain(key, "a number from " + Json(low).dump() + " to " + Json(high).dump());
     to = given;
+  }
+  void numberOrWord(const char* key, double low, double high, double& to, std::string& word) {
+    const Json* value = find(key);
+    if (value == nullptr || !value->is_string()) return number(key, low, high, to);
+    text(key, word);
+    char* end = nullptr;
+    std::strtod(word.c_str(), &end);
+    if (end != word.c_str() && *end == '\0') complain(key, "a number without quotes, or a word");
   }
   template <size_t N>
   void numbers(const char* key, double bound, std::array<double, N>& to) {
@@ -205,7 +214,7 @@ void readValues(Taker& take, Request& request) {
   take.text("parameter", request.parameter);
   take.text("file", request.file);
   take.paths("files", kMostDescriptors, request.files);
-  take.number("value", -1e300, 1e300, request.value);
+  take.numberOrWord("value", -1e300, 1e300, request.value, request.word);
   take.number("tolerance", kFinestDrawing, 1, request.tolerance);
   take.word("as", "memory", request.as_memory);
   take.number("after", 0, kMostFrames, request.after);

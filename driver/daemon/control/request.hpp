@@ -45,7 +45,7 @@ struct Request {
   std::vector<std::string> files;                 ///< kAdd, kReload: names of the descriptors that came along
   std::string hand;                               ///< kLead, kUnlead: the device whose simulated hand is led
   std::string force;                              ///< kLead, kUnlead: the device that is pushed on
-  double value = 0;                               ///< kSet
+  double value = 0;                               ///< kSet, unless there is a word
   double tolerance = 0;                           ///< [m] kGeometry: chord error; 0: as the daemon chooses
   bool as_memory = false;                         ///< kGeometry: a descriptor of memory instead of lists in the answer
   double after = 0;                               ///< kVertices: frame that is known; kEvents: the first that is wanted
@@ -55,6 +55,7 @@ struct Request {
   std::array<double, 4> orientation{1, 0, 0, 0};  ///< kMove: unit quaternion w,x,y,z
   bool turns = false;                             ///< kMove: an orientation was given
   std::optional<double> seconds;                  ///< kMove: how long it takes
+  std::string word;                               ///< kSet: of a choice or a switch
 };
 
 /// [main] Parses and checks a line. An error says what is wrong and what was expected. @param id the request's "id" as

@@ -3,20 +3,25 @@
 
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "host/built_in.hpp"
+#include "host/file_stamp.hpp"
 #include "host/loader.hpp"
+#include "host/replaced_library.hpp"
 
 namespace hapticd::host {
 namespace {
 
 constexpr uint32_t kMaxClasses = 1024;  ///< more in one file is a table that was misread
 
-/// What is loaded now, by the file's real path: two spellings of one file give one library.
+/// What is loaded now, by the file's real path: two spellings of one file give one library. A library that nobody uses
+/// any more keeps its code, and the loader gives the same again, whatever the file has become.
 struct Registry {
   std::mutex mutex;
   std::map<std::filesystem::path, std::weak_ptr<Library>> loaded;
+  std::map<std::filesystem::path, std::optional<FileStamp>> first;  ///< of the files whose code is in memory
 };
 
 Registry& registry() {
@@ -64,8 +69,10 @@ Result<std::shared_ptr<Library>> Library::open(const std::filesystem::path& file
   std::weak_ptr<Library>& slot = all.loaded[real];
   if (std::shared_ptr<Library> loaded = slot.lock()) return loaded;
 
+  const auto stamp = stampOf(real);  // before: a file that is replaced now is taken for a new one at worst
   const auto handle = loadFile(real);
   if (!handle) return Error{"cannot load " + real.string() + "\n  the loader says: " + handle.error()};
+  all.first.emplace(real, stamp);
   std::shared_ptr<Library> loaded(new Library(real, *handle));
   slot = loaded;
   return loaded;
@@ -79,6 +86,15 @@ std::shared_ptr<Library> Library::loaded(const std::filesystem::path& file) {
   const std::lock_guard lock(all.mutex);
   const auto found = error ? all.loaded.end() : all.loaded.find(real);
   return found != all.loaded.end() ? found->second.lock() : nullptr;
+}
+
+bool replacedSinceLoaded(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::canonical(file, error);
+  Registry& all = registry();
+  const std::lock_guard lock(all.mutex);
+  const auto first = error ? all.first.end() : all.first.find(real);
+  return first != all.first.end() && stampOf(real) != first->second;
 }
 
 Result<const hsp_entry*> Library::shapes() const {

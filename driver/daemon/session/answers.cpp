@@ -52,7 +52,7 @@ Json liveParameters(const Session& session, uint32_t place) {
   const hsp_class& plugin = session.runner.world().shapes()[place]->description();
   for (uint32_t i = 0; i < plugin.param_count; ++i) {
     const hsp_param& param = paramAt(plugin, i);
-    if ((param.flags & HSP_P_LIVE) == 0) continue;
+    if ((param.flags & HSP_P_LIVE) == 0 || param.kind > HSP_ENUM) continue;
     live.push_back({{"id", param.id},
                     {"unit", host::textOf(param.unit)},
                     {"min", param.min},
@@ -61,6 +61,9 @@ Json liveParameters(const Session& session, uint32_t place) {
                     {"value", valueOf(session.places[place].model, param, i)},
                     {"whole", param.kind != HSP_REAL},
                     {"doc", host::textOf(param.doc)}});
+    if (param.kind == HSP_ENUM)
+      for (uint32_t choice = 0; choice < param.choice_count; ++choice)
+        live.back()["choices"].push_back(host::textOf(param.choices[choice]));
   }
   return live;
 }

@@ -4,8 +4,10 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
+#include "host/replaced_library.hpp"
 #include "session/foreign_files.hpp"
 #include "session/patience.hpp"
 #include "session/request_handler.hpp"
@@ -17,8 +19,19 @@ namespace {
 
 using control::Request;
 
-std::string addedText(size_t models) {
-  return nlohmann::ordered_json({{"ok", true}, {"models", models}}).dump();
+/// What was added, and which of it is not what the person who added it takes it for.
+std::string addedText(const std::vector<scene::Model>& models, const host::Services::Log& log) {
+  nlohmann::ordered_json json = {{"ok", true}, {"models", models.size()}};
+  std::set<std::string> told;
+  for (const scene::Model& model : models) {
+    if (!host::replacedSinceLoaded(model.library) || !told.insert(model.library.string()).second) continue;
+    const std::string text = "the file of plugin '" + model.plugin +
+                             "' has changed since this daemon loaded it: the code from before goes on, as a library is "
+                             "never unloaded\n  fix: end the daemon and start it again";
+    json["notes"].push_back(text);
+    log(HSP_LOG_WARNING, model.name, text);
+  }
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 bool sameDevices(const scene::Scene& a, const scene::Scene& b) {
@@ -93,7 +106,7 @@ Result<std::string> RequestHandler::add(const control::Peer& peer, const Request
   for (const scene::Model& model : models)
     if (placeOf(model.name)) return refuse("busy", "a model named \"" + model.name + "\" exists already");
   if (auto done = adopt(models); !done) return Error{tellable(peer, done.error())};
-  return addedText(models.size());
+  return addedText(models, log_);
 }
 
 /// A plugin that ended a run is kept out of this one too.
@@ -177,7 +190,7 @@ Result<std::string> RequestHandler::reload(const control::Peer& peer, const Requ
     if (auto done = release(place); !done) return Error{done.error()};
   scene_file_ = file;
   scene_passed_ = passed_.has_value();
-  return addedText(scene->models.size());
+  return addedText(scene->models, log_);
 }
 
 void RequestHandler::sweep() {

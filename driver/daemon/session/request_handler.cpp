@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "document/suggestion.hpp"
 #include "host/class_table.hpp"
@@ -31,6 +32,29 @@ const hsp_param* parameterOf(const hsp_class& plugin, const std::string& id, uin
     if (id == param->id) return param;
   }
   return nullptr;
+}
+
+/// "0 to 3000 N/m", or the words of a choice.
+std::string expectedOf(const hsp_param& param) {
+  if (param.kind == HSP_BOOL) return "true or false";
+  if (param.kind != HSP_ENUM)
+    return fmt::format("{}{:g} to {:g} {}", param.kind == HSP_INT ? "a whole number from " : "", param.min, param.max,
+                       host::textOf(param.unit));
+  std::vector<std::string> words;
+  for (uint32_t i = 0; i < param.choice_count; ++i) words.push_back(host::textOf(param.choices[i]));
+  return "one of " + document::listed(words, 40);
+}
+
+/// The number that a word stands for, if it is one of the parameter's.
+std::optional<double> numberOf(const hsp_param& param, const std::string& word) {
+  for (uint32_t i = 0; param.kind == HSP_ENUM && i < param.choice_count; ++i)
+    if (word == host::textOf(param.choices[i])) return i;
+  if (param.kind != HSP_BOOL) return std::nullopt;
+  for (const char* yes : {"true", "yes", "on"})
+    if (word == yes) return 1;
+  for (const char* no : {"false", "no", "off"})
+    if (word == no) return 0;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -215,16 +239,21 @@ Result<void> RequestHandler::set(const Request& request) {
   Order order;
   order.kind = Order::Kind::kSet;
   order.target = *place;
-  order.value = request.value;
   const hsp_param* param = parameterOf(plugin, request.parameter, order.param);
   const std::string what = "parameter \"" + request.parameter.substr(0, 100) + "\" of " + plugin.name;
   if (param == nullptr) return refuse("unknown", noSuchParameter(plugin, request.parameter, HSP_P_LIVE));
-  if ((param->flags & HSP_P_LIVE) == 0)
+  if ((param->flags & HSP_P_LIVE) == 0 || param->kind > HSP_ENUM)
     return refuse("unsupported", what + ": cannot change while the model runs\n  fix: change the scene and reload it");
-  const bool whole = param->kind == HSP_REAL || std::floor(request.value) == request.value;
-  if (!(request.value >= param->min && request.value <= param->max) || !whole)
-    return refuse("out_of_range", fmt::format("{}: {:g} is out of range, expected {:g} to {:g} {}", what, request.value,
-                                              param->min, param->max, host::textOf(param->unit)));
+  const auto meant = request.word.empty() ? request.value : numberOf(*param, request.word);
+  if (!meant)
+    return refuse("out_of_range", what + ": \"" + request.word.substr(0, 100) + "\" is not " +
+                                      (param->kind > HSP_INT ? "one of its words" : "a number") + ", expected " +
+                                      expectedOf(*param));
+  order.value = *meant;
+  const bool whole = param->kind == HSP_REAL || std::floor(order.value) == order.value;
+  if (!(order.value >= param->min && order.value <= param->max) || !whole)
+    return refuse("out_of_range",
+                  fmt::format("{}: {:g} is out of range, expected {}", what, order.value, expectedOf(*param)));
   if ((param->flags & HSP_P_SAFETY) != 0 && !request.consent)
     return refuse("consent", what +
                                  ": a hand may feel this change suddenly, so the person who holds the arm must agree\n "
