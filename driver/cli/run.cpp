@@ -20,6 +20,7 @@
 #include "diagnostics/enable_button.hpp"
 #include "document/node.hpp"
 #include "log/log.hpp"
+#include "record/allocation_text.hpp"
 #include "record/pace_report.hpp"
 #include "record/picture.hpp"
 #include "record/report.hpp"
@@ -166,9 +167,10 @@ int conclude(const RunArguments& options, servo::Runner& runner, const std::vect
   report.answer_time = runner.scene().clients.answer_time;
   for (size_t i = 0; i < runner.arms().size(); ++i)
     report.limits.push_back(limitsOf(runner.scene().devices[i].name, runner.arms()[i]->limiter()));
-  std::fputs(
-      (record::summary(report) + record::paceText(report, options.rate.value_or(runner.scene().servo.rate))).c_str(),
-      stdout);
+  std::fputs((record::summary(report) + record::allocationText(report, mostAllocations()) +
+              record::paceText(report, options.rate.value_or(runner.scene().servo.rate)))
+                 .c_str(),
+             stdout);
   std::fflush(stdout);  // a plugin that crashes as it is taken down must not take the report along
   warnOfHeat(runner, report.rate_hz);
   if (const record::Recorder* recorder = runner.recorder())

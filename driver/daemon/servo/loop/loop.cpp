@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/allocation_count.hpp"
+#include "base/allocation_owner.hpp"
 #include "base/not_real_time.hpp"
 #include "base/thread_usage.hpp"
 
@@ -115,6 +116,7 @@ void Loop::run() noexcept {
     done = (last - start) / settings_.period_ns + 1;
     if ((settings_.ticks != 0 && done >= settings_.ticks) || (stop_ && allSilent())) break;
   }
+  noteAllocations(false);
   next_tick_.store(0, std::memory_order_relaxed);
   log_.finish(tick_count_, clock_.now() - start, os::pageFaultsOfThread() - faults_warm_,
               allocationsOfThread() - allocations_warm_ - search_allocations_);
@@ -136,6 +138,7 @@ void Loop::countFromHere() noexcept {
   search_allocations_ = 0;
   faults_warm_ = os::pageFaultsOfThread();
   allocations_warm_ = allocationsOfThread();
+  noteAllocations(true);
 }
 
 /// Between two ticks: samples that drive the loop are waited for for a while, see PacedClock.
@@ -244,7 +247,9 @@ void Loop::search(double t) noexcept {
   const Nanoseconds begun = monotonicNow();
   const uint64_t allocations = allocationsOfThread();
   const NotRealTime virtual_time_only;
+  noteAllocations(false);  // a search may
   lockstep_.before(t);
+  noteAllocations(tick_count_.load(std::memory_order_relaxed) > kWarmUpTicks);
   search_allocations_ += allocationsOfThread() - allocations;
   search_time_ = monotonicNow() - begun;
 }

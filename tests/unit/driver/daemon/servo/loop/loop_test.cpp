@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "base/allocation_owner.hpp"
+#include "record/allocation_text.hpp"
 #include "test_rig.hpp"
 
 namespace hapticd::servo {
@@ -119,13 +121,22 @@ TEST(Loop, ServoPathAllocatesNothing) {
   Rig rig(0, [](Nanoseconds) { return Nanoseconds{0}; }, kEnoughTicks);
   rig.loop->run();
   EXPECT_EQ(rig.telemetry->report({}).servo_allocations, 0u);
+  EXPECT_EQ(record::allocationText(rig.telemetry->report({}), {}), "");
 }
 
 #ifndef HAPTICD_SANITIZED  // the sanitizers have an allocator of their own, which is not counted
 TEST(Loop, CountsEveryAllocationOfAPlugin) {
   Rig rig(0, [](Nanoseconds) { return Nanoseconds{0}; }, kEnoughTicks, "allocating");
   rig.loop->run();
-  EXPECT_GE(rig.telemetry->report({}).servo_allocations, kEnoughTicks / 2);
+  const record::RunReport report = rig.telemetry->report({});
+  EXPECT_GE(report.servo_allocations, kEnoughTicks / 2);
+  const AllocationShare most = mostAllocations();
+  ASSERT_NE(most.owner, nullptr);
+  EXPECT_EQ(most.owner->module, "allocating");
+  EXPECT_GE(most.count, kEnoughTicks / 2);
+  const std::string told = record::allocationText(report, most);
+  EXPECT_NE(told.find(" mostly in the plugin allocating ("), std::string::npos) << told;
+  EXPECT_NE(told.find("fix: make room in activate()"), std::string::npos) << told;
 }
 #endif
 
