@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd ctl`: asks a running daemon.
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "cli/ctl_lead.hpp"
 #include "cli/named_files.hpp"
 #include "control/client.hpp"
+#include "control/presence.hpp"
 #include "status/page_file.hpp"
 
 namespace hapticd::cli {
@@ -96,6 +98,24 @@ int sendScene(const CtlArguments& options, Json request) {
   return show(options, client->askWith(lineOf(request), numbers));
 }
 
+/// No more comes: a daemon that ended in order ends the stream in order, one that died does not.
+int endOfStream(const CtlArguments& options) {
+  if (!control::wasKilled(socketOf(options))) return kWorked;
+  return fail(kFailed, "the daemon " + options.name +
+                           " was killed, or it crashed: nothing more comes\n  fix: start it again with hapticd run");
+}
+
+/// `stop` answers once the daemon has ended and its name is free: what is started next shall find it so.
+int stop(const CtlArguments& options, const std::string& line) {
+  constexpr double kPatience = 10;  // [s]
+  const int told = send(options, line);
+  if (told != kWorked || control::waitForEnd(socketOf(options), kPatience)) return told;
+  return fail(kFailed,
+              "the daemon " + options.name +
+                  " was told to end, and has not within 10 s; its forces are off\n  fix: wait for its process, or "
+                  "end it with kill PID (hapticd top shows it)");
+}
+
 /// Prints the triangles, and then each frame of vertices when it comes, a line of JSON each: until nobody reads them
 /// or the daemon ends.
 int follow(const CtlArguments& options) {
@@ -114,7 +134,7 @@ int follow(const CtlArguments& options) {
   }
   while (std::fflush(stdout) == 0) {
     const auto answer = client->ask(lineOf({{"do", "vertices"}, {"model", options.model}, {"after", seen}}));
-    if (!answer) break;  // the daemon has ended
+    if (!answer) return endOfStream(options);
     const Json json = Json::parse(*answer, nullptr, false);
     if (!json.is_object() || !json.value("ok", false)) break;  // or the model has left
     if (json.contains("xyz")) std::printf("%s\n", answer->c_str());
@@ -122,6 +142,13 @@ int follow(const CtlArguments& options) {
     clock.waitUntil(clock.now() + kPause);
   }
   return kWorked;
+}
+
+/// "abc" is met with what to write instead of a failed conversion.
+std::string plainNumber(const std::string& text) {
+  char* end = nullptr;
+  std::strtod(text.c_str(), &end);
+  return end != text.c_str() && *end == '\0' ? "" : "\"" + text + "\" is not a number, expected one such as 0.1";
 }
 
 /// The example of a request's own --help.
@@ -161,7 +188,11 @@ CLI::App* addRequest(CLI::App& parent, const char* word, const char* doc, const 
     Json json = {{"do", word}};
     build(json);
     const bool scene = std::string(word) == "add" || std::string(word) == "reload";
-    exit_code = options->follow ? follow(*options) : scene ? sendScene(*options, json) : send(*options, lineOf(json));
+    const bool stops = std::string(word) == "stop";
+    exit_code = options->follow ? follow(*options)
+                : scene         ? sendScene(*options, json)
+                : stops         ? stop(*options, lineOf(json))
+                                : send(*options, lineOf(json));
   });
   return command;
 }
@@ -216,7 +247,7 @@ int showEvents(const CtlArguments& options) {
   constexpr double kLong = 1e6;
   while (options.follow && std::fflush(stdout) == 0) {
     const auto line = client->hear(kLong);
-    if (!line) break;  // the daemon has ended
+    if (!line) return endOfStream(options);
     std::printf("%s\n", line->c_str());
   }
   return kWorked;
@@ -269,7 +300,7 @@ void addModelRequests(CLI::App& ctl, const std::shared_ptr<CtlArguments>& option
   });
   set->add_option("model", options->model, "name of the model")->required();
   set->add_option("parameter", options->parameter, "a live parameter; `hapticd ctl list` shows them")->required();
-  set->add_option("value", options->value, "a number in the parameter's unit")->required();
+  set->add_option("value", options->value, "a number in the parameter's unit")->required()->check(plainNumber);
   set->add_flag("--consent", options->consent,
                 "the person who holds the arm agrees; needed where the change may be felt suddenly");
 
@@ -287,8 +318,13 @@ void addModelRequests(CLI::App& ctl, const std::shared_ptr<CtlArguments>& option
     if (options->seconds) json["seconds"] = *options->seconds;
   });
   move->add_option("model", options->model, "name of the model")->required();
-  move->add_option("--position", options->position, "x y z [m], world frame")->required()->expected(3);
-  move->add_option("--orientation", options->orientation, "w x y z, a unit quaternion")->expected(4);
+  move->add_option("--position", options->position, "x y z [m], world frame")
+      ->required()
+      ->expected(3)
+      ->check(plainNumber);
+  move->add_option("--orientation", options->orientation, "w x y z, a unit quaternion")
+      ->expected(4)
+      ->check(plainNumber);
   move->add_option("--seconds", options->seconds, "shortest duration of the motion [s]; default: 0.2 m/s at most");
 }
 
