@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 /// Models that come and go while the daemon runs.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "session/foreign_files.hpp"
+#include "session/kept_settings.hpp"
 #include "session/patience.hpp"
 #include "session/request_handler.hpp"
 #include "watch/quarantine.hpp"
@@ -16,10 +19,6 @@ namespace hapticd::servo {
 namespace {
 
 using control::Request;
-
-std::string addedText(size_t models) {
-  return nlohmann::ordered_json({{"ok", true}, {"models", models}}).dump();
-}
 
 bool sameDevices(const scene::Scene& a, const scene::Scene& b) {
   if (a.devices.size() != b.devices.size()) return false;
@@ -93,7 +92,7 @@ Result<std::string> RequestHandler::add(const control::Peer& peer, const Request
   for (const scene::Model& model : models)
     if (placeOf(model.name)) return refuse("busy", "a model named \"" + model.name + "\" exists already");
   if (auto done = adopt(models); !done) return Error{tellable(peer, done.error())};
-  return addedText(models.size());
+  return lineOf(cameAnswer(models));
 }
 
 /// A plugin that ended a run is kept out of this one too.
@@ -140,6 +139,24 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
   return {};
 }
 
+/// With those that wait for a tip to leave them, as far as the servo has met them by now.
+nlohmann::ordered_json RequestHandler::cameAnswer(const std::vector<scene::Model>& models) {
+  constexpr double kMet = 0.05;  // [s] a search finds what is near every 5 ms
+  nlohmann::ordered_json json = {{"ok", true}, {"models", models.size()}}, waiting = nlohmann::ordered_json::array();
+  const auto now = [&] { return runner_.telemetry().statusWriter()->page().now.read().value_or(status::Now{}).t; };
+  const double came = now();
+  waitUntil([&] { return now() > came + kMet || runner_.loop().finished(); });
+  for (uint32_t i = 0; i < places_.size(); ++i) {
+    const std::string& name = places_[i].model.name;
+    const auto is = [&](const scene::Model& model) { return model.name == name; };
+    if (!places_[i].taken || std::none_of(models.begin(), models.end(), is) || !waitsForTip(session(), i)) continue;
+    waiting.push_back(name);
+    log_(HSP_LOG_WARNING, name, "a tip is in it: it is felt once the tip was outside");
+  }
+  if (!waiting.empty()) json["waiting"] = waiting;
+  return json;
+}
+
 Result<void> RequestHandler::remove(const std::string& model) {
   const auto place = placeOf(model);
   if (!place) return Error{place.error()};
@@ -173,11 +190,37 @@ Result<std::string> RequestHandler::reload(const control::Peer& peer, const Requ
     if (places_[i].taken) old.push_back(i);
   if (auto done = adopt(scene->models); !done)
     return Error{file + ": nothing was changed: " + tellable(peer, done.error())};
-  for (const uint32_t place : old)
-    if (auto done = release(place); !done) return Error{done.error()};
   scene_file_ = file;
   scene_passed_ = passed_.has_value();
-  return addedText(scene->models.size());
+  takePermission(scene->clients);
+  for (const uint32_t place : old)
+    if (auto done = release(place); !done) return Error{done.error()};
+  auto json = cameAnswer(scene->models);
+  if (const auto kept = tellKept(*scene); !kept.empty()) json["kept"] = kept;
+  return lineOf(json);
+}
+
+/// A scene that lets nobody push ends the pushes of programs at once, in their ramp; one that lets them push gives back
+/// what another took, and no more than the start gave.
+void RequestHandler::takePermission(const scene::Clients& wanted) {
+  const bool may = wanted.mode != scene::ClientMode::kOff && wanted.push;
+  const scene::Clients& given = runner_.scene().clients;
+  if (given.mode == scene::ClientMode::kOff || !given.push) return;
+  if (!may && leads_.mayPush())
+    log_(HSP_LOG_WARNING, scene_file_, "no program may push any more: their forces ramp out");
+  leads_.letPush(may);
+  if (!may) leads_.endPushes();
+}
+
+/// What the scene says and the run does not do, told in the log as well.
+std::vector<std::string> RequestHandler::tellKept(const scene::Scene& wanted) const {
+  std::vector<std::string> kept = keptSettings(runner_.scene(), wanted);
+  if (!leads_.mayPush()) std::erase(kept, "clients.mode"), std::erase(kept, "clients.push");
+  if (!kept.empty())
+    log_(HSP_LOG_WARNING, scene_file_,
+         fmt::format("a reload cannot change {}: as before\n  fix: stop the daemon and start it with this scene",
+                     fmt::join(kept, ", ")));
+  return kept;
 }
 
 void RequestHandler::sweep() {
