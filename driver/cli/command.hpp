@@ -21,6 +21,9 @@ constexpr int kBadInput = 2;  ///< exit code: bad input or usage
 /// [main] A number from low to high. CLI::Range takes what is not a number, too.
 CLI::Validator within(double low, double high);
 
+/// [main] Why a picture, which is always SVG, cannot have this name; "": it can.
+std::string wrongPicture(const std::string& file);
+
 /// Prints "error: MESSAGE" and gives back the exit code.
 int fail(int exit_code, const std::string& message);
 

@@ -20,6 +20,14 @@ std::string unknownCommand(const CLI::App& app, int argc, char** argv) {
   return argv[1];
 }
 
+/// The same of the second word, where the first has subcommands of its own; @param parent set to that first.
+std::string unknownUnder(const CLI::App& app, int argc, char** argv, const CLI::App*& parent) {
+  if (argc < 3 || argv[2][0] == '-') return "";
+  for (const CLI::App* command : app.get_subcommands(nullptr))
+    if (command->get_name() == argv[1] && !command->get_subcommands(nullptr).empty()) parent = command;
+  return parent == nullptr ? "" : unknownCommand(*parent, argc - 1, argv + 1);
+}
+
 std::vector<std::string> commandNames(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
@@ -48,6 +56,11 @@ int main(int argc, char** argv) {
     return fail(kBadInput, "there is no subcommand \"" + word + "\", expected one of " +
                                hapticd::document::listed(commandNames(app), 30) +
                                hapticd::document::suggestion(word, commandNames(app)));
+  const CLI::App* parent = nullptr;
+  if (const std::string word = unknownUnder(app, argc, argv, parent); !word.empty())
+    return fail(kBadInput, std::string(argv[1]) + " has no subcommand \"" + word + "\", expected one of " +
+                               hapticd::document::listed(commandNames(*parent), 30) +
+                               hapticd::document::suggestion(word, commandNames(*parent)));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
