@@ -179,10 +179,10 @@ class SimulatedArm : public Device, public Parameters {
 
   std::string unreachable() const {
     const Vector3d& p = target_.position;
-    char text[200];
+    char text[256];
     std::snprintf(text, sizeof text,
                   "the hand starts at (%.3f, %.3f, %.3f) m in the device frame, which the arm cannot reach; expected a "
-                  "script within its workspace",
+                  "script within its workspace: see hand.center, arm.limits, and the mount from which a twin has it",
                   p.x(), p.y(), p.z());
     return text;
   }

@@ -35,7 +35,8 @@ Result<void> check(const MailboxPlace& place, const codec::Wire& wire) {
     return Error{"vme.state, vme.command: an offset or size is no multiple of " + std::to_string(width) +
                  " bytes, expected whole words of vme.width"};
   if (wire.framing.used || wire.input.id >= 0 || wire.output.id >= 0 || !wire.startup.empty())
-    return Error{"wire: framing, startup or a report id, expected none of them on a bus"};
+    return Error{
+        "wire: has framing, startup or a report id, which a mailbox on a bus has no use for\n  fix: remove them"};
   return {};
 }
 

@@ -10,4 +10,10 @@ namespace hapticd::os {
 /// their kind. nullptr: the system's own again.
 void onFatalSignals(void (*handler)(int, siginfo_t*, void*));
 
+/// Installs a handler for SIGINT, SIGTERM, SIGQUIT and SIGHUP in front of those that are there, except where the signal
+/// is ignored. nullptr: those that were there, unless another took its place meanwhile.
+void onStopSignals(void (*handler)(int, siginfo_t*, void*));
+/// What was there before; nullptr: the system's own. Async-signal-safe.
+void (*formerStop(int signal) noexcept)(int);
+
 }  // namespace hapticd::os

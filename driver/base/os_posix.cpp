@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
@@ -186,9 +187,41 @@ void onFatalSignals(void (*handler)(int, siginfo_t*, void*)) {
   for (int signal = SIGRTMIN; signal <= SIGRTMAX; ++signal) others.push_back(signal);
   for (const int signal : others) {
     struct sigaction before{};
-    if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_DFL) handled.push_back(signal);
+    if (sigaction(signal, nullptr, &before) != 0) continue;
+    const bool ours = (before.sa_flags & SA_SIGINFO) != 0 && before.sa_sigaction == handler;
+    if (ours || before.sa_handler == SIG_DFL) handled.push_back(signal);
   }
   for (const int signal : handled) sigaction(signal, &action, nullptr);
+}
+
+namespace {
+constexpr int kStopSignals[] = {SIGINT, SIGTERM, SIGQUIT, SIGHUP};
+std::atomic<void (*)(int)> former_stops[SIGTERM + 1];                 ///< by signal; SIG_DFL: the system's own
+std::atomic<void (*)(int, siginfo_t*, void*)> stop_handler{nullptr};  ///< nullptr: none is in front
+}  // namespace
+
+void onStopSignals(void (*handler)(int, siginfo_t*, void*)) {
+  for (const int signal : kStopSignals) {
+    struct sigaction there{};
+    sigaction(signal, nullptr, &there);
+    const bool ours = (there.sa_flags & SA_SIGINFO) != 0 && there.sa_sigaction == stop_handler.load();
+    struct sigaction next{};
+    if (handler != nullptr && !ours && (there.sa_flags & SA_SIGINFO) == 0 && there.sa_handler != SIG_IGN) {
+      former_stops[signal].store(there.sa_handler);
+      next.sa_sigaction = handler;
+      next.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_NODEFER;
+      sigaction(signal, &next, nullptr);
+    } else if (handler == nullptr && ours) {
+      next.sa_handler = former_stops[signal].load();
+      sigaction(signal, &next, nullptr);
+    }
+  }
+  stop_handler.store(handler);
+}
+
+void (*formerStop(int signal) noexcept)(int) {
+  void (*former)(int) = former_stops[signal].load();
+  return former == SIG_DFL ? nullptr : former;
 }
 
 void onSuspendSignal(void (*handler)(int)) {

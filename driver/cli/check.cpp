@@ -13,6 +13,7 @@
 #include "diagnostics/hand_path_advice.hpp"
 #include "diagnostics/hand_start.hpp"
 #include "diagnostics/model_trial.hpp"
+#include "diagnostics/slow_arm.hpp"
 #include "diagnostics/unit_advice.hpp"
 #include "document/node.hpp"
 #include "document/reader.hpp"
@@ -168,13 +169,17 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   if (!scene || !found.empty()) return verdict;
   const scene::Scene full = withArm(*scene);
   document::Problems more = unstable(full, trial.stiffness);
-  for (const auto& found_by : {&farModels, &softModels, &idleBounds, &quarantinedModels})
+  for (const auto& found_by : {&farModels, &softModels, &idleBounds, &quarantinedModels, &slowArms})
     for (const document::Problem& one : found_by(full)) more.push_back(one);
   document::Problems unread;
   if (const auto root = document::parseFile(file, unread)) adviseZeros(*root, file, more);
   if (!options.files_only)
-    for (const auto& found_by : {&startsInside, &unreachableRows})
-      for (const document::Problem& one : found_by(full)) more.push_back(one);
+    for (const document::Problem& one : unreachableRows(full)) more.push_back(one);
+  if (!options.files_only)
+    for (const document::Problem& one : adviseHands(full)) more.push_back(one);
+  if (!options.device.empty())  // what its own check says
+    for (const scene::Device& device : full.devices)
+      for (const document::Problem& one : adviseDevice(device.file, catalog())) more.push_back(one);
   verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());
   return verdict;
 }
@@ -227,18 +232,18 @@ int check(const CheckArguments& options) {
 
 }  // namespace
 
-void addCheck(CLI::App& app, int& exit_code) {
+void addCheck(const Command& app, int& exit_code) {
   auto options = std::make_shared<CheckArguments>();
-  CLI::App* command = app.add_subcommand("check", "Validate scene, device and daemon files; print every problem.");
-  command->add_option("files", options->files, "files to check");
-  command->add_option("--device", options->device,
-                      "device file to check scenes with instead of their own, as run takes it");
-  command->add_option("--schema", options->schema, "print the JSON Schema of a format instead, for editors")
-      ->check(CLI::IsMember({"scene", "device", "daemon"}));
-  command->add_flag("--quiet,-q", options->quiet, "print nothing about files without problems");
-  command->add_flag("--json", options->json, "print JSON: each problem and warning with file, line, column and key");
-  command->add_flag("--files-only", options->files_only, "only read the files; do not set up the models of a scene");
-  command->footer(
+  const Command command = app.addSubcommand("check", "Validate scene, device and daemon files; print every problem.");
+  command.addOption("files", options->files, "files to check");
+  command.addOption("--device", options->device,
+                    "device file to check scenes with instead of their own, as run takes it");
+  command.addOption("--schema", options->schema, "print the JSON Schema of a format instead, for editors")
+      .oneOf({"scene", "device", "daemon"});
+  command.addFlag("--quiet,-q", options->quiet, "print nothing about files without problems");
+  command.addFlag("--json", options->json, "print JSON: each problem and warning with file, line, column and key");
+  command.addFlag("--files-only", options->files_only, "only read the files; do not set up the models of a scene");
+  command.footer(
       "Each problem is one line: file:line:column: key: what is wrong, and what was expected.\nThe exit code is 2 if "
       "there is a problem. If a scene has none, its models are set up once, because only\na plugin can check some "
       "files, such as geometry. A warning names each setting that cannot be stable on\nthe device, with the bound and "
@@ -246,7 +251,7 @@ void addCheck(CLI::App& app, int& exit_code) {
       "config/scenes/teapot.yaml config/devices/simulated-premium15.yaml\n  hapticd check config/scenes/sphere.yaml "
       "--device my-arm.yaml\n  hapticd check --schema scene > "
       "scene.schema.json");
-  command->callback([options, &exit_code] { exit_code = check(*options); });
+  command.callback([options, &exit_code] { exit_code = check(*options); });
 }
 
 }  // namespace hapticd::cli

@@ -148,15 +148,14 @@ int client(const ClientArguments& options, const std::vector<std::string>& words
 
 }  // namespace
 
-void addClient(CLI::App& app, int& exit_code) {
+void addClient(const Command& app, int& exit_code) {
   auto options = std::make_shared<ClientArguments>();
-  CLI::App* command = app.add_subcommand("client", "Run an OpenHaptics (HDAPI) program on a daemon's arm.");
-  command->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
-  command->add_option("--scene", options->scene, "scene of the daemon that is started where none runs");
-  command->add_flag("--env", options->env, "print the environment that the program needs, for a shell");
-  command->prefix_command();
-  command->fallthrough(false);  // the options after PROGRAM are its own
-  command->footer(
+  const Command command = app.addSubcommand("client", "Run an OpenHaptics (HDAPI) program on a daemon's arm.");
+  command.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
+  command.addOption("--scene", options->scene, "scene of the daemon that is started where none runs");
+  command.addFlag("--env", options->env, "print the environment that the program needs, for a shell");
+  command.takesForeignCommandLine();  // the options after PROGRAM are its own
+  command.footer(
       "The program finds hapticd's own libHD.so and the daemon of --name. Where none runs, one is started with the\n"
       "simulated arm, and ends with the program, also where this command is killed. Options of this command stand\n"
       "before PROGRAM; its exit code is the program's.\n\n"
@@ -164,7 +163,7 @@ void addClient(CLI::App& app, int& exit_code) {
       "is\n"
       "due (a tenth of the period at most). HAPTICD_LISTEN in the environment sets this time: 0 to 200 us.\n\n"
       "Examples:\n  hapticd client ./my_program --its-own option\n  eval \"$(hapticd client --env)\"");
-  command->callback([command, options, &exit_code] { exit_code = client(*options, command->remaining()); });
+  command.callback([command, options, &exit_code] { exit_code = client(*options, command.foreignCommandLine()); });
 }
 
 }  // namespace hapticd::cli

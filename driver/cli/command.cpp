@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "cli/command.hpp"
 
-#include <fmt/format.h>
-
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -65,15 +63,6 @@ std::string wrongPicture(const std::string& file) {
   return "";
 }
 
-CLI::Validator within(double low, double high) {
-  const auto refuse = [=](const std::string& text) {
-    double value = 0;
-    const bool good = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
-    return good ? std::string() : fmt::format("Value {} not in range {} to {}", text, low, high);
-  };
-  return {refuse, fmt::format("FLOAT in [{} - {}]", low, high)};
-}
-
 SetupErrors::SetupErrors() {
   const std::lock_guard lock(waiting().mutex);
   waiting().open = true;
@@ -109,13 +98,13 @@ void logToTerminal(int level, const std::string& who, const std::string& text) {
   std::fprintf(stderr, "%s: %s: %s\n", word, who.c_str(), text.c_str());
 }
 
-void addGlobalOptions(CLI::App& app) {
-  app.add_option("--config", settings().config_file,
-                 "daemon file; default: $HAPTICD_CONFIG, /etc/hapticd/hapticd.yaml or the installed one");
-  app.add_option("--plugin-path", settings().plugin_path,
-                 "folders that are searched first for plugins and device modules")
-      ->delimiter(':')
-      ->allow_extra_args(false);  // what follows is the subcommand, or its file
+void addGlobalOptions(const Command& app) {
+  app.addOption("--config", settings().config_file,
+                "daemon file; default: $HAPTICD_CONFIG, /etc/hapticd/hapticd.yaml or the installed one");
+  app.addOption("--plugin-path", settings().plugin_path,
+                "folders that are searched first for plugins and device modules")
+      .delimiter(':')
+      .oneValueEach();  // what follows is the subcommand, or its file
 }
 
 const scene::Daemon& daemonSettings() {

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: MIT
 /// What the subcommands share: exit codes, messages, loading a scene.
 ///
-/// A subcommand is a file of its own with a function `void addNAME(CLI::App& app, int& exit_code)`, listed in
+/// A subcommand is a file of its own with a function `void addNAME(const Command& app, int& exit_code)`, listed in
 /// commands.hpp.
 #pragma once
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <optional>
 #include <string>
 
+#include "command_line/command_line.hpp"
 #include "host/catalog.hpp"
 #include "scene/load.hpp"
 
 namespace hapticd::cli {
 
-constexpr int kWorked = 0;    ///< exit code: worked
-constexpr int kFailed = 1;    ///< exit code: failed while running
-constexpr int kBadInput = 2;  ///< exit code: bad input or usage
+using command_line::Command;
+using command_line::Option;
 
-/// [main] A number from low to high. CLI::Range takes what is not a number, too.
-CLI::Validator within(double low, double high);
+constexpr int kWorked = 0;                          ///< exit code: worked
+constexpr int kFailed = 1;                          ///< exit code: failed while running
+constexpr int kBadInput = command_line::kBadUsage;  ///< exit code: bad input or usage
 
 /// [main] Why a picture, which is always SVG, cannot have this name; "": it can.
 std::string wrongPicture(const std::string& file);
@@ -45,7 +45,7 @@ class SetupErrors {
 };
 
 /// --config and --plugin-path, which stand before the subcommand.
-void addGlobalOptions(CLI::App& app);
+void addGlobalOptions(const Command& app);
 
 /// The daemon file of this machine; a file with problems ends the program with exit code 2.
 const scene::Daemon& daemonSettings();

@@ -5,7 +5,7 @@
 
 namespace hapticd::cli {
 
-using AddCommand = void(CLI::App& app, int& exit_code);
+using AddCommand = void(const Command& app, int& exit_code);
 
 // clang-format off: a command is a line
 AddCommand addCheck, addClient, addCompletion, addCtl, addDevice, addDeviceCalibrate, addDeviceControls, addDeviceDecode,

@@ -27,14 +27,14 @@ struct CommandNode {
   bool files = false;  ///< whether an argument is a file
 };
 
-bool isFile(const CLI::Option& argument) {
+bool isFile(const Option& argument) {
   static const std::vector<std::string> kFiles = {"file", "files", "scene", "recording", "part", "capture", "numbers"};
-  return std::find(kFiles.begin(), kFiles.end(), argument.get_single_name()) != kFiles.end();
+  return std::find(kFiles.begin(), kFiles.end(), argument.positionalName()) != kFiles.end();
 }
 
 /// The words of a validator such as "TEXT:{scene,device}"; none for others.
-std::vector<std::string> choicesOf(const CLI::Option& option) {
-  const std::string type = option.get_type_name();
+std::vector<std::string> choicesOf(const Option& option) {
+  const std::string type = option.valueName();
   const size_t begin = type.find('{'), end = type.find('}');
   std::vector<std::string> words;
   if (begin == std::string::npos || end == std::string::npos || end < begin) return words;
@@ -43,21 +43,20 @@ std::vector<std::string> choicesOf(const CLI::Option& option) {
   return words;
 }
 
-void collect(const CLI::App& app, const std::string& path, std::vector<CommandNode>& nodes) {
+void collect(const Command& app, const std::string& path, std::vector<CommandNode>& nodes) {
   CommandNode node{path, {}, false};
-  for (const CLI::App* command : app.get_subcommands(nullptr))
-    node.words.push_back({command->get_name(), command->get_description(), {}});
-  for (const CLI::Option* option : app.get_options(nullptr)) {
-    if (option->get_positional()) {
-      node.files = node.files || isFile(*option);
-      for (const std::string& choice : choicesOf(*option)) node.words.push_back({choice, "", {}});
+  for (const Command& command : app.subcommands()) node.words.push_back({command.name(), command.description(), {}});
+  for (const Option& option : app.options()) {
+    if (option.positional()) {
+      node.files = node.files || isFile(option);
+      for (const std::string& choice : choicesOf(option)) node.words.push_back({choice, "", {}});
     }
-    for (const std::string& name : option->get_lnames())
-      node.words.push_back({"--" + name, option->get_description(), choicesOf(*option)});
+    for (const std::string& name : option.longNames())
+      node.words.push_back({"--" + name, option.description(), choicesOf(option)});
   }
   nodes.push_back(std::move(node));
-  for (const CLI::App* command : app.get_subcommands(nullptr))
-    collect(*command, path.empty() ? command->get_name() : path + " " + command->get_name(), nodes);
+  for (const Command& command : app.subcommands())
+    collect(command, path.empty() ? command.name() : path + " " + command.name(), nodes);
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -225,16 +224,16 @@ int printNames(const std::string& kind) {
 
 }  // namespace
 
-void addCompletion(CLI::App& app, int& exit_code) {
+void addCompletion(const Command& app, int& exit_code) {
   auto shell = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("completion", "Print the completion script of a shell.");
-  command->add_option("shell", *shell, "bash, zsh or fish")->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  const Command command = app.addSubcommand("completion", "Print the completion script of a shell.");
+  command.addOption("shell", *shell, "bash, zsh or fish").oneOf({"bash", "zsh", "fish"});
   auto kind = std::make_shared<std::string>();
-  command->add_option("--names", *kind, "print the names that the script offers instead")
-      ->check(CLI::IsMember({"plugins", "models", "devices", "scenes", "device-files"}))
-      ->excludes("shell");
-  command->footer("Example:\n  source <(hapticd completion bash)");
-  command->callback([shell, kind, &app, &exit_code] {
+  command.addOption("--names", *kind, "print the names that the script offers instead")
+      .oneOf({"plugins", "models", "devices", "scenes", "device-files"})
+      .excludes("shell");
+  command.footer("Example:\n  source <(hapticd completion bash)");
+  command.callback([shell, kind, app, &exit_code] {
     if (!kind->empty()) return (void)(exit_code = printNames(*kind));
     if (shell->empty()) return (void)(exit_code = fail(kBadInput, "no shell given, expected bash, zsh or fish"));
     std::vector<CommandNode> nodes;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd ctl`: asks a running daemon.
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -144,13 +143,6 @@ int follow(const CtlArguments& options) {
   return kWorked;
 }
 
-/// "abc" is met with what to write instead of a failed conversion.
-std::string plainNumber(const std::string& text) {
-  char* end = nullptr;
-  std::strtod(text.c_str(), &end);
-  return end != text.c_str() && *end == '\0' ? "" : "\"" + text + "\" is not a number, expected one such as 0.1";
-}
-
 /// The example of a request's own --help.
 std::string exampleOf(const std::string& word) {
   static const std::pair<const char*, const char*> kExamples[] = {
@@ -180,11 +172,11 @@ std::string exampleOf(const std::string& word) {
 
 /// A subcommand that sends what `build` makes of the options.
 template <class Build>
-CLI::App* addRequest(CLI::App& parent, const char* word, const char* doc, const std::shared_ptr<CtlArguments>& options,
-                     int& exit_code, Build build) {
-  CLI::App* command = parent.add_subcommand(word, doc);
-  command->footer(exampleOf(word));
-  command->callback([options, &exit_code, build, word] {
+const Command addRequest(const Command& parent, const char* word, const char* doc,
+                         const std::shared_ptr<CtlArguments>& options, int& exit_code, Build build) {
+  const Command command = parent.addSubcommand(word, doc);
+  command.footer(exampleOf(word));
+  command.callback([options, &exit_code, build, word] {
     Json json = {{"do", word}};
     build(json);
     const bool scene = std::string(word) == "add" || std::string(word) == "reload";
@@ -197,31 +189,31 @@ CLI::App* addRequest(CLI::App& parent, const char* word, const char* doc, const 
   return command;
 }
 
-void addGeometryRequest(CLI::App& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
-  CLI::App* geometry = addRequest(ctl, "geometry", "Print the triangles of a model in its current shape.", options,
-                                  exit_code, [options](Json& json) {
-                                    json["model"] = options->model;
-                                    if (options->tolerance > 0) json["tolerance"] = options->tolerance;
-                                  });
-  geometry->add_option("model", options->model, "name of the model")->required();
-  geometry->add_option("--obj", options->obj, "write an OBJ file, in the model's frame, instead of printing JSON");
-  geometry->add_option("--tolerance", options->tolerance, "chord error [m]; 0: 0.5 % of the model's size")
-      ->check(within(0, 1e9));  // the daemon knows what it draws
+void addGeometryRequest(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
+  const Command geometry = addRequest(ctl, "geometry", "Print the triangles of a model in its current shape.", options,
+                                      exit_code, [options](Json& json) {
+                                        json["model"] = options->model;
+                                        if (options->tolerance > 0) json["tolerance"] = options->tolerance;
+                                      });
+  geometry.addOption("model", options->model, "name of the model").required();
+  geometry.addOption("--obj", options->obj, "write an OBJ file, in the model's frame, instead of printing JSON");
+  geometry.addOption("--tolerance", options->tolerance, "chord error [m]; 0: 0.5 % of the model's size")
+      .within(0, 1e9);  // the daemon knows what it draws
   geometry
-      ->add_flag("--follow", options->follow,
-                 "print every new frame of vertices (about 60 per second), one line of JSON each")
-      ->excludes("--obj")
-      ->excludes("--tolerance");
+      .addFlag("--follow", options->follow,
+               "print every new frame of vertices (about 60 per second), one line of JSON each")
+      .excludes("--obj")
+      .excludes("--tolerance");
 }
 
-void addFeatureRequest(CLI::App& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
-  CLI::App* feature = addRequest(ctl, "feature", "Print what a feature of a model's contacts is called.", options,
-                                 exit_code, [options](Json& json) {
-                                   json["model"] = options->model;
-                                   json["number"] = options->number;
-                                 });
-  feature->add_option("model", options->model, "name of the model")->required();
-  feature->add_option("number", options->number, "feature of a trace or recording, counted from 0")->required();
+void addFeatureRequest(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
+  const Command feature = addRequest(ctl, "feature", "Print what a feature of a model's contacts is called.", options,
+                                     exit_code, [options](Json& json) {
+                                       json["model"] = options->model;
+                                       json["number"] = options->number;
+                                     });
+  feature.addOption("model", options->model, "name of the model").required();
+  feature.addOption("number", options->number, "feature of a trace or recording, counted from 0").required();
 }
 
 /// Prints what happened, a line of JSON each; with `follow` also what happens from now on, until the daemon ends.
@@ -253,26 +245,26 @@ int showEvents(const CtlArguments& options) {
   return kWorked;
 }
 
-void addEvents(CLI::App& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
-  CLI::App* events = ctl.add_subcommand(
+void addEvents(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
+  const Command events = ctl.addSubcommand(
       "events", "Show what happened: clicks, touches, faults, models and programs that came and left.");
-  events->add_flag("--follow", options->follow, "do not end; print each new event as one line of JSON");
-  events->footer(exampleOf("events"));
-  events->callback([options, &exit_code] { exit_code = showEvents(*options); });
+  events.addFlag("--follow", options->follow, "do not end; print each new event as one line of JSON");
+  events.footer(exampleOf("events"));
+  events.callback([options, &exit_code] { exit_code = showEvents(*options); });
 }
 
-void addLead(CLI::App& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
-  CLI::App* lead =
-      ctl.add_subcommand("lead", "Move a kinematic model, or the simulated hand, by lines of standard input.");
-  lead->add_option("model", options->model, "name of the model");
-  lead->add_option("--hand", options->hand, "device whose simulated hand is led, instead of a model");
-  lead->add_option("--hold", options->hold, "seconds that the lead goes on after the last line; 1 unless given")
-      ->check(within(0, 1e9));
-  lead->footer(
+void addLead(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
+  const Command lead =
+      ctl.addSubcommand("lead", "Move a kinematic model, or the simulated hand, by lines of standard input.");
+  lead.addOption("model", options->model, "name of the model");
+  lead.addOption("--hand", options->hand, "device whose simulated hand is led, instead of a model");
+  lead.addOption("--hold", options->hold, "seconds that the lead goes on after the last line; 1 unless given")
+      .within(0, 1e9);
+  lead.footer(
       "A line is \"x y z\" in m, or \"x y z qw qx qy qz\", world frame. The model follows with at most 1 m/s and\n"
       "20 m/s^2. When the lead ends it brakes and stays.\n"
       "Example:\n  echo 0.1 0 0 | hapticd ctl lead door");
-  lead->callback([options, &exit_code] {
+  lead.callback([options, &exit_code] {
     if (options->model.empty() == options->hand.empty()) {
       exit_code = fail(kBadInput, "lead: expected either a model or --hand DEVICE");
     } else {
@@ -285,64 +277,61 @@ std::string absolute(const std::string& file) {
   return std::filesystem::absolute(file).lexically_normal().string();
 }
 
-void addModelRequests(CLI::App& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
+void addModelRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
   const auto model = [options](Json& json) { json["model"] = options->model; };
   for (const auto& [word, doc] : {std::pair{"enable", "Enable a model; its force fades in."},
                                   std::pair{"disable", "Disable a model: its force fades out, tracing goes on."},
                                   std::pair{"remove", "Remove a model; its force fades out first."}})
     addRequest(ctl, word, doc, options, exit_code, model)
-        ->add_option("model", options->model, "name of the model")
-        ->required();
+        .addOption("model", options->model, "name of the model")
+        .required();
 
-  CLI::App* set = addRequest(ctl, "set", "Set a live parameter of a model.", options, exit_code, [options](Json& json) {
-    json["model"] = options->model, json["parameter"] = options->parameter, json["value"] = options->value;
-    if (options->consent) json["consent"] = true;
-  });
-  set->add_option("model", options->model, "name of the model")->required();
-  set->add_option("parameter", options->parameter, "a live parameter; `hapticd ctl list` shows them")->required();
-  set->add_option("value", options->value, "a number in the parameter's unit")->required()->check(plainNumber);
-  set->add_flag("--consent", options->consent,
-                "the person who holds the arm agrees; needed where the change may be felt suddenly");
+  const Command set =
+      addRequest(ctl, "set", "Set a live parameter of a model.", options, exit_code, [options](Json& json) {
+        json["model"] = options->model, json["parameter"] = options->parameter, json["value"] = options->value;
+        if (options->consent) json["consent"] = true;
+      });
+  set.addOption("model", options->model, "name of the model").required();
+  set.addOption("parameter", options->parameter, "a live parameter; `hapticd ctl list` shows them").required();
+  set.addOption("value", options->value, "a number in the parameter's unit").required();
+  set.addFlag("--consent", options->consent,
+              "the person who holds the arm agrees; needed where the change may be felt suddenly");
 
-  CLI::App* get = addRequest(ctl, "get", "Show the value of a parameter of a model, or of all.", options, exit_code,
-                             [options](Json& json) {
-                               json["model"] = options->model;
-                               if (!options->parameter.empty()) json["parameter"] = options->parameter;
-                             });
-  get->add_option("model", options->model, "name of the model")->required();
-  get->add_option("parameter", options->parameter, "one of its plugin's; all without");
+  const Command get = addRequest(ctl, "get", "Show the value of a parameter of a model, or of all.", options, exit_code,
+                                 [options](Json& json) {
+                                   json["model"] = options->model;
+                                   if (!options->parameter.empty()) json["parameter"] = options->parameter;
+                                 });
+  get.addOption("model", options->model, "name of the model").required();
+  get.addOption("parameter", options->parameter, "one of its plugin's; all without");
 
-  CLI::App* move = addRequest(ctl, "move", "Move a kinematic model.", options, exit_code, [options](Json& json) {
+  const Command move = addRequest(ctl, "move", "Move a kinematic model.", options, exit_code, [options](Json& json) {
     json["model"] = options->model, json["position"] = options->position;
     if (!options->orientation.empty()) json["orientation"] = options->orientation;
     if (options->seconds) json["seconds"] = *options->seconds;
   });
-  move->add_option("model", options->model, "name of the model")->required();
-  move->add_option("--position", options->position, "x y z [m], world frame")
-      ->required()
-      ->expected(3)
-      ->check(plainNumber);
-  move->add_option("--orientation", options->orientation, "w x y z, a unit quaternion")
-      ->expected(4)
-      ->check(plainNumber);
-  move->add_option("--seconds", options->seconds, "shortest duration of the motion [s]; default: 0.2 m/s at most");
+  move.addOption("model", options->model, "name of the model").required();
+  move.addOption("--position", options->position, "x y z [m], world frame").required().expected(3);
+  move.addOption("--orientation", options->orientation, "w x y z, a unit quaternion").expected(4);
+  move.addOption("--seconds", options->seconds, "shortest duration of the motion [s]; default: 0.2 m/s at most");
 }
 
-void addSceneRequests(CLI::App& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
-  CLI::App* add = addRequest(ctl, "add", "Add the models of a scene file.", options, exit_code, [options](Json& json) {
-    json["file"] = absolute(options->file);
-    if (!options->model.empty()) json["model"] = options->model;
-  });
-  add->add_option("file", options->file, "scene file")->required();
-  add->add_option("model", options->model, "name of the only model to add");
-  CLI::App* reload = addRequest(ctl, "reload", "Load the scene again, or another scene, with a cross-fade.", options,
-                                exit_code, [options](Json& json) {
-                                  if (!options->file.empty()) json["file"] = absolute(options->file);
-                                });
-  reload->add_option("file", options->file, "scene file with the same devices");
+void addSceneRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
+  const Command add =
+      addRequest(ctl, "add", "Add the models of a scene file.", options, exit_code, [options](Json& json) {
+        json["file"] = absolute(options->file);
+        if (!options->model.empty()) json["model"] = options->model;
+      });
+  add.addOption("file", options->file, "scene file").required();
+  add.addOption("model", options->model, "name of the only model to add");
+  const Command reload = addRequest(ctl, "reload", "Load the scene again, or another scene, with a cross-fade.",
+                                    options, exit_code, [options](Json& json) {
+                                      if (!options->file.empty()) json["file"] = absolute(options->file);
+                                    });
+  reload.addOption("file", options->file, "scene file with the same devices");
 }
 
-void addDeviceRequests(CLI::App& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
+void addDeviceRequests(const Command& ctl, const std::shared_ptr<CtlArguments>& options, int& exit_code) {
   const auto device = [options](Json& json) {
     if (!options->device.empty()) json["device"] = options->device;
   };
@@ -350,33 +339,33 @@ void addDeviceRequests(CLI::App& ctl, const std::shared_ptr<CtlArguments>& optio
        {std::pair{"hold", "Ramp the force of a device to zero and keep it there until it is cleared."},
         std::pair{"clear", "Clear a latched fault or a hold: the force ramps in again."}})
     addRequest(ctl, word, doc, options, exit_code, device)
-        ->add_option("device", options->device, "name of the device; default: all");
+        .addOption("device", options->device, "name of the device; default: all");
 }
 
 }  // namespace
 
-void addCtl(CLI::App& app, int& exit_code) {
+void addCtl(const Command& app, int& exit_code) {
   auto options = std::make_shared<CtlArguments>();
-  CLI::App* ctl = app.add_subcommand("ctl", "Control a running daemon: status, models, parameters, black box.");
-  ctl->require_subcommand(1);
-  ctl->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
+  const Command ctl = app.addSubcommand("ctl", "Control a running daemon: status, models, parameters, black box.");
+  ctl.requireSubcommand();
+  ctl.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
   const auto nothing = [](Json&) {};
-  addRequest(*ctl, "status", "Show the daemon's status.", options, exit_code,
+  addRequest(ctl, "status", "Show the daemon's status.", options, exit_code,
              [options](Json&) { options->tells_socket = true; });
-  CLI::App* socket = ctl->add_subcommand("socket", "Print the path of the daemon's socket.");
-  socket->footer(exampleOf("socket"));
-  socket->callback([options, &exit_code] { exit_code = showSocket(*options); });
-  addRequest(*ctl, "list", "List the models and their live parameters.", options, exit_code, nothing);
-  addModelRequests(*ctl, options, exit_code);
-  addSceneRequests(*ctl, options, exit_code);
-  addDeviceRequests(*ctl, options, exit_code);
-  addGeometryRequest(*ctl, options, exit_code);
-  addFeatureRequest(*ctl, options, exit_code);
-  addLead(*ctl, options, exit_code);
-  addEvents(*ctl, options, exit_code);
-  addRequest(*ctl, "dump", "Write the black box to disk: every tick of the last 10 s.", options, exit_code, nothing);
-  addRequest(*ctl, "stop", "End the run; forces ramp to zero first.", options, exit_code, nothing);
-  ctl->footer("Example:\n  hapticd ctl set teapot stiffness 600 --consent");
+  const Command socket = ctl.addSubcommand("socket", "Print the path of the daemon's socket.");
+  socket.footer(exampleOf("socket"));
+  socket.callback([options, &exit_code] { exit_code = showSocket(*options); });
+  addRequest(ctl, "list", "List the models and their live parameters.", options, exit_code, nothing);
+  addModelRequests(ctl, options, exit_code);
+  addSceneRequests(ctl, options, exit_code);
+  addDeviceRequests(ctl, options, exit_code);
+  addGeometryRequest(ctl, options, exit_code);
+  addFeatureRequest(ctl, options, exit_code);
+  addLead(ctl, options, exit_code);
+  addEvents(ctl, options, exit_code);
+  addRequest(ctl, "dump", "Write the black box to disk: every tick of the last 10 s.", options, exit_code, nothing);
+  addRequest(ctl, "stop", "End the run; forces ramp to zero first.", options, exit_code, nothing);
+  ctl.footer("Example:\n  hapticd ctl set teapot stiffness 600 --consent");
 }
 
 }  // namespace hapticd::cli

@@ -2,7 +2,6 @@
 /// `hapticd device list|info`: modules, device files, what is plugged in, and the facts of one arm.
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -238,27 +237,27 @@ int info(const std::string& file, bool with_parameters, bool as_json) {
 
 }  // namespace
 
-void addDevice(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("device", "Show, calibrate and check arms.");
-  command->require_subcommand(1);
-  command->footer("Example:\n  hapticd device info config/devices/simulated-premium15.yaml");
+void addDevice(const Command& app, int& exit_code) {
+  const Command command = app.addSubcommand("device", "Show, calibrate and check arms.");
+  command.requireSubcommand();
+  command.footer("Example:\n  hapticd device info config/devices/simulated-premium15.yaml");
 
-  CLI::App* list_command =
-      command->add_subcommand("list", "List device modules, device files, and known devices on the buses.");
+  const Command list_command =
+      command.addSubcommand("list", "List device modules, device files, and known devices on the buses.");
   auto json = std::make_shared<bool>(false);
-  list_command->add_flag("--json", *json, "print JSON");
-  list_command->footer("Example:\n  hapticd device list");
-  list_command->callback([json, &exit_code] { exit_code = *json ? printJson(listJson()) : list(); });
+  list_command.addFlag("--json", *json, "print JSON");
+  list_command.footer("Example:\n  hapticd device list");
+  list_command.callback([json, &exit_code] { exit_code = *json ? printJson(listJson()) : list(); });
 
   auto file = std::make_shared<std::string>();
-  CLI::App* info_command = command->add_subcommand(
-      "info", "Show the facts of one arm. Opens the arm if it is plugged in, but moves nothing.");
-  info_command->add_option("file", *file, "device file (YAML)")->required();
-  info_command->footer("Example:\n  hapticd device info config/devices/simulated-premium15.yaml");
+  const Command info_command =
+      command.addSubcommand("info", "Show the facts of one arm. Opens the arm if it is plugged in, but moves nothing.");
+  info_command.addOption("file", *file, "device file (YAML)").required();
+  info_command.footer("Example:\n  hapticd device info config/devices/simulated-premium15.yaml");
   auto parameters = std::make_shared<bool>(false);
-  info_command->add_flag("--parameters", *parameters, "also print every parameter of the module");
-  info_command->add_flag("--json", *json, "print JSON");
-  info_command->callback([file, parameters, json, &exit_code] { exit_code = info(*file, *parameters, *json); });
+  info_command.addFlag("--parameters", *parameters, "also print every parameter of the module");
+  info_command.addFlag("--json", *json, "print JSON");
+  info_command.callback([file, parameters, json, &exit_code] { exit_code = info(*file, *parameters, *json); });
 }
 
 }  // namespace hapticd::cli

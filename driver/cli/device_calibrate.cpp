@@ -72,14 +72,14 @@ int calibrate(const CalibrationArguments& options) {
 
 }  // namespace
 
-void addDeviceCalibrate(CLI::App& app, int& exit_code) {
+void addDeviceCalibrate(const Command& app, int& exit_code) {
   auto options = std::make_shared<CalibrationArguments>();
-  CLI::App* command = app.get_subcommand("device")->add_subcommand(
+  const Command command = app.subcommand("device").addSubcommand(
       "calibrate", "Calibrate the encoders of an arm. The command says what you must do; no force is sent before.");
-  command->add_option("file", options->file, "device file (YAML)")->required();
-  command->add_flag("-y,--yes", options->yes, "do not wait for Enter");
-  command->footer("Example:\n  hapticd device calibrate config/devices/simulated-premium15.yaml");
-  command->callback([options, &exit_code] { exit_code = calibrate(*options); });
+  command.addOption("file", options->file, "device file (YAML)").required();
+  command.addFlag("-y,--yes", options->yes, "do not wait for Enter");
+  command.footer("Example:\n  hapticd device calibrate config/devices/simulated-premium15.yaml");
+  command.callback([options, &exit_code] { exit_code = calibrate(*options); });
 }
 
 }  // namespace hapticd::cli

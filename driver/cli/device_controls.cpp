@@ -25,6 +25,7 @@ constexpr Against kAgainst[] = {{"H4 H6 H8 H9 H13 H17 H21", "wrong numbers, faul
                                 {"H23", "a weight that pushes"},
                                 {"H26 H33", "a daemon that stands still"},
                                 {"H30 H32", "a daemon that is gone"},
+                                {"H21", "energy after a fault"},
                                 {"H30", "a machine that stops"},
                                 {"H3", "an arm that falls silent"},
                                 {"H22", "a contact that buzzes"},
@@ -54,13 +55,13 @@ int controls(const std::string& file) {
 
 }  // namespace
 
-void addDeviceControls(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.get_subcommand("device")->add_subcommand(
+void addDeviceControls(const Command& app, int& exit_code) {
+  const Command command = app.subcommand("device").addSubcommand(
       "controls", "Show which controls of hazards an arm has. Opens the arm if it is plugged in, but moves nothing.");
   auto file = std::make_shared<std::string>();
-  command->add_option("file", *file, "device file (YAML)")->required();
-  command->footer("Example:\n  hapticd device controls config/devices/premium15.yaml");
-  command->callback([file, &exit_code] { exit_code = controls(*file); });
+  command.addOption("file", *file, "device file (YAML)").required();
+  command.footer("Example:\n  hapticd device controls config/devices/premium15.yaml");
+  command.callback([file, &exit_code] { exit_code = controls(*file); });
 }
 
 }  // namespace hapticd::cli

@@ -10,11 +10,14 @@
 #include <sstream>
 #include <string>
 
+#include "capture/course_hint.hpp"
 #include "capture/hints.hpp"
 #include "capture/plausible.hpp"
 #include "capture/report_table.hpp"
 #include "capture/saturation.hpp"
 #include "cli/command.hpp"
+#include "cli/decoded_table.hpp"
+#include "cli/encode_columns.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "document/csv.hpp"
 #include "document/node.hpp"
@@ -33,6 +36,7 @@ struct Described {
   codec::Wire wire;
   size_t joints = 0;
   capture::ArmFacts arm;
+  std::unique_ptr<host::DeviceInstance> device;
 };
 
 capture::ArmFacts factsOf(const scene::Device& device, size_t joints) {
@@ -42,6 +46,7 @@ capture::ArmFacts factsOf(const scene::Device& device, size_t joints) {
     if (value.id == "arm.limits") facts.limits = value.numbers;
     if (value.id == "calibration.method") facts.zeroed = value.number > 1;  // pose
     if (value.id == "health.max_speed") facts.max_speed = value.number;
+    if (value.id == "health.least_rate") facts.least_rate = value.number;
   }
   return facts;
 }
@@ -61,7 +66,8 @@ std::optional<Described> describedIn(const std::string& file, int& exit_code) {
   for (const scene::Value& value : loaded.device->parameters)
     if (value.id == "wire") {
       const size_t joints = (*device)->kinematics().joint_count;
-      return Described{codec::readWire(value.text, joints), joints, factsOf(*loaded.device, joints)};
+      return Described{codec::readWire(value.text, joints), joints, factsOf(*loaded.device, joints),
+                       std::move(*device)};
     }
   exit_code = fail(kBadInput, file + ": its module " + loaded.device->module +
                                   " has no parameter wire, expected a device file of usb_hid, usb_bulk or vme");
@@ -95,11 +101,12 @@ int decode(const DecodeArguments& options) {
   if (const int failed = writeOut(options.out, capture::csvOf(described->wire, described->joints, decoded));
       failed != 0)
     return failed;
-  std::fprintf(stderr, "read as %s: %s\n%s%s", taken->text ? "hexadecimal text" : "raw bytes",
+  std::fprintf(stderr, "read as %s: %s\n%s%s%s", taken->text ? "hexadecimal text" : "raw bytes",
                capture::summaryOf(decoded).c_str(), capture::hintsOf(described->wire, *taken, decoded).c_str(),
+               capture::courseHints(described->wire, decoded, described->arm.least_rate).c_str(),
                capture::implausible(described->wire, described->arm, decoded).c_str());
   if (decoded.reports.empty())
-    return fail(kFailed, "no report in " + std::to_string(bytes->size()) + " bytes, expected " +
+    return fail(kFailed, "no report in " + std::to_string(taken->bytes()) + " bytes, expected " +
                              std::to_string(described->wire.input.bytes()) + " bytes per report");
   return decoded.good() == decoded.reports.size() && decoded.lost == 0 ? kWorked : kFailed;
 }
@@ -136,57 +143,83 @@ std::vector<std::string> namesIn(const std::string& text, const std::vector<std:
   return names;
 }
 
-int encode(const DecodeArguments& options) {
-  int exit_code = kWorked;
-  const auto described = describedIn(options.file, exit_code);
-  if (!described) return exit_code;
-  const auto text = contentOf(options.input);
-  if (!text)
-    return fail(kBadInput, options.input + ": cannot be read, expected a CSV file; numbers come on standard input: " +
-                               "echo 0.1,0,0 | hapticd device encode " + options.file);
-  if (const std::string line = firstLine(*text); lacksCommas(line))
-    return fail(kBadInput,
-                options.input + ": \"" + line.substr(0, 40) + "\", expected commas between the numbers: 0.1,0,0");
-  const auto known = capture::columnsOf(described->wire, described->joints, !options.from_arm);
-  const auto names = namesIn(*text, known, described->joints);
-  std::string header, all;
-  for (const std::string& name : names) header += (header.empty() ? "" : ",") + name;
-  for (const std::string& name : known) all += (all.empty() ? "" : ", ") + name;
-  for (const std::string& name : names)
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      return fail(kBadInput, options.input + ": its first line has \"" + name.substr(0, 40) +
-                                 "\", which is no number and no column of the report; expected columns among " + all);
-  document::Problems problems;
-  const auto table = document::parseCsv(*text, options.input, {{header}}, problems);
-  printProblems(problems, stderr);
-  if (!table) return kBadInput;
+/// Every row as a report, raw or in hexadecimal digits.
+Result<std::string> encodeTable(const DecodeArguments& options, const Described& described,
+                                const EncodeColumns& columns, const document::CsvTable& table) {
   std::string out;
-  for (size_t i = 0; i < table->rows(); ++i) {
-    const auto bytes =
-        capture::encodeRow(described->wire, !options.from_arm, names, table->row(i), static_cast<uint32_t>(i + 1));
-    if (!bytes) return fail(kBadInput, bytes.error());
-    for (const std::string& what : capture::saturated(described->wire, !options.from_arm, names, table->row(i)))
-      std::fprintf(stderr, "warning: %s: line %d: %s\n", options.input.c_str(), table->lines[i], what.c_str());
+  std::vector<double> joints(HDV_MAX_JOINTS, 0.0);
+  capture::Saturation saturation;
+  for (size_t i = 0; i < table.rows(); ++i) {
+    const std::string line = options.input + ": line " + std::to_string(table.lines[i]) + ": ";
+    const auto values = columns.row(table.row(i), *described.device, joints);
+    if (!values) return Error{line + values.error()};
+    const auto bytes = capture::encodeRow(described.wire, !options.from_arm, columns.names, values->data(),
+                                          static_cast<uint32_t>(i + 1));
+    if (!bytes) return Error{bytes.error()};
+    saturation.look(described.wire, !options.from_arm, columns.names, values->data(), table.lines[i]);
     if (options.raw)
       out.append(bytes->begin(), bytes->end());
     else
       out += capture::hexText(bytes->data(), bytes->size()) + "\n";
   }
-  return writeOut(options.out, out);
+  for (const std::string& what : saturation.told())
+    std::fprintf(stderr, "warning: %s: %s\n", options.input.c_str(), what.c_str());
+  return out;
 }
 
-void addDecode(CLI::App& device, int& exit_code) {
+/// The table that is given, numbers alone; all that is wrong is told.
+std::optional<std::string> tableOf(const DecodeArguments& options) {
+  const auto text = contentOf(options.input);
+  if (!text)
+    return (void)fail(kBadInput, options.input +
+                                     ": cannot be read, expected a CSV file; numbers come on standard input: echo "
+                                     "0.1,0,0 | hapticd device encode " +
+                                     options.file),
+           std::nullopt;
+  if (const std::string line = firstLine(*text); lacksCommas(line))
+    return (void)fail(kBadInput,
+                      options.input + ": \"" + line.substr(0, 40) + "\", expected commas between the numbers: 0.1,0,0"),
+           std::nullopt;
+  PlainTable plain = plainTable(*text);
+  if (plain.left_out > 0)
+    std::fprintf(stderr, "note: %s: rows that are no good report are left out: %zu\n", options.input.c_str(),
+                 plain.left_out);
+  return std::move(plain.text);
+}
+
+int encode(const DecodeArguments& options) {
+  int exit_code = kWorked;
+  const auto described = describedIn(options.file, exit_code);
+  if (!described) return exit_code;
+  const auto text = tableOf(options);
+  if (!text) return kBadInput;
+  const auto known = capture::columnsOf(described->wire, described->joints, !options.from_arm);
+  const auto names = namesIn(*text, known, described->joints);
+  const auto columns = encodeColumns(names, known, described->joints, !options.from_arm);
+  if (!columns) return fail(kBadInput, options.input + ": " + columns.error());
+  std::string header;
+  for (const std::string& name : names) header += (header.empty() ? "" : ",") + name;
+  document::Problems problems;
+  const auto table = document::parseCsv(*text, options.input, {{header}}, problems);
+  printProblems(problems, stderr);
+  if (!table) return kBadInput;
+  const auto out = encodeTable(options, *described, *columns, *table);
+  if (!out) return fail(kBadInput, out.error());
+  return writeOut(options.out, *out);
+}
+
+void addDecode(const Command& device, int& exit_code) {
   auto options = std::make_shared<DecodeArguments>();
-  CLI::App* command =
-      device.add_subcommand("decode", "Show a captured stream of an arm as numbers, as its device file reads it.");
-  command->add_option("file", options->file, "device file (YAML)")->required();
-  command->add_option("capture", options->input, "captured bytes; - for standard input")->capture_default_str();
-  auto* hex =
-      command->add_flag("--hex", options->hex, "the capture is text: one transfer per line, two digits per byte");
-  command->add_flag("--raw", options->raw, "the capture is the bytes themselves, even if they read as text")
-      ->excludes(hex);
-  command->add_option("-o,--out", options->out, "CSV file to write; - for standard output");
-  command->footer(
+  const Command command =
+      device.addSubcommand("decode", "Show a captured stream of an arm as numbers, as its device file reads it.");
+  command.addOption("file", options->file, "device file (YAML)").required();
+  command.addOption("capture", options->input, "captured bytes; - for standard input").showDefault();
+  const Option hex =
+      command.addFlag("--hex", options->hex, "the capture is text: one transfer per line, two digits per byte");
+  command.addFlag("--raw", options->raw, "the capture is the bytes themselves, even if they read as text")
+      .excludes(hex);
+  command.addOption("-o,--out", options->out, "CSV file to write; - for standard output");
+  command.footer(
       "A capture is raw bytes, or text with one transfer per line: \"01 ff 3c\", the E: lines of hid-recorder, or "
       "what\n"
       "`hapticd device record` writes. The output has one row per report: positions, torques and buttons in SI units,\n"
@@ -194,35 +227,38 @@ void addDecode(CLI::App& device, int& exit_code) {
       "Examples:\n  hapticd device decode my-arm.yaml capture.bin\n"
       "  printf '00 01 00 02 00 03 00 00 00 00 00 00 00 00\\n' | hapticd device decode "
       "config/devices/woodenhaptics.yaml --hex");
-  command->callback([options, &exit_code] { exit_code = decode(*options); });
+  command.callback([options, &exit_code] { exit_code = decode(*options); });
 }
 
-void addEncode(CLI::App& device, int& exit_code) {
+void addEncode(const Command& device, int& exit_code) {
   auto options = std::make_shared<DecodeArguments>();
-  CLI::App* command = device.add_subcommand("encode", "Write numbers as the bytes of an arm's reports.");
-  command->add_option("file", options->file, "device file (YAML)")->required();
-  command->add_option("csv", options->input, "CSV file with the numbers; - for standard input")->capture_default_str();
-  command->add_flag("--from-arm", options->from_arm, "write what the arm would send, instead of what it is sent");
-  command->add_flag("--raw", options->raw, "write the bytes themselves instead of hexadecimal text");
-  command->add_option("-o,--out", options->out, "file to write; - for standard output");
-  command->footer(
+  const Command command = device.addSubcommand("encode", "Write numbers as the bytes of an arm's reports.");
+  command.addOption("file", options->file, "device file (YAML)").required();
+  command.addOption("csv", options->input, "CSV file with the numbers; - for standard input").showDefault();
+  command.addFlag("--from-arm", options->from_arm, "write what the arm would send, instead of what it is sent");
+  command.addFlag("--raw", options->raw, "write the bytes themselves instead of hexadecimal text");
+  command.addOption("-o,--out", options->out, "file to write; - for standard output");
+  command.footer(
       "Each row of the CSV is one report. Its header names the columns: torque1,torque2 [N m, N], reference1, enable, "
       "follow,\n"
       "calibrate; with --from-arm position1, velocity1, torque1, buttons, sequence, starts, clock, fault, calibrated. "
       "Without "
       "a\nheader they are the torques or, with --from-arm, the positions of all joints. Constants, counters, checksums "
-      "and\nescapes are added.\n\n"
+      "and\nescapes are added. Tables of `device kinematics` are understood: tau1,... are the torques, q1,... the "
+      "positions with\n--from-arm, or x,y,z those of a tip in the device frame; its other columns are left out. Of a "
+      "table of `device "
+      "decode`\nthe good reports are taken.\n\n"
       "Example:\n  echo 0.1,0,-0.1 | hapticd device encode config/devices/woodenhaptics.yaml\n"
       "  echo 0.1,1.5,1.6 | hapticd device encode --from-arm config/devices/woodenhaptics.yaml | "
       "hapticd device decode config/devices/woodenhaptics.yaml");
-  command->callback([options, &exit_code] { exit_code = encode(*options); });
+  command.callback([options, &exit_code] { exit_code = encode(*options); });
 }
 
 }  // namespace
 
-void addDeviceDecode(CLI::App& app, int& exit_code) {
-  addDecode(*app.get_subcommand("device"), exit_code);
-  addEncode(*app.get_subcommand("device"), exit_code);
+void addDeviceDecode(const Command& app, int& exit_code) {
+  addDecode(app.subcommand("device"), exit_code);
+  addEncode(app.subcommand("device"), exit_code);
 }
 
 }  // namespace hapticd::cli

@@ -2,7 +2,6 @@
 /// `hapticd device kinematics`: forward kinematics, Jacobian and torques of an arm, offline, for joints of a CSV file.
 #include <Eigen/Core>
 #include <array>
-#include <cmath>
 #include <memory>
 #include <string>
 
@@ -131,22 +130,22 @@ int kinematics(const KinematicsArguments& options) {
 
 }  // namespace
 
-void addDeviceKinematics(CLI::App& app, int& exit_code) {
+void addDeviceKinematics(const Command& app, int& exit_code) {
   auto options = std::make_shared<KinematicsArguments>();
-  CLI::App* command = app.get_subcommand("device")->add_subcommand(
+  const Command command = app.subcommand("device").addSubcommand(
       "kinematics", "Compute tip pose, Jacobian, gravity torques and J^T W for the joint positions of a CSV file.");
-  command->add_option("file", options->file, "device file (YAML)")->required();
+  command.addOption("file", options->file, "device file (YAML)").required();
   command
-      ->add_option("--joints", options->joints,
-                   "CSV with q1,q2,... [rad; m for sliding joints] and optionally fx,fy,fz[,tx,ty,tz] [N, N m]")
-      ->required();
-  command->add_option("-o,--out", options->out, "CSV file to write; - for standard output");
-  command->footer(
+      .addOption("--joints", options->joints,
+                 "CSV with q1,q2,... [rad; m for sliding joints] and optionally fx,fy,fz[,tx,ty,tz] [N, N m]")
+      .required();
+  command.addOption("-o,--out", options->out, "CSV file to write; - for standard output");
+  command.footer(
       "Everything is in the device frame and in SI units. J is given row by row: J1..J3 are the velocity of the "
       "tip,\nJ4..J6 the angular velocity. gravityN are the torques that hold the arm against gravity as it is "
       "mounted.\ntauN = J^T W is given if the file has forces.\n\nExample:\n  hapticd device kinematics "
       "config/devices/simulated-premium15.yaml --joints joints.csv");
-  command->callback([options, &exit_code] { exit_code = kinematics(*options); });
+  command.callback([options, &exit_code] { exit_code = kinematics(*options); });
 }
 
 }  // namespace hapticd::cli

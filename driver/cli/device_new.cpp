@@ -90,8 +90,8 @@ std::string lengthsQuestion(const std::string& kind) {
 
 bool readNumbers(const std::string& text, std::vector<double>& numbers) {
   numbers.clear();
-  for (const std::string& word : CLI::detail::split(text, ',')) {
-    const auto number = document::toNumber(CLI::detail::trim_copy(word));
+  for (const std::string& word : command_line::split(text, ',')) {
+    const auto number = document::toNumber(command_line::trimmed(word));
     if (!number || !std::isfinite(*number)) return false;
     numbers.push_back(*number);
   }
@@ -101,17 +101,17 @@ bool readNumbers(const std::string& text, std::vector<double>& numbers) {
 /// Asks for what no option gave; an empty answer keeps what is there.
 class Questions {
  public:
-  explicit Questions(const CLI::App& command) : command_(command) {}
+  explicit Questions(const Command& command) : command_(command) {}
 
   /// Asks again until `wrong`, "" or what is wrong with the answers so far, has nothing to say.
   template <class Value, class Wrong>
   void ask(const char* option, const char* question, Value& value, const Wrong& wrong) {
-    if (command_.count(option) > 0) return;
+    if (command_.given(option)) return;
     for (const Value before = value;; value = before) {
       std::cout << question << " [" << before << "]: " << std::flush;
       std::string answer;
       if (!std::getline(std::cin, answer) || answer.empty()) return;
-      const bool read = CLI::detail::lexical_cast(answer, value);
+      const bool read = command_line::read(answer, value);
       const std::string what = read ? wrong() : "\"" + answer + "\" is no number";
       if (what.empty()) return;
       std::cout << "  " << what << "\n";
@@ -121,7 +121,7 @@ class Questions {
   /// A list, such as 0.21, 0.17; no answer leaves the template's.
   template <class Wrong>
   void askList(const char* option, const std::string& question, std::vector<double>& list, const Wrong& wrong) {
-    if (command_.count(option) > 0) return;
+    if (command_.given(option)) return;
     for (const std::vector<double> before = list;; list = before) {
       std::cout << question << ": " << std::flush;
       std::string answer;
@@ -133,10 +133,10 @@ class Questions {
   }
 
  private:
-  const CLI::App& command_;
+  const Command& command_;
 };
 
-void askAll(const CLI::App& command, NewDeviceArguments& options) {
+void askAll(const Command& command, NewDeviceArguments& options) {
   Questions questions(command);
   const auto wrong = [&options] { return wrongIn(options); };
   questions.ask("--bus", "Bus: hid, bulk (USB)", options.bus, wrong);
@@ -161,48 +161,50 @@ std::string listOf(const std::vector<double>& numbers) {
   return fmt::format("[{:g}]", fmt::join(numbers, ", "));
 }
 
+std::string phantomOf(const NewDeviceArguments& o) {
+  std::vector<double> all = o.lengths.empty() ? std::vector<double>{0.2, 0.2} : o.lengths;
+  all.insert(all.end(), {0, 0, 0});
+  return fmt::format(
+             "    lengths: {}     # m: upper arm, forearm; l3, l5, l6 for the weight alone: driver/docs/devices.md\n",
+             listOf(all)) +
+         "    masses: [0, 0, 0, 0]          # kg: ma, mc, mbe, mdf; all 0: its weight is not carried; left out: a "
+         "Premium 1.5's\n";
+}
+
+std::string deltaOf(const NewDeviceArguments& o) {
+  return (o.lengths.empty() ? "    # lengths: [a, b, c, d, e, f, r, s]    # m; left out: the Falcon's\n"
+                            : fmt::format("    lengths: {}    # m: a, b, c, d, e, f, r, s\n", listOf(o.lengths))) +
+         "    masses: [0, 0, 0]             # kg: arm, rod, platform; all 0: its weight is not carried; left out: a "
+         "Falcon's, guessed\n";
+}
+
+std::string chainOf(const NewDeviceArguments& o) {
+  std::string text =
+      "    dh:                           # a, alpha, d, theta: m, rad (standard Denavit-Hartenberg), one row per "
+      "joint\n";
+  for (int i = 0; i < o.joints; ++i)
+    text += fmt::format("      - [{:g}, {:.9g}, 0, 0]\n", o.lengths.empty() ? 0.2 : ofJoint(o.lengths, i),
+                        o.twists.empty() ? 0 : ofJoint(o.twists, i));
+  if (isPlanar(o))
+    text +=
+        "      # Every alpha is 0: all axes are parallel, and the tip stays in a plane. A base that turns about the\n"
+        "      # vertical has alpha 1.5707963 in the first row, and base_orientation below.\n";
+  return text +
+         "    # base_orientation: [0.7071068, -0.7071068, 0, 0]   # the first axis points up; left out: toward the "
+         "user\n"
+         "    # masses: [...]               # kg, one per row; left out: its weight is not carried\n"
+         "    # centers: [[-0.1, 0, 0], ...] # m, one per row: the link's centre of mass, from its far end, in its "
+         "frame;\n"
+         "                                  # left out: each mass is at the far end of its link, which is too heavy\n";
+}
+
 std::string armOf(const NewDeviceArguments& o) {
-  std::string text = fmt::format("  arm:\n    kind: {}\n", o.kind);
-  if (o.kind == "phantom") {
-    std::vector<double> all = o.lengths.empty() ? std::vector<double>{0.2, 0.2} : o.lengths;
-    all.insert(all.end(), {0, 0, 0});
-    text += fmt::format(
-        "    lengths: {}     # m: upper arm, forearm; l3, l5, l6 for the weight alone: driver/docs/devices.md\n",
-        listOf(all));
-    text +=
-        "    masses: [0, 0, 0, 0]          # kg: ma, mc, mbe, mdf; all 0: its weight is not carried; left out: a "
-        "Premium "
-        "1.5's\n";
-  } else if (o.kind == "delta") {
-    text += o.lengths.empty() ? "    # lengths: [a, b, c, d, e, f, r, s]    # m; left out: the Falcon's\n"
-                              : fmt::format("    lengths: {}    # m: a, b, c, d, e, f, r, s\n", listOf(o.lengths));
-    text +=
-        "    masses: [0, 0, 0]             # kg: arm, rod, platform; all 0: its weight is not carried; left out: a "
-        "Falcon's, guessed\n";
-  } else {
-    text +=
-        "    dh:                           # a, alpha, d, theta: m, rad (standard Denavit-Hartenberg), one row per "
-        "joint\n";
-    for (int i = 0; i < o.joints; ++i)
-      text += fmt::format("      - [{:g}, {:.9g}, 0, 0]\n", o.lengths.empty() ? 0.2 : ofJoint(o.lengths, i),
-                          o.twists.empty() ? 0 : ofJoint(o.twists, i));
-    if (isPlanar(o))
-      text +=
-          "      # Every alpha is 0: all axes are parallel, and the tip stays in a plane. A base that turns about the\n"
-          "      # vertical has alpha 1.5707963 in the first row, and base_orientation below.\n";
-    text +=
-        "    # base_orientation: [0.7071068, -0.7071068, 0, 0]   # the first axis points up; left out: toward the "
-        "user\n"
-        "    # masses: [...]               # kg, one per row; left out: its weight is not carried\n"
-        "    # centers: [[-0.1, 0, 0], ...] # m, one per row: the link's centre of mass, from its far end, in its "
-        "frame;\n"
-        "                                  # left out: each mass is at the far end of its link, which is too heavy\n";
-  }
-  text += fmt::format(
-      "    # limits: [[-1, 1], ...]      # rad, one row per joint; left out: the mechanism's own\n"
-      "    max_torque: {}             # N m at the joint: the motor's, times its turns in one joint turn\n",
-      listOf(o.torque));
-  return text;
+  const std::string links = o.kind == "phantom" ? phantomOf(o) : o.kind == "delta" ? deltaOf(o) : chainOf(o);
+  return fmt::format("  arm:\n    kind: {}\n", o.kind) + links +
+         fmt::format(
+             "    # limits: [[-1, 1], ...]      # rad, one row per joint; left out: the mechanism's own\n"
+             "    max_torque: {}             # N m at the joint: the motor's, times its turns in one joint turn\n",
+             listOf(o.torque));
 }
 
 /// Bits of a checksum in whole bytes, which its name has: crc16-modbus, crc5-usb.
@@ -261,16 +263,26 @@ std::string wireOf(const NewDeviceArguments& o) {
   return text;
 }
 
+/// Where another mechanism rests, its numbers say.
+std::string mountOf(const NewDeviceArguments& o) {
+  if (o.kind == "phantom")
+    return "mount: {position: [0, 0, 0.09]}     # m: where its frame stands in the world; this one puts the tip at "
+           "rest\n"
+           "                                     # 9 cm in front of the origin, where the scenes have their shapes\n";
+  return "# mount: {position: [0, 0, 0]}      # m: where its frame stands in the world; scenes have their shapes about "
+         "the\n"
+         "                                     # origin: (0, 0, 0.09) less the tip at rest, as `device kinematics` has "
+         "it\n";
+}
+
 std::string textOf(const NewDeviceArguments& o) {
   std::string pose;
   for (int i = 0; i < o.joints; ++i) pose += i > 0 ? ", 0" : "0";
   return fmt::format(
       "# {0}. Written by `hapticd device new`; each number is a guess until you have measured it.\n"
       "hapticd-device: 1\nmodule: usb_{1}\nname: {0}\n"
-      "{9}mount: {{position: [0, 0, 0.09]}}     # m: where its frame stands in the world; this one puts the tip at "
-      "rest\n"
-      "                                     # 9 cm in front of the origin, where the scenes have their shapes\n"
-      "limits: {{force: {2:g}, passivity: true}}   # N: begin low, and raise it when the signs are right\n{8}"
+      "{9}"
+      "limits: {{force: {2:g}, {10}passivity: true}}   # N: begin low, and raise it when the signs are right\n{8}"
       "parameters:\n  usb: {{id: \"{3}\"}}\n"
       "  # device: {{max_force: 5, max_stiffness: 1000, mass: 0.2}}      # what `check` and `tune` may rely on\n{4}"
       "  calibration:\n    method: pose                  # or none: absolute encoders; device: it finds its zero "
@@ -280,7 +292,8 @@ std::string textOf(const NewDeviceArguments& o) {
       o.buttons > 0 ? "# in limits: enable: {button: 0}   # forces only while it is held; here buttons count from 0, "
                       "in wire from 1\n"
                     : "",
-      o.kind == "phantom" ? "" : "# ");  // where another one rests, its numbers say
+      mountOf(o),
+      o.joints > 3 ? fmt::format("torque: {:.2g}, ", 0.1 * o.force) : "");  // N m: that force at a handle of 0.1 m
 }
 
 bool usableDeviceName(const std::string& name) {
@@ -289,7 +302,7 @@ bool usableDeviceName(const std::string& name) {
   return !name.empty() && name.size() <= 40;
 }
 
-int makeNew(const CLI::App& command, NewDeviceArguments options) {
+int makeNew(const Command& command, NewDeviceArguments options) {
   if (!usableDeviceName(options.name))
     return fail(kBadInput,
                 "\"" + options.name + "\" is not a valid name of a device, expected letters, digits, _ and -");
@@ -309,15 +322,20 @@ int makeNew(const CLI::App& command, NewDeviceArguments options) {
   if (!problems.empty())
     return fail(kFailed,
                 name + " is written, but cannot be used yet\n  fix: what is said above, then hapticd check " + name);
+  const std::string twin = options.kind == "delta"
+                               ? ""  // the simulated arm has no such mechanism
+                               : "  hapticd device twin " + name +
+                                     "                 # the same arm simulated, to feel a scene with before it is "
+                                     "there\n";
   std::printf(
       "%s\n\nthen, step by step (driver/docs/devices.md, \"A new arm, step by step\"):\n"
       "  hapticd check %s                       # after each change\n"
       "  hapticd device decode %s CAPTURE       # captured bytes as joint positions\n"
       "  hapticd device record %s               # what the arm sends, motors off\n"
-      "  hapticd device twin %s                 # the same arm simulated, to feel a scene with before it is there\n"
+      "%s"
       "  hapticd device calibrate %s\n"
       "  hapticd run SCENE.yaml --device %s --view       # the arm in a page\n",
-      name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str(), name.c_str());
+      name.c_str(), name.c_str(), name.c_str(), name.c_str(), twin.c_str(), name.c_str(), name.c_str());
   if (isPlanar(options))
     std::printf(
         "\nnote: every axis of arm.dh is parallel, so the tip stays in a plane and feels no force across it\n"
@@ -327,41 +345,39 @@ int makeNew(const CLI::App& command, NewDeviceArguments options) {
 
 }  // namespace
 
-void addDeviceNew(CLI::App& app, int& exit_code) {
+void addDeviceNew(const Command& app, int& exit_code) {
   auto options = std::make_shared<NewDeviceArguments>();
-  CLI::App* command = app.get_subcommand("device")->add_subcommand(
+  const Command command = app.subcommand("device").addSubcommand(
       "new", "Write a commented device file to start from; asks on a terminal for what no option gives.");
-  command->add_option("name", options->name, "name of the arm: letters, digits, _ and -")->required();
-  command->add_option("-o,--out", options->out, "file to write; default: NAME.yaml in the current folder");
-  command->add_option("--bus", options->bus, "hid or bulk, both USB")->capture_default_str();
-  command->add_option("--id", options->id, "USB vendor:product, hexadecimal")->capture_default_str();
-  command->add_option("--kind", options->kind, "phantom, delta or chain")->capture_default_str();
-  command->add_option("--joints", options->joints, "joints of a chain")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 16));
+  command.addOption("name", options->name, "name of the arm: letters, digits, _ and -").required();
+  command.addOption("-o,--out", options->out, "file to write; default: NAME.yaml in the current folder");
+  command.addOption("--bus", options->bus, "hid or bulk, both USB").showDefault();
+  command.addOption("--id", options->id, "USB vendor:product, hexadecimal").showDefault();
+  command.addOption("--kind", options->kind, "phantom, delta or chain").showDefault();
+  command.addOption("--joints", options->joints, "joints of a chain").showDefault().wholeWithin(1, 16);
   const auto list = [command](const char* option, std::vector<double>& numbers, const char* doc) {
-    command->add_option(option, numbers, doc)->delimiter(',')->allow_extra_args(false);
+    command.addOption(option, numbers, doc).delimiter(',').oneValueEach();
   };
   list("--lengths", options->lengths, "link lengths [m], separated by commas");
   list("--twists", options->twists, "of a chain: angles alpha from each joint's axis to the next [rad]; default: 0");
   list("--counts", options->counts, "encoder counts of one motor turn, or one for each joint; default: 2000");
   list("--gear", options->gear, "motor turns of one joint turn, or one for each joint; default: 10");
-  command->add_option("--bits", options->bits, "bits of a position in a report")->capture_default_str();
-  command->add_option("--report-id", options->report_id, "HID report id; 0: reports have none")
-      ->capture_default_str()
-      ->check(CLI::Range(0, 255));
-  command->add_option("--checksum", options->checksum,
-                      "of what the arm sends, by its name, such as crc16; default: none");
-  command->add_option("--buttons", options->buttons, "buttons")->capture_default_str()->check(CLI::Range(0, 32));
+  command.addOption("--bits", options->bits, "bits of a position in a report").showDefault();
+  command.addOption("--report-id", options->report_id, "HID report id; 0: reports have none")
+      .showDefault()
+      .wholeWithin(0, 255);
+  command.addOption("--checksum", options->checksum,
+                    "of what the arm sends, by its name, such as crc16; default: none");
+  command.addOption("--buttons", options->buttons, "buttons").showDefault().wholeWithin(0, 32);
   list("--torque", options->torque, "largest torque of a joint [N m], or one for each; default: 0.5");
-  command->add_option("--force", options->force, "limit of the force at the tip [N]")->capture_default_str();
-  command->add_flag("--no-questions", options->no_questions, "ask nothing, take the defaults");
-  command->footer(
+  command.addOption("--force", options->force, "limit of the force at the tip [N]").showDefault();
+  command.addFlag("--no-questions", options->no_questions, "ask nothing, take the defaults");
+  command.footer(
       "The file is checked as soon as it is written. Every number in it is a guess until you have measured it.\n\n"
       "Examples:\n  hapticd device new my-arm\n"
       "  hapticd device new my-arm --kind phantom --id 16c0:0486 --lengths 0.21,0.17 --counts 4000 --gear 9.5 --bits "
       "24");
-  command->callback([command, options, &exit_code] { exit_code = makeNew(*command, *options); });
+  command.callback([command, options, &exit_code] { exit_code = makeNew(command, *options); });
 }
 
 }  // namespace hapticd::cli

@@ -73,21 +73,19 @@ int record(const CaptureArguments& options) {
 
 }  // namespace
 
-void addDeviceRecord(CLI::App& app, int& exit_code) {
+void addDeviceRecord(const Command& app, int& exit_code) {
   auto options = std::make_shared<CaptureArguments>();
-  CLI::App* command = app.get_subcommand("device")->add_subcommand(
+  const Command command = app.subcommand("device").addSubcommand(
       "record", "Write what an arm sends to a file, byte by byte, with its motors off.");
-  command->add_option("file", options->file, "device file (YAML)")->required();
-  command->add_option("-o,--out", options->out, "file to write; - for standard output");
-  command->add_option("--for", options->seconds, "how long [s]; Ctrl-C ends it earlier")
-      ->capture_default_str()
-      ->check(within(0.001, 1e6));
-  command->footer(
+  command.addOption("file", options->file, "device file (YAML)").required();
+  command.addOption("-o,--out", options->out, "file to write; - for standard output");
+  command.addOption("--for", options->seconds, "how long [s]; Ctrl-C ends it earlier").showDefault().within(0.001, 1e6);
+  command.footer(
       "The layout of the reports need not be right yet: only usb, exchange, rate, endpoints and startup are used, and "
       "a\npolled arm gets the output report with its motors off.\n\n"
       "Example:\n  hapticd device record my-arm.yaml --for 5 -o capture.txt && hapticd device decode my-arm.yaml "
       "capture.txt");
-  command->callback([options, &exit_code] { exit_code = record(*options); });
+  command.callback([options, &exit_code] { exit_code = record(*options); });
 }
 
 }  // namespace hapticd::cli

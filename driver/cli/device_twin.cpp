@@ -10,10 +10,30 @@
 
 #include "cli/command.hpp"
 #include "diagnostics/device_trial.hpp"
+#include "diagnostics/hand_start.hpp"
 #include "document/node.hpp"
 
 namespace hapticd::cli {
 namespace {
+
+/// Whether the twin that was written can be run.
+int judge(const std::string& file, const std::string& out) {
+  const scene::LoadedDevice twin = scene::loadDevice(out, catalog());
+  document::Problems problems = twin.problems;
+  if (problems.empty()) problems = diagnostics::tryDevice(out, catalog());
+  printProblems(problems, stderr);
+  if (!problems.empty() || !twin.device)
+    return fail(kFailed, out + " is written, but cannot be used yet\n  fix: hapticd check " + file +
+                             ", then write the twin anew");
+  scene::Scene alone;
+  alone.devices.push_back(*twin.device);
+  problems = diagnostics::unreachableHands(alone);
+  printProblems(problems, stderr);
+  if (problems.empty()) return kWorked;
+  return fail(kFailed, out + " is written, but its hand cannot begin\n  fix: mount of " + file +
+                           ", which says where the arm stands: shapes and hand are about the world's origin (left out "
+                           "of a chain, it is found); or its arm.limits; then write the twin anew");
+}
 
 int makeTwin(const std::string& file, const std::string& wanted) {
   namespace fs = std::filesystem;
@@ -29,12 +49,7 @@ int makeTwin(const std::string& file, const std::string& wanted) {
   std::ofstream stream(out);
   stream << *text << std::flush;
   if (!stream) return fail(kFailed, out + " is not writable");
-  problems = scene::loadDevice(out, catalog()).problems;
-  if (problems.empty()) problems = diagnostics::tryDevice(out, catalog());
-  printProblems(problems, stderr);
-  if (!problems.empty())
-    return fail(kFailed, out + " is written, but cannot be used yet\n  fix: hapticd check " + file +
-                             ", then write the twin anew");
+  if (const int wrong = judge(file, out); wrong != kWorked) return wrong;
   if (const std::string borrowed = diagnostics::borrowedByTwin(*root); !borrowed.empty())
     std::fprintf(stderr, "warning: %s: %s\n", file.c_str(), borrowed.c_str());
   std::printf("%s\n\nthen:\n  hapticd check SCENE.yaml --device %s\n  hapticd run SCENE.yaml --device %s --view\n",
@@ -44,14 +59,14 @@ int makeTwin(const std::string& file, const std::string& wanted) {
 
 }  // namespace
 
-void addDeviceTwin(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.get_subcommand("device")->add_subcommand(
+void addDeviceTwin(const Command& app, int& exit_code) {
+  const Command command = app.subcommand("device").addSubcommand(
       "twin", "Write a device file of a simulated arm with the kinematics, limits and encoders of another file's arm.");
   auto file = std::make_shared<std::string>(), out = std::make_shared<std::string>();
-  command->add_option("file", *file, "device file of the real arm (YAML)")->required();
-  command->add_option("-o,--out", *out, "file to write; default: FILE-twin.yaml in the current folder");
-  command->footer("Example:\n  hapticd device twin my-arm.yaml && hapticd run scene.yaml --device my-arm-twin.yaml");
-  command->callback([file, out, &exit_code] { exit_code = makeTwin(*file, *out); });
+  command.addOption("file", *file, "device file of the real arm (YAML)").required();
+  command.addOption("-o,--out", *out, "file to write; default: FILE-twin.yaml in the current folder");
+  command.footer("Example:\n  hapticd device twin my-arm.yaml && hapticd run scene.yaml --device my-arm-twin.yaml");
+  command.callback([file, out, &exit_code] { exit_code = makeTwin(*file, *out); });
 }
 
 }  // namespace hapticd::cli

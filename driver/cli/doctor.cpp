@@ -67,21 +67,21 @@ int doctor(const std::vector<std::string>& arms, bool json, double seconds) {
 
 }  // namespace
 
-void addDoctor(CLI::App& app, int& exit_code) {
+void addDoctor(const Command& app, int& exit_code) {
   auto json = std::make_shared<bool>(false);
   auto seconds = std::make_shared<double>(10);
   auto arms = std::make_shared<std::vector<std::string>>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.addSubcommand(
       "doctor", "Find what keeps real time or a device from working, with the command that fixes it.");
-  command->add_option("devices", *arms, "device files (YAML) of arms to check as well");
-  command->add_flag("--json", *json, "print JSON, for issue reports");
-  command->add_option("--seconds", *seconds, "duration of the latency test [s]; 0: no test")
-      ->check(within(0.0, 3600.0))
-      ->capture_default_str();
-  command->footer(
+  command.addOption("devices", *arms, "device files (YAML) of arms to check as well");
+  command.addFlag("--json", *json, "print JSON, for issue reports");
+  command.addOption("--seconds", *seconds, "duration of the latency test [s]; 0: no test")
+      .within(0.0, 3600.0)
+      .showDefault();
+  command.footer(
       "The exit code is 0 if all checks pass, 1 with warnings, 2 if a check fails.\n\nExamples:\n  hapticd doctor "
       "--json > doctor.json\n  hapticd doctor config/devices/premium15.yaml --seconds 0");
-  command->callback([=, &exit_code] { exit_code = doctor(*arms, *json, *seconds); });
+  command.callback([=, &exit_code] { exit_code = doctor(*arms, *json, *seconds); });
 }
 
 }  // namespace hapticd::cli

@@ -11,7 +11,9 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
+#include "cli/guarded_command.hpp"
 #include "diagnostics/explain_cost.hpp"
+#include "diagnostics/slow_arm.hpp"
 #include "document/reader.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "world/world.hpp"
@@ -141,6 +143,7 @@ void explainFiles(const scene::Scene& scene) {
   for (const scene::Device& device : scene.devices) {
     const std::string reason = device.chosen_by_default ? "the scene names none" : where(device.place);
     std::printf("  %s  (%s, %s)\n", device.name.c_str(), device.module.c_str(), reason.c_str());
+    if (const std::string slow = slownessOf(device, scene.servo.rate); !slow.empty()) say("  less force", slow);
   }
 }
 
@@ -159,6 +162,7 @@ int explainCost(const ExplainArguments& options, const scene::Scene& scene) {
 int explain(const ExplainArguments& options) {
   auto scene = loadSceneOrReport(options.scene, options.device);
   if (!scene) return kBadInput;
+  const GuardedCommand guarded;
   if (options.cost || options.json) return explainCost(options, *scene);
   const SetupErrors once;
   Details details;
@@ -181,18 +185,18 @@ int explain(const ExplainArguments& options) {
 
 }  // namespace
 
-void addExplain(CLI::App& app, int& exit_code) {
+void addExplain(const Command& app, int& exit_code) {
   auto options = std::make_shared<ExplainArguments>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.addSubcommand(
       "explain", "Show what the daemon loads, starts and computes for a scene, why, and at what cost.");
-  command->add_option("scene", options->scene, "scene file (YAML)")->required();
-  command->add_option("--device", options->device, "device file; replaces the devices of the scene");
-  command->add_flag("--cost", options->cost,
-                    "print a table of every part with its line in the scene, and the ns per tick and bytes that it "
-                    "costs; also of what is not needed");
-  command->add_flag("--json", options->json, "print the same table as JSON");
-  command->footer("Example:\n  hapticd explain config/scenes/teapot.yaml --cost");
-  command->callback([options, &exit_code] { exit_code = explain(*options); });
+  command.addOption("scene", options->scene, "scene file (YAML)").required();
+  command.addOption("--device", options->device, "device file; replaces the devices of the scene");
+  command.addFlag("--cost", options->cost,
+                  "print a table of every part with its line in the scene, and the ns per tick and bytes that it "
+                  "costs; also of what is not needed");
+  command.addFlag("--json", options->json, "print the same table as JSON");
+  command.footer("Example:\n  hapticd explain config/scenes/teapot.yaml --cost");
+  command.callback([options, &exit_code] { exit_code = explain(*options); });
 }
 
 }  // namespace hapticd::cli

@@ -78,17 +78,17 @@ int exportRecording(const ExportArguments& options) {
 
 }  // namespace
 
-void addExport(CLI::App& app, int& exit_code) {
+void addExport(const Command& app, int& exit_code) {
   auto options = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand("export", "Convert a recording for other tools: MCAP or CSV.");
-  command->add_option("recording", options->file, "recording, dump, or black box of a crash")->required();
-  command->add_option("--mcap", options->mcap, "MCAP file, for Foxglove, PlotJuggler and rosbag2");
-  command->add_option("--csv", options->csv,
-                      "folder for one CSV file per stream; with --stream, the CSV file of that stream");
-  command->add_option("--stream", options->stream, "with --csv: the only stream to write (ticks, contacts, poses, ...)")
-      ->needs("--csv");
-  command->footer("Example:\n  hapticd export run.h5 --mcap run.mcap");
-  command->callback([options, &exit_code] { exit_code = exportRecording(*options); });
+  const Command command = app.addSubcommand("export", "Convert a recording for other tools: MCAP or CSV.");
+  command.addOption("recording", options->file, "recording, dump, or black box of a crash").required();
+  command.addOption("--mcap", options->mcap, "MCAP file, for Foxglove, PlotJuggler and rosbag2");
+  command.addOption("--csv", options->csv,
+                    "folder for one CSV file per stream; with --stream, the CSV file of that stream");
+  command.addOption("--stream", options->stream, "with --csv: the only stream to write (ticks, contacts, poses, ...)")
+      .needs("--csv");
+  command.footer("Example:\n  hapticd export run.h5 --mcap run.mcap");
+  command.callback([options, &exit_code] { exit_code = exportRecording(*options); });
 }
 
 }  // namespace hapticd::cli

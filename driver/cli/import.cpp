@@ -3,7 +3,6 @@
 /// surfaces into soft bodies.
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -130,99 +129,97 @@ int importModel(const ImportArguments& options) {
   return importPatches(options, placement);
 }
 
-void addMedialOptions(CLI::App& command, ImportArguments& options) {
+void addMedialOptions(const Command& command, ImportArguments& options) {
   MedialImport& body = options.body;
-  CLI::Option* medial = command.add_flag(
-      "--medial", options.medial, "make a soft body of cones and slabs from the medial axis of a closed surface");
-  command.add_option("--tolerance", body.tolerance, "largest error of the body [m]; default: 1 % of its size")
-      ->check(within(1e-7, 1.0))
-      ->needs(medial);
-  command.add_option("--samples", body.samples, "number of points on the surface; default: 20000")
-      ->check(CLI::Range(100, 1'000'000))
-      ->needs(medial);
-  command.add_option("--spheres", body.most_spheres, "largest number of spheres; default: 2000")
-      ->check(CLI::Range(1, 100'000))
-      ->needs(medial);
+  const Option medial = command.addFlag("--medial", options.medial,
+                                        "make a soft body of cones and slabs from the medial axis of a closed surface");
+  command.addOption("--tolerance", body.tolerance, "largest error of the body [m]; default: 1 % of its size")
+      .within(1e-7, 1.0)
+      .needs(medial);
+  command.addOption("--samples", body.samples, "number of points on the surface; default: 20000")
+      .wholeWithin(100, 1'000'000)
+      .needs(medial);
+  command.addOption("--spheres", body.most_spheres, "largest number of spheres; default: 2000")
+      .wholeWithin(1, 100'000)
+      .needs(medial);
   command
-      .add_option("--angle", body.least_angle,
-                  "smallest angle between the feet of a medial point [degrees]; larger values give fewer branches "
-                  "toward edges; default: 60")
-      ->check(within(0.0, 180.0))
-      ->needs(medial);
-  command.add_option("--stiffness", body.stiffness, "stiffness [N/m], written to a .yaml file")
-      ->check(within(0.0, 1e6))
-      ->needs(medial);
-  command.add_option("--damping", body.damping, "damping [N s/m], written to a .yaml file")
-      ->check(within(0.0, 1e6))
-      ->needs(medial);
-  command.add_option("--mass", body.mass, "mass of a vertex [kg], written to a .yaml file")
-      ->check(within(0.0, 1e6))
-      ->needs(medial);
-  CLI::Option* calibrate =
+      .addOption("--angle", body.least_angle,
+                 "smallest angle between the feet of a medial point [degrees]; larger values give fewer branches "
+                 "toward edges; default: 60")
+      .within(0.0, 180.0)
+      .needs(medial);
+  command.addOption("--stiffness", body.stiffness, "stiffness [N/m], written to a .yaml file")
+      .within(0.0, 1e6)
+      .needs(medial);
+  command.addOption("--damping", body.damping, "damping [N s/m], written to a .yaml file")
+      .within(0.0, 1e6)
+      .needs(medial);
+  command.addOption("--mass", body.mass, "mass of a vertex [kg], written to a .yaml file")
+      .within(0.0, 1e6)
+      .needs(medial);
+  const Option calibrate =
       command
-          .add_option("--calibrate", options.answers,
-                      "fit the stiffness of a soft body (a model file with points or vertices) to measured or computed "
-                      "presses of small strain: CSV x,y,z,depth,force [m, N]")
-          ->excludes(medial);
+          .addOption("--calibrate", options.answers,
+                     "fit the stiffness of a soft body (a model file with points or vertices) to measured or computed "
+                     "presses of small strain: CSV x,y,z,depth,force [m, N]")
+          .excludes(medial);
   command
-      .add_option("--dents", options.dents,
-                  "with --calibrate, fit its shear_reach too: CSV x,y,z,x2,y2,z2,dent; in a press at the first place, "
-                  "the second goes down by this share of the depth")
-      ->needs(calibrate);
+      .addOption("--dents", options.dents,
+                 "with --calibrate, fit its shear_reach too: CSV x,y,z,x2,y2,z2,dent; in a press at the first place, "
+                 "the second goes down by this share of the depth")
+      .needs(calibrate);
 }
 
-void addPlacementOptions(CLI::App& command, ImportArguments& options) {
+void addPlacementOptions(const Command& command, ImportArguments& options) {
   Placement& placement = options.placement;
-  CLI::Option* scale =
-      command.add_option("--scale", placement.scale, "metres per unit of the file")->check(within(1e-9, 1e9));
-  command.add_option("--fit", placement.fit, "scale so that the largest extent is this many metres")
-      ->check(within(1e-6, 1e3))
-      ->excludes(scale);
-  command.add_flag("--center", placement.center, "move the centre of the bounding box to the origin");
-  command.add_option("--up", options.up, "axis that points up in the file; it becomes y, which points up in the world")
-      ->check(CLI::IsMember({"x", "y", "z"}));
+  const Option scale = command.addOption("--scale", placement.scale, "metres per unit of the file").within(1e-9, 1e9);
+  command.addOption("--fit", placement.fit, "scale so that the largest extent is this many metres")
+      .within(1e-6, 1e3)
+      .excludes(scale);
+  command.addFlag("--center", placement.center, "move the centre of the bounding box to the origin");
+  command.addOption("--up", options.up, "axis that points up in the file; it becomes y, which points up in the world")
+      .oneOf({"x", "y", "z"});
   command
-      .add_option("--outward", options.outward,
-                  "which side is outside: auto (by enclosed volume), normal (Su x Sv) or reversed")
-      ->check(CLI::IsMember({"auto", "normal", "reversed"}));
+      .addOption("--outward", options.outward,
+                 "which side is outside: auto (by enclosed volume), normal (Su x Sv) or reversed")
+      .oneOf({"auto", "normal", "reversed"});
 }
 
 }  // namespace
 
-void addImport(CLI::App& app, int& exit_code) {
+void addImport(const Command& app, int& exit_code) {
   auto options = std::make_shared<ImportArguments>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.addSubcommand(
       "import",
       "Convert CAD files and triangle meshes into parts, Bezier patches (.bpt) into a model file, or a closed surface "
       "into a soft body.");
   command
-      ->add_option("file", options->file,
-                   "Bezier patches (.bpt), triangles (.obj, .stl, .ply) or CAD (.step, .stp, .iges, .igs, .brep). With "
-                   "--medial: "
-                   ".obj, .stl, or a model file with surfaces")
-      ->required();
-  command->add_option(
+      .addOption("file", options->file,
+                 "Bezier patches (.bpt), triangles (.obj, .stl, .ply) or CAD (.step, .stp, .iges, .igs, .brep). With "
+                 "--medial: "
+                 ".obj, .stl, or a model file with surfaces")
+      .required();
+  command.addOption(
       "-o,--out,out", options->out,
       "file to write. From patches: a model file, .yaml or .json, or - for standard output. From triangles and CAD: a "
       "part, .hpart. With --medial: .ma or .yaml");
-  addPlacementOptions(*command, *options);
+  addPlacementOptions(command, *options);
   command
-      ->add_option("--smooth-angle", options->smooth_angle,
-                   "triangles: interpolate normals over edges that bend by less than this [degrees]; default: 0")
-      ->check(within(0.0, 180.0));
-  command->add_flag("--json", options->json, "triangles and CAD: write the report as JSON");
-  command->add_flag("--check", options->cad.check, "CAD: write nothing; print what would be lost");
-  command->add_option("--time", options->cad.time_s, "CAD: longest time [s]; default: 600")->check(within(1.0, 1e6));
-  command->add_option("--memory", options->cad.memory_mb, "CAD: most memory [MB]; default: 4096")
-      ->check(within(64.0, 1e7));
-  addMedialOptions(*command, *options);
-  command->footer(
+      .addOption("--smooth-angle", options->smooth_angle,
+                 "triangles: interpolate normals over edges that bend by less than this [degrees]; default: 0")
+      .within(0.0, 180.0);
+  command.addFlag("--json", options->json, "triangles and CAD: write the report as JSON");
+  command.addFlag("--check", options->cad.check, "CAD: write nothing; print what would be lost");
+  command.addOption("--time", options->cad.time_s, "CAD: longest time [s]; default: 600").within(1.0, 1e6);
+  command.addOption("--memory", options->cad.memory_mb, "CAD: most memory [MB]; default: 4096").within(64.0, 1e7);
+  addMedialOptions(command, *options);
+  command.footer(
       "A .bpt file holds the number of patches, then for each its two degrees and its points; # begins a comment.\n"
       "Comments are copied to the model file, so that credit and licence are kept.\n\nExamples:\n  hapticd import "
       "config/models/teapot.bpt --up z --fit 0.13 --center -o teapot.yaml\n  hapticd import bracket.stl --scale 0.001 "
       "-o bracket.hpart\n  hapticd import engine.step -o engine.hpart\n  hapticd import --medial hand.stl --scale "
       "0.001 --tolerance 0.001 hand.ma");
-  command->callback([options, &exit_code] { exit_code = importModel(*options); });
+  command.callback([options, &exit_code] { exit_code = importModel(*options); });
 }
 
 }  // namespace hapticd::cli

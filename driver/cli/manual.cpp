@@ -34,32 +34,32 @@ std::string verbatim(const std::string& text) {
   return ".PP\n.nf\n" + plain(text) + "\n.fi\n";
 }
 
-std::string optionText(const CLI::Option& option) {
-  std::string names = option.get_positional() ? option.get_name(true) : option.get_name(false, true);
-  if (option.get_type_size() > 0 && !option.get_positional()) names += " " + option.get_type_name();
-  return ".TP\n.B " + plain(names) + "\n" + plain(option.get_description()) + "\n";
+std::string optionText(const Option& option) {
+  std::string names = option.positional() ? option.positionalName() : option.allNames();
+  if (!option.positional() && !option.valueName().empty()) names += " " + option.valueName();
+  return ".TP\n.B " + plain(names) + "\n" + plain(option.description()) + "\n";
 }
 
-std::string commandText(const CLI::App& command, const std::string& above) {
-  const std::string name = above + command.get_name();
-  std::string text = ".SS " + plain(name) + "\n" + plain(command.get_description()) + "\n";
-  for (const CLI::Option* option : command.get_options(nullptr))
-    if (!option->check_lname("help")) text += optionText(*option);
-  if (!command.get_footer().empty()) text += verbatim(command.get_footer());
-  for (const CLI::App* below : command.get_subcommands(nullptr)) text += commandText(*below, name + " ");
+std::string commandText(const Command& command, const std::string& above) {
+  const std::string name = above + command.name();
+  std::string text = ".SS " + plain(name) + "\n" + plain(command.description()) + "\n";
+  for (const Option& option : command.options())
+    if (!option.isHelp()) text += optionText(option);
+  if (!command.footer().empty()) text += verbatim(command.footer());
+  for (const Command& below : command.subcommands()) text += commandText(below, name + " ");
   return text;
 }
 
-std::string programPage(const CLI::App& app) {
+std::string programPage(const Command& app) {
   std::string text = header("HAPTICD", 1);
   text += ".SH NAME\nhapticd \\- real\\-time haptic servo daemon\n";
   text += ".SH SYNOPSIS\n.B hapticd\n[\\fIOPTIONS\\fR] \\fICOMMAND\\fR [\\fIARGUMENTS\\fR]\n";
-  text += ".SH DESCRIPTION\n" + plain(app.get_description()) + "\n";
+  text += ".SH DESCRIPTION\n" + plain(app.description()) + "\n";
   text += "Scenes, devices and the daemon's own settings are YAML files: see\n.BR hapticd.yaml (5).\n";
   text += ".SH OPTIONS\n";
-  for (const CLI::Option* option : app.get_options(nullptr)) text += optionText(*option);
+  for (const Option& option : app.options()) text += optionText(option);
   text += ".SH COMMANDS\n";
-  for (const CLI::App* command : app.get_subcommands(nullptr)) text += commandText(*command, "");
+  for (const Command& command : app.subcommands()) text += commandText(command, "");
   text += ".SH EXIT STATUS\n0 success, 1 failure while running, 2 bad input or usage.\n";
   text +=
       ".SH ENVIRONMENT\n.TP\n.B HAPTICD_PLUGIN_PATH\nfolders searched for shape plugins, separated by colons\n"
@@ -100,14 +100,13 @@ std::string filesPage() {
 
 }  // namespace
 
-void addManual(CLI::App& app, int& exit_code) {
+void addManual(const Command& app, int& exit_code) {
   auto page = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("manual", "Print a manual page that is made from the program's own tables.");
-  command->add_option("page", *page, "hapticd or hapticd.yaml")
-      ->required()
-      ->check(CLI::IsMember({"hapticd", "hapticd.yaml"}));
-  command->footer("Example:\n  hapticd manual hapticd.yaml | man -l -");
-  command->callback([page, &app, &exit_code] {
+  const Command command =
+      app.addSubcommand("manual", "Print a manual page that is made from the program's own tables.");
+  command.addOption("page", *page, "hapticd or hapticd.yaml").required().oneOf({"hapticd", "hapticd.yaml"});
+  command.footer("Example:\n  hapticd manual hapticd.yaml | man -l -");
+  command.callback([page, app, &exit_code] {
     std::fputs((*page == "hapticd" ? programPage(app) : filesPage()).c_str(), stdout);
     exit_code = kWorked;
   });

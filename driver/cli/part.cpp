@@ -202,21 +202,21 @@ int partInfo(const std::string& file, bool json, std::optional<std::uint32_t> fe
 
 }  // namespace
 
-void addPart(CLI::App& app, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("part", "Work with part files, which `hapticd import` makes from CAD files and meshes.");
-  command->require_subcommand(1);
-  command->footer("Example:\n  hapticd part info bracket.hpart");
+void addPart(const Command& app, int& exit_code) {
+  const Command command =
+      app.addSubcommand("part", "Work with part files, which `hapticd import` makes from CAD files and meshes.");
+  command.requireSubcommand();
+  command.footer("Example:\n  hapticd part info bracket.hpart");
   auto file = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false);
-  CLI::App* info = command->add_subcommand("info", "Show what a part file holds: bodies, instances, faces, losses.");
-  info->add_option("part", *file, "a part file (.hpart)")->required();
-  info->add_flag("--json", *json, "print JSON");
+  const Command info = command.addSubcommand("info", "Show what a part file holds: bodies, instances, faces, losses.");
+  info.addOption("part", *file, "a part file (.hpart)").required();
+  info.addFlag("--json", *json, "print JSON");
   auto feature = std::make_shared<std::optional<std::uint32_t>>();
-  info->add_option("--feature", *feature, "print instance and face of this number alone, as it stands in a trace")
-      ->excludes("--json");
-  info->footer("Example:\n  hapticd part info bracket.hpart");
-  info->callback([file, json, feature, &exit_code] { exit_code = partInfo(*file, *json, *feature); });
+  info.addOption("--feature", *feature, "print instance and face of this number alone, as it stands in a trace")
+      .excludes("--json");
+  info.footer("Example:\n  hapticd part info bracket.hpart");
+  info.callback([file, json, feature, &exit_code] { exit_code = partInfo(*file, *json, *feature); });
 }
 
 }  // namespace hapticd::cli

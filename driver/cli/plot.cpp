@@ -120,18 +120,18 @@ int plot(const PlotArguments& options) {
 
 }  // namespace
 
-void addPlot(CLI::App& app, int& exit_code) {
+void addPlot(const Command& app, int& exit_code) {
   auto options = std::make_shared<PlotArguments>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.addSubcommand(
       "plot",
       "Draw a recording: depth, force, lateness and position over time, with faults, limits and models by name (SVG).");
-  command->add_option("file", options->file, "recording or black box")->required();
-  command->add_option("--out", options->out, "picture to write; default: FILE.svg");
-  command->add_option("--arm", options->arm, "index of the arm, from 0")->check(CLI::Range(0, 7));
-  command->add_option("--from", options->from, "start time [s]");
-  command->add_option("--to", options->to, "end time [s]");
-  command->footer("Example:\n  hapticd plot run.h5 --out run.svg --from 2 --to 4");
-  command->callback([options, &exit_code] { exit_code = plot(*options); });
+  command.addOption("file", options->file, "recording or black box").required();
+  command.addOption("--out", options->out, "picture to write; default: FILE.svg");
+  command.addOption("--arm", options->arm, "index of the arm, from 0").wholeWithin(0, 7);
+  command.addOption("--from", options->from, "start time [s]");
+  command.addOption("--to", options->to, "end time [s]");
+  command.footer("Example:\n  hapticd plot run.h5 --out run.svg --from 2 --to 4");
+  command.callback([options, &exit_code] { exit_code = plot(*options); });
 }
 
 }  // namespace hapticd::cli

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd plugin list|info`: what is there, and the documentation that its parameter table holds.
-#include <algorithm>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -83,34 +82,34 @@ int clear(const std::string& name) {
 
 }  // namespace
 
-void addPlugin(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("plugin", "Find, document, check and create shape plugins.");
-  command->require_subcommand(1);
-  command->footer("Example:\n  hapticd plugin info nurbs_rigid");
+void addPlugin(const Command& app, int& exit_code) {
+  const Command command = app.addSubcommand("plugin", "Find, document, check and create shape plugins.");
+  command.requireSubcommand();
+  command.footer("Example:\n  hapticd plugin info nurbs_rigid");
 
   auto details = std::make_shared<bool>(false);
-  CLI::App* list_command =
-      command->add_subcommand("list", "List every plugin that a scene can name, and every file that cannot be used.");
-  list_command->add_flag("--files", *details, "show the file and licence of each");
-  list_command->footer("Example:\n  HAPTICD_PLUGIN_PATH=~/my-plugins/build hapticd plugin list --files");
+  const Command list_command =
+      command.addSubcommand("list", "List every plugin that a scene can name, and every file that cannot be used.");
+  list_command.addFlag("--files", *details, "show the file and licence of each");
+  list_command.footer("Example:\n  HAPTICD_PLUGIN_PATH=~/my-plugins/build hapticd plugin list --files");
   auto json = std::make_shared<bool>(false);
-  list_command->add_flag("--json", *json, "print JSON, with the parameters of each");
-  list_command->callback([details, json, &exit_code] { exit_code = *json ? listPluginsJson() : list(*details); });
+  list_command.addFlag("--json", *json, "print JSON, with the parameters of each");
+  list_command.callback([details, json, &exit_code] { exit_code = *json ? listPluginsJson() : list(*details); });
 
   auto crashed = std::make_shared<std::string>();
-  CLI::App* clear_command =
-      command->add_subcommand("clear", "Take a plugin that crashed the daemon out of quarantine.");
-  clear_command->add_option("name", *crashed, "name of the plugin, as in the crash message")->required();
-  clear_command->footer("Example:\n  hapticd plugin clear my_shape");
-  clear_command->callback([crashed, &exit_code] { exit_code = clear(*crashed); });
+  const Command clear_command =
+      command.addSubcommand("clear", "Take a plugin that crashed the daemon out of quarantine.");
+  clear_command.addOption("name", *crashed, "name of the plugin, as in the crash message").required();
+  clear_command.footer("Example:\n  hapticd plugin clear my_shape");
+  clear_command.callback([crashed, &exit_code] { exit_code = clear(*crashed); });
 
   auto name = std::make_shared<std::string>();
-  CLI::App* info_command =
-      command->add_subcommand("info", "Show the parameters of a plugin with unit, range and default.");
-  info_command->add_option("name", *name, "name or id of the plugin")->required();
-  info_command->add_flag("--json", *json, "print JSON");
-  info_command->footer("Example:\n  hapticd plugin info nurbs_rigid");
-  info_command->callback([name, json, &exit_code] { exit_code = info(*name, *json); });
+  const Command info_command =
+      command.addSubcommand("info", "Show the parameters of a plugin with unit, range and default.");
+  info_command.addOption("name", *name, "name or id of the plugin").required();
+  info_command.addFlag("--json", *json, "print JSON");
+  info_command.footer("Example:\n  hapticd plugin info nurbs_rigid");
+  info_command.callback([name, json, &exit_code] { exit_code = info(*name, *json); });
 }
 
 }  // namespace hapticd::cli

@@ -292,27 +292,27 @@ int check(const ConformanceArguments& options) {
 
 }  // namespace
 
-void addPluginCheck(CLI::App& app, int& exit_code) {
+void addPluginCheck(const Command& app, int& exit_code) {
   auto options = std::make_shared<ConformanceArguments>();
-  CLI::App* command = app.get_subcommand("plugin")->add_subcommand(
+  const Command command = app.subcommand("plugin").addSubcommand(
       "check", "Run the conformance tests of a plugin file, each in its own process.");
-  command->add_option("file", options->file, "plugin file (.so)")->required()->check(CLI::ExistingFile);
-  command->add_option("--set", options->set, "set a parameter: ID=VALUE, VALUE as in a scene; may be repeated")
-      ->allow_extra_args(false);
-  command->add_option("--timeout", options->timeout, "longest time of one test [s]; a longer one counts as a hang")
-      ->capture_default_str()
-      ->check(within(0.1, 3600.0));
-  command->add_flag("--json", options->json, "print the results as JSON");
-  command->add_option("--fuzz", options->fuzz, "after the tests, try random parameters and probes for this time [s]")
-      ->check(within(0.0, 1e6));
-  command->add_option("--seed", options->seed, "seed of all random numbers; a failure names the seed that repeats it")
-      ->capture_default_str();
-  command->footer(
+  command.addOption("file", options->file, "plugin file (.so)").required().existingFile();
+  command.addOption("--set", options->set, "set a parameter: ID=VALUE, VALUE as in a scene; may be repeated")
+      .oneValueEach();
+  command.addOption("--timeout", options->timeout, "longest time of one test [s]; a longer one counts as a hang")
+      .showDefault()
+      .within(0.1, 3600.0);
+  command.addFlag("--json", options->json, "print the results as JSON");
+  command.addOption("--fuzz", options->fuzz, "after the tests, try random parameters and probes for this time [s]")
+      .within(0.0, 1e6);
+  command.addOption("--seed", options->seed, "seed of all random numbers; a failure names the seed that repeats it")
+      .showDefault();
+  command.footer(
       "The exit code is 1 if a test fails, 2 if a parameter is wrong. The first test that hangs is the last of its "
       "plugin.\n\n"
       "Examples:\n  hapticd plugin check ./my_shape.so --fuzz 60 --seed 7\n"
       "  hapticd plugin check ./relief.so --set heights=hills.csv --set 'origin=[0, 0.1, 0]'");
-  command->callback([options, &exit_code] { exit_code = check(*options); });
+  command.callback([options, &exit_code] { exit_code = check(*options); });
 }
 
 }  // namespace hapticd::cli

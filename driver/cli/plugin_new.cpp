@@ -108,14 +108,14 @@ int makeNew(const NewPluginArguments& options) {
 
 }  // namespace
 
-void addPluginNew(CLI::App& app, int& exit_code) {
+void addPluginNew(const Command& app, int& exit_code) {
   auto options = std::make_shared<NewPluginArguments>();
-  CLI::App* command = app.get_subcommand("plugin")->add_subcommand(
+  const Command command = app.subcommand("plugin").addSubcommand(
       "new", "Create a new plugin from the template: source, build file, scene.");
-  command->add_option("name", options->name, "name of the plugin: lower-case letters, digits and _")->required();
-  command->add_option("--dir", options->folder, "folder to create; default: NAME in the current folder");
-  command->footer("Example:\n  hapticd plugin new my_shape");
-  command->callback([options, &exit_code] { exit_code = makeNew(*options); });
+  command.addOption("name", options->name, "name of the plugin: lower-case letters, digits and _").required();
+  command.addOption("--dir", options->folder, "folder to create; default: NAME in the current folder");
+  command.footer("Example:\n  hapticd plugin new my_shape");
+  command.callback([options, &exit_code] { exit_code = makeNew(*options); });
 }
 
 }  // namespace hapticd::cli

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/guarded_command.hpp"
 #include "document/node.hpp"
 #include "document/suggestion.hpp"
 #include "record/recording.hpp"
@@ -20,6 +21,8 @@ namespace hapticd::cli {
 namespace {
 
 constexpr int kPartly = 3;  ///< exit code: what was replayed is the same, and not all can be
+
+using Json = nlohmann::ordered_json;
 
 struct ReplayArguments {
   std::string file;
@@ -113,7 +116,6 @@ int print(const servo::ReplayOutcome& outcome) {
 }
 
 int printJson(const servo::ReplayOutcome& outcome) {
-  using Json = nlohmann::ordered_json;
   Json json{{"same", !outcome.first.has_value()},
             {"ticks", outcome.ticks},
             {"recorded_ticks", outcome.recorded_ticks},
@@ -142,6 +144,7 @@ int replay(const ReplayArguments& options) {
   warnOfChanges(*run);
   if (!(*recording)->closed())
     std::fprintf(stderr, "note: the recording ends early because its writer was killed; replaying what was written\n");
+  const GuardedCommand guarded;
   const SetupErrors once;
   auto again = servo::Replay::prepare(**recording, *run, logToTerminal);
   if (!again) return fail(kBadInput, options.file + ": " + again.error());
@@ -151,17 +154,17 @@ int replay(const ReplayArguments& options) {
 
 }  // namespace
 
-void addReplay(CLI::App& app, int& exit_code) {
+void addReplay(const Command& app, int& exit_code) {
   auto options = std::make_shared<ReplayArguments>();
-  CLI::App* command = app.add_subcommand("replay", "Run a recording again and compare every force to the last bit.");
-  command->add_option("file", options->file, "recording made by `hapticd run --record`")->required();
-  command->add_option("--set", options->changes, "change a parameter: MODEL.PARAMETER=NUMBER; may be repeated");
-  command->add_flag("--json", options->json, "print the outcome as JSON");
-  command->footer(
+  const Command command = app.addSubcommand("replay", "Run a recording again and compare every force to the last bit.");
+  command.addOption("file", options->file, "recording made by `hapticd run --record`").required();
+  command.addOption("--set", options->changes, "change a parameter: MODEL.PARAMETER=NUMBER; may be repeated");
+  command.addFlag("--json", options->json, "print the outcome as JSON");
+  command.footer(
       "Exit codes: 0 every bit is the same, 1 something differs, 2 the recording cannot be replayed, 3 every bit is "
       "the same\nup to a tick in which models were added or removed; the rest cannot be replayed.\n\nExample:\n  "
       "hapticd run config/scenes/teapot.yaml --for 10 --record run.h5\n  hapticd replay run.h5");
-  command->callback([options, &exit_code] { exit_code = replay(*options); });
+  command.callback([options, &exit_code] { exit_code = replay(*options); });
 }
 
 }  // namespace hapticd::cli

@@ -15,6 +15,7 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
+#include "cli/guarded_command.hpp"
 #include "cli/view_process.hpp"
 #include "diagnostics/enable_button.hpp"
 #include "document/node.hpp"
@@ -207,8 +208,13 @@ void warnOfSettings(servo::Runner& runner, double rate) {
   for (const auto& shape : runner.world().shapes())
     if (shape != nullptr) stiffness.push_back(shape->report().max_stiffness);
   printWarnings(tune::fastPaths(scene), stderr);
-  for (size_t i = 0; i < runner.arms().size(); ++i)
+  for (size_t i = 0; i < runner.arms().size(); ++i) {
+    document::Problems slow;
+    if (const std::string& why = runner.arms()[i]->slowness(); !why.empty())
+      document::report(slow, scene.devices[i].place, "servo.rate", scene.devices[i].name + ": " + why);
+    printWarnings(slow, stderr);
     printWarnings(tune::unstableSettings(scene, scene.devices[i], runner.arms()[i]->info(), stiffness), stderr);
+  }
 }
 
 /// Into the log, except for what the message that ends the set-up will say anyway.
@@ -285,6 +291,7 @@ int runScene(const RunArguments& options, scene::Scene& scene) {
     if (auto shown = showPage(options, files.get(), scene); !shown) return fail(kFailed, shown.error());
   const std::vector<std::string> left_out = leaveOutQuarantined(scene, watch::stateFolder());
   for (const std::string& text : left_out) log::write(HSP_LOG_WARNING, "", text);
+  const GuardedCommand guarded(how.state_dir);  // in the set-up, and whenever the run itself does not watch
   const SetupErrors once;
   auto world = servo::Runner::buildWorld(scene, how, logOfRun);
   if (!world) return fail(kBadInput, world.error());
@@ -329,57 +336,57 @@ std::string plainSeconds(const std::string& text) {
   return "\"" + text + "\" is not a number, expected seconds, such as --for 10";
 }
 
-void addTiming(CLI::App* command, RunArguments& options) {
-  command->add_option("--device", options.device, "device file to use instead of the scene's");
-  command->add_option("--for", options.duration, "duration of the run [s]; default: until it is stopped (Ctrl-C)")
-      ->check(plainSeconds)
-      ->check(within(1e-3, 1e9));
-  command->add_flag("--virtual-time", options.virtual_time,
-                    "run as fast as the processor allows, on simulated devices; the same input gives the same bits");
-  command->add_option("--rate", options.rate, "servo rate [Hz] instead of the scene's")
-      ->check(within(10.0, 20000.0));  // as servo.rate
-  command->add_option("--cpu", options.cpu, "processor to pin the servo thread to")->check(CLI::Range(0, 1023));
+void addTiming(const Command& command, RunArguments& options) {
+  command.addOption("--device", options.device, "device file to use instead of the scene's");
+  command.addOption("--for", options.duration, "duration of the run [s]; default: until it is stopped (Ctrl-C)")
+      .check(plainSeconds)
+      .within(1e-3, 1e9);
+  command.addFlag("--virtual-time", options.virtual_time,
+                  "run as fast as the processor allows, on simulated devices; the same input gives the same bits");
+  command.addOption("--rate", options.rate, "servo rate [Hz] instead of the scene's")
+      .within(10.0, 20000.0);  // as servo.rate
+  command.addOption("--cpu", options.cpu, "processor to pin the servo thread to").wholeWithin(0, 1023);
   command
-      ->add_option("--priority", options.priority,
-                   "SCHED_FIFO priority of the servo thread; default: the daemon file's, or 80")
-      ->check(CLI::Range(1, 98));
+      .addOption("--priority", options.priority,
+                 "SCHED_FIFO priority of the servo thread; default: the daemon file's, or 80")
+      .wholeWithin(1, 98);
 }
 
-void addOutputs(CLI::App* command, RunArguments& options) {
-  command->add_option("--report", options.report, "write a report (JSON)");
-  command->add_option(
+void addOutputs(const Command& command, RunArguments& options) {
+  command.addOption("--report", options.report, "write a report (JSON)");
+  command.addOption(
       "--picture", options.picture,
       "write a picture of depth, force and lateness over time (SVG), of the last 10 s of a longer run; hapticd "
       "plot draws all of a recording");
-  command->add_option("--name", options.name, "name of this daemon for top, ctl and view; default: hapticd")
-      ->check([](const std::string& name) {
+  command.addOption("--name", options.name, "name of this daemon for top, ctl and view; default: hapticd")
+      .check([](const std::string& name) {
         const bool plain = name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_") ==
                            std::string::npos;
         return plain && name.size() <= 32 ? std::string() : "expected up to 32 letters, digits, - and _";
       });
-  command->add_option("--record", options.record, "record every tick (HDF5), for replay, plot, Python and MATLAB");
-  command->add_flag("--view", options.view,
-                    "show the run in a browser page; on a simulated arm the mouse replaces the hand's script");
-  command->add_flag("--no-open", options.no_open, "with --view: print the address of the page, but start no browser")
-      ->needs("--view");
-  command->add_option("--log-level", options.log_level, "lowest level that is logged; default: info")
-      ->check(CLI::IsMember({"debug", "info", "warning", "error"}));
-  command->add_option("--log-file", options.log.file,
-                      "write the log to this file too; at 10 MB a new file begins, and three older ones are kept");
-  command->add_flag("--log-json", options.log.json, "log one JSON object per line");
+  command.addOption("--record", options.record, "record every tick (HDF5), for replay, plot, Python and MATLAB");
+  command.addFlag("--view", options.view,
+                  "show the run in a browser page; on a simulated arm the mouse replaces the hand's script");
+  command.addFlag("--no-open", options.no_open, "with --view: print the address of the page, but start no browser")
+      .needs("--view");
+  command.addOption("--log-level", options.log_level, "lowest level that is logged; default: info")
+      .oneOf({"debug", "info", "warning", "error"});
+  command.addOption("--log-file", options.log.file,
+                    "write the log to this file too; at 10 MB a new file begins, and three older ones are kept");
+  command.addFlag("--log-json", options.log.json, "log one JSON object per line");
 }
 
 }  // namespace
 
-void addRun(CLI::App& app, int& exit_code) {
+void addRun(const Command& app, int& exit_code) {
   auto options = std::make_shared<RunArguments>();
-  CLI::App* command = app.add_subcommand("run", "Run the daemon: the servo loop on a scene and its device.");
-  command->add_option("scene", options->scene, "scene file (YAML)")->required();
+  const Command command = app.addSubcommand("run", "Run the daemon: the servo loop on a scene and its device.");
+  command.addOption("scene", options->scene, "scene file (YAML)").required();
   addTiming(command, *options);
   addOutputs(command, *options);
-  command->add_flag("--allow-non-rt", options->allow_non_rt, "allow forces on real hardware without real-time rights");
-  command->footer("Example:\n  hapticd run config/scenes/teapot.yaml --for 10 --report report.json --picture run.svg");
-  command->callback([options, &exit_code] {
+  command.addFlag("--allow-non-rt", options->allow_non_rt, "allow forces on real hardware without real-time rights");
+  command.footer("Example:\n  hapticd run config/scenes/teapot.yaml --for 10 --report report.json --picture run.svg");
+  command.callback([options, &exit_code] {
     options->log.level = log::levelOf(options->log_level);
     exit_code = run(*options);
   });

@@ -322,20 +322,19 @@ int top(const TopArguments& options) {
 
 }  // namespace
 
-void addTop(CLI::App& app, int& exit_code) {
+void addTop(const Command& app, int& exit_code) {
   auto options = std::make_shared<TopArguments>();
-  CLI::App* command =
-      app.add_subcommand("top", "Watch a running daemon: time, lateness, force and depth of each model and device.");
-  command->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
-  command->add_option("--sort", options->sort, "order of the models")
-      ->check(CLI::IsMember({"step", "force", "depth", "name"}));
-  command->add_option("--every", options->every, "refresh interval [s]")->check(within(0.05, 60.0));
-  command->add_flag("--once", options->once, "print once and exit");
-  command->add_flag("--json", options->json, "print JSON: one line per interval; with --once, one line");
-  command->footer(
+  const Command command =
+      app.addSubcommand("top", "Watch a running daemon: time, lateness, force and depth of each model and device.");
+  command.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
+  command.addOption("--sort", options->sort, "order of the models").oneOf({"step", "force", "depth", "name"});
+  command.addOption("--every", options->every, "refresh interval [s]").within(0.05, 60.0);
+  command.addFlag("--once", options->once, "print once and exit");
+  command.addFlag("--json", options->json, "print JSON: one line per interval; with --once, one line");
+  command.footer(
       "Keys: s, f, d and n sort by step time, force, depth and name; q quits.\n\n"
       "Examples:\n  hapticd top --sort force\n  hapticd top --json --every 1 | jq .models[0].force_n");
-  command->callback([options, &exit_code] { exit_code = top(*options); });
+  command.callback([options, &exit_code] { exit_code = top(*options); });
 }
 
 }  // namespace hapticd::cli

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd trace`: the same servo core over a prescribed probe path, in virtual time, without a device.
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/guarded_command.hpp"
 #include "cli/probe_path.hpp"
 #include "cli/trace_writer.hpp"
 #include "servo/loop/lockstep.hpp"
@@ -31,7 +30,7 @@ Result<std::vector<uint32_t>> chosenModels(const scene::Scene& scene, const std:
     for (uint32_t i = 0; i < scene.models.size(); ++i) chosen.push_back(i);
     return chosen;
   }
-  for (const std::string& name : CLI::detail::split(filter, ',')) {
+  for (const std::string& name : command_line::split(filter, ',')) {
     const auto it =
         std::find_if(scene.models.begin(), scene.models.end(), [&](const auto& m) { return m.name == name; });
     if (it == scene.models.end()) return Error{"--models: the scene has no model \"" + name + "\""};
@@ -76,6 +75,7 @@ int trace(const TraceArguments& options) {
   if (!rows) return fail(kBadInput, rows.error());
   auto models = chosenModels(*scene, options.models);
   if (!models) return fail(kBadInput, models.error());
+  const GuardedCommand guarded;
   const SetupErrors once;
   auto world = servo::World::build(*scene, {.rate = scene->servo.rate}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
@@ -90,24 +90,25 @@ int trace(const TraceArguments& options) {
 
 }  // namespace
 
-void addTrace(CLI::App& app, int& exit_code) {
+void addTrace(const Command& app, int& exit_code) {
   auto options = std::make_shared<TraceArguments>();
-  CLI::App* command = app.add_subcommand("trace", "Run the servo core over a prescribed probe path, in virtual time.");
-  command->add_option("scene", options->scene, "scene file (YAML)")->required();
+  const Command command =
+      app.addSubcommand("trace", "Run the servo core over a prescribed probe path, in virtual time.");
+  command.addOption("scene", options->scene, "scene file (YAML)").required();
   command
-      ->add_option("--probe", options->probe,
-                   "probe path (CSV) with t,x,y,z[,qw,qx,qy,qz] in s and m, world frame; one row per tick")
-      ->required();
-  command->add_option("--out", options->out, "CSV file to write, one row per tick and model; - for standard output")
-      ->required();
-  command->add_option("--models", options->models, "names of the only models to write, separated by commas");
-  command->footer(
+      .addOption("--probe", options->probe,
+                 "probe path (CSV) with t,x,y,z[,qw,qx,qy,qz] in s and m, world frame; one row per tick")
+      .required();
+  command.addOption("--out", options->out, "CSV file to write, one row per tick and model; - for standard output")
+      .required();
+  command.addOption("--models", options->models, "names of the only models to write, separated by commas");
+  command.footer(
       "The column status is 0 (nearest) if the foot is the nearest point, 1 (degraded) if the answer is coarser than "
       "asked,\n2 (held) if a contact is held and another point is nearer, -2 if the model was silenced, and -6 if the "
       "surface or\nthe sample was lost (no force).\nForces are those of the models without limits: limits belong to a "
       "device, and a trace has none.\nThe columns of the foot point are nan while nothing of the model is "
       "traced.\n\nExample:\n  hapticd trace config/scenes/teapot.yaml --probe stroke.csv --out feet.csv");
-  command->callback([options, &exit_code] { exit_code = trace(*options); });
+  command.callback([options, &exit_code] { exit_code = trace(*options); });
 }
 
 }  // namespace hapticd::cli

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include "base/clock.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
+#include "cli/guarded_command.hpp"
 #include "cli/probe_path.hpp"
 #include "record/recording.hpp"
 #include "tune/page.hpp"
@@ -30,8 +32,10 @@ struct TuneArguments {
 
 std::atomic<bool> stopped{false};
 
-void stopTuning(int) {
-  stopped = true;
+/// Ctrl-C ends the search and keeps what it found. A plugin that does not come back lets nothing end: a second one, and
+/// whatever is sent by no hand, ends the command.
+void stopTuning(int signal) {
+  if (stopped.exchange(true) || signal != SIGINT) watch::endAnyway(calledHere());
 }
 
 /// The motion of a path file, brought to the scene's rate.
@@ -161,6 +165,7 @@ int tuneScene(const TuneArguments& options) {
   auto scene = loadSceneOrReport(options.scene);
   if (!scene) return kBadInput;
   if (scene->models.empty()) return fail(kBadInput, options.scene + ": the scene has no model, expected one to tune");
+  const GuardedCommand guarded;
   auto world = servo::World::build(*scene, {.rate = scene->servo.rate}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   const bool uses_velocity = (*world)->needsVelocity();
@@ -181,6 +186,7 @@ int tuneScene(const TuneArguments& options) {
   findings.limit_seconds = options.limit_seconds;
 
   os::onStopSignal(stopTuning);
+  const GuardedCommand in_front;  // of that handler too
   auto tuning =
       tune::search(*scene, *motion, findings.knobs, {findings.goal, options.limit_seconds, showProgress, quiet});
   if (isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
@@ -193,60 +199,60 @@ int tuneScene(const TuneArguments& options) {
 }
 
 /// What to aim at, and over which motion.
-void addGoal(CLI::App* command, const std::shared_ptr<TuneArguments>& options) {
-  auto* budget = command
-                     ->add_option("--budget-us", options->budget_us,
-                                  "choose the most accurate setting whose tick time (p99) is below this [us]")
-                     ->check(within(1e-3, 1e6));
+void addGoal(const Command& command, const std::shared_ptr<TuneArguments>& options) {
+  const Option budget = command
+                            .addOption("--budget-us", options->budget_us,
+                                       "choose the most accurate setting whose tick time (p99) is below this [us]")
+                            .within(1e-3, 1e6);
   command
-      ->add_option("--tolerance-um", options->tolerance_um,
-                   "choose the cheapest setting with errors of the foot point below this [um]")
-      ->check(within(1e-6, 1e6))
-      ->excludes(budget)
-      ->capture_default_str();
-  command->add_option("--force-tolerance-n", options->force_tolerance, "and with errors of the force below this [N]")
-      ->check(within(1e-9, 1e3))
-      ->capture_default_str();
-  auto* probe =
-      command->add_option("--probe", options->probe,
-                          "measure over this path (CSV, as for trace) instead of the motion of the scene's hand");
-  command->add_option("--motion", options->motion, "measure over the motion in this recording or black box")
-      ->excludes(probe);
-  command->add_option("--motion-seconds", options->motion_seconds, "duration of the hand's motion [s]")
-      ->check(within(0.2, 10.0))
-      ->capture_default_str();
-  command->add_option("--limit-seconds", options->limit_seconds, "stop trying settings after this [s]")
-      ->check(within(1.0, 86400.0))
-      ->capture_default_str();
+      .addOption("--tolerance-um", options->tolerance_um,
+                 "choose the cheapest setting with errors of the foot point below this [um]")
+      .within(1e-6, 1e6)
+      .excludes(budget)
+      .showDefault();
+  command.addOption("--force-tolerance-n", options->force_tolerance, "and with errors of the force below this [N]")
+      .within(1e-9, 1e3)
+      .showDefault();
+  const Option probe =
+      command.addOption("--probe", options->probe,
+                        "measure over this path (CSV, as for trace) instead of the motion of the scene's hand");
+  command.addOption("--motion", options->motion, "measure over the motion in this recording or black box")
+      .excludes(probe);
+  command.addOption("--motion-seconds", options->motion_seconds, "duration of the hand's motion [s]")
+      .within(0.2, 10.0)
+      .showDefault();
+  command.addOption("--limit-seconds", options->limit_seconds, "stop trying settings after this [s]")
+      .within(1.0, 86400.0)
+      .showDefault();
 }
 
-void addOutputs(CLI::App* command, const std::shared_ptr<TuneArguments>& options) {
-  command->add_flag("--write", options->write,
-                    "write SCENE.tuned.yaml beside the scene, with the chosen setting and the reason");
-  command->add_option("--page", options->page, "write a report (one HTML file that needs no network)");
-  command->add_option("--picture", options->picture, "write the picture (SVG)");
+void addOutputs(const Command& command, const std::shared_ptr<TuneArguments>& options) {
+  command.addFlag("--write", options->write,
+                  "write SCENE.tuned.yaml beside the scene, with the chosen setting and the reason");
+  command.addOption("--page", options->page, "write a report (one HTML file that needs no network)");
+  command.addOption("--picture", options->picture, "write the picture (SVG)");
   command
-      ->add_option(
-          "--json", options->json,
-          "write everything that was measured (JSON) to this file; alone or as -: print it instead of the table")
-      ->expected(0, 1)
-      ->default_str("-");
+      .addOption("--json", options->json,
+                 "write everything that was measured (JSON) to this file; alone or as -: print it instead of the table")
+      .expected(0, 1)
+      .valueWithoutWord("-");
 }
 
 }  // namespace
 
-void addTune(CLI::App& app, int& exit_code) {
+void addTune(const Command& app, int& exit_code) {
   auto options = std::make_shared<TuneArguments>();
-  CLI::App* command = app.add_subcommand(
+  const Command command = app.addSubcommand(
       "tune", "Measure the cost and the error of a scene's settings on this machine, and choose one.");
-  command->add_option("scene", options->scene, "scene file (YAML)")->required();
+  command.addOption("scene", options->scene, "scene file (YAML)").required();
   addGoal(command, options);
   addOutputs(command, options);
-  command->footer(
+  command.footer(
       "Errors are measured against a converged reference; the largest over the motion counts. Ctrl-C ends the "
-      "measurement\nand keeps the results so far. The exit code is 1 if no setting reaches the goal.\n\nExample:\n  "
+      "measurement\nand keeps the results so far; a second one ends the command at once. The exit code is 1 if no "
+      "setting reaches the goal.\n\nExample:\n  "
       "hapticd tune config/scenes/teapot.yaml --tolerance-um 1 --page tune.html --write");
-  command->callback([options, &exit_code] { exit_code = tuneScene(*options); });
+  command.callback([options, &exit_code] { exit_code = tuneScene(*options); });
 }
 
 }  // namespace hapticd::cli

@@ -59,18 +59,18 @@ int view(const ViewArguments& options) {
 
 }  // namespace
 
-void addView(CLI::App& app, int& exit_code) {
+void addView(const Command& app, int& exit_code) {
   auto options = std::make_shared<ViewArguments>();
-  CLI::App* command = app.add_subcommand("view", "Show a running daemon or a recording in a browser.");
-  command->add_option("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
-  command->add_option("--port", options->port, "port on 127.0.0.1; 0: a free one")->check(CLI::Range(0, 65535));
-  command->add_flag("--control", options->control, "allow the page to change the run and to lead a simulated hand");
-  command->add_flag("--open", options->open, "open the page in your browser");
-  command->add_option("--file", options->file, "show this recording or dump instead of a daemon");
-  command->footer(
+  const Command command = app.addSubcommand("view", "Show a running daemon or a recording in a browser.");
+  command.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
+  command.addOption("--port", options->port, "port on 127.0.0.1; 0: a free one").wholeWithin(0, 65535);
+  command.addFlag("--control", options->control, "allow the page to change the run and to lead a simulated hand");
+  command.addFlag("--open", options->open, "open the page in your browser");
+  command.addOption("--file", options->file, "show this recording or dump instead of a daemon");
+  command.footer(
       "The command prints the address of the page with a token. Everybody who has the token may look.\nFrom another "
       "computer: ssh -L PORT:127.0.0.1:PORT.\n\nExample:\n  hapticd view --control --open");
-  command->callback([options, &exit_code] { exit_code = view(*options); });
+  command.callback([options, &exit_code] { exit_code = view(*options); });
 }
 
 }  // namespace hapticd::cli

@@ -90,7 +90,7 @@ std::optional<std::string> ungrouped(std::string_view text) {
   return grouped && group == 3 && toNumber(out) ? std::optional(out) : std::nullopt;
 }
 
-/// What a number with `rest` behind it was meant to be.
+/// Advice for a number with the text `rest` behind it: what its writer probably meant, and how to write that.
 std::string unitMeant(double number, const std::string& shown, std::string_view rest, std::string_view unit) {
   const std::string value = numberText(number), behind(rest);
   if (rest == "," || rest == ";") return "; write " + value + ", without the " + behind + " behind it";

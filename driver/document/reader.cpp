@@ -84,7 +84,8 @@ std::optional<size_t> Reader::choice(const Node& node, const std::string& key, s
   for (size_t i = 0; node.isScalar() && i < choices.size(); ++i)
     if (node.scalar == choices[i]) return i;
   const std::vector<std::string> all(choices.begin(), choices.end());
-  const std::string meant = node.isScalar() ? suggestion(node.scalar, all) : "";
+  const bool word = node.isScalar() && !toNumber(node.scalar);  // a number is no key that a comma made
+  const std::string meant = word ? suggestion(node.scalar, all) : "";
   problem(node, key, describe(node) + " is an invalid value, expected one of " + listed(all, 40) + meant);
   return std::nullopt;
 }
@@ -132,7 +133,8 @@ std::optional<std::filesystem::path> Reader::existingFile(const Node& node, cons
     problem(node, key,
             "there is no file " + full.string() + ", expected the path of a file" +
                 (written.is_absolute() ? "" : ", relative to the file that names it") +
-                suggestion(full.filename().string(), neighbours) + pathMeant(node.scalar));
+                (toNumber(node.scalar) ? "" : suggestion(full.filename().string(), neighbours)) +
+                pathMeant(node.scalar));
   }
   return std::nullopt;
 }

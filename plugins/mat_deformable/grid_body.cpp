@@ -21,7 +21,9 @@ constexpr double kWithinReach = 0.02;  ///< [m] farther bodies wait for the sear
 constexpr double kGridHullError = 0.005;  ///< of the greatest radius
 constexpr double kForget = 0.3;           ///< of the radius: a rival that is less deep by so much is left alone
 constexpr double kLookAhead = 0.2;        ///< likewise, of the other flank: a scan of all samples takes its time
-constexpr double kOtherFoot = 0.02;       ///< difference of parameters from which an offered foot is another one
+constexpr double kAloof = 0.01;      ///< [m] a probe so far outside a felt body need not know its foot to the last bit
+constexpr double kLoosely = 1e-6;    ///< [m] that a step there may be worth: what is left after it is less
+constexpr double kOtherFoot = 0.02;  ///< difference of parameters from which an offered foot is another one
 
 class GridBody final : public SoftBody {
  public:
@@ -47,7 +49,8 @@ class GridBody final : public SoftBody {
     const bool far = (p - track.last).squaredNorm() > std::pow(kNewPlace * skeleton.spacing(), 2);
     const bool lost = !track.known || far || jumped;
     const bool matters = skeleton.leastDistance(p) < kWithinReach;
-    if (!lost || !matters) track.foot = skeleton.nearest(p, track.foot.u, track.foot.v, options.newton);
+    if (!lost || !matters)
+      track.foot = skeleton.nearest(p, track.foot.u, track.foot.v, followed(options.newton, track));
     if (matters && (lost || !track.foot.converged)) {
       track.foot = skeleton.search(p, options.newton);
     } else if (track.offered && std::fabs(offer[0] - track.foot.u) + std::fabs(offer[1] - track.foot.v) > kOtherFoot) {
@@ -144,6 +147,15 @@ class GridBody final : public SoftBody {
     material.felt = press(kShallowPress);
     material.deep = press(kDeepPress);
     return material;
+  }
+
+  /// Beside a body that is felt, beyond the reach of its swings, its distance alone matters, which changes with the
+  /// square of a step: one evaluation follows it. Bodies that are not felt keep their bits.
+  medial::NewtonOptions followed(medial::NewtonOptions options, const Track& track) const noexcept {
+    const double outside = -track.foot.depth;
+    if (felt_ && track.known && outside > kAloof)
+      options.tolerance = std::max(options.tolerance, std::sqrt(kLoosely * outside));
+    return options;
   }
 
   /// In a valley both flanks are followed, so that neither is lost.

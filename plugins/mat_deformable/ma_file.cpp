@@ -123,7 +123,7 @@ class MaReader {
   }
 
   void finish() {
-    if (!counted_) return problem("empty, expected the numbers of vertices, edges and triangles");
+    if (!counted_) return problem("the file is empty, expected the numbers of vertices, edges and triangles");
     if (!counts_known_) return;
     const auto check = [this](long promised, std::size_t found, const char* one, const char* many) {
       if (static_cast<std::size_t>(promised) != found)

@@ -9,10 +9,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDeepest = 1.0 / 3;    ///< of the radius left under a stroke whose direction is still followed at once
-constexpr double kOpposite = 1e-9;      ///< directions nearer to opposite than this have no plane to turn in
-constexpr double kSideways = 0.5;       ///< a direction less across a sheet than this is on neither side of it
-constexpr double kSettled = 1 - 1e-14;  ///< cosine of directions that are the same
+constexpr double kDeepest = 1.0 / 3;  ///< of the radius left under a stroke whose direction is still followed at once
+constexpr double kOpposite = 1e-9;    ///< directions nearer to opposite than this have no plane to turn in
+constexpr double kOppositeFeet = -0.95;  ///< cosine of two feet of which neither pushes with the other
+constexpr double kSideways = 0.5;        ///< a direction less across a sheet than this is on neither side of it
+constexpr double kSettled = 1 - 1e-14;   ///< cosine of directions that are the same
 constexpr double kLeastMirror = 0.1;  ///< cosine of the outward direction and its mirror image that still is a measure
 
 /// `from` turned toward `to` by at most `angle`.
@@ -72,8 +73,11 @@ Felt feltTurning(const Vector3d& p, const Vector3d& moved, bool fades, Track& tr
   if (!entered && !foot.rim && wanted.dot(track.pushed) < 0)  // on the other side of a sheet
     wanted -= 2 * wanted.dot(foot.across) * foot.across;
   const bool clear = foot.radius - foot.depth > kDeepest * foot.radius && foot.normal.dot(track.pushed) > 0;
-  if (entered || (fades && track.settled && (track.swapped || clear))) {
-    track.pushed = track.swapped ? foot.normal : wanted;
+  // One that was pushed through, or whose two feet lie opposite, is pushed back to where it came from all the same.
+  const bool other =
+      track.swapped && track.pushed.dot(track.rival.normal) > 0 && foot.normal.dot(track.rival.normal) > kOppositeFeet;
+  if (entered || (fades && track.settled && (other || clear))) {
+    track.pushed = other ? foot.normal : wanted;
   } else {
     turn(wanted, asideOf(moved, track.pushed), track);
   }

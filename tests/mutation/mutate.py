@@ -33,6 +33,7 @@ TESTS = {
     "claim": "Claim.*:PullsIn.*",
     "fault": "FaultWords.*",
     "guard": "Guard.*",
+    "held_command": "HeldCommand.*",
     "limiter": "Limiter.*",
     "motor_heat": "MotorHeat.*",
     "power_bound": "PowerBound.*:Limiter.Power*",

@@ -7,6 +7,7 @@ Usage: walls.py SOURCE_DIR BUILD_DIR
 1. A file that includes across a wall does not compile, with the flags of a real file of that room.
 2. The rooms form no cycle.
 3. No source reaches another folder by "../".
+4. A library whose headers cost seconds is included by one source alone.
 """
 import json
 import pathlib
@@ -30,8 +31,13 @@ WALLS = [
     ("driver/daemon/watch/watchdog.cpp", "watch/watched.hpp", ["servo/loop/loop.hpp", "session/runner.hpp"]),
     ("driver/daemon/control/server.cpp", "base/os.hpp", ["session/request_handler.hpp", "servo/core/core.hpp"]),
     ("driver/daemon/world/world.cpp", "servo/core/core.hpp", ["session/runner.hpp", "record/recording.hpp", "scene/load.hpp"]),
+    ("driver/command_line/command_line.cpp", "command_line/command_line.hpp", ["cli/command.hpp", "base/result.hpp", "host/catalog.hpp"]),
     ("driver/daemon/session/runner.cpp", "servo/loop/loop.hpp", ["cli/command.hpp", "tune/knob.hpp", "kernels/trace/model.hpp"]),
 ]
+
+
+# Headers that take seconds to parse, and the one source that may include them.
+ONE_PLACE = {"CLI/": "driver/command_line/command_line.cpp", "spdlog/": "driver/daemon/log/log.cpp"}
 
 
 def compiles(command, header):
@@ -134,9 +140,24 @@ def check_paths(source):
     return wrong
 
 
+def check_one_place(source):
+    """A header of ONE_PLACE is included where it should be, and nowhere else."""
+    wrong, seen = [], set()
+    for top in ("driver", "plugins", "devices", "tests"):
+        for file in [f for ending in ("cpp", "hpp", "h") for f in (source / top).rglob("*." + ending)]:
+            name = str(file.relative_to(source))
+            for library, place in ONE_PLACE.items():
+                if f"#include <{library}" not in file.read_text():
+                    continue
+                seen.add(library)
+                if name != place:
+                    wrong.append(f"{name}: includes <{library}...>, expected in {place} alone\n  fix: use the header beside that file")
+    return wrong + [f"<{library}...>: is included nowhere, so {place} proves nothing" for library, place in ONE_PLACE.items() if library not in seen]
+
+
 def main():
     source, build = map(pathlib.Path, sys.argv[1:3])
-    wrong = check_walls(source, build) + check_cycles(source, build) + check_paths(source)
+    wrong = check_walls(source, build) + check_cycles(source, build) + check_paths(source) + check_one_place(source)
     print("\n".join(wrong) if wrong else f"{sum(len(w[2]) for w in WALLS)} includes across walls do not compile")
     return 1 if wrong else 0
 

@@ -188,6 +188,14 @@ double clampRaw(const Field& field, double value) noexcept {
   return std::clamp(field.type == Type::kFloat ? raw : std::nearbyint(raw), field.least, field.most);
 }
 
+/// An integer position that overflows goes on at the other end of its type.
+double wrapRaw(const Field& field, double value) noexcept {
+  const double raw = std::nearbyint((value - field.offset) / field.scale);
+  const auto [least, most] = rangeOf(field.type, field.bits);
+  const double turns = std::floor((raw - least) / (most - least + 1));
+  return std::isfinite(turns) ? std::clamp(raw - turns * (most - least + 1), least, most) : clampRaw(field, value);
+}
+
 void putConstant(const Field& field, uint8_t* bytes) noexcept {
   return field.type == Type::kFloat ? putNumber(field, field.value, bytes) : putCode(field, field.code, bytes);
 }
@@ -209,8 +217,10 @@ void put(const Field& field, const State& state, uint8_t* bytes) noexcept {
     field.bit >= 0 ? putBit(field, on, bytes) : putNumber(field, on != field.inverted ? 1 : 0, bytes);
   };
   switch (field.role) {
-    case Role::kPosition:
-      return putNumber(field, clampRaw(field, state.position[field.index]), bytes);
+    case Role::kPosition: {
+      const double q = state.position[field.index];
+      return putNumber(field, field.wraps ? wrapRaw(field, q) : clampRaw(field, q), bytes);
+    }
     case Role::kVelocity:
       return putNumber(field, clampRaw(field, state.velocity[field.index]), bytes);
     case Role::kTorque:

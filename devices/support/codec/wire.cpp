@@ -7,6 +7,7 @@
 #include "codec/choice.hpp"
 #include "codec/tree.hpp"
 #include "codec/wire_field.hpp"
+#include "codec/wire_marks.hpp"
 #include "codec/wire_overlap.hpp"
 
 namespace hapticd::codec {
@@ -196,6 +197,10 @@ Wire readWire(const std::string& json, size_t joints) {
   }
   wire.input = readReport(tree.at("input"), joints, true);
   wire.output = readReport(tree.at("output"), joints, false);
+  if (tree.problems() == 0) {
+    placeMarks(tree.at("input"), wire.framing, true, wire.input);
+    placeMarks(tree.at("output"), wire.framing, wire.framing.escape.used, wire.output);
+  }
   if (wire.framing.escape.used && wire.output.bytes() > kMaxReportBytes / 2)
     tree.at("output").at("size").fail("more than half of " + std::to_string(kMaxReportBytes) +
                                       " bytes, expected less: with escapes it may double");

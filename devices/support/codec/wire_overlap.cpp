@@ -55,6 +55,24 @@ std::vector<uint8_t> bitsTaken(const Field& field, size_t report_bytes) {
   return taken;
 }
 
+std::vector<const Field*> outsideChecksum(const Report& report) {
+  std::vector<bool> covered(report.size);
+  bool any = false;
+  for (const Field& field : report.fields)
+    if (field.role == Role::kChecksum) {
+      any = true;
+      std::fill(covered.begin() + field.from, covered.begin() + field.to, true);
+    }
+  std::vector<const Field*> outside;
+  for (const Field& field : report.fields) {
+    const auto first = covered.begin() + field.at;
+    if (any && ofJoint(field.role) &&
+        std::find(first, first + static_cast<long>(field.bytes()), false) != first + static_cast<long>(field.bytes()))
+      outside.push_back(&field);
+  }
+  return outside;
+}
+
 void checkOverlaps(const Tree& fields, const Report& report, const std::vector<bool>& placed) {
   std::vector<std::vector<uint8_t>> taken;
   for (const Field& field : report.fields) taken.push_back(bitsTaken(field, report.size));

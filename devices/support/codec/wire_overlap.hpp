@@ -17,6 +17,9 @@ constexpr bool ofJoint(Role role) noexcept {
 /// (a button, a fault) it is the one bit that it looks at.
 std::vector<uint8_t> bitsTaken(const Field& field, size_t report_bytes);
 
+/// [main] Numbers of joints with a byte that no checksum of the report covers; none where there is no checksum.
+std::vector<const Field*> outsideChecksum(const Report& report);
+
 /// [main] Notes each field that has a bit of a joint's number, or that is one and has a bit of another field. Bits of
 /// one status byte may stand side by side.
 /// @param placed of each field: its place is known, so that its bits mean something

@@ -197,6 +197,27 @@ class Watch {
   std::vector<std::set<std::string>> keys_;  ///< of the objects that are open
 };
 
+void readValues(Taker& take, Request& request) {
+  take.text("model", request.model);
+  take.text("device", request.device);
+  take.text("hand", request.hand);
+  take.text("force", request.force);
+  take.text("parameter", request.parameter);
+  take.text("file", request.file);
+  take.paths("files", kMostDescriptors, request.files);
+  take.number("value", -1e300, 1e300, request.value);
+  take.number("tolerance", kFinestDrawing, 1, request.tolerance);
+  take.word("as", "memory", request.as_memory);
+  take.number("after", 0, kMostFrames, request.after);
+  double number = 0;
+  take.number("number", 0, 4294967295.0, number);
+  request.number = static_cast<uint32_t>(number);
+  take.flag("consent", request.consent);
+  take.numbers("position", kMaxPlace, request.position);
+  readOrientation(take, request);
+  if (take.has("seconds")) take.number("seconds", 0.05, 600, request.seconds.emplace(0));
+}
+
 }  // namespace
 
 Result<Request> parseRequest(std::string_view line, std::string* id) {
@@ -216,24 +237,7 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
   Request request;
   request.kind = form->kind;
   Taker take(json);
-  take.text("model", request.model);
-  take.text("device", request.device);
-  take.text("hand", request.hand);
-  take.text("force", request.force);
-  take.text("parameter", request.parameter);
-  take.text("file", request.file);
-  take.paths("files", kMostDescriptors, request.files);
-  take.number("value", -1e300, 1e300, request.value);
-  take.number("tolerance", kFinestDrawing, 1, request.tolerance);
-  take.word("as", "memory", request.as_memory);
-  take.number("after", 0, kMostFrames, request.after);
-  double number = 0;
-  take.number("number", 0, 4294967295.0, number);
-  request.number = static_cast<uint32_t>(number);
-  take.flag("consent", request.consent);
-  take.numbers("position", kMaxPlace, request.position);
-  readOrientation(take, request);
-  if (take.has("seconds")) take.number("seconds", 0.05, 600, request.seconds.emplace(0));
+  readValues(take, request);
   if (!request.file.empty() && request.file[0] != '/') take.complain("file", "an absolute path");
   const bool leads = form->kind == Kind::kLead || form->kind == Kind::kUnlead;
   if (leads && take.has("model") + take.has("hand") + take.has("force") != 1)

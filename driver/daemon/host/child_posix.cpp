@@ -197,7 +197,8 @@ Error notTried(const char* what, int code) {
   return Error{std::string("could not be tried: ") + what + ": " + std::strerror(code)};
 }
 
-/// A pipe at descriptors that the child's own do not overwrite, in a process that was started without 0, 1 or 2 too.
+/// Opens a pipe above the descriptors that the child gives to its standard streams and its answer. A process that was
+/// started without 0, 1 or 2 would get one of these otherwise, and the child would overwrite it.
 bool pipeBeyondStandard(int (&ends)[2]) {
   int low[2];
   if (pipe2(low, O_CLOEXEC) != 0) return false;

@@ -37,6 +37,9 @@ std::string wrongIn(const ParamInfo& p) {
   if (p.kind < HSP_REAL || p.kind > HSP_DATA) return p.id + ": kind " + std::to_string(p.kind) + " is unknown";
   const bool numeric = p.kind == HSP_REAL || p.kind == HSP_INT || p.kind == HSP_ARRAY;
   if (numeric && !(p.min <= p.max)) return p.id + ": its smallest value is above its largest";
+  const bool given = (p.flags & HSP_P_REQUIRED) == 0 && (p.kind == HSP_REAL || p.kind == HSP_INT);
+  if (given && !(p.def >= p.min && p.def <= p.max))
+    return p.id + ": its default is outside of its range; expected a number between its smallest and its largest value";
   if (p.kind == HSP_ENUM && p.choices.empty()) return p.id + ": no choices";
   return "";
 }

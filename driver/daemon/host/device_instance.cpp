@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "host/class_table.hpp"
+#include "host/kinematics_check.hpp"
 
 namespace hapticd::host {
 namespace {
@@ -92,6 +93,8 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
     return Error{who +
                  (said.empty() ? "module '" + device.module + "' has no kinematics (" HDV_EXT_KINEMATICS ")" : said)};
   }
+  if (const std::string wrong = wrongJacobian(*instance->kinematics_, instance->device_); !wrong.empty())
+    return Error{who + "module '" + device.module + "' " + wrong};
   return instance;
 }
 

@@ -13,7 +13,7 @@
 
 namespace hapticd::host {
 
-/// Something that a shape told from the servo thread; what the numbers mean is the shape's.
+/// Numbers that a shape wrote into the trace from the servo thread. Only the shape knows what they mean.
 struct TraceEvent {
   uint32_t event = 0;
   double a = 0, b = 0;

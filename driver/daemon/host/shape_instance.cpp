@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "base/call_name.hpp"
 #include "host/class_table.hpp"
 
 namespace hapticd::host {
@@ -30,6 +31,12 @@ std::string wrongIn(const hsp_report& report) {
     return "its report claims " + std::to_string(report.viz_vertices) + " vertices to draw; expected at most " +
            std::to_string(kMostVertices);
   return "";
+}
+
+/// Where the scene asks for it; "": a model that no file has.
+std::string placeOf(const scene::Model& model) {
+  if (model.place.file.empty() || model.place.line == 0) return model.place.file;
+  return model.place.file + ":" + std::to_string(model.place.line);
 }
 
 /// The largest damping among the parameters, given or left at their defaults.
@@ -68,11 +75,14 @@ Result<std::unique_ptr<ShapeInstance>> ShapeInstance::create(const scene::Model&
     return Error{who + "plugin '" + model.plugin + "' of " + model.library.string() + " lacks a required function"};
 
   ownCode(reinterpret_cast<const void*>(instance->class_->create), instance->owner_);
+  keepPlace(instance->owner_, placeOf(model));
   const Calling calling(instance->owner_);
+  const CallName creating("create");
   instance->shape_ = instance->class_->create(instance->class_, instance->services_.abi());
   if (instance->shape_ == nullptr)
     return Error{who + "plugin '" + model.plugin +
                  "' could not create an instance: " + reasonOf(HSP_E_NOMEM, instance->services_)};
+  const CallName setting("set");
   const auto set = setAll(
       model.parameters, instance->class_->param_count, instance->services_,
       [&](uint32_t index, const hsp_value* value) { return instance->class_->set(instance->shape_, index, value); });
@@ -84,6 +94,7 @@ Result<std::unique_ptr<ShapeInstance>> ShapeInstance::create(const scene::Model&
 ShapeInstance::~ShapeInstance() {
   const Calling calling(owner_);
   deactivate();
+  const CallName destroying("destroy");
   if (shape_ != nullptr) class_->destroy(shape_);
 }
 
@@ -94,6 +105,7 @@ Result<void> ShapeInstance::activate(const hsp_activation& activation) {
   report_.struct_size = sizeof report_;
   services_.forgetError();
   const Calling calling(owner_);
+  const CallName activating("activate");
   const hsp_status status = class_->activate(shape_, &activation, &report_);
   if (status < 0) return Error{who + "cannot be set up: " + reasonOf(status, services_)};
   active_ = true;
@@ -117,6 +129,7 @@ Result<void> ShapeInstance::activate(const hsp_activation& activation) {
 void ShapeInstance::deactivate() {
   if (!active_) return;
   const Calling calling(owner_);
+  const CallName deactivating("deactivate");
   class_->deactivate(shape_);
   surfaces_ = nullptr;
   geometry_ = nullptr;
@@ -127,6 +140,7 @@ void ShapeInstance::deactivate() {
 
 size_t ShapeInstance::nearby(const double p_model[3], double radius_m, std::span<hsp_near> near) const noexcept {
   const Calling calling(owner_);
+  const CallName searching("nearby");
   const int64_t found = surfaces_->nearby(shape_, p_model, radius_m, near.data(), near.size());
   const size_t count = found > 0 ? std::min(static_cast<size_t>(found), near.size()) : 0;
   const auto sound = [&](const hsp_near& foot) {
@@ -142,6 +156,7 @@ hsp_status ShapeInstance::tessellate(double chord_error_m, hsp_mesh& mesh) const
   mesh.struct_size = sizeof mesh;
   if (geometry_ == nullptr) return HSP_E_UNSUPPORTED;
   const Calling calling(owner_);
+  const CallName drawing("tessellate");
   const hsp_status status = geometry_->tessellate(shape_, chord_error_m, &mesh);
   if (status < 0) return status;
   const bool lacks =
@@ -157,6 +172,7 @@ hsp_status ShapeInstance::tessellate(double chord_error_m, hsp_mesh& mesh) const
 bool ShapeInstance::bounds(double min[3], double max[3]) const {
   if (geometry_ == nullptr) return false;
   const Calling calling(owner_);
+  const CallName bounding("bounds");
   if (geometry_->bounds(shape_, min, max) != HSP_OK) return false;
   for (int i = 0; i < 3; ++i)
     if (!std::isfinite(min[i]) || !std::isfinite(max[i]) || min[i] > max[i]) return false;

@@ -20,6 +20,7 @@ struct RunFacts {
   bool virtual_time = false;
   bool found_pressed = false;     ///< a hold button that was down before the run enabled, as it did once
   bool former_claims = false;     ///< torques, and steps after a parameter was set, were held to no claim
+  bool full_when_slow = false;    ///< real arms pushed with their full force however slow they were
   bool former_passivity = false;  ///< a steady push of a program was energy from nothing
 };
 

@@ -176,9 +176,11 @@ std::string statusAnswer(const Session& session) {
     const auto arm = page.arm[i].now.read().value_or(status::ArmNow{});
     const auto fault = static_cast<Fault>(arm.fault);
     const std::string why = noForceWhy(session, static_cast<uint32_t>(i));
+    const std::string& slow = session.runner.arms()[i]->slowness();
     devices.push_back({{"name", session.runner.scene().devices[i].name},
                        {"fault", fault == Fault::kNone ? Json() : Json(describe(fault))},
                        {"no_force", why.empty() ? Json() : Json(why)},
+                       {"less_force", slow.empty() ? Json() : Json(slow)},
                        {"force_n", {arm.force[0], arm.force[1], arm.force[2]}},
                        {"position_m", {arm.position[0], arm.position[1], arm.position[2]}}});
     if (session.runner.arms()[i]->clients().possible() && session.leads.mayPush())

@@ -88,7 +88,8 @@ void EventFinder::look(double t, uint32_t index, const Core& core) noexcept HSP_
   }
   if (model.guard.quarantined() && note.trouble != model.guard.trouble()) {
     note.trouble = model.guard.trouble();
-    const double value = note.trouble == Trouble::kPulls ? model.pull.force : model.failed_status;
+    const bool sized = note.trouble == Trouble::kPulls || note.trouble == Trouble::kJump;
+    const double value = sized ? model.pull.force : model.failed_status;
     add(HAPTICD_SILENCED, number, -1, static_cast<uint32_t>(note.trouble), value);
   }
   if (model.level != note.level) {

@@ -18,8 +18,6 @@ namespace {
 constexpr size_t kAtOnce = 256;    ///< events that are read in one go
 constexpr double kBegins = 0.005;  ///< [s] nobody brings a tip to a surface so soon: it was inside already
 
-constexpr size_t kMostPrograms = 256;
-
 }  // namespace
 
 void EventLog::name(uint32_t place, const std::string& model) {

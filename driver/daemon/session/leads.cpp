@@ -19,8 +19,6 @@ Order orderOf(Order::Kind kind, const Leads::Target& target) {
   return order;
 }
 
-constexpr size_t kMostPrograms = 256;
-
 bool same(const Leads::Target& a, const Leads::Target& b) {
   return a.led == b.led && a.index == b.index;
 }

@@ -324,10 +324,11 @@ Result<std::unique_ptr<Replay>> Replay::prepare(const record::Recording& recordi
   for (size_t i = 0; i < scene.devices.size(); ++i) {
     replay->playbacks_.push_back(std::make_unique<host::Playback>());
     replay->playbacks_[i]->info = replay->run_.devices[i];
-    auto arm = Arm::open(scene.devices[i], scene.servo,
-                         {options.rate, replay->world_->needsVelocity(), replay->playbacks_[i].get(), scene.clients,
-                          replay->run_.facts.found_pressed, replay->run_.facts.former_passivity},
-                         log);
+    auto arm = Arm::open(
+        scene.devices[i], scene.servo,
+        {options.rate, replay->world_->needsVelocity(), replay->playbacks_[i].get(), scene.clients,
+         replay->run_.facts.found_pressed, replay->run_.facts.full_when_slow, replay->run_.facts.former_passivity},
+        log);
     if (!arm) return Error{arm.error()};
     replay->arms_.push_back(std::move(*arm));
   }

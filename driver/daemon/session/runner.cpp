@@ -15,6 +15,8 @@
 #include "session/watched_servo.hpp"
 #include "sim/proximity_thread.hpp"
 #include "watch/crash.hpp"
+#include "watch/end_watch.hpp"
+#include "watch/ended.hpp"
 #include "watch/notify.hpp"
 #include "watch/watchdog.hpp"
 #include "world/arm_force.hpp"
@@ -28,42 +30,6 @@ constexpr Nanoseconds kReadyPoll = 1'000'000;
 constexpr uint64_t kReadyTicks = 2;          ///< the servo lives: the service manager may say so
 constexpr uint64_t kDryCycles = 2000;        ///< with motors off, to judge the machine before a hand relies on it
 constexpr uint64_t kLongestRunUs = 100'000;  ///< of CPU time without sleep; a tick takes a hundredth of it
-
-/// Handles crashes of plugins while one lives. The sanitizers have handlers of their own.
-class CrashGuard {
- public:
-  CrashGuard(watch::Watched& watched, const std::filesystem::path& dir) {
-#ifndef HAPTICD_SANITIZED
-    watch::guardAgainstCrash(watched, dir);
-#else
-    (void)watched, (void)dir;
-#endif
-  }
-  ~CrashGuard() {
-#ifndef HAPTICD_SANITIZED
-    watch::forgetCrash();
-#endif
-  }
-  CrashGuard(const CrashGuard&) = delete;
-  CrashGuard& operator=(const CrashGuard&) = delete;
-};
-
-/// A run that has ended, as the crash handler sees it: the motors are off.
-class EndedServo final : public watch::Watched {
- public:
-  uint64_t ticks() const noexcept override { return 0; }
-  Nanoseconds tickBegun() const noexcept override { return 0; }
-  Nanoseconds nextTick() const noexcept override { return 0; }
-  Nanoseconds cpuTime() const noexcept override { return 0; }
-  bool simulated() const noexcept override { return true; }
-  void stop() noexcept override {}
-  Nanoseconds stopAsked() const noexcept override { return 0; }
-  void cut(double) noexcept override {}
-  bool cutLeft() const noexcept override { return true; }
-  const Owner* inServo() const noexcept override { return nullptr; }
-  const void* blackBox() const noexcept override { return nullptr; }
-  size_t blackBoxBytes() const noexcept override { return 0; }
-};
 
 Nanoseconds spinFor(const scene::Servo& servo) {
   // Spinning buys regularity on bare metal; in a virtual machine the pauses come from outside.
@@ -92,12 +58,30 @@ const Owner* keepsTheEnd() {
   return nullptr;
 }
 
+/// [main] A watchdog that names whom a run waits for in vain. @param may_lag late ticks are nobody's fault here
+std::unique_ptr<watch::Watchdog> watchdogOf(watch::Watched& watched, bool may_lag) {
+  using watch::Watchdog;
+  const auto hung = [&watched] { watch::dieOf("a step that did not come back", watched.inServo()); };
+  auto watchdog =
+      std::make_unique<Watchdog>(watched, hung, may_lag ? Watchdog::kMissedInVirtualMachine : Watchdog::kMissedAfter,
+                                 may_lag ? Watchdog::kStuckInVirtualMachine : Watchdog::kStuckAfter);
+  watchdog->onLateEnd([] { watch::endAnyway(keepsTheEnd()); });
+  return watchdog;
+}
+
+Result<void> runInVirtualTime(Loop& loop, const watch::Watched& watched) {
+  watch::EndWatch end(watched, [] { watch::endAnyway(keepsTheEnd()); });
+  if (const auto code = end.start()) return Error{"cannot start the thread that watches the end: " + code.message()};
+  loop.run();
+  return {};
+}
+
 }  // namespace
 
 Runner::~Runner() {
   const Working working(Worker::kMain);
-  EndedServo ended;
-  const CrashGuard crash(ended, options_.state_dir);
+  watch::Ended ended;
+  const watch::CrashGuard crash(ended, options_.state_dir);
   recorder_.reset();
   loop_.reset();
   clock_.reset();
@@ -199,11 +183,11 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every, const 
     if (const auto code = recorder_->start()) return Error{"cannot start the recording thread: " + code.message()};
   const Working working(Worker::kMain);
   WatchedServo watched(*loop_, arms_, *telemetry_);
-  const CrashGuard crash(watched, options_.state_dir);
+  const watch::CrashGuard crash(watched, options_.state_dir);
   os::prepareSignalStack();  // this thread may search, which runs plugins
   if (options_.virtual_time) {
     const Nanoseconds begun = monotonicNow();
-    loop_->run();
+    done = runInVirtualTime(*loop_, watched);
     wall_time_ = monotonicNow() - begun;
     stopArms();
     ended();
@@ -260,13 +244,8 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   lockMemory();
   const os::DmaLatencyHold awake;
   std::atomic<bool> ready{false};
-  const bool may_lag = mayLag();
-  const auto hung = [&watched] { watch::dieOf("a step that did not come back", watched.inServo()); };
-  using watch::Watchdog;
-  Watchdog watchdog(watched, hung, may_lag ? Watchdog::kMissedInVirtualMachine : Watchdog::kMissedAfter,
-                    may_lag ? Watchdog::kStuckInVirtualMachine : Watchdog::kStuckAfter);
-  watchdog.onLateEnd([] { watch::endAnyway(keepsTheEnd()); });
-  if (const auto code = watchdog.start(options_.priority + 1))
+  const auto watchdog = watchdogOf(watched, mayLag());
+  if (const auto code = watchdog->start(options_.priority + 1))
     return Error{"cannot start the watchdog thread: " + code.message()};
   std::vector<std::string> refused;  // the servo thread's until `ready`, then this thread's
   const bool anyhow = onlySimulated() || options_.allow_non_rt, locked = warnings_.empty();
@@ -292,7 +271,7 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   host::Services::passOn(log::write);
   event_log_->tell(*telemetry_->flight());
   ended();
-  watchdog.stop();
+  watchdog->stop();
   if (!loop_->finished()) return Error{warnings_.back() + "\n  forces stay off (--allow-non-rt allows them)"};
   return {};
 }

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "servo/core/core.hpp"
 
 namespace hapticd::servo {
@@ -15,6 +17,23 @@ std::string placeOf(const Pull& pull) {
   std::string text = fmt::format(", at {:.3f} s with {:.3g} N", pull.t, pull.force);
   if (pull.depth >= 0) text += fmt::format(" at a depth of {:.3g} mm", pull.depth * 1e3);
   return text;
+}
+
+/// ", the largest by 5.85 N at 2.134 s at a depth of 3.9 mm": as far as it is known.
+std::string sizeOf(const Pull& jump) {
+  if (!(jump.force > 0)) return "";
+  std::string text = fmt::format(", the largest by {:.3g} N", jump.force);
+  if (jump.t >= 0) text += fmt::format(" at {:.3f} s", jump.t);
+  if (jump.depth >= 0) text += fmt::format(" at a depth of {:.3g} mm", jump.depth * 1e3);
+  return text;
+}
+
+/// The cure of jumps that a person wants: the size that was seen, rounded up.
+std::string onPurpose(const Pull& jump) {
+  if (!(jump.force > 0)) return "";
+  const double unit = std::pow(10, std::floor(std::log10(jump.force)) - 1);
+  return fmt::format("if on purpose: reportJumps(report, {:.6g}) in its activate(); if not, ",
+                     unit * std::ceil(jump.force / unit));
 }
 
 /// What is wrong with a shape that pulled: a surface that is told at no depth may be one whose depth was forgotten.
@@ -32,6 +51,7 @@ std::string silenceReason(const ModelState& model) {
 
 std::string silenceReason(const hapticd_event& event, const std::string& model) {
   const auto trouble = static_cast<Trouble>(event.code);
+  if (trouble == Trouble::kJump) return silenceReason(model, trouble, 0, {-1, -1, event.value});
   if (trouble != Trouble::kPulls) return silenceReason(model, trouble, static_cast<int32_t>(event.value));
   return silenceReason(model, trouble, 0, {event.t, -1, event.value});
 }
@@ -56,9 +76,8 @@ std::string silenceReason(const std::string& model, Trouble trouble, int32_t fai
              "took longer than the budget of a tick, several times; it was silenced; measure it with: hapticd plugin "
              "check FILE.so";
     case Trouble::kJump:
-      return who +
-             "gave forces that jumped beyond its claimed stiffness; it was silenced; test it with: hapticd plugin "
-             "check FILE.so";
+      return who + "gave forces that jumped beyond its claimed stiffness" + sizeOf(pull) + "; it was silenced; " +
+             onPurpose(pull) + "test it with: hapticd plugin check FILE.so";
     case Trouble::kTwists:
       return who +
              "gave torques that jumped beyond its claimed stiffness; it was silenced; test it with: hapticd plugin "

@@ -12,49 +12,25 @@
 #include <cstring>
 #include <iterator>
 
+#include "base/call_name.hpp"
 #include "base/fatal_signals_posix.hpp"
 #include "base/os.hpp"
+#include "watch/process_end.hpp"
 #include "watch/quarantine.hpp"
+#include "watch/signal_words.hpp"
 
 namespace hapticd::watch {
 
 namespace {
 
-constexpr size_t kLongestPath = 1024;
-
 /// Everything the handler needs, prepared while there is still an allocator.
 struct Prepared {
   std::atomic<Watched*> servo{nullptr};
+  std::atomic<int> process{0};  ///< a fork of it is none of our business
   char dir[kLongestPath] = "";  // "": nothing is written
 };
 Prepared prepared;
 std::atomic<int> dying{0};  ///< the thread that ends the process
-
-/// A line put together without the C library's buffers.
-class Line {
- public:
-  Line& add(const char* text) noexcept {
-    for (; *text != '\0' && length_ + 1 < sizeof text_; ++text) text_[length_++] = *text;
-    text_[length_] = '\0';
-    return *this;
-  }
-  /// A plugin's name as part of a file's: whatever it holds, it stays in its folder.
-  Line& addName(const char* name) noexcept {
-    for (; *name != '\0' && length_ + 1 < sizeof text_; ++name) {
-      const bool plain = (*name >= 'a' && *name <= 'z') || (*name >= 'A' && *name <= 'Z') ||
-                         (*name >= '0' && *name <= '9') || *name == '_' || *name == '-';
-      text_[length_++] = plain ? *name : '_';
-    }
-    text_[length_] = '\0';
-    return *this;
-  }
-  const char* text() const noexcept { return text_; }
-  bool write(int fd) const noexcept { return ::write(fd, text_, length_) == static_cast<ssize_t>(length_); }
-
- private:
-  char text_[3 * kLongestPath] = "";
-  size_t length_ = 0;
-};
 
 /// Of that thread alone. The reason and the culprit are fixed at the first step: what the later ones find is a process
 /// that is falling apart.
@@ -62,42 +38,12 @@ struct Death {
   std::atomic<size_t> step{0};  ///< the next of kSteps
   bool motors_off = false;
   const Owner* culprit = nullptr;
-  int not_remembered = 0;  ///< errno
-  Line reason, black_box;  ///< its file, once it is written
+  bool called = false;         ///< it was, by the thread that ends the process
+  const char* call = nullptr;  ///< its function; nullptr: a step
+  int not_remembered = 0;      ///< errno
+  Line reason, black_box;      ///< its file, once it is written
 };
 Death death;
-
-const char* wordsOfCrash(int signal) noexcept {
-  switch (signal) {
-    case SIGSEGV:
-      return "a memory access that is not allowed (SIGSEGV)";
-    case SIGBUS:
-      return "a memory access that cannot be done (SIGBUS)";
-    case SIGFPE:
-      return "an arithmetic exception (SIGFPE)";
-    case SIGILL:
-      return "an instruction that this processor lacks (SIGILL)";
-    case SIGABRT:
-      return "an abort, such as a failed assertion (SIGABRT)";
-    case SIGXCPU:
-      return "a servo thread that never slept (SIGXCPU)";
-    case SIGTRAP:
-      return "a breakpoint without a debugger (SIGTRAP)";
-    case SIGSYS:
-      return "a system call that does not exist (SIGSYS)";
-  }
-  return nullptr;
-}
-
-Line words(int signal) noexcept {
-  Line line;
-  if (const char* known = wordsOfCrash(signal)) return line.add(known);
-  line.add("a signal that ends a process (");
-  if (const char* name = sigabbrev_np(signal)) return line.add("SIG").add(name).add(")");
-  const int number = signal - SIGRTMIN;
-  const char digits[] = {static_cast<char>('0' + number / 10 % 10), static_cast<char>('0' + number % 10), '\0'};
-  return line.add("SIGRTMIN+").add(digits).add(")");
-}
 
 bool sentByOther(const siginfo_t& info) noexcept {
   return info.si_code <= 0 && info.si_code != SI_TIMER && info.si_pid != 0 && info.si_pid != getpid();
@@ -113,9 +59,23 @@ const Owner* culpritOf(int signal, const siginfo_t& info, const void* context) n
   return isWorker() ? nullptr : ownerInterrupted(context);  // a thread that a plugin or module began itself
 }
 
+/// nullptr: nothing is watched, or this process is a fork of the one that is.
+Watched* watchedHere() noexcept {
+  return prepared.process.load() == getpid() ? prepared.servo.load() : nullptr;
+}
+
+/// As if nobody had handled it.
+void dieBySystem(int signal) noexcept {
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
 void onFatal(int signal, siginfo_t* info, void* context) {
-  Watched* servo = prepared.servo.load();
-  if (servo != nullptr && wordsOfCrash(signal) == nullptr && sentByOther(*info)) {
+  Watched* servo = watchedHere();
+  const bool other = wordsOfCrash(signal) == nullptr && sentByOther(*info);
+  if ((servo == nullptr && prepared.servo.load() != nullptr) || (other && servo != nullptr && !servo->drives()))
+    return dieBySystem(signal);
+  if (servo != nullptr && other) {
     servo->stop();
     Line()
         .add("\nwarning: the run ends by ")
@@ -127,12 +87,42 @@ void onFatal(int signal, siginfo_t* info, void* context) {
   dieOf(words(signal).text(), culpritOf(signal, *info, context));
 }
 
+Line& addOwner(Line& line, const Owner& owner) noexcept {
+  line.add(owner.device ? "device module '" : "plugin '").add(owner.module.c_str());
+  return line.add(owner.device ? "' of device '" : "' of model '").add(owner.name.c_str()).add("'");
+}
+
+/// " in its activate()", " in a step": what a module without a name for it was called for.
+Line& addCall(Line& line, const Owner& owner, const char* name) noexcept {
+  if (name != nullptr) return line.add(" in its ").add(name).add("()");
+  return line.add(owner.device ? " in one of its calls" : " in a step");
+}
+
+/// Ctrl-C, SIGTERM and their kind. One that a module sent to its own process is no wish of a person.
+void onStop(int signal, siginfo_t* info, void* context) {
+  const bool own = info->si_code <= 0 && info->si_code != SI_TIMER && info->si_pid == getpid();
+  if (own && watchedHere() != nullptr) dieOf(words(signal).text(), culpritOf(signal, *info, context));
+  if (void (*former)(int) = os::formerStop(signal)) return former(signal);
+  const Owner* keeps = watchedHere() != nullptr ? calledHere() : nullptr;
+  if (keeps != nullptr) {
+    Line line;
+    addOwner(line.add("\nwarning: ended by ").add(words(signal).text()).add(" while "), *keeps).add(" was");
+    addCall(line, *keeps, callNameHere()).add("\n");
+    line.write(STDERR_FILENO);
+  }
+  dieBySystem(signal);
+}
+
 /// A plugin or library that called exit(): static objects are still there, and other threads still run.
-void onExit() {
-  if (prepared.servo.load() == nullptr) return;
+void dieOfExit(const char* what) noexcept {
+  if (watchedHere() == nullptr) return;
   const Owner* culprit = calledHere();
   if (culprit == nullptr && !isWorker()) culprit = ownerOnStack(__builtin_frame_address(0));
-  dieOf("a call of exit()", culprit);
+  dieOf(what, culprit);
+}
+
+void onExit() {
+  dieOfExit("a call of exit()");
 }
 
 void saveBlackBox(const Watched& servo, const char* file) noexcept {
@@ -155,6 +145,7 @@ void awaitCut(const Watched& servo) noexcept {
 }
 
 void cutMotors(Watched& servo) noexcept {
+  if (!servo.drives()) return;
   servo.cut(0);
   awaitCut(servo);
   death.motors_off = true;
@@ -188,16 +179,19 @@ void remember(Watched&) noexcept {
 
 void tellCulprit(Line& line) noexcept {
   line.add("\nerror: ");
-  if (const Owner* culprit = death.culprit) {
-    line.add(culprit->device ? "device module '" : "plugin '").add(culprit->module.c_str());
-    line.add(culprit->device ? "' of device '" : "' of model '").add(culprit->name.c_str()).add("'");
-  } else {
+  const Owner* culprit = death.culprit;
+  const char* place = culprit != nullptr ? placeOf(culprit) : "";
+  if (*place != '\0') line.add(place).add(": ");
+  if (culprit != nullptr)
+    addOwner(line, *culprit);
+  else
     line.add("the daemon itself");
-  }
-  line.add(" was ended by ").add(death.reason.text()).add("\n  ");
+  line.add(" was ended by ").add(death.reason.text());
+  if (death.called) addCall(line.add(","), *culprit, death.call);
+  line.add("\n  ");
 }
 
-void tellCure(Line& line) noexcept {
+void tellCure(Line& line, bool drives) noexcept {
   if (mayBeLeftOut() && death.not_remembered == 0) {
     line.add(
             "the next start leaves its models out\n  fix: look at the plugin (hapticd plugin check FILE.so), then: "
@@ -208,18 +202,23 @@ void tellCure(Line& line) noexcept {
     const char* why = strerrordesc_np(death.not_remembered);
     line.add("it could not be put in quarantine, so the next start loads it again: ").add(prepared.dir);
     line.add(": ").add(why != nullptr ? why : "not written").add("\n  fix: take it out of the scene\n");
+  } else if (death.culprit != nullptr && !death.culprit->device && !drives) {
+    line.add("the command has ended\n  fix: repair the plugin; hapticd plugin check FILE.so looks for the cause\n");
+  } else if (!drives) {
+    line.add("the command has ended\n  fix: report it with the output of: hapticd doctor --json\n");
   } else {
     line.add("the run has ended\n  fix: report it with the black box and the output of: hapticd doctor --json\n");
   }
 }
 
-void tell(Watched&) noexcept {
+void tell(Watched& servo) noexcept {
   Line line;
   tellCulprit(line);
-  line.add(death.motors_off ? "the motors were switched off first" : "to switch the motors off crashed as well");
+  if (servo.drives())
+    line.add(death.motors_off ? "the motors were switched off first" : "to switch the motors off crashed as well");
   if (*death.black_box.text() != '\0') line.add("; the last seconds are in ").add(death.black_box.text());
-  line.add("\n  ");
-  tellCure(line);
+  if (servo.drives()) line.add("\n  ");
+  tellCure(line, servo.drives());
   line.write(STDERR_FILENO);
 }
 
@@ -229,7 +228,7 @@ constexpr void (*kSteps[])(Watched&) noexcept = {&cutMotors, &remember, &writeBl
 [[noreturn]] void awaitEnd() noexcept {
   constexpr timespec kPatience{5, 0};
   nanosleep(&kPatience, nullptr);
-  _exit(1);
+  endProcess(1);
 }
 
 }  // namespace
@@ -240,33 +239,55 @@ void guardAgainstCrash(Watched& servo, const std::filesystem::path& dir) {
   const std::string text = dir.string();
   prepared.dir[0] = '\0';
   if (text.size() < kLongestPath) std::memcpy(prepared.dir, text.c_str(), text.size() + 1);
+  prepared.process.store(getpid());
   prepared.servo.store(&servo);
+  onPlainExit([] { dieOfExit("a call of _exit()"); });
   os::onFatalSignals(&onFatal);
+  os::onStopSignals(&onStop);
 }
 
 void forgetCrash() {
+  os::onStopSignals(nullptr);
   os::onFatalSignals(nullptr);
+  onPlainExit(nullptr);
   prepared.servo.store(nullptr);
+}
+
+CrashGuard::CrashGuard(Watched& servo, const std::filesystem::path& dir)
+    : before_(prepared.servo.load()), dir_before_(prepared.dir) {
+#ifndef HAPTICD_SANITIZED
+  guardAgainstCrash(servo, dir);
+#else
+  (void)servo, (void)dir;
+#endif
+}
+
+CrashGuard::~CrashGuard() {
+#ifndef HAPTICD_SANITIZED
+  forgetCrash();
+  if (before_ != nullptr) guardAgainstCrash(*before_, dir_before_);
+#endif
 }
 
 void endAnyway(const Owner* keeps) noexcept {
   Watched* servo = prepared.servo.load();
-  if (servo == nullptr) _exit(1);
+  if (servo == nullptr) endProcess(1);
   servo->cut(0);
   awaitCut(*servo);
   Line line;
   line.add("\nwarning: the run was told to end, and ");
   if (keeps != nullptr)
-    line.add(keeps->device ? "device module '" : "plugin '").add(keeps->module.c_str()).add("' did not come back");
+    addOwner(line, *keeps).add(" did not come back");
   else
     line.add("what it still did took too long");
-  line.add("\n  the motors are off; the process ends without its report\n").write(STDERR_FILENO);
-  _exit(1);
+  line.add("\n  ").add(servo->drives() ? "the motors are off; " : "").add("the process ends without its report\n");
+  line.write(STDERR_FILENO);
+  endProcess(1);
 }
 
 void dieOf(const char* reason, const Owner* culprit) noexcept {
   Watched* servo = prepared.servo.load();
-  if (servo == nullptr) _exit(1);
+  if (servo == nullptr) endProcess(1);
   int nobody = 0;
   const int self = os::threadId();
   if (!dying.compare_exchange_strong(nobody, self) && nobody != self) awaitEnd();
@@ -274,9 +295,11 @@ void dieOf(const char* reason, const Owner* culprit) noexcept {
   if (nobody == 0) {
     death.reason.add(reason);
     death.culprit = culprit;
+    death.called = culprit != nullptr && culprit == calledHere();
+    death.call = callNameHere();
   }
   for (size_t step = death.step++; step < std::size(kSteps); step = death.step++) kSteps[step](*servo);
-  _exit(1);
+  endProcess(1);
 }
 
 }  // namespace hapticd::watch

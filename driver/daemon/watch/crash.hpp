@@ -9,15 +9,29 @@
 
 namespace hapticd::watch {
 
-/// [main] Handles every signal that ends a process, exit() and quick_exit(), until `forget`. A signal of no fault that
-/// another process sends ends the run in order.
+/// [main] Handles every signal that ends a process, exit(), quick_exit() and _exit(), until `forget`. A signal of no
+/// fault that another process sends ends the run in order; SIGTERM and its kind do what they did before, unless this
+/// process sent them itself.
 /// @param dir for the black box and the quarantine file; empty: neither is written
 void guardAgainstCrash(Watched& servo, const std::filesystem::path& dir);
 
 /// [main] The signals do what they did before; the servo may be destroyed.
 void forgetCrash();
 
-/// [any] What the handler does, async-signal-safe, ended by _exit(1). @param reason such as "Segmentation fault"
+/// Both in one, as long as it lives; they may nest. The sanitizers have handlers of their own, and keep them.
+class CrashGuard {
+ public:
+  CrashGuard(Watched& servo, const std::filesystem::path& dir);
+  ~CrashGuard();
+  CrashGuard(const CrashGuard&) = delete;
+  CrashGuard& operator=(const CrashGuard&) = delete;
+
+ private:
+  Watched* before_;
+  std::filesystem::path dir_before_;
+};
+
+/// [any] What the handler does, async-signal-safe, ended with exit code 1. @param reason such as "Segmentation fault"
 /// @param culprit whose code did it; nullptr: nobody is blamed
 [[noreturn]] void dieOf(const char* reason, const Owner* culprit) noexcept;
 

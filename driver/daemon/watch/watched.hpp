@@ -27,6 +27,7 @@ class Watched {
   virtual const Owner* inServo() const noexcept = 0;  ///< whose code the servo thread runs; nullptr: the daemon's own
   virtual const void* blackBox() const noexcept = 0;  ///< the last seconds, as they lie in memory; nullptr: none
   virtual size_t blackBoxBytes() const noexcept = 0;
+  virtual bool drives() const noexcept { return true; }  ///< motors may be on
 };
 
 }  // namespace hapticd::watch

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd-inverse-service`: the arms of a running daemon for programs that were written for Haply's Inverse Service.
-#include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <list>
 #include <thread>
 
+#include "command_line/command_line.hpp"
 #include "session.hpp"
 #include "websocket/channel.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 
 using namespace hapticd;
 
-constexpr int kFailed = 1, kBadInput = 2, kMostSessions = 4, kLookMs = 200;
+constexpr int kFailed = 1, kMostSessions = 4, kLookMs = 200;
 
 std::atomic<bool> told_to_end{false};
 
@@ -72,15 +72,12 @@ void serve(websocket::Listener& listener, const std::string& daemon) {
 int main(int count, char** words) {
   std::string daemon = "hapticd";
   unsigned short port = 10001;
-  CLI::App app("The arms of a running hapticd in the interface of Haply's Inverse Service (WebSocket, JSON).");
-  app.add_option("--name", daemon, "name of the daemon, as given to `hapticd run --name`")->capture_default_str();
-  app.add_option("--port", port, "port of 127.0.0.1; 0: one that is free")->capture_default_str();
+  const command_line::Program app(
+      "The arms of a running hapticd in the interface of Haply's Inverse Service (WebSocket, JSON).");
+  app.addOption("--name", daemon, "name of the daemon, as given to `hapticd run --name`").showDefault();
+  app.addOption("--port", port, "port of 127.0.0.1; 0: one that is free").showDefault();
   app.footer("Example:\n  hapticd-inverse-service --port 10001");
-  try {
-    app.parse(count, words);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
-  }
+  if (const auto ended = app.parse(count, words)) return *ended;
   auto first = haply::Session::open(daemon, 0);
   if (!first) return std::fprintf(stderr, "error: %s\n", first.error().c_str()), kFailed;
   auto listener = websocket::Listener::listen(port);

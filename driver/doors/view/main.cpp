@@ -6,12 +6,12 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cstdio>
 #include <filesystem>
 
+#include "command_line/command_line.hpp"
 #include "foxglove.hpp"
 #include "native.hpp"
 #include "server.hpp"
@@ -119,19 +119,17 @@ int view(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("hapticd-view: shows a running daemon, or a recording, in a browser.");
-  app.add_option("--name", options.name, "name of the daemon");
-  app.add_option("--port", options.port, "port on 127.0.0.1; 0: a free one");
-  app.add_option("--file", options.file, "show this recording or dump instead of a daemon");
-  app.add_option("--drawings", options.drawings, "socket of a process that draws the models of the recording");
-  app.add_flag("--control", options.control, "pages may change the run");
-  app.add_flag("--open", options.open, "start a browser");
-  app.add_flag("--until-end", options.until_end, "end with the daemon");
+  const hapticd::command_line::Program app("hapticd-view: shows a running daemon, or a recording, in a browser.");
+  app.addOption("--name", options.name, "name of the daemon");
+  app.addOption("--port", options.port, "port on 127.0.0.1; 0: a free one");
+  app.addOption("--file", options.file, "show this recording or dump instead of a daemon");
+  app.addOption("--drawings", options.drawings, "socket of a process that draws the models of the recording");
+  app.addFlag("--control", options.control, "pages may change the run");
+  app.addFlag("--open", options.open, "start a browser");
+  app.addFlag("--until-end", options.until_end, "end with the daemon");
   try {
-    app.parse(argc, argv);
+    if (const auto ended = app.parse(argc, argv)) return *ended;
     return view(options);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kBadInput;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "error: %s\n", error.what());
     return kFailed;

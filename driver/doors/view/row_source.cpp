@@ -70,7 +70,8 @@ class BlackBox final : public RowSource {
     for (uint32_t i = 0; i < header_->stream_count; ++i) {
       const record::StreamHeader& stream = header_->streams[i];
       if (stream.row_bytes == 0 || stream.row_bytes % 8 != 0 || stream.row_bytes > record::kMaxRowBytes)
-        return Error{"has rows of no possible size: it is damaged"};
+        return Error{"has rows of " + std::to_string(stream.row_bytes) + " bytes, expected a multiple of 8 up to " +
+                     std::to_string(record::kMaxRowBytes) + ": it is damaged"};
       streams_.push_back({std::string(stream.name, strnlen(stream.name, sizeof stream.name)), stream.row_bytes});
     }
     return readBlocks();

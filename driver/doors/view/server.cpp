@@ -25,7 +25,7 @@ namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using ErrorCode = boost::system::error_code;
 
-constexpr size_t kHeadBytes = 8 * 1024, kMessageBytes = 64 * 1024, kMostUnread = 32;
+constexpr size_t kHeadBytes = 8 * 1024, kRequestBytes = 64 * 1024, kMostUnread = 32;
 constexpr std::chrono::seconds kHeadPatience(10), kIdle(30);
 
 /// Scripts and styles of this server alone: nothing inline, nothing evaluated, nothing from elsewhere.
@@ -269,7 +269,7 @@ void Socket::open(Request request, const Admission& admission) {
   stream_.set_option(websocket::stream_base::timeout{kHeadPatience, kIdle, true});
   stream_.set_option(websocket::stream_base::decorator(
       [name = admission.protocol_name](auto& response) { response.set(http::field::sec_websocket_protocol, name); }));
-  stream_.read_message_max(kMessageBytes);
+  stream_.read_message_max(kRequestBytes);
   stream_.auto_fragment(false);
   beast::get_lowest_layer(stream_).socket().set_option(tcp::no_delay(true));
   stream_.async_accept(request_, [self = shared_from_this(), protocol = admission.protocol](ErrorCode error) {

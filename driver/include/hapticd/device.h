@@ -33,7 +33,7 @@ typedef struct hdv_info { /* module -> host, filled in by open(), which finds it
   double max_stiffness;                                     /* N/m that the maker or a test found stable; 0: unknown */
   double resolution_m;                                      /* smallest step of the measured tip position; 0: unknown */
   double damping, mass_kg;           /* N s/m, kg: as felt at the tip, for the passivity bound; 0: unknown */
-  double max_torque[HDV_MAX_JOINTS]; /* N*m (N for a sliding joint); 0: no motor */
+  double max_torque[HDV_MAX_JOINTS]; /* N*m (N for a sliding joint); 0: unknown, no bound */
   double position_min[HDV_MAX_JOINTS], position_max[HDV_MAX_JOINTS]; /* rad (m); may be infinite */
   char serial[64], firmware[64], product[64];
 } hdv_info;

@@ -101,6 +101,12 @@ Result<Capture> readText(const std::string& text) {
 
 }  // namespace
 
+size_t Capture::bytes() const {
+  size_t all = 0;
+  for (const Transfer& transfer : transfers) all += transfer.bytes.size();
+  return all;
+}
+
 Result<Capture> readCapture(const std::string& bytes, Form form) {
   if (form == Form::kHex) return readText(bytes);
   if (form == Form::kGuess && std::all_of(bytes.begin(), bytes.end(), isPrintable)) {

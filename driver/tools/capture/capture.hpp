@@ -24,6 +24,7 @@ struct Transfer {
 struct Capture {
   bool text = false;
   std::vector<Transfer> transfers;
+  size_t bytes() const;  ///< of all of them
 };
 
 /// [main] Reads a capture. An error names the line. Lines that begin with "> " went to the arm and are left out.

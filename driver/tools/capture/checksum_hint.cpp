@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "codec/bits.hpp"
 #include "codec/checksum_start.hpp"
 
 namespace hapticd::capture {
@@ -15,17 +16,17 @@ using codec::Checksum;
 using codec::Field;
 
 /// Fewer reports than that agree with some method by chance.
-constexpr size_t kEnough = 3;
+constexpr size_t kFewestDifferent = 3;
 /// Of the reports whose checksum is wrong: some of them are really damaged.
 constexpr double kMost = 0.8;
 
-using Reports = std::vector<const BadReport*>;
+using BadReports = std::vector<const BadReport*>;
 
-size_t fitting(const Field& field, const Reports& reports) {
+size_t fitting(const Field& field, const BadReports& reports) {
   size_t count = 0, seen = 0;
   for (const BadReport* bad : reports) {
     count += codec::codeAt(field, bad->bytes) == codec::checksumAt(field, bad->bytes) ? 1 : 0;
-    if (++seen == 2 * kEnough && count == 0) return 0;
+    if (++seen == 2 * kFewestDifferent && count == 0) return 0;
   }
   return count;
 }
@@ -36,15 +37,35 @@ struct Fit {
   size_t count = 0;
 };
 
-std::vector<codec::NamedCrc> methodsFor(const Field& field) {
-  std::vector<codec::NamedCrc> all(codec::namedCrcs().begin(), codec::namedCrcs().end());
-  const auto add = [&all](const char* name, Checksum method, unsigned bits) {
+/// A method as the file would name it.
+struct Method {
+  std::string words;
+  codec::Check check;
+};
+
+std::string onesText(unsigned bits) {
+  return "0x" + std::string(bits / 4, 'f');
+}
+
+std::vector<Method> methodsFor(const Field& field) {
+  std::vector<Method> all;
+  for (const codec::NamedCrc& named : codec::namedCrcs()) all.push_back({named.name, named.check});
+  const auto add = [&all](const std::string& name, Checksum method, unsigned bits) {
     codec::Check plain;
     plain.method = method, plain.bits = static_cast<uint8_t>(bits);
-    all.push_back({name, plain, 0});
+    all.push_back({name, plain});
   };
   add("sum", Checksum::kSum, field.bits), add("xor", Checksum::kXor, field.bits);
   if (field.bits > 8) add("sum8", Checksum::kSum, 8), add("xor8", Checksum::kXor, 8);
+  for (size_t i = codec::namedCrcs().size(), plain = all.size(); i < plain; ++i) {
+    const Method method = all[i];
+    if (method.check.method == Checksum::kSum)
+      all.push_back(method), all.back().check.negated = true, all.back().words += ", negated: true";
+    if (method.check.bits % 4 != 0) continue;
+    all.push_back(method);
+    all.back().check.final_xor = codec::onesOf(method.check.bits);
+    all.back().words += ", final_xor: " + onesText(method.check.bits);
+  }
   return all;
 }
 
@@ -56,9 +77,9 @@ struct Range {
 
 /// The method and byte order that agree with most of them over one range of bytes, also with the report id in front
 /// (-1: there is none).
-void tryMethods(const Range& range, const Reports& reports, int id, Fit& best) {
+void tryMethods(const Range& range, const BadReports& reports, int id, Fit& best) {
   Field field = range.field;
-  for (const codec::NamedCrc& one : methodsFor(field))
+  for (const Method& one : methodsFor(field))
     for (int way = 0; way < (id < 0 ? 2 : 4); ++way) {
       const bool big = way % 2 == 1, over_id = way >= 2;
       if (one.check.bits > field.bits || (big && field.bits <= 8)) continue;
@@ -66,7 +87,7 @@ void tryMethods(const Range& range, const Reports& reports, int id, Fit& best) {
       field.check.big_endian = field.big_endian = big;
       const size_t count = fitting(field, reports);
       if (count <= best.count) continue;
-      best.words = "method: " + std::string(one.name) + ", endian: " + (big ? "big" : "little") + range.words;
+      best.words = "method: " + one.words + ", endian: " + (big ? "big" : "little") + range.words;
       if (id >= 0) best.words += over_id ? ", over_id: true" : ", over_id: false";
       best.count = count;
     }
@@ -86,7 +107,7 @@ std::optional<Range> otherRange(const codec::Wire& wire, const Field& field, int
 }
 
 /// Other places and ranges, first with the method of the file, whose numbers may be its own.
-void tryRanges(const codec::Wire& wire, const Field& field, const Reports& reports, Fit& best) {
+void tryRanges(const codec::Wire& wire, const Field& field, const BadReports& reports, Fit& best) {
   for (const int at : {0, 1, -1})
     for (const int from : {int{field.from}, 0, field.from + 1, field.from - 1})
       for (const int to : {field.at + at, int{field.to}, field.to + 1, field.to - 1}) {
@@ -100,7 +121,7 @@ void tryRanges(const codec::Wire& wire, const Field& field, const Reports& repor
 }
 
 /// The bad reports, where one checksum is what is wrong with all of them.
-const Field* onlyChecksum(const Decoded& decoded, Reports& sums) {
+const Field* onlyChecksum(const Decoded& decoded, BadReports& sums) {
   const Field* field = nullptr;
   std::set<std::string> different;
   for (const BadReport& bad : decoded.bad) {
@@ -110,7 +131,7 @@ const Field* onlyChecksum(const Decoded& decoded, Reports& sums) {
     sums.push_back(&bad);
     different.insert(hexText(bad.bytes.data(), bad.bytes.size()));
   }
-  return different.size() < kEnough ? nullptr : field;
+  return different.size() < kFewestDifferent ? nullptr : field;
 }
 
 }  // namespace
@@ -118,7 +139,7 @@ const Field* onlyChecksum(const Decoded& decoded, Reports& sums) {
 std::string checksumHint(const codec::Wire& wire, const Decoded& decoded) {
   // A wrong method is right now and then, by chance: one report in 256 where both bytes are equal.
   if (static_cast<double>(decoded.good()) > (1 - kMost) * static_cast<double>(decoded.reports.size())) return "";
-  Reports sums;
+  BadReports sums;
   const Field* field = onlyChecksum(decoded, sums);
   if (field == nullptr) return "";
   const double needed = kMost * static_cast<double>(sums.size());

@@ -11,18 +11,19 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-constexpr size_t kRepeated = 3;     ///< reports: by chance fewer look alike
-constexpr double kNearlyAll = 0.8;  ///< of them
-
-std::string hexByte(int byte) {
-  char text[8];
-  std::snprintf(text, sizeof text, "0x%02x", static_cast<unsigned>(byte));
-  return text;
-}
+constexpr size_t kRepeated = 3;  ///< reports: by chance fewer look alike
 
 std::string idLacks(int id) {
   return "each begins with " + hexByte(id) + " and has one byte too many: if this is the report id, give " +
          "wire.input id: " + std::to_string(id) + "; size and offsets do not count it\n";
+}
+
+/// The same of raw bytes, which may be those of a stream without ids.
+std::string idOrMarkLacks(int id) {
+  std::string words = idLacks(id);
+  words.pop_back();
+  return words + ". Of a stream without ids: framing: {start: " + hexByte(id) +
+         "}, with size and all offsets one larger\n";
 }
 
 std::string idIsMissing(int id) {
@@ -38,7 +39,42 @@ bool allOfOneSize(const Decoded& decoded) {
          });
 }
 
-std::string textHint(const codec::Wire& wire, const Decoded& decoded) {
+/// How many of the reports would be good with another id and size; nothing where any would be.
+std::optional<double> goodWith(codec::Wire wire, int id, size_t size, const Capture& capture);
+
+/// Bytes from `from` on are the same in all reports of this size: nothing is said there.
+bool tailStands(const Capture& capture, size_t size, size_t from) {
+  const Bytes* first = nullptr;
+  size_t reports = 0;
+  for (const Transfer& transfer : capture.transfers) {
+    const Bytes& bytes = transfer.bytes;
+    if (bytes.size() % size != 0) return false;
+    if (first == nullptr) first = &bytes;
+    for (size_t at = 0; at < bytes.size(); at += size, ++reports)
+      for (size_t i = from; i < size; ++i)
+        if (bytes[at + i] != (*first)[i]) return false;
+  }
+  return reports >= kRepeated;
+}
+
+/// Reports longer than what the fields take, as HID and bulk endpoints have them: the rest is padding.
+std::string paddingHint(const codec::Wire& wire, const Capture& capture, size_t size) {
+  const size_t used = wire.input.bytes(), body = size - (used - wire.input.size);
+  if (size <= used || !tailStands(capture, size, used)) return "";
+  if (goodWith(wire, wire.input.id, body, capture).value_or(1) <= kNearlyAll) return "";
+  return "every report has " + std::to_string(size) + " bytes, and those behind byte " + std::to_string(used) +
+         " never change: if they are padding, give wire.input size: " + std::to_string(body) + " (it is " +
+         std::to_string(wire.input.size) + ")\n";
+}
+
+/// Every line has the size of a report without its id.
+bool linesLackTheId(const codec::Wire& wire, const Capture& capture) {
+  return wire.input.id >= 0 && capture.text && !capture.transfers.empty() &&
+         std::all_of(capture.transfers.begin(), capture.transfers.end(),
+                     [&](const Transfer& transfer) { return transfer.bytes.size() == wire.input.size; });
+}
+
+std::string textHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded) {
   if (!allOfOneSize(decoded)) return "";
   const Bytes& bytes = decoded.bad.front().bytes;
   const size_t size = bytes.size(), expected = wire.input.bytes();
@@ -46,6 +82,11 @@ std::string textHint(const codec::Wire& wire, const Decoded& decoded) {
                                 [&](const BadReport& bad) { return bad.bytes.front() == bytes.front(); });
   if (size == expected + 1 && same && wire.input.id < 0 && bytes.front() != 0) return idLacks(bytes.front());
   if (size + 1 == expected && wire.input.id >= 0) return idIsMissing(wire.input.id);
+  // Of whole reports in one line only those that are filled up with one byte are not reports, too.
+  const bool one_byte = size > expected && std::all_of(bytes.begin() + static_cast<long>(expected), bytes.end(),
+                                                       [&](uint8_t byte) { return byte == bytes.back(); });
+  const std::string padded = size % expected != 0 || one_byte ? paddingHint(wire, capture, size) : "";
+  if (!padded.empty()) return padded;
   if (size > expected && size % expected == 0)
     return std::to_string(size) + " bytes are " + std::to_string(size / expected) + " reports of " +
            std::to_string(expected) + ": a line of text is one report, expected one a line\n";
@@ -89,12 +130,15 @@ std::string withoutAnId(const codec::Wire& wire, const Capture& capture, const B
   const auto first = everyFirst(bytes, size + 1);
   if (first && *first != 0 && !everyFirst(bytes, size) &&
       goodWith(wire, *first, size, capture).value_or(1) > kNearlyAll)
-    return idLacks(*first);
+    return idOrMarkLacks(*first);
   for (size_t other = 1; other <= std::min(2 * size, codec::kMaxReportBytes - 1); ++other)
     if (other != size && bytes.size() % other == 0 && bytes.size() / other >= kRepeated &&
         goodWith(wire, -1, other, capture).value_or(0) > kNearlyAll)
       return "as reports of " + std::to_string(other) +
              " bytes they are good: give wire.input size: " + std::to_string(other) + "\n";
+  for (const size_t padded : {8, 16, 32, 64, 128, 256, 512})  // what reports and packets of USB are filled up to
+    if (padded > size)
+      if (const std::string told = paddingHint(wire, capture, padded); !told.empty()) return told;
   return "";
 }
 
@@ -120,10 +164,17 @@ std::string otherIdHint(const codec::Wire& wire, const Decoded& decoded) {
 
 }  // namespace
 
+std::string hexByte(int byte) {
+  char text[8];
+  std::snprintf(text, sizeof text, "0x%02x", static_cast<unsigned>(byte));
+  return text;
+}
+
 std::string layoutHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded) {
   if (wire.framing.used) return "";
+  if (decoded.good() == 0 && linesLackTheId(wire, capture)) return idIsMissing(wire.input.id);
   if (const std::string other = otherIdHint(wire, decoded); !other.empty()) return other;
-  if (capture.text) return textHint(wire, decoded);
+  if (capture.text) return textHint(wire, capture, decoded);
   const size_t all = decoded.reports.size() + decoded.others;
   const Bytes& bytes = capture.transfers.empty() ? Bytes() : capture.transfers.front().bytes;
   const bool fits = bytes.size() % wire.input.bytes() == 0 && 2 * decoded.good() > all;

@@ -7,6 +7,11 @@
 
 namespace hapticd::capture {
 
+inline constexpr double kNearlyAll = 0.8;  ///< of the reports: a layout that fits so many is the right one
+
+/// [any] "0x3c".
+std::string hexByte(int byte);
+
 /// [main] One line, "" where size and id are right: an id that the file lacks or another one, reports without their id,
 /// reports of another size, several in one line of text.
 std::string layoutHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded);

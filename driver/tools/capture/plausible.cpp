@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <map>
+
+#include "capture/other_reading.hpp"
 
 namespace hapticd::capture {
 namespace {
@@ -13,7 +16,9 @@ struct Course {
   std::vector<double> at;
   double least = HUGE_VAL, most = -HUGE_VAL;
 
-  void add(double q) {
+  /// @param round [rad] after which its number begins anew; 0: never
+  void add(double q, double round) {
+    if (round > 0 && !at.empty()) q += std::round((at.back() - q) / round) * round;
     at.push_back(q);
     least = std::min(least, q), most = std::max(most, q);
   }
@@ -31,20 +36,20 @@ std::string number(double value) {
   return text;
 }
 
+Stops stopsOf(const ArmFacts& arm, size_t joint) {
+  if (arm.limits.size() != 2 * arm.joints) return {};
+  return {true, !arm.zeroed, arm.limits[2 * joint], arm.limits[2 * joint + 1]};
+}
+
 /// Beyond its stops, or, where its zero is not known yet, over a longer way than between them.
-std::string beyondStops(const Course& course, const ArmFacts& arm, size_t joint) {
+std::string beyondStops(const Course& course, const Stops& stops) {
   constexpr double kTurns = 4 * M_PI;  // no joint with stops makes two turns
-  const bool given = arm.limits.size() == 2 * arm.joints;
-  const double low = given ? arm.limits[2 * joint] : 0, high = given ? arm.limits[2 * joint + 1] : kTurns;
-  const double room = 0.05 * (high - low);  // a stop gives way
-  const bool placed = given && !arm.zeroed;
-  const bool beyond = placed ? course.least < low - room || course.most > high + room
-                             : course.most - course.least > high - low + 2 * room;
-  if (!beyond) return "";
+  const double way = course.most - course.least;
+  if (stops.given ? !leavesStops(course.at, stops) : way <= kTurns * 1.1) return "";
   return "from " + number(course.least) + " to " + number(course.most) + " rad, " +
-         (placed  ? "and arm.limits are " + number(low) + " to " + number(high) + " rad"
-          : given ? "a way of more than the " + number(high - low) + " rad between its arm.limits"
-                  : "more than two turns") +
+         (stops.placed  ? "and arm.limits are " + number(stops.low) + " to " + number(stops.high) + " rad"
+          : stops.given ? "a way of more than the " + number(stops.high - stops.low) + " rad between its arm.limits"
+                        : "more than two turns") +
          ": is scale in rad (for degrees: scale_degrees), with the turns of the motor in one turn of the joint?";
 }
 
@@ -63,20 +68,48 @@ std::string jumps(const Course& course, const codec::Wire& wire, const ArmFacts&
          " times: look at its byte order (endian), its first byte (at), and the sign and width of its type";
 }
 
+/// Joints that all moved, and none of them far: a scale that is too small has no other sign.
+std::string shortWays(const std::map<size_t, Course>& courses, const ArmFacts& arm) {
+  constexpr double kShort = 0.4, kMoved = 0.01;  // of the way between the stops
+  constexpr size_t kEnough = 100;                // reports
+  std::string ways;
+  double widest = 0;
+  for (const auto& [joint, course] : courses) {
+    const Stops stops = stopsOf(arm, joint);
+    const double part = (course.most - course.least) / (stops.high - stops.low);
+    if (!stops.given || course.at.size() < kEnough || !(part > kMoved) || !(part < kShort)) return "";
+    widest = std::max(widest, part);
+    ways += (ways.empty() ? "" : ", ") + number(100 * part) + " %";
+  }
+  if (ways.empty()) return "";
+  return "the joints moved over " + ways +
+         " of the ways between their arm.limits: if this was from stop to stop, scale is " + "about " +
+         number(1 / widest) + " times too small (counts of all edges of an encoder are 4 times its lines)\n";
+}
+
+/// What is wrong with one joint; "" for nothing.
+std::string oddCourse(const codec::Wire& wire, const codec::Field& field, const ArmFacts& arm, const Course& course) {
+  const Stops stops = stopsOf(arm, field.index);
+  std::string wrong = otherReading(field, course.at, stops);
+  if (wrong.empty()) wrong = jumps(course, wire, arm);
+  return wrong.empty() ? beyondStops(course, stops) : wrong;
+}
+
 }  // namespace
 
 std::string implausible(const codec::Wire& wire, const ArmFacts& arm, const Decoded& decoded) {
   std::string text;
+  std::map<size_t, Course> courses;
   for (const codec::Field& field : wire.input.fields) {
-    if (field.role != codec::Role::kPosition || field.wraps || field.index >= arm.joints) continue;
-    Course course;
+    if (field.role != codec::Role::kPosition || field.index >= arm.joints) continue;
+    Course& course = courses[field.index];
+    const double round = field.wraps ? std::ldexp(std::abs(field.scale), field.bits) : 0;
     for (const DecodedReport& report : decoded.reports)
-      if (report.verdict == codec::Verdict::kGood) course.add(report.state.position[field.index]);
-    std::string wrong = jumps(course, wire, arm);
-    if (wrong.empty()) wrong = beyondStops(course, arm, field.index);
+      if (report.verdict == codec::Verdict::kGood) course.add(report.state.position[field.index], round);
+    const std::string wrong = field.wraps ? "" : oddCourse(wire, field, arm, course);
     if (!wrong.empty()) text += "joint " + std::to_string(field.index + 1) + ": " + wrong + "\n";
   }
-  return text;
+  return text.empty() ? shortWays(courses, arm) : text;
 }
 
 }  // namespace hapticd::capture

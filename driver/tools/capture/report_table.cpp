@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "codec/framer.hpp"
 
@@ -91,10 +92,33 @@ class Reader {
     const std::span<const uint8_t> bytes(transfer.bytes);
     for (size_t at = 0; at < bytes.size(); at += packet) {
       const size_t end = std::min(at + packet, bytes.size());
-      decoded.lost += framer_.take(bytes.subspan(at, end - at), [&](std::span<const uint8_t> whole) {
-        report(whole, transfer.time, text ? index + 1 : end);
-      });
+      framed(bytes.subspan(at, end - at), transfer.time, text ? index + 1 : end);
     }
+  }
+
+  /// Before the first report is found, byte by byte where packets have no header: what is lost until then is the rest
+  /// of a report whose beginning the capture lacks.
+  void framed(std::span<const uint8_t> packet, double time, size_t offset) {
+    const size_t step = wire_.framing.header == 0 && decoded.reports.empty() ? 1 : packet.size();
+    for (size_t at = 0; at < packet.size(); at += step) {
+      const bool first = decoded.reports.empty();
+      const size_t lost =
+          framer_.take(packet.subspan(at, step), [&](std::span<const uint8_t> whole) { report(whole, time, offset); });
+      (first ? decoded.head : decoded.lost) += lost;
+    }
+  }
+
+  /// Turns are counted as the module does, from the first report on.
+  void unwrap(codec::State& state) {
+    for (const Field& field : wire_.input.fields) {
+      if (field.role != Role::kPosition || !field.wraps) continue;
+      const auto [least, most] = codec::rangeOf(field.type, field.bits);
+      const double span = (most - least + 1) * std::abs(field.scale);
+      double& position = state.position[field.index];
+      if (placed_) position += std::nearbyint((before_[field.index] - position) / span) * span;
+    }
+    before_ = state.position;
+    placed_ = true;
   }
 
   void report(std::span<const uint8_t> bytes, double time, size_t offset) {
@@ -114,6 +138,7 @@ class Reader {
     constexpr size_t kLooked = 64;
     if (one.verdict != Verdict::kGood && !body.empty() && decoded.bad.size() < kLooked)
       decoded.bad.push_back({wrong, {body.begin(), body.end()}});
+    if (one.verdict == Verdict::kGood) unwrap(one.state);
     if (one.verdict == Verdict::kGood && one.state.has_sequence) count(one.state.sequence);
     decoded.reports.push_back(std::move(one));
   }
@@ -126,8 +151,9 @@ class Reader {
 
   const codec::Wire& wire_;
   codec::Framer framer_;
-  bool known_ = false;
+  bool known_ = false, placed_ = false;
   uint32_t last_ = 0;
+  std::array<double, codec::kMaxJoints> before_{};  ///< positions of the last good report, turns counted
 };
 
 struct Column {
@@ -242,7 +268,10 @@ size_t Decoded::good() const {
 Decoded decodeCapture(const codec::Wire& wire, const Capture& capture) {
   Reader reader(wire);
   for (size_t i = 0; i < capture.transfers.size(); ++i) reader.take(capture.transfers[i], capture.text, i);
-  return std::move(reader.decoded);
+  Decoded& decoded = reader.decoded;
+  // More than a report, or no report at all: not the rest of one that was cut.
+  if (decoded.head >= 2 * wire.input.bytes() || decoded.reports.empty()) decoded.lost += std::exchange(decoded.head, 0);
+  return std::move(decoded);
 }
 
 std::string csvOf(const codec::Wire& wire, size_t joints, const Decoded& decoded) {
@@ -286,6 +315,7 @@ std::string summaryOf(const Decoded& decoded) {
   for (const auto& [word, count] : verdicts) text += ", " + std::to_string(count) + " " + word;
   if (decoded.others > 0)
     text += "; besides " + counted(decoded.others, "report") + " with another id" + idsOf(decoded.other_ids);
+  if (decoded.head > 0) text += "; it begins with the last " + counted(decoded.head, "byte") + " of a report";
   if (decoded.lost > 0) text += "; besides " + counted(decoded.lost, "byte") + " of no report";
   if (decoded.repeats > 0) text += "; the counter stands still " + counted(decoded.repeats, "time");
   if (decoded.gaps > 0)

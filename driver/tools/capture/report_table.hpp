@@ -30,6 +30,7 @@ struct BadReport {
 struct Decoded {
   std::vector<DecodedReport> reports;
   size_t lost = 0;             ///< bytes that belong to no report
+  size_t head = 0;             ///< bytes before the first report of a framed stream: the rest of one that was cut
   size_t others = 0;           ///< reports with another id: of another kind
   size_t repeats = 0;          ///< reports with the sequence number of the one before
   size_t gaps = 0;             ///< places where sequence numbers are missing
@@ -38,7 +39,7 @@ struct Decoded {
   size_t good() const;
 };
 
-/// [main] Reads every report of a capture.
+/// [main] Reads every report of a capture. Turns of positions that wrap are counted, from the first report on.
 Decoded decodeCapture(const codec::Wire& wire, const Capture& capture);
 
 /// [main] The reports as CSV with a header: report, time, verdict, then what the format has, in SI units.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <optional>
 #include <utility>
 
 namespace hapticd::capture {
@@ -33,21 +32,37 @@ std::pair<double, double> rangeOf(const Field& field) {
 
 }  // namespace
 
-std::vector<std::string> saturated(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns,
-                                   const double* values) {
-  std::vector<std::string> found;
+void Saturation::look(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns,
+                      const double* values, int line) {
   for (size_t i = 0; i < columns.size(); ++i) {
     const Field* field = fieldOf(to_arm ? wire.output : wire.input, columns[i]);
-    if (field == nullptr) continue;
+    if (field == nullptr || (field->wraps && std::isfinite(values[i]))) continue;
     const auto [least, most] = rangeOf(*field);
     const double half = std::abs(field->scale) / 2;  // what rounding takes away is no loss
     if (values[i] >= least - half && values[i] <= most + half) continue;
-    char text[200];
-    std::snprintf(text, sizeof text, "%s: %g is beyond what its field can carry, %g to %g; sent as %g",
+    const auto known =
+        std::find_if(columns_.begin(), columns_.end(), [&](const Column& column) { return column.name == columns[i]; });
+    if (known != columns_.end()) {
+      ++known->further;
+      continue;
+    }
+    char text[240];
+    std::snprintf(text, sizeof text, "line %d: %s: %g is beyond what its field can carry, %g to %g; sent as %g", line,
                   columns[i].c_str(), values[i], least, most, std::clamp(values[i], least, most));
-    found.emplace_back(text);
+    columns_.push_back({columns[i], text});
   }
-  return found;
+}
+
+std::vector<std::string> Saturation::told() const {
+  std::vector<std::string> all;
+  for (const Column& column : columns_) {
+    all.push_back(column.first);
+    if (column.further > 0)
+      all.back() +=
+          "; so " + std::string(column.further == 1 ? "is 1 further row"
+                                                    : "are " + std::to_string(column.further) + " further rows");
+  }
+  return all;
 }
 
 }  // namespace hapticd::capture

@@ -8,10 +8,23 @@
 
 namespace hapticd::capture {
 
-/// [main] Of one line of numbers, as encodeRow() takes it, those that are sent as another number, in words: "torque1:
-/// 0.7 is beyond what its field can carry, -0.5 to 0.5; sent as 0.5".
-/// @param to_arm an order; otherwise as the arm would send it
-std::vector<std::string> saturated(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns,
-                                   const double* values);
+/// Numbers of many rows that are sent as other numbers, column by column.
+class Saturation {
+ public:
+  /// [main] One row, as encodeRow() takes it. @param to_arm an order; otherwise as the arm would send it
+  void look(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns, const double* values,
+            int line);
+
+  /// [main] One sentence for each such column, in the order in which they began: "line 5: torque1: 0.7 is beyond what
+  /// its field can carry, -0.5 to 0.5; sent as 0.5; so are 12 further rows".
+  std::vector<std::string> told() const;
+
+ private:
+  struct Column {
+    std::string name, first;
+    size_t further = 0;
+  };
+  std::vector<Column> columns_;
+};
 
 }  // namespace hapticd::capture

@@ -48,21 +48,14 @@ std::string descriptorComplete(const Recipe& recipe, uint64_t) {
 
 /// A stiffness that jumps under a hand is felt as a blow.
 std::string liveConsent(const Recipe& recipe, uint64_t) {
-  auto made = Subject::make(recipe);
-  if (!made) return made.error();
-  const hsp_class& c = (*made)->description();
-  std::string found;
-  for (uint32_t i = 0; i < c.param_count; ++i) {
-    const hsp_param& p = paramAt(c, i);
+  const auto objection = [](const hsp_param& p) -> std::string {
     const std::string unit = p.unit != nullptr ? p.unit : "";
     const bool force = unit == "N" || unit == "N/m" || unit == "N s/m" || unit == "N m" || unit == "N m/rad";
-    if (force && (p.flags & HSP_P_LIVE) != 0 && (p.flags & HSP_P_SAFETY) == 0)
-      found += (found.empty() ? "" : ", ") + std::string(p.id);
-  }
-  return found.empty() ? ""
-                       : "warn: " + found +
-                             " may change the force under a hand without anybody's consent; expected HSP_P_LIVE | "
-                             "HSP_P_SAFETY";
+    return force && (p.flags & HSP_P_LIVE) != 0 && (p.flags & HSP_P_SAFETY) == 0 ? p.id : "";
+  };
+  return warningOfParams(
+      recipe, objection, ", ",
+      " may change the force under a hand without anybody's consent; expected HSP_P_LIVE | HSP_P_SAFETY");
 }
 
 std::string idUnique(const Recipe& recipe, uint64_t) {

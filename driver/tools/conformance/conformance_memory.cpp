@@ -49,6 +49,9 @@ std::string resetEqualsFresh(const Recipe& recipe, uint64_t) {
   return "";
 }
 
+/// The two probes stay apart. A plugin may offer to one probe what it found for another nearby, as
+/// TracedShape::searchAbout does; then a search starts elsewhere and ends at the same foot with other last bits (1e-15
+/// N with eight probes of nurbs_rigid, and another "certified" flag). That couples no forces, and is no fault.
 std::string batchEqualsSingle(const Recipe& recipe, uint64_t) {
   const Made batch(recipe, 2), one(recipe), two(recipe);
   if (!batch.error.empty()) return "two probes: " + batch.error;

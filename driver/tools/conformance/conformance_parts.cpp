@@ -65,4 +65,15 @@ const hsp_param& paramAt(const hsp_class& c, uint32_t i) {
   return *HSP_AT(const hsp_param, c.params, c.params[0].struct_size, i);
 }
 
+std::string warningOfParams(const Recipe& recipe, const std::function<std::string(const hsp_param&)>& objection,
+                            const std::string& between, const std::string& advice) {
+  auto made = Subject::make(recipe);
+  if (!made) return made.error();
+  const hsp_class& c = (*made)->description();
+  std::string found;
+  for (uint32_t i = 0; i < c.param_count; ++i)
+    if (const std::string one = objection(paramAt(c, i)); !one.empty()) found += (found.empty() ? "" : between) + one;
+  return found.empty() ? "" : "warn: " + found + advice;
+}
+
 }  // namespace hapticd::conformance

@@ -56,4 +56,8 @@ std::string wrongStatus(const Answer& answer);
 
 const hsp_param& paramAt(const hsp_class& c, uint32_t i);
 
+/// "" or a warning: what `objection` says of each parameter of the plugin, apart by `between`, and then `advice`.
+std::string warningOfParams(const Recipe& recipe, const std::function<std::string(const hsp_param&)>& objection,
+                            const std::string& between, const std::string& advice);
+
 }  // namespace hapticd::conformance

@@ -38,18 +38,13 @@ const Foreign* foreignPart(std::string_view unit) {
 }  // namespace
 
 std::string unitsSi(const Recipe& recipe, uint64_t) {
-  auto made = Subject::make(recipe);
-  if (!made) return made.error();
-  const hsp_class& c = (*made)->description();
-  std::string found;
-  for (uint32_t i = 0; i < c.param_count; ++i) {
-    const hsp_param& p = paramAt(c, i);
+  const auto objection = [](const hsp_param& p) -> std::string {
     const Foreign* foreign = p.unit != nullptr ? foreignPart(p.unit) : nullptr;
-    if (foreign == nullptr) continue;
-    found += (found.empty() ? "" : "; ") + std::string(p.id) + ": the unit is \"" + p.unit + "\", expected " +
-             std::string(foreign->si) + " for " + std::string(foreign->unit);
-  }
-  return found.empty() ? "" : "warn: " + found + ": scenes are in SI units throughout";
+    if (foreign == nullptr) return "";
+    return std::string(p.id) + ": the unit is \"" + p.unit + "\", expected " + std::string(foreign->si) + " for " +
+           std::string(foreign->unit);
+  };
+  return warningOfParams(recipe, objection, "; ", ": scenes are in SI units throughout");
 }
 
 }  // namespace hapticd::conformance

@@ -23,7 +23,7 @@ LastStep* last_step = &unshared;
 // "Syscall user dispatch": while the gate is shut, each system call of the thread becomes a SIGSYS instead.
 constexpr char kOpen = 0, kShut = 1;
 volatile char gate = kOpen;
-bool watching = false;
+bool watches_calls = false;
 SystemCalls seen;
 
 #if defined(__x86_64__) && defined(PR_SET_SYSCALL_USER_DISPATCH)
@@ -98,8 +98,8 @@ std::string whereItEnded() {
 }
 
 bool watchSystemCalls() {
-  if (!watching) watching = startWatching();
-  return watching;
+  if (!watches_calls) watches_calls = startWatching();
+  return watches_calls;
 }
 
 SystemCalls systemCalls() {
@@ -115,7 +115,7 @@ std::string systemCallName(long number) {
 StepWatch::StepWatch(const hsp_probe& probe) noexcept {
   std::copy_n(probe.position, 3, last_step->position);
   last_step->inside = 1;
-  gate = watching ? kShut : kOpen;
+  gate = watches_calls ? kShut : kOpen;
 }
 
 StepWatch::~StepWatch() {

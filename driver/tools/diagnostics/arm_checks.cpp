@@ -80,6 +80,12 @@ std::optional<Finding> repeats(const ArmControls& found, const std::string& file
                  "let the firmware count its reports (is: counter); all controls: hapticd device controls " + file};
 }
 
+std::optional<Finding> pushesLess(const ArmControls& found) {
+  if (found.slow.empty()) return std::nullopt;
+  return Finding{found.arm, Verdict::kWarn, found.slow, "stiff models feel softer than their stiffness",
+                 "let it send its samples more often, and give that as wire.rate"};
+}
+
 }  // namespace
 
 std::vector<Finding> checkArm(const std::string& file, host::Catalog& catalog) {
@@ -93,7 +99,8 @@ std::vector<Finding> checkArm(const std::string& file, host::Catalog& catalog) {
   for (const auto& one : {missing(*found), withoutRule(*found, file)})
     if (one) findings.push_back(*one);
   findings.push_back(silenced(*found, file));
-  if (const auto one = repeats(*found, file)) findings.push_back(*one);
+  for (const auto& one : {pushesLess(*found), repeats(*found, file)})
+    if (one) findings.push_back(*one);
   return findings;
 }
 

@@ -2,13 +2,17 @@
 #include "diagnostics/arm_controls.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
+#include "codec/wire_overlap.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/enable_button.hpp"
+#include "diagnostics/slow_arm.hpp"
 #include "diagnostics/wire_of.hpp"
 #include "document/reader.hpp"
 #include "scene/load.hpp"
+#include "servo/safety/held_command.hpp"
 #include "world/arm_force.hpp"
 
 namespace hapticd::diagnostics {
@@ -46,6 +50,14 @@ void addTimes(const host::DeviceInstance& device, bool opened, const std::option
                 !known     ? "the arm itself says its rate"
                 : rate > 0 ? "fades after " + numberText(2000 / rate) + " ms"
                            : "held for up to 50 ms: give the rate of the arm"});
+  if (opened && (info.capabilities & HDV_C_SIMULATED) != 0) return;
+  const double most = rate > 0 ? servo::mostForceAt(kFastServo, rate, info.max_force) : HUGE_VAL;
+  to.push_back({"H21", "force that suits its rate", known ? onIf(rate > 0) : ControlState::kUnknown,
+                !known            ? "the arm itself says its rate"
+                : rate <= 0       ? "only the servo's rate counts: give the rate of the arm"
+                : most < HUGE_VAL ? "at most " + numberText(std::round(1e3 * most) * 1e-3) + " N at " +
+                                        numberText(rate) + " Hz; all of it from 715 Hz on"
+                                  : "all of its force; below 358 Hz of the servo less"});
 }
 
 /// What a report carries so that a wrong or an old one is seen.
@@ -55,10 +67,12 @@ void addReports(const std::optional<codec::Wire>& wire, std::vector<Control>& to
     return std::any_of(wire->input.fields.begin(), wire->input.fields.end(),
                        [role](const codec::Field& field) { return field.role == role; });
   };
-  const bool sum = has(codec::Role::kChecksum), counter = has(codec::Role::kSequence);
-  to.push_back(
-      {"H1", "a misread report is noticed", onIf(sum),
-       sum ? "by its checksum" : "no checksum in wire.input: only by what the bus itself checks, and by the speed"});
+  const bool sum = has(codec::Role::kChecksum), whole = codec::outsideChecksum(wire->input).empty(),
+             counter = has(codec::Role::kSequence);
+  to.push_back({"H1", "a misread report is noticed", onIf(sum && whole),
+                sum && !whole ? "its checksum leaves out positions: see from and to of the checksum"
+                : sum         ? "by its checksum"
+                              : "no checksum in wire.input: only by what the bus itself checks, and by the speed"});
   const bool clock = wire->clockTells();
   to.push_back({"H3", "a repeated report is noticed", onIf(counter || clock),
                 counter ? "by its counter"
@@ -159,6 +173,7 @@ std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog
   found.repeats_pass = wire && !wire->clockTells() &&
                        std::none_of(wire->input.fields.begin(), wire->input.fields.end(),
                                     [](const codec::Field& field) { return field.role == codec::Role::kSequence; });
+  found.slow = slownessOf(*loaded.device, kFastServo);
   found.simulated = (capabilities & HDV_C_SIMULATED) != 0;
   found.watchdog = (capabilities & HDV_C_WATCHDOG) != 0 || (!found.opened && wire && wire->cutsSoon());
   found.silenced_after_us = (*device)->silenceable() || found.watchdog || found.simulated;

@@ -35,6 +35,7 @@ struct ArmControls {
   bool simulated = false;          ///< it has no motors
   bool watchdog = false;           ///< its own hardware does so when commands stop, as far as is known
   std::string why;                 ///< it could not be opened; "" where it was
+  std::string slow;                ///< why it pushes less than its limits say; "": it does not
   std::string usb_id;              ///< "1209:0006"; "" for an arm on another bus
   bool repeats_pass = false;       ///< the same report again and again would not be noticed
 };

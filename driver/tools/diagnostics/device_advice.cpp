@@ -14,6 +14,7 @@
 #include "diagnostics/limit_advice.hpp"
 #include "diagnostics/node_path.hpp"
 #include "diagnostics/safety_advice.hpp"
+#include "diagnostics/travel_advice.hpp"
 #include "diagnostics/unit_advice.hpp"
 #include "diagnostics/wire_advice.hpp"
 #include "document/node.hpp"
@@ -67,6 +68,25 @@ void massesAtTheEnds(const Node& root, const std::string& file, document::Proble
       "is pushed up; expected one [x, y, z] for each link, in m from its far end, in its frame");
 }
 
+/// An arm cannot be held for its calibration where its stops do not let it be.
+void poseBeyondStops(const Node& root, const scene::Device& device, document::Problems& warnings) {
+  const Node* pose = find(root, {"parameters", "calibration", "pose"});
+  const scene::Value* limits = nullptr;
+  for (const scene::Value& value : device.parameters)
+    if (value.id == "arm.limits") limits = &value;
+  if (pose == nullptr || limits == nullptr || 2 * pose->items.size() != limits->numbers.size()) return;
+  for (size_t i = 0; i < pose->items.size(); ++i) {
+    const double angle = document::toNumber(pose->items[i].scalar).value_or(0);
+    const double low = limits->numbers[2 * i], high = limits->numbers[2 * i + 1], room = 0.05 * (high - low);
+    if (angle >= low - room && angle <= high + room) continue;
+    document::report(warnings, device.file.string(), pose->items[i].line, pose->items[i].column,
+                     fmt::format("parameters.calibration.pose[{}]", i),
+                     fmt::format("{:g} rad is beyond arm.limits of joint {}, {:g} to {:g} rad: the arm cannot be held "
+                                 "there; expected a pose between its stops",
+                                 angle, i + 1, low, high));
+  }
+}
+
 void restOutsideWorkspace(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                           document::Problems& warnings) {
   const Node* limit = find(root, {"limits", "workspace"});
@@ -99,7 +119,9 @@ document::Problems adviseDevice(const std::filesystem::path& file, host::Catalog
     adviseLimits(*root, *loaded.device, **arm, warnings);
     adviseSafety(*root, *loaded.device, **arm, warnings);
     restOutsideWorkspace(*root, *loaded.device, **arm, warnings);
+    poseBeyondStops(*root, *loaded.device, warnings);
     adviseWire(*root, *loaded.device, (*arm)->kinematics().joint_count, warnings);
+    adviseTravel(*root, *loaded.device, **arm, warnings);
   }
   document::sortByPlace(warnings);
   return warnings;

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "diagnostics/rest_pose.hpp"
+
 namespace hapticd::diagnostics {
 namespace {
 
@@ -54,8 +56,8 @@ std::string armOfTwin(const Node& arm, bool chain) {
   return text;
 }
 
-/// Encoder counts of one turn of each joint, as the scales of the positions say; "" where they do not.
-std::string countsOf(const Node& parameters) {
+/// Encoder counts of one turn of each joint, as the scales of the positions say; none where they do not.
+std::vector<double> countsOf(const Node& parameters) {
   std::vector<double> counts;
   for (const Node& field : below(below(below(parameters, "wire"), "input"), "fields").items) {
     if (below(field, "is").scalar != "position") continue;
@@ -63,14 +65,11 @@ std::string countsOf(const Node& parameters) {
     const auto degrees = document::toNumber(below(field, "scale_degrees").scalar);
     const double turn = scale ? 2 * M_PI / std::abs(*scale) : degrees ? 360 / std::abs(*degrees) : 0;
     const auto joint = document::toNumber(below(field, "joint").scalar).value_or(0);
-    if (!(turn >= 1 && turn <= 1e9) || !(joint >= 1 && joint <= 16)) return "";
+    if (!(turn >= 1 && turn <= 1e9) || !(joint >= 1 && joint <= 16)) return {};
     counts.resize(std::max(counts.size(), static_cast<size_t>(joint)), turn);
     counts[static_cast<size_t>(joint) - 1] = turn;
   }
-  if (counts.empty()) return "";
-  return fmt::format(
-      "  joint: {{counts: [{:.0f}]}}    # of one joint turn, as wire has them; without friction and rotors\n",
-      fmt::join(counts, ", "));
+  return counts;
 }
 
 constexpr std::array<std::string_view, 4> kCapabilities{"max_force", "continuous_force", "max_stiffness", "mass"};
@@ -91,41 +90,81 @@ Eigen::Vector3d originOf(const Node& mount) {
   return -(Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().conjugate() * position);
 }
 
-/// Tip of a chain in the middle of its limits, device frame (standard Denavit-Hartenberg): there it begins.
-Eigen::Vector3d restOf(const Node& arm) {
-  const auto vectorAt = [&arm](std::string_view key) {
-    const std::vector<double> p = numbersOf(below(arm, key), 3);
-    return p.empty() ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(p[0], p[1], p[2]);
-  };
-  Eigen::Isometry3d frame(Eigen::Translation3d(vectorAt("origin")));
-  if (const std::vector<double> q = numbersOf(below(arm, "base_orientation"), 4); !q.empty())
-    frame.rotate(Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized());
-  const std::vector<Node>&rows = below(arm, "dh").items, &limits = below(arm, "limits").items;
-  for (size_t i = 0; i < rows.size(); ++i) {
-    const std::vector<double> row = numbersOf(rows[i], 4);
-    const std::vector<double> limit = i < limits.size() ? numbersOf(limits[i], 2) : std::vector<double>();
-    if (row.empty()) continue;
-    const double joint = limit.empty() ? 0 : (limit[0] + limit[1]) / 2;
-    frame.rotate(Eigen::AngleAxisd(row[3] + joint, Eigen::Vector3d::UnitZ()));
-    frame.translate(Eigen::Vector3d(row[0], 0, row[2]));
-    frame.rotate(Eigen::AngleAxisd(row[1], Eigen::Vector3d::UnitX()));
-  }
-  return frame * vectorAt("tool_position");
+constexpr double kHandBegins = 0.07;  ///< [m] from the world's origin: the hand's radius and approach
+
+/// Where the twin stands, and which way its hand presses.
+struct Stand {
+  std::string mount, hand;  ///< as lines of YAML, "" where nothing is said; hand: what follows its center
+  bool pressing = true;     ///< false: the tip has no straight line to press along
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+};
+
+std::string listOf(const Eigen::Vector3d& v) {
+  // All digits, as the arm's tip must begin on its plane; what rounding left of a 0 is none.
+  const auto digits = [](double x) { return fmt::format("{}", std::abs(x) < 1e-14 ? 0.0 : x); };
+  return "[" + digits(v.x()) + ", " + digits(v.y()) + ", " + digits(v.z()) + "]";
 }
 
-/// Where the twin stands: as its arm does, or, of a chain that does not say, with its tip where scenes expect a hand.
-std::string mountOf(const Node& mount, const Node& arm, bool chain, Eigen::Vector3d& center) {
-  center = originOf(mount);
-  if (mount.isMap()) return "mount: " + toJson(mount) + "\n";
-  if (!chain) return "";
+/// "joints 0.3, -1.2 rad" or "joints in the middle of arm.limits".
+std::string poseOf(const RestPose& rest, bool limits) {
+  if (rest.middle) return limits ? "each joint in the middle of arm.limits" : "each joint at 0";
+  return fmt::format("joints at {:g} rad", fmt::join(rest.joints, ", "));
+}
+
+/// A flat arm, or one of less than three joints, is pushed along its plane, from the very point at which it rests.
+Stand standOfFlat(const RestPose& rest, const std::string& pose) {
+  Stand stand;
+  stand.center = rest.tip - kHandBegins * rest.push;
+  stand.mount = fmt::format(
+      "mount: {{position: {}}}    # the arm's file has none: with {} this puts its tip 7 cm beside the shapes' "
+      "middle, {}\n",
+      listOf(-stand.center), pose, rest.flat ? "in the plane in which it moves" : "in a direction in which it moves");
+  stand.pressing = rest.flat;
+  const bool along_y = std::abs(rest.push.y()) > 0.9;
+  stand.hand = ", normal: " + listOf(rest.push) + (along_y ? ", axis: [0, 0, 1]" : "");
+  return stand;
+}
+
+/// As its arm does, or, of a chain that does not say, with its tip where scenes expect a hand.
+Stand standOf(const Node& mount, const Node& arm, bool chain) {
+  Stand stand;
+  stand.center = originOf(mount);
+  if (mount.isMap()) stand.mount = "mount: " + toJson(mount) + "\n";
+  if (mount.isMap() || !chain) return stand;
+  const RestPose rest = restPoseOf(arm);
+  const std::string pose = poseOf(rest, !below(arm, "limits").items.empty());
+  if (rest.freedom < 3) return standOfFlat(rest, pose);
   const auto rounded = [](double v) { return std::round(v * 1e6) * 1e-6 + 0.0; };
-  const Eigen::Vector3d at = (Eigen::Vector3d(0, 0, 0.09) - restOf(arm)).unaryExpr(rounded);
-  center = -at;
+  const Eigen::Vector3d at = (Eigen::Vector3d(0, 0, 0.09) - rest.tip).unaryExpr(rounded);
+  stand.center = -at;
+  stand.mount = fmt::format(
+      "mount: {{position: [{:g}, {:g}, {:g}]}}    # the arm's file has none: with {} this puts its tip 9 cm in front "
+      "of the shapes\n",
+      at.x(), at.y(), at.z(), pose);
+  return stand;
+}
+
+/// The block `joint`. A joint that can move while the tip stands still would have no inertia at all without masses.
+std::string jointOf(const Node& parameters, const Node& arm, bool chain) {
+  const std::vector<double> counts = countsOf(parameters);
+  const bool spare = chain && below(arm, "dh").items.size() > static_cast<size_t>(restPoseOf(arm).freedom);
+  std::string text, comment = "without friction and rotors";
+  if (!counts.empty()) text += fmt::format("counts: [{:.0f}]", fmt::join(counts, ", "));
+  if (spare) text += std::string(text.empty() ? "" : ", ") + "rotor: [0.0002], damping: [0.005]";
+  if (spare) comment = "kg m^2 and N m s/rad [assumption], as some joints move without the tip";
+  if (text.empty()) return "";
+  return "  joint: {" + text + "}    # " + (counts.empty() ? "" : "counts of one joint turn, as wire has them; ") +
+         comment + "\n";
+}
+
+std::string handOf(const Stand& stand) {
+  if (!stand.pressing) return "hand: {script: none}    # the tip of this arm has no straight line to press along\n";
   return fmt::format(
-      "mount: {{position: [{:g}, {:g}, {:g}]}}    # the arm's file has none: this puts its tip in the middle of "
-      "arm.limits "
-      "9 cm in front of the shapes\n",
-      at.x(), at.y(), at.z());
+      "# The hand that holds it, device frame: it presses a sphere of 0.05 m about the world's origin. The arm must\n"
+      "# reach there: mount says where it stands, driver/docs/devices.md how to find it.\n"
+      "hand: {{script: press, radius: 0.05, rise: 0.003, rate: 1, center: {}{}}}\n"
+      "# hapticd device info --parameters FILE lists what else a simulated arm has.\n",
+      stand.center.isZero() ? "[0, 0, 0]" : listOf(stand.center), stand.hand);
 }
 
 }  // namespace
@@ -152,27 +191,20 @@ Result<std::string> twinOf(const Node& root, const std::string& file) {
     return Error{file + ": parameters.arm.others: joints that do not carry the tip have no twin"};
   const Node &mount = below(root, "mount"), &limits = below(root, "limits");
   const double rate = document::toNumber(below(below(parameters, "wire"), "rate").scalar).value_or(1000);
-  Eigen::Vector3d center;
-  const std::string stands = mountOf(mount, arm, kind == "chain", center);
-  const auto zero = [](double v) { return v == 0 ? 0 : v; };  // no "-0"
+  const Stand stand = standOf(mount, arm, kind == "chain");
   std::string text = fmt::format(
       "# A simulated arm with the mechanism of {}, written by `hapticd device twin`; it needs no hardware.\n"
       "hapticd-device: 1\nmodule: simulated\nname: twin of {}\n",
       file, below(root, "name").scalar);
-  text += stands;
+  text += stand.mount;
   if (limits.isMap())
     text += "limits: " + jsonWithout(limits, kButtons) +
             (below(limits, "enable").isNull() ? "\n" : "    # without enable: it has no buttons\n");
   text += "parameters:\n  substep: 0.0002               # s, of the integration\n";
   if (const std::string borrowed = borrowedByTwin(root); !borrowed.empty()) text += "  # " + borrowed + "\n";
-  text += deviceOf(below(parameters, "device"), rate) + armOfTwin(arm, kind == "chain") + countsOf(parameters);
-  return text + fmt::format(
-                    "# The hand that holds it, device frame: it presses a sphere of 0.05 m about the world's origin. "
-                    "The arm must\n"
-                    "# reach there: mount says where it stands, driver/docs/devices.md how to find it.\n"
-                    "hand: {{script: press, radius: 0.05, rise: 0.003, rate: 1, center: [{:g}, {:g}, {:g}]}}\n"
-                    "# hapticd device info --parameters FILE lists what else a simulated arm has.\n",
-                    zero(center.x()), zero(center.y()), zero(center.z()));
+  text += deviceOf(below(parameters, "device"), rate) + armOfTwin(arm, kind == "chain") +
+          jointOf(parameters, arm, kind == "chain");
+  return text + handOf(stand);
 }
 
 }  // namespace hapticd::diagnostics

@@ -28,7 +28,7 @@ std::string where(const document::Place& place, const std::string& key) {
   return place.line > 0 ? fmt::format("{}:{} {}", place.file, place.line, key) : place.file + " " + key;
 }
 
-/// Mean without the hundredth that took longest: what interrupted it is not its own.
+/// Mean of all but the longest hundredth of the times: what interrupted those is no cost of the part.
 double meanOf(std::vector<double>& times) {
   if (times.empty()) return 0;
   std::sort(times.begin(), times.end());

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "diagnostics/arm_reach.hpp"
 #include "diagnostics/limit_advice.hpp"
 #include "host/child.hpp"
 #include "host/device_instance.hpp"
@@ -39,26 +40,67 @@ std::optional<std::array<double, HDV_MAX_JOINTS>> firstJoints(const scene::Scene
   return q;
 }
 
-/// The tip in the world.
-std::optional<servo::Probe> tipOf(const scene::Scene& scene, const scene::Device& device) {
+/// One arm at the first tick.
+struct Hand {
+  uint32_t device = 0;  ///< of the scene
+  servo::Probe probe;   ///< its tip in the world
+  double reach = 0;     ///< [m] that its joints can bring the tip away from there
+};
+
+std::optional<Hand> handOf(const scene::Scene& scene, uint32_t index) {
+  const scene::Device& device = scene.devices[index];
   auto arm = host::DeviceInstance::create(device, nullptr);
   if (!arm) return std::nullopt;
   const auto q = firstJoints(scene, device, **arm);
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();
   std::array<double, 4> turn{};
   if (!q || (*arm)->kinematics().forward((*arm)->handle(), q->data(), tip.data(), turn.data()) < 0) return std::nullopt;
-  servo::Probe probe;
-  probe.valid = tip.allFinite();
-  probe.position = device.mount.position + device.mount.orientation * tip;
-  probe.orientation = (device.mount.orientation * Eigen::Quaterniond(turn[0], turn[1], turn[2], turn[3])).normalized();
-  return probe.valid ? std::optional(probe) : std::nullopt;
+  if (!tip.allFinite()) return std::nullopt;
+  Hand hand{index, {}, reachOf(device, **arm, tip)};
+  hand.probe.valid = true;
+  hand.probe.position = device.mount.position + device.mount.orientation * tip;
+  hand.probe.orientation =
+      (device.mount.orientation * Eigen::Quaterniond(turn[0], turn[1], turn[2], turn[3])).normalized();
+  return hand;
 }
 
 /// Model, place of the tip and depth, packed: how they travel from the child.
+void packInside(uint32_t models, const servo::Core& core, const std::vector<servo::Probe>& tips, host::Packer& found) {
+  uint32_t count = 0;
+  host::Packer list;
+  for (uint32_t model = 0; model < models; ++model)
+    for (uint32_t tip = 0; tip < tips.size(); ++tip) {
+      const servo::Contact& contact = core.contact(model, tip);
+      if (!contact.traced || !(contact.world.depth_m > 0)) continue;
+      ++count;
+      list.number(model);
+      for (int i = 0; i < 3; ++i) list.number(tips[tip].position[i]);
+      list.number(contact.world.depth_m);
+    }
+  found.number(count);
+  found.text(list.take());
+}
+
+/// Arm, model, distance and reach of each arm that no model is near enough to, packed.
+void packFar(const scene::Scene& scene, const servo::World& world, servo::Core& core, const std::vector<Hand>& hands,
+             host::Packer& found) {
+  constexpr double kRoom = 1.1, kLittle = 0.05;  // the poses that were tried are not all; [m]
+  for (uint32_t i = 0; i < hands.size(); ++i) {
+    const auto nearest = nearestModel(scene, world, core, hands[i].probe.position, i);
+    if (!nearest || nearest->away <= kRoom * hands[i].reach + kLittle) continue;
+    found.number(hands[i].device);
+    found.number(static_cast<uint32_t>(nearest->index));
+    for (int axis = 0; axis < 3; ++axis) found.number(hands[i].probe.position[axis]);
+    found.number(nearest->away);
+    found.number(hands[i].reach);
+  }
+}
+
 std::string tryTips(const scene::Scene& scene) {
+  std::vector<Hand> hands;
   std::vector<servo::Probe> tips;
-  for (const scene::Device& device : scene.devices)
-    if (const auto tip = tipOf(scene, device)) tips.push_back(*tip);
+  for (uint32_t device = 0; device < scene.devices.size(); ++device)
+    if (const auto hand = handOf(scene, device)) hands.push_back(*hand), tips.push_back(hand->probe);
   host::Packer found;
   if (tips.empty()) return found.take();
   const servo::WorldOptions options{.rate = scene.servo.rate, .probe_count = static_cast<uint32_t>(tips.size())};
@@ -69,14 +111,8 @@ std::string tryTips(const scene::Scene& scene) {
   core.publish(0, tips);
   lockstep.before(0);
   core.tick(0, 0, tips);
-  for (uint32_t model = 0; model < scene.models.size(); ++model)
-    for (uint32_t tip = 0; tip < tips.size(); ++tip) {
-      const servo::Contact& contact = core.contact(model, tip);
-      if (!contact.traced || !(contact.world.depth_m > 0)) continue;
-      found.number(model);
-      for (int i = 0; i < 3; ++i) found.number(tips[tip].position[i]);
-      found.number(contact.world.depth_m);
-    }
+  packInside(static_cast<uint32_t>(scene.models.size()), core, tips, found);
+  packFar(scene, **world, core, hands, found);
   return found.take();
 }
 
@@ -100,6 +136,32 @@ std::string tryStart(const scene::Scene& scene, const scene::Device& device) {
   return started ? "=" : started.error();
 }
 
+void tellInside(const scene::Scene& scene, const std::string& list, uint32_t count, document::Problems& warnings) {
+  host::Unpacker in(list);
+  for (; count > 0; --count) {
+    const uint32_t model = in.count();
+    const double x = in.real(), y = in.real(), z = in.real(), depth = in.real();
+    if (!in.good() || model >= scene.models.size()) break;
+    document::report(warnings, scene.models[model].place, fmt::format("models[{}].pose", model),
+                     fmt::format("the hand starts inside {}: at [{:.4g}, {:.4g}, {:.4g}] the tip is {:.3g} mm deep; "
+                                 "expected it outside: move the model, the arm (mount) or the hand (hand)",
+                                 scene.models[model].name, x, y, z, depth * 1e3));
+  }
+}
+
+void tellFar(const scene::Scene& scene, host::Unpacker& in, document::Problems& warnings) {
+  for (uint32_t device = in.count(); in.good() && device < scene.devices.size(); device = in.count()) {
+    const uint32_t model = in.count();
+    const double x = in.real(), y = in.real(), z = in.real(), away = in.real(), reach = in.real();
+    if (!in.good() || model >= scene.models.size()) break;
+    document::report(warnings, scene.models[model].place, fmt::format("models[{}].pose.position", model),
+                     fmt::format("{} is the model nearest to {}, and {:.3g} m away from its tip, which is at [{:.3g}, "
+                                 "{:.3g}, {:.3g}] and reaches {:.3g} m from there: no model can be felt; expected them "
+                                 "together: move the models (pose.position, in m) or the arm (mount.position)",
+                                 scene.models[model].name, scene.devices[device].name, away, x, y, z, reach));
+  }
+}
+
 }  // namespace
 
 document::Problems unreachableHands(const scene::Scene& scene) {
@@ -112,20 +174,16 @@ document::Problems unreachableHands(const scene::Scene& scene) {
   return problems;
 }
 
-document::Problems startsInside(const scene::Scene& scene) {
+document::Problems adviseHands(const scene::Scene& scene) {
   document::Problems warnings;
   if (scene.models.empty() || scene.models.size() > kMostModels || scene.devices.empty()) return warnings;
   const auto told = host::runInChild([&] { return tryTips(scene); }, kHandLimitMs);
   if (!told) return warnings;  // a model that crashes is told by who tried it alone
   host::Unpacker in(*told);
-  for (uint32_t model = in.count(); in.good() && model < scene.models.size(); model = in.count()) {
-    const double x = in.real(), y = in.real(), z = in.real(), depth = in.real();
-    if (!in.good()) break;
-    document::report(warnings, scene.models[model].place, fmt::format("models[{}].pose", model),
-                     fmt::format("the hand starts inside {}: at [{:.4g}, {:.4g}, {:.4g}] the tip is {:.3g} mm deep; "
-                                 "expected it outside: move the model, the arm (mount) or the hand (hand)",
-                                 scene.models[model].name, x, y, z, depth * 1e3));
-  }
+  const uint32_t count = in.count();
+  const std::string list = in.text();
+  tellInside(scene, list, count, warnings);
+  tellFar(scene, in, warnings);
   return warnings;
 }
 

@@ -7,10 +7,11 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warns of each model that the tip of an arm is in at the first tick, with the depth. Simulated hands stand
-/// where their script begins, other arms in the pose of their calibration. The models are set up in a child process.
+/// [main] Warns of each model that the tip of an arm is in at the first tick, with the depth, and of each arm that can
+/// reach none of the models. Simulated hands stand where their script begins, other arms in the pose of their
+/// calibration. The models are set up in a child process.
 /// @param scene with the devices that a run would take
-document::Problems startsInside(const scene::Scene& scene);
+document::Problems adviseHands(const scene::Scene& scene);
 
 /// [main] A problem for each simulated arm that cannot reach where its hand begins, in the module's words: `run` would
 /// refuse it. The arms are started in a child process.

@@ -55,6 +55,17 @@ void beyondMotors(const Node* at, const char* key, double given, double reach, c
                                given, unit, reach, unit));
 }
 
+/// Motors that push a thousand times harder than they are let: N mm were meant.
+void motorsBeyondAll(const Node& root, const scene::Device& device, double reach, document::Problems& warnings) {
+  constexpr double kMost = 1000, kTimes = 100;  // N; of limits.force
+  const Node* at = find(root, {"parameters", "arm", "max_torque"});
+  if (at == nullptr || reach < kMost || reach < kTimes * device.limits.force) return;
+  document::report(warnings, device.file.string(), at->line, at->column, "parameters.arm.max_torque",
+                   fmt::format("these torques are {:.3g} N at the tip, of which limits.force takes {:g} N; expected N "
+                               "m, here and in the scales of the torques: 600 N mm are 0.6 N m",
+                               reach, device.limits.force));
+}
+
 /// No arm rests beyond its stops; a simulated chain begins in the middle of them.
 void keepWithinStops(const Node& root, std::array<double, HDV_MAX_JOINTS>& q, uint32_t joints) {
   const Node *rows = find(root, {"parameters", "arm", "limits"}), *kind = find(root, {"parameters", "arm", "kind"});
@@ -105,6 +116,7 @@ void adviseLimits(const Node& root, const scene::Device& device, const host::Dev
   if (motors.empty() || !angular) return;
   if (const auto reach = forceOfMotors(root, device, arm)) {
     beyondMotors(find(root, {"limits", "force"}), "limits.force", device.limits.force, *reach, "N", file, warnings);
+    motorsBeyondAll(root, device, *reach, warnings);
     const scene::Value* claimed = valueOf(device, {"device.max_force"});
     beyondMotors(find(root, {"parameters", "device", "max_force"}), "parameters.device.max_force",
                  claimed == nullptr ? 0 : claimed->number, *reach, "N", file, warnings);

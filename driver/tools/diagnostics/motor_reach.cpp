@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "diagnostics/motor_reach.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -39,8 +39,11 @@ std::optional<double> farthestReach(const Eigen::Matrix3Xd& jacobian, const std:
   constexpr double kFlat = 1e-2;  // of the longest: a direction that the joints hardly move along is not bounded
   const auto joints = static_cast<int>(jacobian.cols());
   if (joints < 3 || torque.size() != static_cast<size_t>(joints) || !jacobian.allFinite()) return std::nullopt;
-  const Eigen::Vector3d lengths = Eigen::JacobiSVD<Eigen::Matrix3Xd>(jacobian).singularValues();
-  if (!(lengths[2] > kFlat * lengths[0])) return std::nullopt;
+  // The eigenvalues of J J^T, in ascending order, are the squares of the singular values of J.
+  const Eigen::Matrix3d square = jacobian * jacobian.transpose();
+  const Eigen::Vector3d squares =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(square, Eigen::EigenvaluesOnly).eigenvalues();
+  if (!(squares[0] > kFlat * kFlat * squares[2])) return std::nullopt;
   double most = 0;
   for (int a = 0; a < joints; ++a)
     for (int b = a + 1; b < joints; ++b)

@@ -10,6 +10,7 @@
 
 #include "diagnostics/limit_advice.hpp"
 #include "diagnostics/node_path.hpp"
+#include "diagnostics/slow_arm.hpp"
 #include "diagnostics/wire_of.hpp"
 
 namespace hapticd::diagnostics {
@@ -44,6 +45,24 @@ void noForceLimit(const File& file, const host::DeviceInstance& arm) {
                 "; expected what a hand may feel, such as 0.5 N to begin with");
 }
 
+/// An arm of more than three joints can turn the hand, and no device tells the largest torque of its handle.
+void noTorqueLimit(const File& file, const codec::Wire& wire, const host::DeviceInstance& arm) {
+  constexpr double kHandle = 0.1;  // m from the tip, where a hand holds it
+  const scene::Limits& limits = file.device.limits;
+  const bool turns = arm.kinematics().joint_count > 3 &&
+                     std::any_of(wire.output.fields.begin(), wire.output.fields.end(), [](const Field& field) {
+                       return field.role == Role::kTorque || field.role == Role::kReference;
+                     });
+  if (!turns || limits.torque > 0) return;
+  const Node* given = file.root.find("limits");
+  const double force = limits.force > 0 ? limits.force : file.number("device.max_force");
+  file.warn(
+      given != nullptr ? *given : file.root, "limits.torque",
+      "not given, so the motors alone bound how hard shapes may turn the hand; expected what a wrist may feel" +
+          (force > 0 ? fmt::format(", such as {:.2g} N m: limits.force at a handle of {:g} m", kHandle * force, kHandle)
+                     : ", such as 0.05 N m to begin with"));
+}
+
 /// Forces of an arm that is described so draw the hand in where they should push it out.
 void oppositeSigns(const File& file, const codec::Wire& wire) {
   if (file.number("loader") > 0) return;  // a Falcon's board turns the signs of all three
@@ -67,6 +86,14 @@ void slowWatchdog(const File& file, const codec::Wire& wire) {
   file.warn(*watchdog, "parameters.wire.watchdog",
             fmt::format("{:g} s: so long the last force stays when commands stop; expected seconds, such as 0.02",
                         wire.watchdog));
+}
+
+/// Only the arm is judged: the scene has the rate of the servo.
+void slowSamples(const File& file, const codec::Wire& wire) {
+  constexpr double kServoAtItsBest = 1e4;  // Hz
+  const Node* rate = find(file.root, {"parameters", "wire", "rate"});
+  if (const std::string slow = slownessOf(file.device, kServoAtItsBest); rate != nullptr && !slow.empty())
+    file.warn(*rate, "parameters.wire.rate", fmt::format("{:g} Hz: ", wire.rate) + slow);
 }
 
 /// Encoders that count through and wrap are at zero wherever the arm was switched on.
@@ -158,8 +185,10 @@ void adviseSafety(const Node& root, const scene::Device& device, const host::Dev
   const auto wire = wireOf(device, arm.kinematics().joint_count);
   if (!wire) return;
   noForceLimit(file, arm);
+  noTorqueLimit(file, *wire, arm);
   oppositeSigns(file, *wire);
   slowWatchdog(file, *wire);
+  slowSamples(file, *wire);
   noCalibration(file, *wire);
   tooHeavy(file, arm);
   unusedKeys(file, wire->input, "input");

@@ -39,6 +39,37 @@ void beyondATurn(const Node* list, const char* key, const std::string& file, doc
                                most, most * M_PI / 180));
 }
 
+/// Degrees below 10 pass the range of the parameter, which ends at 10 rad. No table of a real arm has a whole number of
+/// radians, nor more than half a turn.
+void twistInDegrees(const Node* rows, const std::string& file, document::Problems& warnings) {
+  if (rows == nullptr || !rows->isSequence()) return;
+  for (size_t row = 0; row < rows->items.size(); ++row) {
+    const Node& link = rows->items[row];
+    for (const size_t column : {size_t{1}, size_t{3}}) {
+      if (column >= link.items.size()) continue;
+      const double angle = document::toNumber(link.items[column].scalar).value_or(0);
+      const bool whole = angle != 0 && angle == std::round(angle);
+      if (!whole && std::abs(angle) <= M_PI + 0.01) continue;
+      document::report(
+          warnings, file, link.items[column].line, link.items[column].column,
+          fmt::format("parameters.arm.dh[{}][{}]", row, column),
+          fmt::format("{:g} rad is {:.4g} degrees, as {} of joint {}; expected rad: {:g} degrees are "
+                      "{:.4g} rad",
+                      angle, angle * 180 / M_PI, column == 1 ? "alpha" : "theta", row + 1, angle, angle * M_PI / 180));
+    }
+  }
+}
+
+/// Lengths are in metres, and their decimals may slip: what limits and masses are told follows from it.
+void linkTooLong(const Node* lengths, const std::string& file, document::Problems& warnings) {
+  constexpr double kLong = 2;  // m: longer than the arm of a person, and of what a person leads
+  const double most = largest(numbersIn(lengths));
+  if (most <= kLong) return;
+  document::report(warnings, file, lengths->line, lengths->column, "parameters.arm.lengths",
+                   fmt::format("{:g} m is longer than an arm that a hand leads; expected metres: {:g} mm are {:g} m",
+                               most, most, most / 1000));
+}
+
 void mountFarAway(const Node* position, const std::string& file, document::Problems& warnings) {
   constexpr double kFar = 5;  // m: farther than anybody reaches
   const double most = largest(numbersIn(position));
@@ -79,6 +110,8 @@ void adviseUnits(const Node& root, const std::string& file, document::Problems& 
   adviseZeros(root, file, warnings);
   beyondATurn(find(root, {"parameters", "arm", "limits"}), "parameters.arm.limits", file, warnings);
   beyondATurn(find(root, {"parameters", "calibration", "pose"}), "parameters.calibration.pose", file, warnings);
+  twistInDegrees(find(root, {"parameters", "arm", "dh"}), file, warnings);
+  linkTooLong(find(root, {"parameters", "arm", "lengths"}), file, warnings);
   mountFarAway(find(root, {"mount", "position"}), file, warnings);
   quaternionTurnedRound(find(root, {"mount", "orientation"}), file, warnings);
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "codec/wire_overlap.hpp"
 #include "diagnostics/node_path.hpp"
 #include "diagnostics/wire_of.hpp"
 
@@ -30,23 +31,48 @@ double maxTorque(const scene::Device& device, size_t joint) {
   return value->numbers.size() == 1 ? value->numbers[0] : joint < value->numbers.size() ? value->numbers[joint] : 0;
 }
 
-/// What is odd about the torque that a field can carry; "" for nothing.
-std::string oddTorque(const Field& field, double most, bool scaled) {
+/// What is odd about the torque that a field can carry, and the key that makes it so; "" for nothing.
+struct Odd {
+  const char* key = "scale";
+  std::string what;
+};
+
+/// The N m of the greatest raw number to either side.
+double rangeOf(const Field& field, double least, double most) {
+  const double a = least * field.scale + field.offset, b = most * field.scale + field.offset;
+  return std::min(std::abs(a), std::abs(b));
+}
+
+Odd tooCoarse(const Field& field, double most, bool scaled) {
+  constexpr double kSteps = 8, kFewSteps = 200;  // fewer than 8, and the hand feels each
+  constexpr double kIdle = 50;                   // times more than the motor has: N mm were meant, or counts
+  const double range = rangeOf(field, field.least, field.most), step = std::abs(field.scale);
+  if (step * kSteps > most)
+    return {"scale", fmt::format("{}one raw unit is {:g} N m, of arm.max_torque's {:g} N m: most torques would be sent "
+                                 "as 0; expected the N m of one raw unit",
+                                 scaled ? "" : "not given, so ", step, most)};
+  if (field.bits >= 12 && range > kIdle * most && step * kFewSteps > most)
+    return {"scale",
+            fmt::format("one raw unit is {:g} N m, so its largest number is {:.3g} N m, and arm.max_torque's {:g} N m "
+                        "only {:.0f} steps; expected N m: {:g} N mm are {:g} N m",
+                        step, range, most, most / step, step, step / 1000)};
+  return {};
+}
+
+Odd oddTorque(const Field& field, double most, bool scaled) {
   constexpr double kNearly = 0.9;  // rounded data sheets
-  constexpr double kSteps = 8;     // so few, and the hand feels each
-  const double a = field.least * field.scale + field.offset, b = field.most * field.scale + field.offset;
-  const double range = std::min(std::abs(a), std::abs(b)), step = std::abs(field.scale);
-  if (field.type != codec::Type::kFloat && step * kSteps > most)
-    return fmt::format(
-        "{}one raw unit is {:g} N m, of arm.max_torque's {:g} N m: most torques would be sent as 0; "
-        "expected the N m of one raw unit",
-        scaled ? "" : "not given, so ", step, most);
-  if (range < kNearly * most)
-    return fmt::format(
-        "its largest raw number is {:g} N m, less than arm.max_torque's {:g} N m: all above is cut off; "
-        "expected {:.3g} or more, or a smaller max_torque",
-        range, most, step * most / std::max(range, 1e-300));
-  return "";
+  if (field.type != codec::Type::kFloat)
+    if (Odd coarse = tooCoarse(field, most, scaled); !coarse.what.empty()) return coarse;
+  const double range = rangeOf(field, field.least, field.most), step = std::abs(field.scale);
+  if (range >= kNearly * most) return {};
+  const auto [least, greatest] = codec::rangeOf(field.type, field.bits);
+  if (rangeOf(field, least, greatest) >= kNearly * most)
+    return {"limit", fmt::format("no more than {:g} N m is sent with it, less than arm.max_torque's {:g} N m; expected "
+                                 "limit: {:.0f} or none, or a smaller max_torque",
+                                 range, most, most / step)};
+  return {"scale", fmt::format("its largest raw number is {:g} N m, less than arm.max_torque's {:g} N m: all above is "
+                               "cut off; expected {:.3g} or more, or a smaller max_torque",
+                               range, most, step * most / std::max(range, 1e-300))};
 }
 
 void adviseTorques(const Node& fields, const codec::Report& report, const scene::Device& device,
@@ -55,11 +81,33 @@ void adviseTorques(const Node& fields, const codec::Report& report, const scene:
     const Field& field = report.fields[i];
     const double most = maxTorque(device, field.index);
     if (field.role != Role::kTorque || most <= 0) continue;
-    const Node *scale = fields.items[i].find("scale"), *at = scale != nullptr ? scale : &fields.items[i];
-    const std::string odd = oddTorque(field, most, scale != nullptr);
-    if (odd.empty()) continue;
+    const Odd odd = oddTorque(field, most, fields.items[i].find("scale") != nullptr);
+    if (odd.what.empty()) continue;
+    const Node *key = fields.items[i].find(odd.key), *at = key != nullptr ? key : &fields.items[i];
     document::report(warnings, device.file.string(), at->line, at->column,
-                     fmt::format("parameters.wire.output.fields[{}].scale", i), odd);
+                     fmt::format("parameters.wire.output.fields[{}].{}", i, odd.key), odd.what);
+  }
+}
+
+/// A number that no checksum covers is believed as it comes.
+void adviseChecksum(const Node& fields, const codec::Report& report, const char* side, const scene::Device& device,
+                    document::Problems& warnings) {
+  std::string outside;
+  for (const Field* field : codec::outsideChecksum(report)) {
+    const size_t i = static_cast<size_t>(field - report.fields.data());
+    const Node* is = i < fields.items.size() ? fields.items[i].find("is") : nullptr;
+    if (is != nullptr) outside += (outside.empty() ? "" : ", ") + is->scalar + fmt::format(" {}", field->index + 1);
+  }
+  for (size_t i = 0; !outside.empty() && i < fields.items.size(); ++i) {
+    const Field& field = report.fields[i];
+    if (field.role != Role::kChecksum) continue;
+    const Node *to = fields.items[i].find("to"), *at = to != nullptr ? to : &fields.items[i];
+    document::report(warnings, device.file.string(), at->line, at->column,
+                     fmt::format("parameters.wire.{}.fields[{}].to", side, i),
+                     fmt::format("the checksum covers the bytes {} to {}, and leaves out {}: a wrong one would be "
+                                 "believed; expected from and to around every number",
+                                 field.from, field.to - 1, outside));
+    return;
   }
 }
 
@@ -117,6 +165,8 @@ void adviseWire(const Node& root, const scene::Device& device, size_t joints, do
   if (!wire || in == nullptr || out == nullptr) return;
   adviseTorques(*out, wire->output, device, warnings);
   adviseGaps(*in, wire->input, device, warnings);
+  adviseChecksum(*in, wire->input, "input", device, warnings);
+  adviseChecksum(*out, wire->output, "output", device, warnings);
   if (const Node* startup = find(root, {"parameters", "wire", "startup"}))
     adviseStartup(*startup, *wire, device, warnings);
 }

@@ -88,7 +88,7 @@ Result<Triangles> parseObj(const std::string& text, const std::string& file) {
       if (mesh.corners.size() > kMostTriangles) return Error{where + "more than 20,000,000 triangles"};
     }
   }
-  if (mesh.corners.empty()) return Error{file + ": no triangles, expected lines f i j k"};
+  if (mesh.corners.empty()) return Error{file + ": has no triangles, expected lines f i j k, a triangle each"};
   return mesh;
 }
 
@@ -138,7 +138,8 @@ Result<void> orientClosed(Triangles& mesh, const std::string& file) {
                  " edges do not have one triangle on each side with the same orientation, expected a closed surface"};
   double volume = 0;
   for (const auto& c : mesh.corners) volume += mesh.points[c[0]].dot(mesh.points[c[1]].cross(mesh.points[c[2]])) / 6;
-  if (!(std::fabs(volume) > 0)) return Error{file + ": the surface encloses no volume"};
+  if (!(std::fabs(volume) > 0))
+    return Error{file + ": the surface encloses no volume, expected a closed surface that is not flat"};
   if (volume < 0)
     for (auto& c : mesh.corners) std::swap(c[1], c[2]);
   return {};

@@ -3,6 +3,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,6 +12,10 @@ namespace hapticd::brep {
 
 /// Four floats that are compared at once.
 using Float4 = float __attribute__((vector_size(16)));
+
+inline Float4 squareRoots(const Float4& x) noexcept {
+  return Float4{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
+}
 
 /// Boxes of four children. An empty place has lo = +infinity and hi = -infinity: it is infinitely far from everything.
 struct alignas(64) BoxNode {

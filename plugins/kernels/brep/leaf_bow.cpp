@@ -76,8 +76,6 @@ void extendBow(LeafBow& bow, const LeafSample& s) {
     extendTerm(bow.bend[i], s.first[i].squaredNorm() + from.dot(s.second[i]), s.second[i]);
   }
   extendTerm(bow.twist, s.first[0].dot(s.first[1]) + s.S.dot(s.second[2]), s.second[2]);
-  bow.low = bow.low.cwiseMin(s.S);
-  bow.high = bow.high.cwiseMax(s.S);
 }
 
 /// The middle of a leaf: all terms begin with it.
@@ -92,21 +90,62 @@ void beginBow(LeafBow& bow, const LeafSample& s, double size) {
     bow.bend[i].high = -LeafBow::kEndless;
   }
   bow.twist.middle = s.second[2];
-  bow.low = bow.high = s.S;
 }
 
-/// Room for what lies between the samples. @param sag [m] of a chord between two of them, in the frame
-void widenBow(LeafBow& bow, const Vector3d& sag) {
+/// Room for what lies between the samples.
+void widenBow(LeafBow& bow) {
   for (LeafBow::Term* term : {&bow.slope[0], &bow.slope[1], &bow.bend[0], &bow.bend[1], &bow.twist}) {
     const double more = (kBowBetween - 1) * (term->high - term->low);
     term->low -= more;
     term->high += more;
     term->off *= kBowBetween;
   }
-  const Vector3d rounding = Vector3d::Constant(1e-12 * (1 + bow.center.norm()));
-  bow.low -= sag + rounding;
-  bow.high += sag + rounding;
 }
+
+/// What holds a leaf: a box in its frame, and cylinders about the centres of curvature of the direction along which it
+/// is deeper.
+class LeafHull {
+ public:
+  /// @param corner [m] of the leaf, in the frame of the bow
+  LeafHull(const LeafBow& bow, const Vector3d& corner) : bow_(bow) {
+    const auto depth = [&](int i) { return std::abs(bow.bend[i].middle.z()) * corner[i] * corner[i]; };
+    bent_ = depth(1) > depth(0) ? 1 : 0;
+    turn_.row(0) = Vector3d::Unit(bent_);
+    turn_.row(1) = Vector3d::Unit(1 - bent_);
+    turn_.row(2) = Vector3d::UnitZ();
+    straight_ = bow.focus[bent_] == 0;
+  }
+  /// @param S a point, in the frame of the bow
+  void extend(const Vector3d& S) {
+    const Vector3d q = turn_ * S;
+    box_.extend(q);
+    const double radius = std::hypot(q[0], q[2] - bow_.focus[bent_]);
+    inner_ = std::min(inner_, radius);
+    outer_ = std::max(outer_, radius);
+  }
+  /// @param sag [m] of a chord between two of the points, in the frame of the bow
+  TurnedBox with(const Vector3d& sag) const {
+    const Vector3d room = turn_ * sag + Vector3d::Constant(1e-12 * (1 + bow_.center.norm()));
+    TurnedBox hull;
+    hull.frame = turn_ * bow_.frame;
+    const Vector3d center = hull.frame * bow_.center;
+    hull.box = {box_.min() - room + center, box_.max() + room + center};
+    if (straight_) return hull;
+    hull.focus = {center[0], center[2] + bow_.focus[bent_]};
+    const double across = std::hypot(room[0], room[2]);
+    hull.inner = std::max(inner_ - across, 0.0);
+    hull.outer = outer_ + across;
+    return hull;
+  }
+
+ private:
+  const LeafBow& bow_;
+  Matrix3d turn_;
+  int bent_ = 0;
+  bool straight_ = false;
+  Eigen::AlignedBox3d box_;
+  double inner_ = LeafBow::kEndless, outer_ = 0;
+};
 
 /// Whether the normal turns nowhere on a border, from one side of it to the other.
 bool isSmoothAcross(const Geometry& geometry, std::uint32_t surface, const Array2d& lo, const Array2d& hi, int axis,
@@ -148,7 +187,7 @@ void rangeOfTerm(const LeafBow::Term& term, const Vector3d& from, double& low, d
 }  // namespace
 
 LeafBow leafBowOf(const Geometry& geometry, std::uint32_t surface, const Array2d& lo, const Array2d& hi,
-                  std::uint32_t ends) {
+                  std::uint32_t ends, TurnedBox& hull) {
   LeafBow bow;
   if (geometry.part().surfaces[surface].kind == SurfaceKind::kOffset) return bow;
   SurfacePoint E;
@@ -157,6 +196,8 @@ LeafBow leafBowOf(const Geometry& geometry, std::uint32_t surface, const Array2d
   if (!turnToPrincipal(bow, E)) return bow;
   const double size = (hi - lo).matrix().cwiseProduct(Eigen::Vector2d(E.Su.norm(), E.Sv.norm())).norm();
   beginBow(bow, leafSample(bow, E), size);
+  geometry.surface(surface, lo[0], lo[1], E);
+  LeafHull about(bow, bow.local(E.S));
   const Array2d step = (hi - lo) / kBowIntervals;
   const Array2d end = hi - 1e-9 * (hi - lo);  // derivatives at a knot are those of the span to its right
   Vector3d sag = Vector3d::Zero();
@@ -165,35 +206,34 @@ LeafBow leafBowOf(const Geometry& geometry, std::uint32_t surface, const Array2d
       const Array2d uv = (lo + Array2d(i, j) * step).min(end);
       geometry.surface(surface, uv[0], uv[1], E);
       extendBow(bow, leafSample(bow, E));
+      about.extend(bow.local(E.S));
       const Vector3d bent = step[0] * step[0] * (bow.frame * E.Suu).cwiseAbs() +
                             2 * step[0] * step[1] * (bow.frame * E.Suv).cwiseAbs() +
                             step[1] * step[1] * (bow.frame * E.Svv).cwiseAbs();
       sag = sag.cwiseMax(kSagBetween / 8 * bent);
     }
-  widenBow(bow, sag);
+  widenBow(bow);
+  hull = about.with(sag);
   bow.smooth = goesOnSmoothly(geometry, surface, lo, hi, ends);
   return bow;
 }
 
-FeetOfLeaf feetSeenFrom(const LeafBow& bow, const Vector3d& q) noexcept {
+LeafSight feetSeenFrom(const LeafBow& bow, const Vector3d& q) noexcept {
   double low[3], high[3];
   for (int i = 0; i < 2; ++i) {
     const Vector3d from(-q[0], -q[1], bow.focus[i] - q[2]);
     double least, most;
     rangeOfTerm(bow.slope[i], from, least, most);
     const double kink = kSmoothKink * q.lpNorm<1>();
-    if (bow.smooth && (least > kink || most < -kink)) return FeetOfLeaf::kNowhere;
+    if (bow.smooth && (least > kink || most < -kink)) return {FeetOfLeaf::kNowhere};
     rangeOfTerm(bow.bend[i], from, low[i], high[i]);
-    if (bow.smooth && high[i] < -kBowRounding) return FeetOfLeaf::kNowhere;
+    if (bow.smooth && high[i] < -kBowRounding) return {FeetOfLeaf::kNowhere};
   }
   rangeOfTerm(bow.twist, -q, low[2], high[2]);
   const double twist = std::max(std::abs(low[2]), std::abs(high[2]));
-  const bool convex = low[0] > 0 && low[1] > 0 && low[0] * low[1] > twist * twist;
-  return convex ? FeetOfLeaf::kOne : FeetOfLeaf::kUnknown;
-}
-
-double leafDistance2(const LeafBow& bow, const Vector3d& q) noexcept {
-  return (1 - 1e-12) * (bow.low - q).cwiseMax(q - bow.high).cwiseMax(0).squaredNorm();
+  if (!(low[0] > 0 && low[1] > 0 && low[0] * low[1] > twist * twist)) return {};
+  const double mean = 0.5 * (low[0] + low[1]), half = 0.5 * (low[0] - low[1]);
+  return {FeetOfLeaf::kOne, mean - std::sqrt(half * half + twist * twist)};
 }
 
 Array2d footNear(const LeafBow& bow, const Vector3d& q) noexcept {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "kernels/brep/geometry.hpp"
+#include "kernels/brep/row_box.hpp"
 
 namespace hapticd::brep {
 
@@ -21,12 +22,10 @@ struct LeafBow {
     Eigen::Vector3d middle{0, 0, 0}, off{0, 0, 0};
   };
 
-  Eigen::Vector3d center{0, 0, 0};                             ///< [m] S in the middle of the parameters
-  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();         ///< rows: directions 1 and 2, and the normal; unit
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(-kEndless);  ///< [m] the box that holds the leaf, in the frame
-  Eigen::Vector3d high = Eigen::Vector3d::Constant(kEndless);
-  Eigen::Array2d middle{0, 0};          ///< (u, v)
-  Eigen::Array2d along[2];              ///< [1/m]
+  Eigen::Vector3d center{0, 0, 0};                      ///< [m] S in the middle of the parameters
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: directions 1 and 2, and the normal; unit
+  Eigen::Array2d middle{0, 0};                          ///< (u, v)
+  Eigen::Array2d along[2];                              ///< [1/m]
   double focus[2]{kUnknown, kUnknown};  ///< [m] o of direction i, on the normal; not a number: nothing is known
   Term slope[2];                        ///< (S - o) S_i
   Term bend[2];                         ///< S_i S_i + (S - o) S_ii
@@ -41,9 +40,10 @@ struct LeafBow {
 };
 
 /// [main] Of the piece of a surface between two corners of a parameter rectangle. Nothing is known of a piece whose
-/// middle is not regular, and of offsets, whose second derivatives are not exact. @param ends Leaf::borders
+/// middle is not regular, and of offsets, whose second derivatives are not exact. @param ends Leaf::borders @param hull
+/// becomes what holds the piece, in the frame of its middle; stays if nothing is known
 LeafBow leafBowOf(const Geometry& geometry, std::uint32_t surface, const Eigen::Array2d& lo, const Eigen::Array2d& hi,
-                  std::uint32_t ends);
+                  std::uint32_t ends, TurnedBox& hull);
 
 enum class FeetOfLeaf : std::uint8_t {
   kNowhere,  ///< no nearest point of a smooth surface lies there
@@ -51,11 +51,14 @@ enum class FeetOfLeaf : std::uint8_t {
   kUnknown
 };
 
-/// [rt] What a probe sees of the leaf. @param q [m] the probe in the frame of the leaf
-FeetOfLeaf feetSeenFrom(const LeafBow& bow, const Eigen::Vector3d& q) noexcept;
+/// What a probe sees of a leaf.
+struct LeafSight {
+  FeetOfLeaf feet = FeetOfLeaf::kUnknown;
+  double least_bend = 0;  ///< of kOne: the least second derivative of half the squared distance, in any direction
+};
 
-/// [rt] Lower bound of the squared distance [m^2] to the leaf.
-double leafDistance2(const LeafBow& bow, const Eigen::Vector3d& q) noexcept;
+/// [rt] What a probe sees of the leaf. @param q [m] the probe in the frame of the leaf
+LeafSight feetSeenFrom(const LeafBow& bow, const Eigen::Vector3d& q) noexcept;
 
 /// [rt] (u, v) near the foot; may lie outside the leaf.
 Eigen::Array2d footNear(const LeafBow& bow, const Eigen::Vector3d& q) noexcept;

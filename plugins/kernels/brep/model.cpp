@@ -75,21 +75,28 @@ class ModelBuilder {
     each([&](std::uint32_t vertex, std::uint32_t e) { model_.edges_at_[place[vertex]++] = e; });
   }
 
-  void add(ElementKind kind, std::size_t index, const AlignedBox3d& box) {
+  static void checkIndex(std::size_t index) {
     if (index > Element::kMostElements) throw std::invalid_argument("more than 536,870,911 elements of one kind");
+  }
+
+  void add(ElementKind kind, std::size_t index, const AlignedBox3d& box, const TurnedBox& turned) {
+    checkIndex(index);
     elements_.emplace_back(kind, static_cast<std::uint32_t>(index));
-    boxes_.push_back(box);
+    const AlignedBox3d both = box.intersection(turned.upright());
+    boxes_.push_back(both.isEmpty() ? box : both);
+    turned_.push_back(turned);
   }
 
   void addFace(std::uint32_t f) {
     constexpr std::size_t kMostLeaves = 20'000'000;
-    if (isAnalytic(part_.surfaces[part_.faces[f].surface])) return add(ElementKind::kFace, f, faceBox(model_.face(f)));
+    if (isAnalytic(part_.surfaces[part_.faces[f].surface]))
+      return add(ElementKind::kFace, f, faceBox(model_.face(f)), turnedFaceBox(model_.face(f)));
     std::vector<BoxedLeaf> leaves;
     cutFace(*model_.geometry_, f, model_.face(f), leaves);
     if (model_.leaves_.size() + leaves.size() > kMostLeaves)
       throw std::invalid_argument("the faces fall into more than 20,000,000 flat pieces");
     for (const BoxedLeaf& made : leaves) {
-      add(ElementKind::kLeaf, model_.leaves_.size(), made.box);
+      add(ElementKind::kLeaf, model_.leaves_.size(), made.box, made.turned);
       model_.leaves_.push_back(made.leaf);
     }
   }
@@ -97,20 +104,21 @@ class ModelBuilder {
   void addEdge(std::uint32_t e) {
     const Edge& edge = part_.edges[e];
     if (edge.curve == kNone) {
-      if (edge.first_vertex != kNone)
-        add(ElementKind::kPole, e, AlignedBox3d(vec(part_.vertices[edge.first_vertex].point)));
-      return;
+      if (edge.first_vertex == kNone) return;
+      const AlignedBox3d point(vec(part_.vertices[edge.first_vertex].point));
+      return add(ElementKind::kPole, e, point, {Eigen::Matrix3d::Identity(), point});
     }
     const CurveKind kind = part_.curves3[edge.curve].kind;
     const std::uint32_t guise = model_.edge(e).guise;
     if (kind <= CurveKind::kCircle || guise != kNone) {
       const bool circle = guise != kNone ? model_.guised(guise).is_circle : kind == CurveKind::kCircle;
-      return add(circle ? ElementKind::kCircle : ElementKind::kLine, e, edgeBox(model_.edge(e), circle));
+      return add(circle ? ElementKind::kCircle : ElementKind::kLine, e, edgeBox(model_.edge(e), circle),
+                 turnedEdgeBox(model_.edge(e), circle));
     }
     std::vector<BoxedPiece> pieces;
     cutEdge(*model_.geometry_, e, pieces);
     for (const BoxedPiece& made : pieces) {
-      add(ElementKind::kPiece, model_.pieces_.size(), made.box);
+      add(ElementKind::kPiece, model_.pieces_.size(), made.box, made.turned);
       model_.pieces_.push_back(made.piece);
     }
   }
@@ -119,25 +127,36 @@ class ModelBuilder {
     const Body& body = part_.bodies[b];
     elements_.clear();
     boxes_.clear();
+    turned_.clear();
+    BodyTree& made = model_.bodies_[b];
+    if (body.kind == BodyKind::kMesh) return plantMesh(body, made);
     for (std::uint32_t i = 0; i < body.face_count; ++i) addFace(body.first_face + i);
     for (std::uint32_t i = 0; i < body.edge_count; ++i) addEdge(body.first_edge + i);
-    for (std::uint32_t i = 0; i < body.triangle_count; ++i) {
-      AlignedBox3d box;
-      for (const std::uint32_t corner : part_.triangles[body.first_triangle + i].corner)
-        box.extend(vec(part_.points[corner]));
-      add(ElementKind::kTriangle, body.first_triangle + i, box);
-    }
-    BodyTree& made = model_.bodies_[b];
-    arrange(made, boxes_, elements_, body.kind == BodyKind::kMesh ? BodyTree::kMeshRow : 1);
-    if (body.kind == BodyKind::kMesh) flattenRows(made);
+    arrange(made, boxes_, elements_, turned_);
     plantFaceTrees(body);
   }
 
-  static void arrange(BodyTree& body, std::span<const AlignedBox3d> boxes, std::span<const Element> elements, int row) {
-    body.tree.build(boxes, row);
+  /// The rows of a tree with one element in each.
+  static void arrange(BodyTree& body, std::span<const AlignedBox3d> boxes, std::span<const Element> elements,
+                      std::span<const TurnedBox> turned) {
+    body.tree.build(boxes, 1);
     body.elements.reserve(elements.size());
     for (const std::uint32_t i : body.tree.order()) body.elements.push_back(elements[i]);
+    body.rows.resize(elements.size());
+    forEachRow(body, [&](std::size_t number, const ElementRow& row) {
+      body.rows[number] = rowBox(turned[body.tree.order()[row.first]], body.tree);
+    });
     body.tree.forgetOrder();
+  }
+
+  /// use(number of the row, row)
+  template <class Use>
+  static void forEachRow(const BodyTree& body, const Use& use) {
+    for (std::size_t n = 0; n < body.tree.nodeCount(); ++n) {
+      const BoxNode& node = body.tree.node(static_cast<std::int32_t>(n));
+      for (std::size_t i = 0; i < 4; ++i)
+        if (node.child[i] < 0) use(static_cast<std::size_t>(node.row[i]), BoxTree::rowOf(node.child[i]));
+    }
   }
 
   /// Faces that a look at an element concerns.
@@ -172,26 +191,34 @@ class ModelBuilder {
       });
     std::vector<AlignedBox3d> boxes;
     std::vector<Element> elements;
+    std::vector<TurnedBox> turned;
     for (std::uint32_t f = 0; f < body.face_count; ++f) {
-      boxes.clear(), elements.clear();
-      for (const std::uint32_t i : places[f]) boxes.push_back(boxes_[i]), elements.push_back(elements_[i]);
-      arrange(model_.face_trees_[body.first_face + f], boxes, elements, 1);
+      boxes.clear(), elements.clear(), turned.clear();
+      for (const std::uint32_t i : places[f])
+        boxes.push_back(boxes_[i]), elements.push_back(elements_[i]), turned.push_back(turned_[i]);
+      arrange(model_.face_trees_[body.first_face + f], boxes, elements, turned);
     }
   }
 
-  void flattenRows(BodyTree& body) {
-    body.slabs.resize(static_cast<std::size_t>(body.tree.rowCount()));
-    for (std::size_t n = 0; n < body.tree.nodeCount(); ++n) {
-      const BoxNode& node = body.tree.node(static_cast<std::int32_t>(n));
-      for (std::size_t i = 0; i < 4; ++i) {
-        if (node.child[i] >= 0) continue;  // a node, or an empty place
-        const ElementRow row = BoxTree::rowOf(node.child[i]);
-        std::array<std::uint32_t, BoxTree::kMaxRow> triangles{};
-        for (std::size_t k = 0; k < row.count; ++k) triangles[k] = body.elements[row.first + k].index();
-        body.slabs[static_cast<std::size_t>(node.row[i])] =
-            rowSlab(part_, std::span(triangles).first(row.count), body.tree);
-      }
+  void plantMesh(const Body& body, BodyTree& made) {
+    checkIndex(std::size_t{body.first_triangle} + body.triangle_count);
+    for (std::uint32_t i = 0; i < body.triangle_count; ++i) {
+      AlignedBox3d box;
+      for (const std::uint32_t corner : part_.triangles[body.first_triangle + i].corner)
+        box.extend(vec(part_.points[corner]));
+      boxes_.push_back(box);
     }
+    made.tree.build(boxes_, BodyTree::kMeshRow);
+    made.elements.reserve(boxes_.size());
+    for (const std::uint32_t i : made.tree.order())
+      made.elements.emplace_back(ElementKind::kTriangle, body.first_triangle + i);
+    made.tree.forgetOrder();
+    made.slabs.resize(static_cast<std::size_t>(made.tree.rowCount()));
+    forEachRow(made, [&](std::size_t number, const ElementRow& row) {
+      std::array<std::uint32_t, BoxTree::kMaxRow> triangles{};
+      for (std::size_t k = 0; k < row.count; ++k) triangles[k] = made.elements[row.first + k].index();
+      made.slabs[number] = rowSlab(part_, std::span(triangles).first(row.count), made.tree);
+    });
   }
 
   void placeBodies() {
@@ -237,6 +264,7 @@ class ModelBuilder {
   const ModelOptions& options_;
   std::vector<Element> elements_;  ///< of the body whose tree is being planted
   std::vector<AlignedBox3d> boxes_;
+  std::vector<TurnedBox> turned_;  ///< closer boxes of the same
 };
 
 Model::Model(Part part, const ModelOptions& options) : part_(std::move(part)) {
@@ -254,7 +282,7 @@ std::size_t Model::bytes() const noexcept {
   for (const std::vector<BodyTree>* trees : {&bodies_, &face_trees_})
     for (const BodyTree& tree : *trees) {
       sum += sizeof tree + tree.tree.bytes();
-      add(tree.elements), add(tree.slabs);
+      add(tree.elements), add(tree.rows), add(tree.slabs);
     }
   return sum + placement_tree_.bytes();
 }

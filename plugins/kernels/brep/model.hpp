@@ -6,11 +6,13 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "kernels/brep/box_tree.hpp"
 #include "kernels/brep/elements.hpp"
 #include "kernels/brep/guised_edges.hpp"
+#include "kernels/brep/row_box.hpp"
 #include "kernels/brep/row_slab.hpp"
 
 namespace hapticd::brep {
@@ -49,7 +51,16 @@ struct BodyTree {
 
   BoxTree tree;
   std::vector<Element> elements;  ///< in the order of the tree
-  std::vector<RowSlab> slabs;     ///< by the number of the row; meshes alone
+  std::vector<RowBox> rows;       ///< by the number of the row; all but meshes
+  std::vector<RowSlab> slabs;     ///< the same of meshes
+
+  template <class Shape>
+  const std::vector<Shape>& shapes() const noexcept {
+    if constexpr (std::is_same_v<Shape, RowSlab>)
+      return slabs;
+    else
+      return rows;
+  }
 };
 
 /// Built once, then constant: every const function may run in any thread.

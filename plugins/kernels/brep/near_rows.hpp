@@ -1,42 +1,97 @@
 // SPDX-License-Identifier: MIT
-/// The rows of triangles about a probe: while it stays there, a search need look at no others.
+/// The rows of elements about a probe: while it stays there, a search need look at no others.
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "kernels/brep/model.hpp"
 
 namespace hapticd::brep {
 
+/// What bounds the rows of elements, and how many are worth a look in one tick. A look at a spline leaf is dear.
+struct ElementLimits {
+  using Shape = RowBox;
+  static constexpr int kMostFours = 8;        ///< of rows
+  static constexpr int kMostCandidates = 64;  ///< rows within reach, of which the nearest are taken
+  static constexpr int kMostNodes = 40;       ///< of the tree, looked at in one gathering
+  static constexpr int kFew = 12, kMany = 32;
+  static constexpr double kWorthIt = 2.5;  ///< ways of a tick, below which gathering costs more than it spares
+  static constexpr bool kLearns = true;    ///< a distance that was measured bounds a row closer than its shape
+};
+/// The same of triangles, where it is cheap.
+struct TriangleLimits {
+  using Shape = RowSlab;
+  static constexpr int kMostFours = 24, kMostCandidates = 96, kMostNodes = 128, kFew = 16, kMany = 32;
+  static constexpr double kWorthIt = 4;
+  static constexpr bool kLearns = false;
+};
+
 /// Rows whose boxes were within reach of a point, and a bound for all others: every distance changes by at most the way
-/// of the probe. Source: the neighbour lists of Verlet 1967, "Computer experiments on classical fluids".
+/// of the probe. Source: the neighbour lists of Verlet 1967, "Computer experiments on classical fluids". A distance
+/// that was measured to an element bounds it in the same way until the probe has come as much nearer.
+template <class Choice>
 class NearRows {
  public:
-  static constexpr int kMostFours = 24;
-  static constexpr int kMostElements = 4 * kMostFours * BodyTree::kMeshRow;
+  using Limits = Choice;
+  using Shape = typename Limits::Shape;
+  using Four = decltype(emptyFour(Shape{}));
+  static constexpr int kMostRows = 4 * Limits::kMostFours;
 
-  /// [rt] Takes all rows of a mesh that may be within `reach` [m] of p (frame of the body). False, and then nothing is
-  /// known: they are too many.
+  /// [rt] Takes the rows of a body that may be within `reach` [m] of p (frame of the body), the nearest ones if they
+  /// are many. False, and then nothing is known: they are far too many.
   bool gather(const BodyTree& body, const Eigen::Vector3d& p, double reach) noexcept;
+  /// [rt] The probe has gone this far [m].
+  void go(double way) noexcept { gone_ += way; }
+  /// [rt] Nothing is known any longer.
+  void forget() noexcept { beyond_ = -1; }
   /// [rt] No element of other rows is nearer to p than this [m]. Below 0: nothing is known.
   double beyond(const Eigen::Vector3d& p) const noexcept { return beyond_ - (p - center_).norm(); }
+  /// [rt] No element of a row is nearer to the probe of now than the square root of this [m].
+  void learn(int four, int lane, double distance2) noexcept {
+    if constexpr (!Limits::kLearns) return;
+    constexpr double kRoundedDown = 1 - 1e-6;
+    known_[static_cast<std::size_t>(four)][lane] = static_cast<float>((std::sqrt(distance2) + gone_) * kRoundedDown);
+  }
 
   int rows() const noexcept { return rows_; }
   int fours() const noexcept { return (rows_ + 3) / 4; }
-  const FourSlabs& four(int i) const noexcept { return fours_[static_cast<std::size_t>(i)]; }
+  /// [rt] Lower bounds of the squared distances [m^2] to the rows of a four.
+  Float4 distances(int four, const BoxProbe& probe) const noexcept {
+    constexpr Float4 kZero{};
+    const Float4 boxes = rowDistances(fours_[static_cast<std::size_t>(four)], probe);
+    if constexpr (!Limits::kLearns) return boxes;
+    const Float4 left = known_[static_cast<std::size_t>(four)] - static_cast<float>(gone_ * (1 + 1e-6));
+    const Float4 known = (left > kZero ? left : kZero) * (left > kZero ? left : kZero) * kRowShare;
+    return boxes > known ? boxes : known;
+  }
   ElementRow row(int four, int lane) const noexcept {
     return BoxTree::rowOf(children_[static_cast<std::size_t>(4 * four + lane)]);
   }
 
  private:
-  void add(const RowSlab& slab, std::int32_t child) noexcept;
+  struct Candidate {
+    float bound2;
+    std::int32_t row, child;
+  };
+  bool collect(const BodyTree& body, const Eigen::Vector3d& p, double reach2, double& beyond2) noexcept;
+  void add(const Shape& shape, std::int32_t child) noexcept;
 
-  std::array<FourSlabs, kMostFours> fours_;
-  std::array<std::int32_t, 4 * std::size_t{kMostFours}> children_{};
+  std::array<Four, Limits::kMostFours> fours_;
+  std::array<Float4, Limits::kMostFours> known_{};  ///< [m] distances that were measured, and the way until then
+  std::array<std::int32_t, kMostRows> children_{};
   Eigen::Vector3d center_{0, 0, 0};
   double beyond_ = -1;
+  double gone_ = 0;  ///< [m] way of the probe since the rows were gathered
   int rows_ = 0;
+  std::array<Candidate, Limits::kMostCandidates> candidates_;
+  int candidate_count_ = 0;
 };
+
+using NearElements = NearRows<ElementLimits>;
+using NearTriangles = NearRows<TriangleLimits>;
+extern template class NearRows<ElementLimits>;
+extern template class NearRows<TriangleLimits>;
 
 }  // namespace hapticd::brep

@@ -107,7 +107,7 @@ bool pressesOutward(const Leaf& leaf, const LeafState& s, const Array2d& uv) noe
 
 /// The foot that s and its last step give, if it is nearer than `hit` and inside the trim.
 double take(const LeafTask& task, const FaceShape& face, const LeafState& s, const Vector2d& d, double offset,
-            Hit& hit) noexcept {
+            double& region2, Hit& hit) noexcept {
   const Array2d uv = (s.uv + d.array()).max(task.leaf.lo).min(task.leaf.hi);
   Vector3d point = s.E.S + d[0] * s.E.Su + d[1] * s.E.Sv +
                    0.5 * (d[0] * d[0] * s.E.Suu + 2 * d[0] * d[1] * s.E.Suv + d[1] * d[1] * s.E.Svv);
@@ -116,6 +116,7 @@ double take(const LeafTask& task, const FaceShape& face, const LeafState& s, con
     point += offset * Su.cross(Sv).normalized();
   }
   const double d2 = (point - task.p).squaredNorm();
+  region2 = std::min(region2, d2);
   if (pressesOutward(task.leaf, s, uv) || !face.trim.inside(uv[0], uv[1]))
     return std::numeric_limits<double>::infinity();
   if (!(d2 < hit.d2)) return d2;
@@ -132,6 +133,21 @@ bool isWithinFocus(const Leaf& leaf, const FaceShape& face, const LeafState& s, 
   return (std::sqrt(s.f) + offset) * (side > 0 ? leaf.bend_front : leaf.bend_back) < 1;
 }
 
+/// Lower bound of the squared distance to a leaf that a probe sees to have one foot: it bends up by `least_bend` at
+/// least from the slope at s. Where the leaf ends it can only rise.
+double leastFrom(const LeafTask& task, const LeafState& s, double least_bend) noexcept {
+  Vector2d slope(s.r.dot(s.E.Su), s.r.dot(s.E.Sv));
+  for (int axis = 0; axis < 2; ++axis)
+    if ((s.uv[axis] <= task.leaf.lo[axis] && slope[axis] > 0) || (s.uv[axis] >= task.leaf.hi[axis] && slope[axis] < 0))
+      slope[axis] = 0;
+  double square = 0;
+  for (const Array2d& along : task.leaf.bow.along) {
+    const double one = along[0] * slope[0] + along[1] * slope[1];
+    square += one * one;
+  }
+  return s.f * (1 - 1e-9) - square * (1 + 1e-9) / least_bend;
+}
+
 }  // namespace
 
 PieceAnswer leafFoot(const Geometry& geometry, const Leaf& leaf, const FaceShape& face, std::uint32_t surface,
@@ -142,16 +158,23 @@ PieceAnswer leafFoot(const Geometry& geometry, const Leaf& leaf, const FaceShape
   LeafTask task{geometry, leaf, is_offset ? shape.basis : surface, p};
   LeafState s;
   task.at(start.uv.max(leaf.lo).min(leaf.hi), s);
-  Vector2d d = descend(task, s);
   PieceAnswer answer;
-  answer.d2 = take(task, face, s, d, offset, hit);
-  answer.alone = task.arrived && (start.feet != FeetOfLeaf::kUnknown || isWithinFocus(leaf, face, s, std::abs(offset)));
+  if (start.sight.least_bend > 0 && s.f > start.limit2)
+    if (const double least = leastFrom(task, s, start.sight.least_bend); least > start.limit2) {
+      answer.d2 = answer.region2 = least;
+      answer.evaluations = task.evaluations;
+      return answer;
+    }
+  Vector2d d = descend(task, s);
+  answer.d2 = take(task, face, s, d, offset, answer.region2, hit);
+  answer.alone =
+      task.arrived && (start.sight.feet != FeetOfLeaf::kUnknown || isWithinFocus(leaf, face, s, std::abs(offset)));
   // Beyond a centre of curvature there may be several feet: look from elsewhere too.
   for (int corner = 0; corner < 4 && !answer.alone && start.elsewhere; ++corner) {
     const Array2d share(corner % 2 == 0 ? 0.1 : 0.9, corner < 2 ? 0.1 : 0.9);
     task.at(leaf.lo + share * (leaf.hi - leaf.lo), s);
     d = descend(task, s);
-    answer.d2 = std::min(answer.d2, take(task, face, s, d, offset, hit));
+    answer.d2 = std::min(answer.d2, take(task, face, s, d, offset, answer.region2, hit));
     ++answer.starts;
   }
   answer.evaluations = task.evaluations;
@@ -221,15 +244,29 @@ double take(const CurveTask& task, const CurveState& s, double d, Hit& hit) noex
   return d2;
 }
 
+/// Lower bound of the squared distance to a piece along which it bends up everywhere; 0: it may not.
+double leastFrom(const CurveTask& task, const CurveState& s) noexcept {
+  const double bend = leastBendSeenFrom(task.piece.shape, task.p);
+  const double speed2 = s.C.C1.squaredNorm(), slope = s.r.dot(s.C.C1);
+  if (!(bend > 0) || !(speed2 > 0)) return 0;
+  if ((s.t <= task.piece.t0 && slope > 0) || (s.t >= task.piece.t1 && slope < 0)) return s.f * (1 - 1e-9);
+  return s.f * (1 - 1e-9) - slope * slope * (1 + 1e-9) / (speed2 * bend);
+}
+
 }  // namespace
 
-PieceAnswer pieceFoot(const Geometry& geometry, const CurvePiece& piece, const Vector3d& p, double t,
+PieceAnswer pieceFoot(const Geometry& geometry, const CurvePiece& piece, const Vector3d& p, double t, double limit2,
                       Hit& hit) noexcept {
   CurveTask task{geometry, piece, geometry.part().edges[piece.edge].curve, p};
   CurveState s;
   task.at(std::clamp(t, piece.t0, piece.t1), s);
-  double d = task.descend(s);
   PieceAnswer answer;
+  if (s.f > limit2)
+    if (const double least = leastFrom(task, s); least > limit2) {
+      answer.d2 = least;
+      return answer;
+    }
+  double d = task.descend(s);
   answer.d2 = take(task, s, d, hit);
   // Beyond a centre of curvature there may be several feet, or none but the ends.
   const FeetOfPiece feet = std::sqrt(s.f) * piece.bend < 1 ? FeetOfPiece::kOne : feetSeenFrom(piece.shape, p);

@@ -9,6 +9,7 @@ namespace hapticd::brep {
 namespace {
 
 using Eigen::AlignedBox3d;
+using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 /// Least and largest value of a cos t + b sin t on [t0, t1].
@@ -49,45 +50,79 @@ ProfileBounds profileOf(const FaceShape& f, double v0, double v1) {
   }
 }
 
+AlignedBox3d rounded(const Vector3d& least, const Vector3d& most) {
+  const Vector3d rounding = Vector3d::Constant(1e-13 * (least.cwiseAbs() + most.cwiseAbs()).maxCoeff());
+  return {least - rounding, most + rounding};
+}
+
+/// Unit axes at right angles, the first along `a`, the second near `b`.
+Matrix3d frameOf(const Vector3d& a, const Vector3d& b) {
+  Matrix3d frame;
+  frame.row(0) = a.normalized();
+  frame.row(2) = a.cross(b).normalized();
+  frame.row(1) = Vector3d(frame.row(2)).cross(Vector3d(frame.row(0))).normalized();
+  return frame;
+}
+
 }  // namespace
 
-AlignedBox3d faceBox(const FaceShape& f) {
+AlignedBox3d faceBox(const FaceShape& f, const Matrix3d& frame) {
   const Eigen::Array2d lo = f.trim.lo(), hi = f.trim.hi();
+  const Vector3d o = frame * f.o, x = frame * f.x, y = frame * f.y, z = frame * f.z;
   AlignedBox3d box;
   if (f.kind == SurfaceKind::kPlane) {
     for (const double u : {lo[0], hi[0]})
-      for (const double v : {lo[1], hi[1]}) box.extend(f.o + u / f.per_x * f.x + v / f.per_y * f.y);
+      for (const double v : {lo[1], hi[1]}) box.extend(o + u / f.per_x * x + v / f.per_y * y);
     return box;
   }
   const ProfileBounds profile = profileOf(f, lo[1], hi[1]);
   Vector3d least, most;
   for (int axis = 0; axis < 3; ++axis) {
-    const Range wave = waveRange(f.x[axis], f.y[axis], lo[0], hi[0]);
+    const Range wave = waveRange(x[axis], y[axis], lo[0], hi[0]);
     const double products[] = {wave.least * profile.radius.least, wave.least * profile.radius.most,
                                wave.most * profile.radius.least, wave.most * profile.radius.most};
-    const double low = f.z[axis] * profile.height.least, high = f.z[axis] * profile.height.most;
-    least[axis] = f.o[axis] + *std::min_element(products, products + 4) + std::min(low, high);
-    most[axis] = f.o[axis] + *std::max_element(products, products + 4) + std::max(low, high);
+    const double low = z[axis] * profile.height.least, high = z[axis] * profile.height.most;
+    least[axis] = o[axis] + *std::min_element(products, products + 4) + std::min(low, high);
+    most[axis] = o[axis] + *std::max_element(products, products + 4) + std::max(low, high);
   }
-  const Vector3d rounding = Vector3d::Constant(1e-13 * (least.cwiseAbs() + most.cwiseAbs()).maxCoeff());
-  return {least - rounding, most + rounding};
+  return rounded(least, most);
 }
 
-AlignedBox3d edgeBox(const EdgeShape& e, bool circle) {
+TurnedBox turnedFaceBox(const FaceShape& f) {
+  const double middle = 0.5 * (f.trim.lo()[0] + f.trim.hi()[0]);
+  TurnedBox turned;
+  turned.frame = f.kind == SurfaceKind::kPlane ? frameOf(f.x, f.y)
+                                               : frameOf(std::cos(middle) * f.x + std::sin(middle) * f.y,
+                                                         std::cos(middle) * f.y - std::sin(middle) * f.x);
+  turned.box = faceBox(f, turned.frame);
+  return turned;
+}
+
+AlignedBox3d edgeBox(const EdgeShape& e, bool circle, const Matrix3d& frame) {
+  const Vector3d o = frame * e.o, x = frame * e.x, y = frame * e.y;
   AlignedBox3d box;
   if (!circle) {
-    box.extend(e.o + e.t0 * e.size * e.x);
-    box.extend(e.o + e.t1 * e.size * e.x);
+    box.extend(o + e.t0 * e.size * x);
+    box.extend(o + e.t1 * e.size * x);
     return box;
   }
   Vector3d least, most;
   for (int axis = 0; axis < 3; ++axis) {
-    const Range wave = waveRange(e.x[axis], e.y[axis], e.t0, e.t1);
-    least[axis] = e.o[axis] + e.size * wave.least;
-    most[axis] = e.o[axis] + e.size * wave.most;
+    const Range wave = waveRange(x[axis], y[axis], e.t0, e.t1);
+    least[axis] = o[axis] + e.size * wave.least;
+    most[axis] = o[axis] + e.size * wave.most;
   }
-  const Vector3d rounding = Vector3d::Constant(1e-13 * (least.cwiseAbs() + most.cwiseAbs()).maxCoeff());
-  return {least - rounding, most + rounding};
+  return rounded(least, most);
+}
+
+TurnedBox turnedEdgeBox(const EdgeShape& e, bool circle) {
+  const double middle = 0.5 * (e.t0 + e.t1);
+  TurnedBox turned;
+  turned.frame =
+      circle ? frameOf(std::cos(middle) * e.x + std::sin(middle) * e.y, std::cos(middle) * e.y - std::sin(middle) * e.x)
+             : frameOf(e.x, e.x.unitOrthogonal());
+  turned.box = edgeBox(e, circle, turned.frame);
+  return turned;
 }
 
 }  // namespace hapticd::brep

@@ -11,8 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kBetweenSamples = 1.5;  ///< what is measured at samples may be larger by this between them
-constexpr double kTermRounding = 1e-9;   ///< of the terms that are compared
+constexpr double kTermRounding = 1e-9;  ///< of the terms that are compared
 
 struct Bend {
   Vector3d C, T, K;
@@ -59,6 +58,12 @@ PieceBow bowOf(const Geometry& geometry, std::uint32_t curve, double t0, double 
   bow.turn_low = low - (kBetweenSamples - 1) * (high - low) - kTermRounding;
   bow.turn_high = high + (kBetweenSamples - 1) * (high - low) + kTermRounding;
   return bow;
+}
+
+double leastBendSeenFrom(const PieceBow& bow, const Vector3d& p) noexcept {
+  const Vector3d from = bow.centre - p;
+  const double aside = from.dot(bow.across), flat = (from - aside * bow.across).norm();
+  return bow.turn_low + from.dot(bow.bow) - flat * bow.bow_off - std::abs(aside) * bow.bow_off_across;
 }
 
 FeetOfPiece feetSeenFrom(const PieceBow& bow, const Vector3d& p) noexcept {

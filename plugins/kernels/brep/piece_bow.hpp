@@ -8,6 +8,9 @@
 
 namespace hapticd::brep {
 
+/// What is measured at samples of a curve or surface may be larger by this factor between them.
+inline constexpr double kBetweenSamples = 1.5;
+
 /// Curvature vectors K and tangents T of a piece. Along the arc, the half of the squared distance to p has the
 /// derivatives (C - p) T and 1 + (C - p) K. About the centre of curvature o, (C - o) T and (C - o) K hardly change, and
 /// (o - p) K and (o - p) T are known from those in the middle of the piece.
@@ -30,6 +33,10 @@ enum class FeetOfPiece : std::uint8_t {
   kAtAnEnd,  ///< no minimum but the ends
   kUnknown
 };
+
+/// [rt] The least second derivative along the arc that half of the squared distance to p has on the piece; where it is
+/// not above 0, nothing is known.
+double leastBendSeenFrom(const PieceBow& bow, const Eigen::Vector3d& p) noexcept;
 
 /// [any] What p sees of the piece.
 FeetOfPiece feetSeenFrom(const PieceBow& bow, const Eigen::Vector3d& p) noexcept;

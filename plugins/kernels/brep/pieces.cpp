@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "kernels/brep/piece_bow.hpp"
 #include "kernels/spline/refinement.hpp"
 #include "kernels/trace/box_tree.hpp"
 
@@ -13,13 +15,12 @@ namespace {
 
 using Eigen::AlignedBox3d;
 using Eigen::Array2d;
-using Eigen::Matrix2d;
+using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using spline::CurvePoint;
 using spline::SurfacePoint;
 
 constexpr double kMostTurn = 0.44;  ///< [rad] of the normals of a leaf, 25 degrees; of the tangents of a curve's piece
-constexpr double kBetween = 1.5;    ///< what is measured at samples may be larger by this between them
 
 /// Principal curvatures at a point, toward Su x Sv positive; false where the tangents vanish.
 bool curvatures(const SurfacePoint& E, double& least, double& most) {
@@ -115,7 +116,7 @@ class FaceCutter {
                        (h[0] * h[0] * E.Suu.norm() + 2 * h[0] * h[1] * E.Suv.norm() + h[1] * h[1] * E.Svv.norm()) / 8);
       }
     const double extent = box.diagonal().norm() / kSamples;
-    const Vector3d margin = Vector3d::Constant(kBetween * sag + 0.1 * extent);
+    const Vector3d margin = Vector3d::Constant(kBetweenSamples * sag + 0.1 * extent);
     return {box.min() - margin, box.max() + margin};
   }
 
@@ -135,8 +136,9 @@ class FaceCutter {
       if (hi[axis] >= last[axis]) leaf.borders |= 2u << (2 * axis);
     }
     measureBend(leaf);
-    leaf.bow = leafBowOf(geometry_, face_.surface, leaf.lo, leaf.hi, leaf.borders);
     made.box = box;
+    made.turned.box = box;
+    leaf.bow = leafBowOf(geometry_, face_.surface, leaf.lo, leaf.hi, leaf.borders, made.turned);
     leaves_.push_back(made);
   }
 
@@ -153,8 +155,8 @@ class FaceCutter {
         front = std::max(front, shape_.outward > 0 ? most : -least);
         back = std::max(back, shape_.outward > 0 ? -least : most);
       }
-    leaf.bend_front = kBetween * front;
-    leaf.bend_back = kBetween * back;
+    leaf.bend_front = kBetweenSamples * front;
+    leaf.bend_back = kBetweenSamples * back;
   }
 
   const Geometry& geometry_;
@@ -165,13 +167,14 @@ class FaceCutter {
   std::vector<BoxedLeaf>& leaves_;
 };
 
-/// The box of an elliptic arc: where it turns along each axis.
-AlignedBox3d arcBox(const Curve3& c, double t0, double t1) {
-  const auto at = [&](double t) { return Vector3d(vec(c.o) + std::cos(t) * vec(c.x) + std::sin(t) * vec(c.y)); };
+/// The box of an elliptic arc along the rows of `frame`: where it turns along each.
+AlignedBox3d arcBox(const Curve3& c, double t0, double t1, const Matrix3d& frame) {
+  const Vector3d o = frame * vec(c.o), x = frame * vec(c.x), y = frame * vec(c.y);
+  const auto at = [&](double t) { return Vector3d(o + std::cos(t) * x + std::sin(t) * y); };
   AlignedBox3d box(at(t0));
   box.extend(at(t1));
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double turn = std::atan2(c.y[axis], c.x[axis]);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double turn = std::atan2(y[axis], x[axis]);
     for (double k = std::ceil((t0 - turn) / std::numbers::pi); turn + k * std::numbers::pi <= t1; ++k)
       box.extend(at(turn + k * std::numbers::pi));
   }
@@ -218,24 +221,56 @@ class EdgeCutter {
       halve(0.5 * (t0 + t1), t1, depth + 1);
       return;
     }
-    add(t0, t1, kBetween * bend);
+    add(t0, t1, kBetweenSamples * bend);
   }
 
   void add(double t0, double t1, double bend) {
     BoxedPiece made;
     made.piece = {t0, t1, bend, edge_index_, (t0 <= edge_.t0 ? 1u : 0u) | (t1 >= edge_.t1 ? 2u : 0u), {}};
     made.piece.shape = bowOf(geometry_, edge_.curve, t0, t1);
-    made.box = curve_.kind == CurveKind::kSpline ? netBox(t0, t1) : arcBox(curve_, t0, t1);
+    const PieceBow& bow = made.piece.shape;
+    if (bow.along.squaredNorm() > 0.5) {  // else the curve stands still in the middle
+      made.turned.frame.row(0) = bow.along;
+      made.turned.frame.row(1) = bow.across;
+      made.turned.frame.row(2) = bow.along.cross(bow.across);
+      bendAbout(bow.centre, t0, t1, made.turned);
+    }
+    if (curve_.kind == CurveKind::kSpline) {
+      netBoxes(t0, t1, made);
+    } else {
+      made.box = arcBox(curve_, t0, t1, Matrix3d::Identity());
+      made.turned.box = arcBox(curve_, t0, t1, made.turned.frame);
+    }
     pieces_.push_back(made);
   }
 
-  AlignedBox3d netBox(double t0, double t1) const {
+  /// The cylinders about the centre of curvature in the middle.
+  void bendAbout(const Vector3d& centre, double t0, double t1, TurnedBox& turned) const {
+    constexpr int kSamples = 8;
+    const Vector3d middle = turned.frame * centre;
+    const double step = (t1 - t0) / kSamples, end = t1 - 1e-9 * (t1 - t0);
+    double inner = std::numeric_limits<double>::infinity(), outer = 0, sag = 0;
+    CurvePoint C;
+    for (int i = 0; i <= kSamples; ++i) {
+      geometry_.curve(edge_.curve, std::min(t0 + step * i, end), C);
+      const Vector3d q = turned.frame * C.C - middle;
+      inner = std::min(inner, std::hypot(q[0], q[2]));
+      outer = std::max(outer, std::hypot(q[0], q[2]));
+      sag = std::max(sag, kBetweenSamples / 8 * step * step * C.C2.norm());
+    }
+    turned.focus = {middle[0], middle[2]};
+    turned.inner = std::max(0.0, inner - sag);
+    turned.outer = outer + sag;
+  }
+
+  /// The net of a piece holds it.
+  void netBoxes(double t0, double t1, BoxedPiece& made) const {
     const spline::CurveData data = splineOf(geometry_.part(), curve_);
     const auto domain = data.domain();
-    AlignedBox3d box;
-    for (const Vector3d& point : spline::cut(data, std::max(t0, domain[0]), std::min(t1, domain[1])).points)
-      box.extend(point);
-    return box;
+    for (const Vector3d& point : spline::cut(data, std::max(t0, domain[0]), std::min(t1, domain[1])).points) {
+      made.box.extend(point);
+      made.turned.box.extend(made.turned.frame * point);
+    }
   }
 
   const Geometry& geometry_;

@@ -5,16 +5,19 @@
 #include <vector>
 
 #include "kernels/brep/elements.hpp"
+#include "kernels/brep/row_box.hpp"
 
 namespace hapticd::brep {
 
 struct BoxedLeaf {
   Leaf leaf;
   Eigen::AlignedBox3d box;
+  TurnedBox turned;
 };
 struct BoxedPiece {
   CurvePiece piece;
   Eigen::AlignedBox3d box;
+  TurnedBox turned;
 };
 
 /// [main] The leaves of a spline, extrusion, revolution or offset face that its trim does not leave out whole.

@@ -17,11 +17,29 @@ struct RowSlab {
   float half = 0, radius = 0;
 };
 
-/// Four of them that are compared at once. An empty place is infinitely far from everything.
+/// Four of them that are compared at once.
 struct alignas(64) FourSlabs {
   Float4 center[3], normal[3];
   Float4 half, radius;
 };
+
+/// [rt] Four empty places, infinitely far from everything.
+inline FourSlabs emptyFour(const RowSlab&) noexcept {
+  constexpr float kFar = 1e18F;  // its square is a float
+  FourSlabs slabs{};
+  slabs.center[0] = Float4{} + kFar;
+  return slabs;
+}
+
+/// [rt] Makes a disc one of four.
+inline void put(const RowSlab& slab, int lane, FourSlabs& to) noexcept {
+  for (int axis = 0; axis < 3; ++axis) {
+    to.center[axis][lane] = slab.center[axis];
+    to.normal[axis][lane] = slab.normal[axis];
+  }
+  to.half[lane] = slab.half;
+  to.radius[lane] = slab.radius;
+}
 
 /// [main] The disc about some triangles of a part, at most BoxTree::kMaxRow.
 RowSlab rowSlab(const Part& part, std::span<const std::uint32_t> triangles, const BoxTree& tree);
@@ -29,12 +47,8 @@ RowSlab rowSlab(const Part& part, std::span<const std::uint32_t> triangles, cons
 /// Rounding of a disc's normal, and of the way to a probe, moves the bound by less than this share.
 inline constexpr float kSlabShare = 1 - 1e-5F;
 
-inline Float4 squareRoots(const Float4& x) noexcept {
-  return Float4{std::sqrt(x[0]), std::sqrt(x[1]), std::sqrt(x[2]), std::sqrt(x[3])};
-}
-
 /// [rt] Lower bounds of the squared distances [m^2] to what each of four discs holds.
-inline Float4 slabDistances(const FourSlabs& slabs, const BoxProbe& probe) noexcept {
+inline Float4 rowDistances(const FourSlabs& slabs, const BoxProbe& probe) noexcept {
   constexpr Float4 kZero{};
   Float4 off{}, whole{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -52,7 +66,7 @@ inline Float4 slabDistances(const FourSlabs& slabs, const BoxProbe& probe) noexc
 }
 
 /// [rt] The same for one.
-inline float slabDistance(const RowSlab& slab, const BoxProbe& probe) noexcept {
+inline float rowDistance(const RowSlab& slab, const BoxProbe& probe) noexcept {
   float off = 0, whole = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const float way = probe.at[axis][0] - slab.center[axis];

@@ -41,6 +41,11 @@ inline double meshFoot(const Part& part, std::uint32_t triangle, const Vector3d&
   return d2;
 }
 
+/// [m^2] to a point that is known to be on the part.
+double limitOf(const Vector3d& p, const Hit& known) noexcept {
+  return (p - known.point).squaredNorm() * (1 + 1e-9);
+}
+
 bool isAt(const Nearest& found, Element element, std::uint32_t place) noexcept {
   return found.hit.element == element && found.place == place;
 }
@@ -67,11 +72,12 @@ int sortChildren(const BoxNode& node, const Float4& bounds, double limit, std::a
   return count;
 }
 
-/// Whether the disc of a row of triangles is farther than `limit`; then `beyond` falls to its bound.
-inline bool discIsFarther(const BodyTree& body, std::int32_t row, const BoxProbe& probe, double limit,
-                          double& beyond) noexcept {
-  if (body.slabs.empty()) return false;
-  const auto bound = static_cast<double>(slabDistance(body.slabs[static_cast<std::size_t>(row)], probe));
+/// Whether the box of a row is farther than `limit`; then `beyond` falls to its bound. Else `bound` grows to it.
+inline bool rowIsFarther(const BodyTree& body, std::int32_t row, const BoxProbe& probe, double limit, double& bound,
+                         double& beyond) noexcept {
+  const auto at = static_cast<std::size_t>(row);
+  const float row_bound = body.slabs.empty() ? rowDistance(body.rows[at], probe) : rowDistance(body.slabs[at], probe);
+  bound = std::max(bound, static_cast<double>(row_bound));
   if (!(bound > limit)) return false;
   beyond = std::min(beyond, bound);
   return true;
@@ -98,15 +104,16 @@ double Search::edgeFoot(Element element, const Vector3d& p, Hit& hit) const noex
 /// Foot on a leaf. Where the last one is known, what the probe sees of the leaf is not.
 double Search::leafOf(Element element, const Vector3d& p, Look& look, Hit& hit) const noexcept {
   const Leaf& leaf = model_.leaf(element.index());
-  LeafStart start{look.uv, look.feet, look.elsewhere};
+  LeafStart start{look.uv, look.sight, look.elsewhere, look.limit2};
   if (look.start != nullptr) {
     start.uv = Eigen::Array2d(look.start->u, look.start->v);
-    start.feet = feetSeenFrom(leaf.bow, leaf.bow.local(p));
+    start.sight = feetSeenFrom(leaf.bow, leaf.bow.local(p));
   }
   const std::uint32_t surface = model_.part().faces[leaf.face].surface;
   const PieceAnswer answer = leafFoot(model_.geometry(), leaf, model_.face(leaf.face), surface, p, start, hit);
   look.alone = answer.alone;
   look.starts = answer.starts;
+  look.least2 = answer.alone && start.sight.feet != FeetOfLeaf::kNowhere ? answer.region2 : 0;
   return answer.d2;
 }
 
@@ -124,7 +131,7 @@ double Search::evaluate(Element element, const Vector3d& p, Look& look, Hit& hit
     case ElementKind::kPiece: {
       const CurvePiece& piece = model_.piece(i);
       const double t = look.start != nullptr ? look.start->u : 0.5 * (piece.t0 + piece.t1);
-      const PieceAnswer answer = pieceFoot(model_.geometry(), piece, p, t, hit);
+      const PieceAnswer answer = pieceFoot(model_.geometry(), piece, p, t, look.limit2, hit);
       look.alone = answer.alone;
       return answer.d2;
     }
@@ -137,28 +144,40 @@ double Search::evaluate(Element element, const Vector3d& p, Look& look, Hit& hit
   }
 }
 
-/// False if a leaf cannot hold the nearest point: it is farther than `limit2`, or no foot lies on it. `bound2` grows to
-/// what is known of its distance.
-bool Search::mayHold(Element element, const Vector3d& p, double limit2, double& bound2, Look& look) const noexcept {
+/// False if a leaf cannot hold the nearest point: no foot lies on it.
+bool Search::mayHold(Element element, const Vector3d& p, Look& look) const noexcept {
   const LeafBow& bow = model_.leaf(element.index()).bow;
   const Vector3d q = bow.local(p);
-  bound2 = std::max(bound2, leafDistance2(bow, q));
-  if (bound2 > limit2) return false;
-  look.feet = feetSeenFrom(bow, q);
-  if (look.feet == FeetOfLeaf::kNowhere) return false;
+  look.sight = feetSeenFrom(bow, q);
+  if (look.sight.feet == FeetOfLeaf::kNowhere) return false;
   look.uv = footNear(bow, q);
   return true;
 }
 
-/// Looks at one element, whose box is at least bound2 away.
-void Search::look(std::uint32_t place, Element element, const Vector3d& p, double bound2, Run& run) noexcept {
+/// Whether an element that is not nearer than `d2` is just as near: of a face, its foot may be outside the trim.
+bool Search::isAsNear(Element element, const Vector3d& p, double d2) const noexcept {
+  if (element.kind() != ElementKind::kFace) return true;
+  Hit hit;
+  faceFoot(model_.face(element.index()), p, hit);
+  return hit.d2 == d2;
+}
+
+/// What a look tells of the squared distance to all of the element, also of where its trim leaves out.
+double Search::leastOf(double d2, const Look& look) noexcept {
+  if (look.least2 >= 0) return look.least2;
+  return look.alone && d2 < kInfinity ? d2 : 0;
+}
+
+/// Looks at one element, whose box is at least bound2 away. Returns what is known of its squared distance then.
+double Search::look(std::uint32_t place, Element element, const Vector3d& p, double bound2, Run& run) noexcept {
   Nearest& best = run.best;
   const double before = best.hit.d2;
   Look look;
   look.elsewhere = run.restarts > 0;
-  if (element.kind() == ElementKind::kLeaf && !mayHold(element, p, before, bound2, look)) {
+  look.limit2 = run.within2();
+  if (element.kind() == ElementKind::kLeaf && !mayHold(element, p, look)) {
     run.others2 = std::min(run.others2, bound2);
-    return;
+    return bound2;
   }
   ++best.elements;
   const double d2 = evaluate(element, p, look, best.hit);
@@ -170,9 +189,11 @@ void Search::look(std::uint32_t place, Element element, const Vector3d& p, doubl
     best.hit.element = element;
     best.place = place;
   } else {
-    run.tied = run.tied || (d2 == before && !isAt(best, run.first, run.first_place) && !isAt(best, element, place));
+    if (d2 == before && !isAt(best, run.first, run.first_place) && !isAt(best, element, place))
+      run.tied = run.tied || isAsNear(element, p, before);
     run.others2 = std::min(run.others2, d2);
   }
+  return leastOf(d2, look);
 }
 
 void Search::searchTree(const BodyTree& body, std::uint32_t place, const Vector3d& p, Run& run) noexcept {
@@ -186,8 +207,8 @@ void Search::searchTree(const BodyTree& body, std::uint32_t place, const Vector3
   stack[static_cast<std::size_t>(depth++)] = {0, 0, 0};
   while (depth > 0) {
     const Entry entry = stack[static_cast<std::size_t>(--depth)];
-    const auto bound = static_cast<double>(entry.bound);
-    if (bound > best.hit.d2) {
+    auto bound = static_cast<double>(entry.bound);
+    if (bound > run.within2()) {
       run.others2 = std::min(run.others2, bound);
       continue;
     }
@@ -197,7 +218,7 @@ void Search::searchTree(const BodyTree& body, std::uint32_t place, const Vector3
       continue;
     }
     if (entry.child < 0) {
-      if (discIsFarther(body, entry.row, probe, best.hit.d2, run.others2)) continue;
+      if (rowIsFarther(body, entry.row, probe, run.within2(), bound, run.others2)) continue;
       const ElementRow row = BoxTree::rowOf(entry.child);
       for (std::uint32_t i = row.first; i < row.first + row.count; ++i)
         if (const Element element = body.elements[i]; !(element == first)) look(place, element, p, bound, run);
@@ -205,7 +226,7 @@ void Search::searchTree(const BodyTree& body, std::uint32_t place, const Vector3
     }
     ++best.nodes;
     const BoxNode& node = body.tree.node(entry.child);
-    const int count = sortChildren(node, boxDistances(node, probe), best.hit.d2, children, run.others2);
+    const int count = sortChildren(node, boxDistances(node, probe), run.within2(), children, run.others2);
     for (int i = 0; i < count; ++i) stack[static_cast<std::size_t>(depth++)] = children[static_cast<std::size_t>(i)];
   }
 }
@@ -221,7 +242,7 @@ void Search::searchPlaces(const Vector3d& p, Run& run) noexcept {
   while (depth > 0) {
     const Entry entry = stack[static_cast<std::size_t>(--depth)];
     const auto bound = static_cast<double>(entry.bound);
-    if (bound > run.best.hit.d2) {
+    if (bound > run.within2()) {
       run.others2 = std::min(run.others2, bound);
       continue;
     }
@@ -236,9 +257,21 @@ void Search::searchPlaces(const Vector3d& p, Run& run) noexcept {
     }
     ++run.best.nodes;
     const BoxNode& node = tree.node(entry.child);
-    const int count = sortChildren(node, boxDistances(node, probe), run.best.hit.d2, children, run.others2);
+    const int count = sortChildren(node, boxDistances(node, probe), run.within2(), children, run.others2);
     for (int i = 0; i < count; ++i) stack[static_cast<std::size_t>(depth++)] = children[static_cast<std::size_t>(i)];
   }
+}
+
+/// Searches with the limit, and without it where that leaves nothing: the last foot may be one that a gap between a
+/// face and its edge hides now.
+template <class Whole>
+void Search::searchWithin(Run& run, const Whole& whole) noexcept {
+  const Run start = run;
+  whole();
+  if (run.best.hit.d2 <= run.limit2) return;
+  run = start;
+  run.limit2 = kInfinity;
+  whole();
 }
 
 /// Every distance changes by at most the way of the probe: while the last element is nearer than the others can have
@@ -255,12 +288,15 @@ bool Search::goesOn(const Vector3d& p, const Run& run) noexcept {
   return true;
 }
 
-/// Looks at the last element: a near start spares most of the search.
+/// Looks at the last element: a near start spares most of the search. Its foot may have left it, but its last point
+/// stays.
 void Search::begin(const Vector3d& p, Run& run) noexcept {
   if (!last_.found()) return;
   Look look;
   look.start = &last_.hit;
-  evaluate(last_.hit.element, model_.placements()[last_.place].toBody(p), look, run.best.hit);
+  const Vector3d p_body = model_.placements()[last_.place].toBody(p);
+  run.limit2 = limitOf(p_body, last_.hit);
+  const double d2 = evaluate(last_.hit.element, p_body, look, run.best.hit);
   run.best.elements = 1;
   if (run.best.hit.d2 < kInfinity) {
     run.best.hit.element = last_.hit.element;
@@ -269,6 +305,7 @@ void Search::begin(const Vector3d& p, Run& run) noexcept {
   if (!look.alone) return;
   run.first = last_.hit.element;
   run.first_place = last_.place;
+  run.first_least2 = leastOf(d2, look);
 }
 
 void Search::finish(Run& run) noexcept {
@@ -293,14 +330,16 @@ const Nearest& Search::nearest(const Vector3d& p, const SearchBudget& budget) no
   Run run;
   run.budget = budget;
   run.restarts = kMostRestarts;
+  moveNear(p);
   begin(p, run);
   if (goesOn(p, run)) return last_;
-  if (!searchNear(p, run)) {
-    if (model_.placements().size() == 1)
-      searchTree(model_.body(model_.placements()[0].body), 0, model_.placements()[0].toBody(p), run);
-    else
-      searchPlaces(p, run);
-  }
+  if (!searchNear(p, run))
+    searchWithin(run, [&] {
+      if (model_.placements().size() == 1)
+        searchTree(model_.body(model_.placements()[0].body), 0, model_.placements()[0].toBody(p), run);
+      else
+        searchPlaces(p, run);
+    });
   finish(run);
   last_ = run.best;
   last_p_ = p;
@@ -316,13 +355,15 @@ Nearest Search::nearestOf(std::uint32_t place, std::uint32_t face, const Vector3
   if (start.element.kind() != ElementKind::kNothing) {
     Look look;
     look.start = &start;
+    run.limit2 = limitOf(p_body, start);
     evaluate(start.element, p_body, look, run.best.hit);
     if (run.best.hit.d2 < kInfinity) {
       run.best.hit.element = start.element;
       run.best.place = place;
     }
   }
-  searchTree(face == kNone ? model_.body(model_.placements()[place].body) : model_.ofFace(face), place, p_body, run);
+  const BodyTree& tree = face == kNone ? model_.body(model_.placements()[place].body) : model_.ofFace(face);
+  searchWithin(run, [&] { searchTree(tree, place, p_body, run); });
   finish(run);
   return run.best;
 }

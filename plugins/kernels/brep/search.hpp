@@ -2,6 +2,7 @@
 /// The nearest point of a part: one bounded search a tick, and none where the last one still proves the answer.
 #pragma once
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -65,33 +66,49 @@ class Search {
   struct Run {
     Nearest best;
     SearchBudget budget;
-    Element first;                                             ///< was looked at before all others
-    std::uint32_t first_place = kNone;                         ///< where it is
+    Element first;                                            ///< was looked at before all others
+    std::uint32_t first_place = kNone;                        ///< where it is
+    double first_least2 = 0;                                  ///< leastOf() it
+    double limit2 = std::numeric_limits<double>::infinity();  ///< [m^2] to a point of the part: none farther is nearest
     double others2 = std::numeric_limits<double>::infinity();  ///< nearest bound of anything but the best
     double open2 = std::numeric_limits<double>::infinity();    ///< nearest bound of what may hide a nearer foot
     bool tied = false;  ///< another element than the best is just as near, and neither was looked at first
     int restarts = 0;   ///< leaves that Newton may yet look at from several places
+
+    /// [m^2] What is farther cannot be the nearest.
+    double within2() const noexcept { return std::min(best.hit.d2, limit2); }
   };
   /// A look at one element.
   struct Look {
     const Hit* start = nullptr;  ///< the last foot; null: none is known
-    FeetOfLeaf feet = FeetOfLeaf::kUnknown;
-    Eigen::Array2d uv{0, 0};  ///< of a leaf: where to start
-    bool elsewhere = true;    ///< LeafStart::elsewhere
-    bool alone = true;        ///< out: nothing nearer hides in the element
-    int starts = 1;           ///< out
+    LeafSight sight;
+    Eigen::Array2d uv{0, 0};                                  ///< of a leaf: where to start
+    bool elsewhere = true;                                    ///< LeafStart::elsewhere
+    double limit2 = std::numeric_limits<double>::infinity();  ///< LeafStart::limit2
+    bool alone = true;                                        ///< out: nothing nearer hides in the element
+    int starts = 1;                                           ///< out
+    double least2 = -1;                                       ///< out: of a leaf, what leastOf() tells
   };
 
   void begin(const Eigen::Vector3d& p, Run& run) noexcept;
   bool goesOn(const Eigen::Vector3d& p, const Run& run) noexcept;
   bool searchNear(const Eigen::Vector3d& p, Run& run) noexcept;
-  bool gatherNear(const Eigen::Vector3d& p, double way, double distance) noexcept;
-  bool lookAtNear(const Eigen::Vector3d& p, Run& run) noexcept;
+  void moveNear(const Eigen::Vector3d& p) noexcept;
+  template <class Near>
+  bool searchNear(Near& near, const Eigen::Vector3d& p, double way, Run& run) noexcept;
+  template <class Near>
+  bool gatherNear(Near& near, const Eigen::Vector3d& p, double way, double distance) noexcept;
+  template <class Near>
+  bool lookAtNear(Near& near, const Eigen::Vector3d& p, Run& run) noexcept;
   void searchTree(const BodyTree& body, std::uint32_t place, const Eigen::Vector3d& p, Run& run) noexcept;
   void searchPlaces(const Eigen::Vector3d& p, Run& run) noexcept;
-  void look(std::uint32_t place, Element element, const Eigen::Vector3d& p, double bound2, Run& run) noexcept;
+  template <class Whole>
+  static void searchWithin(Run& run, const Whole& whole) noexcept;
+  double look(std::uint32_t place, Element element, const Eigen::Vector3d& p, double bound2, Run& run) noexcept;
+  bool isAsNear(Element element, const Eigen::Vector3d& p, double d2) const noexcept;
+  static double leastOf(double d2, const Look& look) noexcept;
   double edgeFoot(Element element, const Eigen::Vector3d& p, Hit& hit) const noexcept;
-  bool mayHold(Element element, const Eigen::Vector3d& p, double limit2, double& bound2, Look& look) const noexcept;
+  bool mayHold(Element element, const Eigen::Vector3d& p, Look& look) const noexcept;
   double evaluate(Element element, const Eigen::Vector3d& p, Look& look, Hit& hit) const noexcept;
   double leafOf(Element element, const Eigen::Vector3d& p, Look& look, Hit& hit) const noexcept;
   static void finish(Run& run) noexcept;
@@ -99,8 +116,9 @@ class Search {
   const Model& model_;
   Nearest last_;
   Eigen::Vector3d last_p_{0, 0, 0};
-  NearRows near_;     ///< of a model that is one mesh, in its frame
-  double reach_ = 0;  ///< [m] by which the rows of near_ reach beyond the nearest point
+  NearElements near_;     ///< of a model that is one body, in its frame
+  NearTriangles nearby_;  ///< the same of one mesh
+  double reach_ = 0;      ///< [m] by which their rows reach beyond the nearest point
 };
 
 }  // namespace hapticd::brep

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// The tick of a tracked probe over a mesh: of the rows that an earlier search found about it, few need a look.
+/// The tick of a tracked probe: of the rows that an earlier search found about it, few need a look.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,10 +16,11 @@ namespace {
 constexpr float kTaken = std::numeric_limits<float>::infinity();
 
 /// Bounds of the squared distances to the rows about a probe. What was looked at is taken out.
+template <class Near>
 class RowBounds {
  public:
-  RowBounds(const NearRows& rows, const BoxProbe& probe) noexcept : count_(rows.fours()) {
-    for (int k = 0; k < count_; ++k) bounds_[static_cast<std::size_t>(k)] = slabDistances(rows.four(k), probe);
+  RowBounds(const Near& rows, const BoxProbe& probe) noexcept : count_(rows.fours()) {
+    for (int k = 0; k < count_; ++k) bounds_[static_cast<std::size_t>(k)] = rows.distances(k, probe);
   }
 
   double at(int k, int lane) const noexcept { return static_cast<double>(bounds_[static_cast<std::size_t>(k)][lane]); }
@@ -56,72 +57,101 @@ class RowBounds {
   double taken() const noexcept { return taken_; }
 
  private:
-  std::array<Float4, NearRows::kMostFours> bounds_;
+  std::array<Float4, Near::kMostRows / 4> bounds_;
   int count_;
   double taken_ = 0;
 };
 
 }  // namespace
 
-/// Gathers the rows about p again. Their number says how far to reach the next time.
-bool Search::gatherNear(const Vector3d& p, double way, double distance) noexcept {
-  constexpr int kFew = 16, kMany = 32;
-  constexpr double kWorthIt = 4;  // ways of a tick, below which gathering costs more than it spares
-  if (!(reach_ >= kWorthIt * way)) {
-    reach_ = reach_ > 0 ? 1.01 * reach_ : kWorthIt * way;
+/// Gathers the rows about p again. What they left of the reach says how far to reach the next time.
+template <class Near>
+bool Search::gatherNear(Near& near, const Vector3d& p, double way, double distance) noexcept {
+  using Limits = typename Near::Limits;
+  if (!(reach_ >= Limits::kWorthIt * way)) {
+    reach_ = reach_ > 0 ? 1.01 * reach_ : Limits::kWorthIt * way;
     return false;
   }
-  if (!near_.gather(model_.body(model_.placements()[0].body), p, distance + reach_)) {
+  if (!near.gather(model_.body(model_.placements()[0].body), p, distance + reach_)) {
     reach_ *= 0.5;
     return false;
   }
-  if (near_.rows() > kMany) reach_ *= 0.8;
-  if (near_.rows() < kFew) reach_ = std::min(1.25 * reach_, model_.bounds().diagonal().norm());
+  if (near.rows() > Limits::kMany)
+    reach_ *= 0.8;
+  else if (near.rows() < Limits::kFew)
+    reach_ = std::min(1.25 * reach_, model_.bounds().diagonal().norm());
+  else
+    reach_ = std::min(reach_, 1.2 * std::max(near.beyond(p) - distance, 0.0));
   return true;
 }
 
 /// Looks at the rows about the probe, at the nearest one first. False: something else may be nearer, or just as near.
-bool Search::lookAtNear(const Vector3d& p, Run& run) noexcept {
+template <class Near>
+bool Search::lookAtNear(Near& near, const Vector3d& p, Run& run) noexcept {
   const BodyTree& body = model_.body(model_.placements()[0].body);
   const auto lookAtRow = [&](int four, int lane, double bound) {
-    const ElementRow row = near_.row(four, lane);
+    const ElementRow row = near.row(four, lane);
+    double known = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = row.first; i < row.first + row.count; ++i)
-      if (!(body.elements[i] == run.first)) look(0, body.elements[i], p, bound, run);
+      known =
+          std::min(known, body.elements[i] == run.first ? run.first_least2 : look(0, body.elements[i], p, bound, run));
+    near.learn(four, lane, known);
   };
-  RowBounds bounds(near_, BoxProbe(body.tree, p));
-  run.best.nodes += near_.fours();
-  if (const int at = bounds.takeNearest(); bounds.taken() <= run.best.hit.d2)
+  RowBounds<Near> bounds(near, BoxProbe(body.tree, p));
+  run.best.nodes += near.fours();
+  if (const int at = bounds.takeNearest(); bounds.taken() <= run.within2())
     lookAtRow(at / 4, at % 4, bounds.taken());
   else
     run.others2 = std::min(run.others2, bounds.taken());
-  for (int k = 0; k < near_.fours(); ++k) {
-    if (!bounds.anyWithin(k, run.best.hit.d2)) continue;
+  for (int k = 0; k < near.fours(); ++k) {
+    if (!bounds.anyWithin(k, run.within2())) continue;
     for (int lane = 0; lane < 4; ++lane)
-      if (const double bound = bounds.at(k, lane); bound <= run.best.hit.d2) {
+      if (const double bound = bounds.at(k, lane); bound <= run.within2()) {
         lookAtRow(k, lane, bound);
         bounds.take(k, lane);
       }
   }
   run.others2 = std::min(run.others2, bounds.least());
-  const double beyond = near_.beyond(p);
-  if (run.tied || !(std::sqrt(run.best.hit.d2) * (1 + kRounding) < beyond)) return false;
+  const double beyond = near.beyond(p);
+  if (run.tied || run.restarts <= 0 || !(run.best.hit.d2 <= run.limit2)) return false;
+  if (!(std::sqrt(run.best.hit.d2) * (1 + kRounding) < beyond)) return false;
   run.others2 = std::min(run.others2, beyond * beyond);
   return true;
 }
 
-/// A search of the rows about the probe alone, which gives what one of the whole mesh would give. False: it does not.
-bool Search::searchNear(const Vector3d& p_model, Run& run) noexcept {
-  if (!last_.found() || last_.exhausted || run.budget.elements <= NearRows::kMostElements) return false;
-  if (model_.placements().size() > 1 || model_.body(model_.placements()[0].body).slabs.empty()) return false;
-  const Vector3d p = model_.placements()[0].toBody(p_model);
+template <class Near>
+bool Search::searchNear(Near& near, const Vector3d& p, double way, Run& run) noexcept {
   const Run start = run;
-  if (last_.distance() < near_.beyond(p)) {
-    if (lookAtNear(p, run)) return true;
+  if (last_.distance() < near.beyond(p)) {
+    if (lookAtNear(near, p, run)) return true;
     run = start;
   }
-  if (gatherNear(p, (p_model - last_p_).norm(), std::sqrt(run.best.hit.d2)) && lookAtNear(p, run)) return true;
+  if (gatherNear(near, p, way, std::sqrt(run.within2())) && lookAtNear(near, p, run)) return true;
   run = start;
   return false;
+}
+
+/// A search of the rows about the probe alone, which gives what one of the whole body would give. False: it does not.
+bool Search::searchNear(const Vector3d& p_model, Run& run) noexcept {
+  if (!last_.found() || last_.exhausted || model_.placements().size() > 1) return false;
+  const Placement& place = model_.placements()[0];
+  const Vector3d p = place.toBody(p_model);
+  const double way = (p_model - last_p_).norm();
+  if (model_.body(place.body).slabs.empty())
+    return run.budget.elements > NearElements::kMostRows && searchNear(near_, p, way, run);
+  return run.budget.elements > NearTriangles::kMostRows * BodyTree::kMeshRow && searchNear(nearby_, p, way, run);
+}
+
+/// The probe goes to p.
+void Search::moveNear(const Vector3d& p) noexcept {
+  if (last_.found()) {
+    const double way = (p - last_p_).norm();
+    near_.go(way);
+    nearby_.go(way);
+  } else {
+    near_.forget();
+    nearby_.forget();
+  }
 }
 
 }  // namespace hapticd::brep

@@ -48,6 +48,37 @@ double Trim::crossing(const TrimPiece& piece, int axis, double at) const noexcep
                     std::max(piece.a[1 - axis], piece.b[1 - axis]));
 }
 
+/// Whether the other coordinate of that crossing is above `than`. It lies between those of the ends of the bracket, so
+/// few points of the curve tell.
+bool Trim::crossesBeyond(const TrimPiece& piece, int axis, double at, double than) const noexcept {
+  if (piece.kind == TrimPiece::Kind::kCircle) return crossing(piece, axis, at) > than;
+  constexpr int kMostSteps = 60;
+  const int other = 1 - axis;
+  const double least = std::min(piece.a[other], piece.b[other]), most = std::max(piece.a[other], piece.b[other]);
+  const bool rising = piece.b[axis] > piece.a[axis];
+  double ends[2] = {piece.t0, piece.t1}, beside[2] = {piece.a[other], piece.b[other]};
+  const double share = (at - piece.a[axis]) / (piece.b[axis] - piece.a[axis]);
+  double t = ends[0] + (ends[1] - ends[0]) * std::clamp(share, 0.0, 1.0);
+  int last = -1;
+  for (int i = 0; i < kMostSteps; ++i) {
+    const PlanePoint where = geometry_->planeCurve(piece.curve, t);
+    const double off = where.c[axis] - at, here = std::clamp(where.c[other], least, most);
+    if (off == 0) return here > than;
+    const int end = (off < 0) == rising ? 0 : 1;
+    ends[end] = t;
+    beside[end] = here;
+    if (than < std::min(beside[0], beside[1])) return true;
+    if (than >= std::max(beside[0], beside[1])) return false;
+    const double step = -off / where.c1[axis];
+    double next = t + (end == last ? 2 * step : step);  // twice as far from the same side: over to the other
+    if (!(next > ends[0] && next < ends[1])) next = 0.5 * (ends[0] + ends[1]);
+    if (next <= ends[0] || next >= ends[1]) return here > than;
+    last = end;
+    t = next;
+  }
+  return 0.5 * (beside[0] + beside[1]) > than;
+}
+
 /// Whether a piece that crosses the height v does so to the right of u.
 bool Trim::crossesRight(const TrimPiece& piece, double v, double u) const noexcept {
   if (u < std::min(piece.a[0], piece.b[0])) return true;
@@ -55,7 +86,7 @@ bool Trim::crossesRight(const TrimPiece& piece, double v, double u) const noexce
   const double chord = piece.a[0] + (v - piece.a[1]) / (piece.b[1] - piece.a[1]) * (piece.b[0] - piece.a[0]);
   const bool clear = std::abs(chord - u) > static_cast<double>(piece.off_u);
   if (piece.kind == TrimPiece::Kind::kLine || clear) return chord > u;
-  return crossing(piece, 1, v) > u;
+  return crossesBeyond(piece, 1, v, u);
 }
 
 /// Whether a piece that crosses the line u = const does so above v.
@@ -65,7 +96,7 @@ bool Trim::crossesAbove(const TrimPiece& piece, double u, double v) const noexce
   const double chord = piece.a[1] + (u - piece.a[0]) / (piece.b[0] - piece.a[0]) * (piece.b[1] - piece.a[1]);
   const bool clear = std::abs(chord - v) > static_cast<double>(piece.off_v);
   if (piece.kind == TrimPiece::Kind::kLine || clear) return chord > v;
-  return crossing(piece, 0, u) > v;
+  return crossesBeyond(piece, 0, u, v);
 }
 
 /// The way from the point to the right border of its cell and along it to the reference point, whose side is known.

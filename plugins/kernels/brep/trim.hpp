@@ -53,6 +53,7 @@ class Trim {
   bool crossesRight(const TrimPiece& piece, double v, double u) const noexcept;
   bool crossesAbove(const TrimPiece& piece, double u, double v) const noexcept;
   double crossing(const TrimPiece& piece, int axis, double at) const noexcept;
+  bool crossesBeyond(const TrimPiece& piece, int axis, double at, double than) const noexcept;
 
   const Geometry* geometry_ = nullptr;
   Eigen::Array2d lo_{0, 0}, hi_{0, 0}, cell_{1, 1}, per_cell_{1, 1};  ///< box; size of a cell and its reciprocal

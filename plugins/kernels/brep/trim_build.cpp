@@ -30,7 +30,7 @@ class TrimBuilder {
     }
     setBox();
     fillGrid();
-    for (int j = 0; j < trim_.count_v_; ++j) markRow(j);
+    for (const TrimPiece& p : trim_.pieces_) markRows(p);
   }
 
  private:
@@ -110,10 +110,11 @@ class TrimBuilder {
       overCells(trim_.pieces_[k], [&](int i, int j) { trim_.of_cell_[place[cellOf(i, j)]++] = k; });
   }
 
-  /// The sides of the reference points of one row: crossings to their right are counted.
-  void markRow(int j) {
-    const double height = gridHeight(trim_.lo_[1], trim_.cell_[1], j);
-    for (const TrimPiece& p : trim_.pieces_) {
+  /// The sides of the reference points: a piece that crosses their height to their right changes them.
+  void markRows(const TrimPiece& p) {
+    const int last = std::min(clampCell(1, std::max(p.a[1], p.b[1])) + 1, trim_.count_v_ - 1);
+    for (int j = std::max(clampCell(1, std::min(p.a[1], p.b[1])) - 1, 0); j <= last; ++j) {
+      const double height = gridHeight(trim_.lo_[1], trim_.cell_[1], j);
       if ((p.a[1] <= height) == (p.b[1] <= height)) continue;
       for (int i = 0; i < trim_.count_u_; ++i) {
         if (!trim_.crossesRight(p, height, gridBorder(trim_.lo_[0], trim_.cell_[0], i))) break;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/medial/bounds.hpp"
 #include "kernels/spline/basis.hpp"
 
 namespace hapticd::medial {
@@ -14,8 +15,7 @@ using Eigen::Vector3d;
 
 constexpr int kLeastSegments = 2;  ///< between two points of the grid: a dent is as wide as they are apart
 constexpr int kMostSegments = 64;
-constexpr int kLeastArc = 2;              ///< segments from the top to the bottom round the rim
-constexpr double kSteepestRadius = 0.99;  ///< slope of the radius beyond which spheres are nested
+constexpr int kLeastArc = 2;  ///< segments from the top to the bottom round the rim
 
 Vector3d unit(const Vector3d& v, const Vector3d& fallback) {
   const double length = v.norm();

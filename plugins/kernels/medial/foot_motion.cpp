@@ -4,6 +4,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "kernels/medial/bounds.hpp"
+
 namespace hapticd::medial {
 namespace {
 
@@ -11,7 +13,6 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kNear = 1e-4;  ///< [m] from so near the direction to the probe says little
 constexpr double kFlat = 1e-9;  ///< of the trace: a curvature that is none
 
 /// Solves h x = g for the parameters that are free.
@@ -45,7 +46,7 @@ FootMotion footMotion(const Skeleton& skeleton, const Vector3d& p, const Skeleto
   const ScalarField::Value r = exact ? skeleton.radius().evaluate2(foot.u, foot.v) : ScalarField::Value{};
   const std::array<Vector3d, 2> tangent{s.Su, s.Sv};
   const std::array<double, 2> at{foot.u, foot.v}, slope{r.fu, r.fv};
-  direct *= std::clamp(distance / kNear - 1, 0.0, 1.0);
+  direct *= std::clamp(distance / kNearAxis - 1, 0.0, 1.0);
   std::array<bool, 2> held{skeleton.curve(), false};
   std::array<Vector3d, 2> aside;
   for (std::size_t a = 0; a < 2; ++a) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/medial/bounds.hpp"
 #include "kernels/medial/skeleton.hpp"
 
 namespace hapticd::medial {
@@ -12,7 +13,6 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kSteepest = 0.99;        ///< slope of the radius beyond which spheres are nested
 constexpr double kLeastCurvature = 0.05;  ///< of a Hessian over that of the metric: below it a step would go too far
 constexpr double kOnSkeleton = 1e-9;      ///< [m] a query on the rim nearer than this is on it: d has no direction
 constexpr double kNearSkeleton = 1e-6;    ///< [m] a query nearer than this sees what is left of the search in d
@@ -153,14 +153,15 @@ double Search::planeHeight(const State& q, const Matrix2d& metric) const noexcep
   if (skeleton_.curve() || !(area2 > 0)) {
     const double length2 = metric(1, 1);
     if (!(length2 > 0)) return q.distance;
-    const double along = q.d.dot(q.s.Sv), steep2 = std::min(q.r.fv * q.r.fv / length2, kSteepest * kSteepest);
+    const double along = q.d.dot(q.s.Sv),
+                 steep2 = std::min(q.r.fv * q.r.fv / length2, kSteepestRadius * kSteepestRadius);
     return std::sqrt(std::max(0.0, q.distance * q.distance - along * along / length2) / (1 - steep2));
   }
   const Vector2d slope(q.r.fu, q.r.fv);
   const double steep2 = slope.dot(Vector2d(metric(1, 1) * slope[0] - metric(0, 1) * slope[1],
                                            metric(0, 0) * slope[1] - metric(0, 1) * slope[0])) /
                         area2;
-  return std::fabs(q.d.dot(cross)) / std::sqrt(area2 * (1 - std::min(steep2, kSteepest * kSteepest)));
+  return std::fabs(q.d.dot(cross)) / std::sqrt(area2 * (1 - std::min(steep2, kSteepestRadius * kSteepestRadius)));
 }
 
 /// Solves for the parameters that are not held, and where that leaves the box, again with those at the boundary.
@@ -197,7 +198,7 @@ Vector2d Search::step(const State& q, const Vector2d& x) const noexcept {
   return moveFor(planeHeight(q, metricOf(q)), true);  // |d| has its kink within reach of the step
 }
 
-/// How the radius grows along the skeleton, at most kSteepest long.
+/// How the radius grows along the skeleton, at most kSteepestRadius long.
 Vector3d Search::radiusGradient(const State& q) const noexcept {
   if (!exact_) return Vector3d::Zero();
   Vector3d gradient = Vector3d::Zero();
@@ -210,7 +211,7 @@ Vector3d Search::radiusGradient(const State& q) const noexcept {
     gradient = q.r.fv / metric(1, 1) * q.s.Sv;
   }
   const double steep = gradient.norm();
-  return steep > kSteepest ? Vector3d(kSteepest / steep * gradient) : gradient;
+  return steep > kSteepestRadius ? Vector3d(kSteepestRadius / steep * gradient) : gradient;
 }
 
 /// The direction of d at a foot within the skeleton, on the side of d, from the condition of the foot alone.

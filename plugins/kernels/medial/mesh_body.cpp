@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "kernels/medial/bounds.hpp"
+
 namespace hapticd::medial {
 namespace {
 
@@ -16,9 +18,8 @@ using Eigen::Vector4d;
 constexpr int kMostRings = 8;
 constexpr double kOwnShare = 0.5;  ///< of its weight that a vertex keeps when it is spread; the rest goes to neighbours
 constexpr double kAside = 1e-6;    ///< [m] by which a probe is moved to see how its foot follows
-constexpr double kNearAxis = 1e-4;  ///< [m] from so near the direction to the probe says little
-constexpr double kApart = 0.1;      ///< of the radius: feet on joined parts are two from so far on
-constexpr double kOpposite = 4;     ///< normals farther apart than acos(1 / this - 1) count less and less
+constexpr double kApart = 0.1;     ///< of the radius: feet on joined parts are two from so far on
+constexpr double kOpposite = 4;    ///< normals farther apart than acos(1 / this - 1) count less and less
 
 /// One value for all stays one.
 std::vector<double> oneOrAll(const std::vector<double>& values, std::size_t vertices, const char* what) {

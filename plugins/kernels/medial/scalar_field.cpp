@@ -16,15 +16,17 @@ double innerSlope(double h0, double h1, double d0, double d1) {
   return (w0 + w1) / (w0 / d0 + w1 / d1);
 }
 
-/// Weights of (left value, left slope, right value, right slope) of a cubic: row 0 for the value, rows 1 and 2 for its
+/// Weights of (left value, left slope, right value, right slope) of a cubic: row 0 for the value, the others for its
 /// derivatives.
-using Hermite = std::array<std::array<double, 4>, 3>;
-
-Hermite hermite(double t, double h) noexcept {
+template <int kOrder>
+std::array<std::array<double, 4>, kOrder + 1> hermite(double t, double h) noexcept {
   const double s = 1 - t;
-  return {{{s * s * (1 + 2 * t), h * s * s * t, t * t * (3 - 2 * t), -h * t * t * s},
-           {-6 * s * t / h, s * s - 2 * s * t, 6 * s * t / h, t * t - 2 * s * t},
-           {(12 * t - 6) / (h * h), (6 * t - 4) / h, (6 - 12 * t) / (h * h), (6 * t - 2) / h}}};
+  std::array<std::array<double, 4>, kOrder + 1> rows;
+  rows[0] = {s * s * (1 + 2 * t), h * s * s * t, t * t * (3 - 2 * t), -h * t * t * s};
+  rows[1] = {-6 * s * t / h, s * s - 2 * s * t, 6 * s * t / h, t * t - 2 * s * t};
+  if constexpr (kOrder > 1)
+    rows[2] = {(12 * t - 6) / (h * h), (6 * t - 4) / h, (6 - 12 * t) / (h * h), (6 * t - 2) / h};
+  return rows;
 }
 
 std::size_t interval(const std::vector<double>& knots, double t) noexcept {
@@ -76,7 +78,7 @@ ScalarField::Value ScalarField::blend(double u, double v) const noexcept {
   const std::vector<double>&tu = parameters_[0], &tv = parameters_[1];
   const std::size_t i = interval(tu, u), j = interval(tv, v), stride = tv.size();
   const double hu = tu[i + 1] - tu[i], hv = tv[j + 1] - tv[j];
-  const Hermite a = hermite((u - tu[i]) / hu, hu), b = hermite((v - tv[j]) / hv, hv);
+  const auto a = hermite<kOrder>((u - tu[i]) / hu, hu), b = hermite<kOrder>((v - tv[j]) / hv, hv);
   Value sum;
   for (std::size_t c = 0; c < 4; ++c) {
     const std::size_t x = 2 * (c / 2), y = 2 * (c % 2);

@@ -134,8 +134,8 @@ int Tracer::slideOver(int track, int side, const Vector3d& p, const TraceOptions
   return track;
 }
 
-/// The first surface that the way from `from` to p enters by a side that is felt. @param touching the side on which
-/// `from` is of a surface that it is on
+/// The first surface that the straight way from `from` to p enters through a side that is felt. @param touching where
+/// `from` lies on a surface, the side on which it counts as being
 Tracer::Crossing Tracer::firstCrossing(int part, const Vector3d& from, const Vector3d& p, double touching,
                                        const TraceOptions& options) noexcept {
   const double length = (p - from).norm();

@@ -37,6 +37,8 @@ struct LocalFoot {
   bool regular = false;  ///< the tangents span a plane; if not, normal and height mean nothing
 };
 
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// Rounding of coordinates, relative to their size, in the difference of two points.
 inline constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
 

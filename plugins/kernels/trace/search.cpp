@@ -3,7 +3,6 @@
 /// of each.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "kernels/trace/model.hpp"
 #include "kernels/trace/newton.hpp"
@@ -12,8 +11,6 @@ namespace hapticd::trace {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// One search under way.
 class Search {
@@ -26,7 +23,7 @@ class Search {
         found_(found),
         slot_(static_cast<std::size_t>(model.surfaceCount()), -1),
         same_(1e-5 * model.bounds().diagonal().norm()),
-        nearest_(static_cast<std::size_t>(model.partCount()), kUnbounded) {}
+        nearest_(static_cast<std::size_t>(model.partCount()), kInfinity) {}
 
   void run(double radius) {
     std::vector<LeafHit> hits;
@@ -60,7 +57,7 @@ class Search {
     }
     if (!known) {
       at = static_cast<int>(found_.nearest.size());
-      found_.nearest.push_back({source, leaf.middle[0], leaf.middle[1], kUnbounded});
+      found_.nearest.push_back({source, leaf.middle[0], leaf.middle[1], kInfinity});
     }
     Near& near = found_.nearest[static_cast<std::size_t>(at)];
     if (bound > nearest + Model::kSoon) {  // cannot become the nearest soon: a bound will do, and most work falls away

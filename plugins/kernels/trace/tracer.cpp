@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "kernels/trace/faces.hpp"
 
@@ -11,7 +10,6 @@ namespace {
 using Eigen::Array2d;
 using Eigen::Vector3d;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFarthest = 1e150;       ///< [m] squares of coordinates beyond overflow
 constexpr double kNeighbourReach = 0.15;  ///< [m] a neighbour nobody asked for is dropped beyond
 

@@ -105,23 +105,27 @@ std::vector<Vector3d> strokes(const Model& model, double step, int count) {
   return path;
 }
 
+/// Of each tick the shortest of five rounds: the same work is done in each, and a busy machine only adds to it.
 void measureWalks(const Model& model, const char* what, const std::vector<Vector3d>& path) {
+  constexpr int kRounds = 5;
   brep::Search search(model);
   Times times;
+  times.ns.assign(path.size(), std::numeric_limits<double>::infinity());
   double nodes = 0, elements = 0, sum = 0;
   std::size_t unproved = 0;
-  for (int round = 0; round < 2; ++round)  // the first one warms the caches up
-    for (const Vector3d& p : path) {
+  for (int round = 0; round < kRounds; ++round) {
+    search.reset();
+    for (std::size_t i = 0; i < path.size(); ++i) {
       const auto begin = Clock::now();
-      const brep::Nearest& found = search.nearest(p);
-      const auto end = Clock::now();
-      if (round == 0) continue;
-      times.ns.push_back(nanoseconds(end - begin));
+      const brep::Nearest& found = search.nearest(path[i]);
+      times.ns[i] = std::min(times.ns[i], nanoseconds(Clock::now() - begin));
+      if (round > 0) continue;
       nodes += found.nodes;
       elements += found.elements;
       unproved += !found.proved;
       sum += found.hit.d2;
     }
+  }
   const auto count = static_cast<double>(path.size());
   times.print(what, nodes / count, elements / count);
   if (unproved > 0) std::printf("      %zu of %zu feet not proved (sum %.3g)\n", unproved, path.size(), sum);

@@ -44,6 +44,11 @@ for file in files:
     more = [f"line {n}: {text}" for n, texts in told.items() if n not in wanted for text in texts]
     check(os.path.basename(file), done.returncode == 2 and wanted and not missing and not more, f"missing {missing}, more {more}\n{done.stdout}{done.stderr}")
 
+# A scene that is judged on an arm says what the arm's own check says.
+arm, sphere = os.path.join(FOLDER, "9999j-torque-in-newton-millimetres.yaml"), os.path.join(FOLDER, "..", "..", "..", "config", "scenes", "sphere.yaml")
+done = subprocess.run([HAPTICD, "check", sphere, "--device", arm], capture_output=True, text=True, timeout=120)
+check("a scene on another arm has that arm's warnings", done.returncode == 0 and "one raw unit is 0.02 N m" in done.stdout, done.stdout + done.stderr)
+
 for name in ("part.dae", "part.glb"):
     done = subprocess.run([HAPTICD, "import", name, "-o", "part.hpart"], capture_output=True, text=True, timeout=120)
     check(f"import of {name} says which way leads here", done.returncode == 2 and "hapticd import PART.stl -o PART.hpart" in done.stderr, done.stderr)

@@ -27,7 +27,7 @@ from e2e import check, finish, refused, until
 SCENE = """hapticd: 1
 servo: {{rate: 1000}}
 device: {source}/config/devices/simulated-premium15.yaml
-hand: {{script: guided, tremor: 0, wander: 0}}
+hand: {{script: guided, {hand}}}
 clients: {clients}
 models:
   - name: ball
@@ -39,12 +39,12 @@ BOUND = 3.0  # N
 
 
 class Daemon:
-    def __init__(self, folder, name, clients, *options):
+    def __init__(self, folder, name, clients, *options, hand="tremor: 0, wander: 0"):
         self.folder, self.name = folder, name
         self.environment = dict(os.environ, RUNTIME_DIRECTORY=folder, STATE_DIRECTORY=folder)
         scene = os.path.join(folder, name + ".yaml")
         with open(scene, "w") as file:
-            file.write(SCENE.format(source=SOURCE, clients=clients))
+            file.write(SCENE.format(source=SOURCE, clients=clients, hand=hand))
         self.run = subprocess.Popen([HAPTICD, "run", scene, "--name", name, *options], env=self.environment,
                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         until(lambda: os.path.exists(os.path.join(folder, name + ".sock")), 30)
@@ -222,9 +222,28 @@ def others(scratch):
     wrong = os.path.join(scratch, "wrong.yaml")
     for clients, said in (("maybe", "clients"), ("{mode: add, max_force: -1}", "clients.max_force"), ("{exclusive: true}", "clients.mode")):
         with open(wrong, "w") as file:
-            file.write(SCENE.format(source=SOURCE, clients=clients))
+            file.write(SCENE.format(source=SOURCE, clients=clients, hand="tremor: 0, wander: 0"))
         done = subprocess.run([HAPTICD, "check", wrong], capture_output=True, text=True, timeout=60)
         check(f"clients: {clients} is refused by name", done.returncode == 2 and said in done.stdout + done.stderr, done.stdout)
+
+
+def is_sent_as_asked(scratch):
+    """A hand that trembles is pushed steadily, and by a soft spring: the passivity controller leaves both alone."""
+    daemon = Daemon(scratch, "steady", "add", hand="tremor: 0.02, wander: 0.02")
+    with daemon.connect() as client:
+        start = client.state(ARM).position[0]
+        for name, force in (("a push of 0.7 N", lambda state: (0.7, 0.0, 0.0)),
+                            ("a spring of 200 N/m", lambda state: (0.7 - 200 * (state.position[0] - start), 0.0, 0.0))):
+            with client.push(ARM, force):
+                check(f"{name} is felt", until(lambda: newest(client) > 0.1), newest(client))
+                time.sleep(3)
+                rows = client.rows("ticks", last=1500)
+            added = rows["arm0_sent_fx"] - rows["arm0_client_fx"] - rows["arm0_fx"]
+            check(f"{name} is sent as it was asked for", len(rows) == 1500 and numpy.sqrt(numpy.mean(added ** 2)) < 0.01, added)
+            if "push" in name:
+                whole = rows["arm0_client_fx"] == 0.7
+                check("and does not vary", whole.sum() > 100 and numpy.std(added[whole]) < 0.01, numpy.std(added[whole]))
+    daemon.stop()
 
 
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
@@ -238,4 +257,5 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     done = subprocess.run([HAPTICD, "replay", recording], capture_output=True, text=True, timeout=120)
     check("and replays to the last bit", done.returncode == 0, done.stdout + done.stderr)
     others(scratch)
+    is_sent_as_asked(scratch)
 finish()

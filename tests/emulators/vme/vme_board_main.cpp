@@ -11,13 +11,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
 #include <map>
 
 #include "base/clock.hpp"
 #include "base/os.hpp"
+#include "command_line/command_line.hpp"
 #include "emulators/vme/vme_board.hpp"
 #include "vme/vme_user.hpp"
 
@@ -40,6 +40,12 @@ const std::map<std::string, VmeFault> kFaults = {{"silent", VmeFault::kSilent}, 
                                                  {"jump", VmeFault::kJump},       {"half-rate", VmeFault::kHalfRate},
                                                  {"absent", VmeFault::kAbsent},   {"hydraulics", VmeFault::kHydraulics},
                                                  {"restart", VmeFault::kNone}};
+
+std::vector<std::string> faultNames() {
+  std::vector<std::string> names;
+  for (const auto& [name, fault] : kFaults) names.push_back(name);
+  return names;
+}
 
 int openWindow(const std::string& path) {
   const int fd = open(path.c_str(), O_RDWR | O_CLOEXEC | (path.rfind("/dev/", 0) == 0 ? 0 : O_CREAT), 0600);
@@ -104,19 +110,20 @@ int run(const Options& options) {
 }  // namespace hapticd::emulator
 
 int main(int argc, char** argv) {
+  using namespace hapticd;
   using namespace hapticd::emulator;
   Options options;
-  CLI::App app("An arm controller board on a VME bus");
-  app.add_option("window", options.window)->required();
-  app.add_option("--arm", options.arm)->required();
-  app.add_option("--plugin-path", options.modules);
-  app.add_option("--rate", options.rate);
-  app.add_option("--for", options.duration);
-  app.add_option("--fault", options.fault)->check(CLI::IsMember(kFaults));
-  app.add_option("--at", options.at);
-  app.add_option("--lasts", options.lasts);
-  app.add_flag("--in-force", options.in_force);
-  CLI11_PARSE(app, argc, argv);
+  const command_line::Program app("An arm controller board on a VME bus");
+  app.addOption("window", options.window).required();
+  app.addOption("--arm", options.arm).required();
+  app.addOption("--plugin-path", options.modules);
+  app.addOption("--rate", options.rate);
+  app.addOption("--for", options.duration);
+  app.addOption("--fault", options.fault).oneOf(faultNames());
+  app.addOption("--at", options.at);
+  app.addOption("--lasts", options.lasts);
+  app.addFlag("--in-force", options.in_force);
+  if (const auto ended = app.parse(argc, argv)) return *ended;
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { g_stop = 1; });
   try {
     return run(options);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Shapes that end the process in one of many ways, take long, or answer what is no answer.
 #include <pthread.h>
+#include <sys/syscall.h>
 #include <sys/time.h>
 #include <unistd.h>
 
@@ -26,8 +27,9 @@ void crash() {
 struct Ending : hapticd::Shape {
   int how, ticks = 0;
   static constexpr const char* kHows[] = {
-      "never", "exit",        "quick_exit", "exit_in_thread", "segv_in_thread", "abort_in_thread",
-      "raise", "kill_itself", "timer",      "masked_segv",    "reset_segv",     "plain_exit"};
+      "never",           "exit",       "quick_exit",  "exit_in_thread", "segv_in_thread",
+      "abort_in_thread", "raise",      "kill_itself", "timer",          "masked_segv",
+      "reset_segv",      "plain_exit", "raw_exit",    "loop",           "segv"};
   int signal, after;
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.ending", "ending", "1.0.0", "MIT", "Ends the process."};
   static constexpr auto fields() {
@@ -63,6 +65,9 @@ struct Ending : hapticd::Shape {
     if (wish == "masked_segv") pthread_sigmask(SIG_BLOCK, &all, nullptr), crash();
     if (wish == "reset_segv") std::signal(SIGSEGV, SIG_DFL), crash();
     if (wish == "plain_exit") _exit(0);
+    if (wish == "raw_exit") syscall(SYS_exit_group, 0);
+    if (wish == "segv") crash();
+    for (volatile int turns = 0; wish == "loop";) turns = turns + 1;
   }
 };
 
@@ -106,8 +111,9 @@ struct Slow : hapticd::Shape {
 /// Crashes in one of its functions; or answers surfaces that it does not have.
 struct Broken : hapticd::Shape {
   int where, surfaces, steps = 0;
-  static constexpr const char* kWheres[] = {"nowhere",       "set_up", "reset",  "stored",     "search",
-                                            "start_tracing", "lies",   "thread", "taken_down", "destroyed"};
+  static constexpr const char* kWheres[] = {"nowhere",    "set_up",        "reset",       "stored",
+                                            "search",     "start_tracing", "lies",        "thread",
+                                            "taken_down", "destroyed",     "set_up_exit", "set_up_loop"};
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.broken", "broken", "1.0.0", "MIT", "Crashes."};
   static constexpr auto fields() {
     using F = Fields<Broken>;
@@ -122,6 +128,8 @@ struct Broken : hapticd::Shape {
   }
   void activate(const hsp_activation&, hsp_report&) {
     if (is("set_up")) crash();
+    if (is("set_up_exit")) _exit(0);
+    for (volatile int turns = 0; is("set_up_loop");) turns = turns + 1;
     if (is("thread"))
       std::thread([] {
         for (;;) std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -50,9 +50,11 @@ def number(signal_number):
 
 
 RAISED = {name: getattr(signal, name) for name in
-          ("SIGUSR1", "SIGUSR2", "SIGALRM", "SIGVTALRM", "SIGPROF", "SIGTRAP", "SIGSYS", "SIGPOLL")}
+          ("SIGUSR1", "SIGUSR2", "SIGALRM", "SIGVTALRM", "SIGPROF", "SIGTRAP", "SIGSYS", "SIGPOLL", "SIGTERM", "SIGINT")}
 CASES = [("exit", "exit", True, "a call of exit()", {}),
          ("quick_exit", "quick_exit", True, "a call of exit()", {}),
+         ("_exit", "plain_exit", True, "a call of _exit()", {}),
+         ("SIGTERM to the process", "kill_itself", False, "SIGTERM", number(signal.SIGTERM)),
          ("exit in a thread of its own", "exit_in_thread", True, "a call of exit()", {}),
          ("a crash in a thread of its own", "segv_in_thread", True, "SIGSEGV", {}),
          ("an abort in a thread of its own", "abort_in_thread", True, "SIGABRT", {}),
@@ -83,7 +85,7 @@ def by_guard(case):
              (code, said))]
 
 
-for checks in ThreadPool(2).imap(by_guard, [("_exit", "plain_exit", {}), ("a masked SIGSEGV", "masked_segv", {}),
+for checks in ThreadPool(2).imap(by_guard, [("an end that no library sees", "raw_exit", {}), ("a masked SIGSEGV", "masked_segv", {}),
                                             ("a reset SIGSEGV", "reset_segv", {}), ("SIGKILL", "never", {})]):
     for told in checks:
         check(*told)

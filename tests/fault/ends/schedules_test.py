@@ -23,7 +23,7 @@ COUNT = int(sys.argv[5]) if len(sys.argv) > 5 else 24
 SEED = int(sys.argv[6]) if len(sys.argv) > 6 else 1
 
 BY_PLUGIN = ["exit", "quick_exit", "exit_in_thread", "segv_in_thread", "abort_in_thread", "raise", "timer", "masked_segv",
-             "reset_segv", "plain_exit"]
+             "reset_segv", "plain_exit", "raw_exit"]
 BY_SIGNAL = ["SIGKILL", "SIGTERM", "SIGINT", "SIGHUP", "SIGSTOP", "SIGUSR1", "SIGTSTP"]
 BY_ARM = {"lost": rig.LOST, "hardware fault": rig.HARDWARE_FAULT, "silent": rig.SILENT, "hangs in read": rig.HANG_IN_READ,
           "hangs in write": rig.HANG_IN_WRITE, "write fails": rig.WRITE_FAILS}
@@ -116,7 +116,7 @@ def play(number):
             run.process.send_signal(signal.SIGCONT)
             run.process.terminate()
         code, said = run.end(60)
-        if event in ("SIGKILL", "SIGSTOP", "masked_segv", "reset_segv", "plain_exit", "hold, then SIGKILL"):
+        if event in ("SIGKILL", "SIGSTOP", "masked_segv", "reset_segv", "raw_exit", "hold, then SIGKILL"):
             run.arm.silent_after(10)  # the guard's part
         wrong = faults_of(event, run)
         if not wrong and "(it never ended)" in said and event.endswith(ENDING):

@@ -35,6 +35,8 @@ inline scene::Model hostile(const std::string& plugin, std::vector<scene::Value>
   return model;
 }
 
+constexpr uint32_t kRigRate = 4;  ///< of the parameters of the rig
+
 /// Virtual time that calls the test before every tick.
 class ScriptedClock final : public Clock {
  public:
@@ -53,9 +55,11 @@ class ScriptedClock final : public Clock {
 
 struct Settings {
   double rate = 1000;
+  double arm_rate = 1000;  ///< that the arm names
   std::vector<scene::Model> models;
   std::function<void(scene::Limits&)> limit = [](scene::Limits&) {};
   Eigen::Quaterniond mount = Eigen::Quaterniond::Identity();
+  bool full_when_slow = false;  ///< of ArmOptions
 };
 
 /// One command that left for the motors, or a cut.
@@ -76,13 +80,15 @@ class Scenario {
     device.name = device.module = "rig";
     device.library = TEST_RIG;
     device.mount.orientation = settings.mount;
+    device.parameters = {value(kRigRate, HSP_REAL, settings.arm_rate)};
     device.limits.ramp_in = 0.01;
     settings.limit(device.limits);
     const auto silent = [](int, const std::string&, const std::string&) {};
     auto world = World::build(scene_, {settings.rate, 1, 0, false, false, 0, maxForceOf(scene_)}, silent);
     if (!world) throw std::runtime_error(world.error());
     world_ = std::move(*world);
-    auto arm = Arm::open(device, scene_.servo, {settings.rate, world_->needsVelocity()}, silent);
+    auto arm = Arm::open(device, scene_.servo,
+                         {settings.rate, world_->needsVelocity(), nullptr, {}, false, settings.full_when_slow}, silent);
     if (!arm) throw std::runtime_error(arm.error());
     arms_.push_back(std::move(*arm));
     page_ = static_cast<rig::Page*>(const_cast<void*>(

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "servo/safety/held_command.hpp"
+
 namespace hapticd::servo {
 
 namespace {
@@ -27,11 +29,26 @@ double delayOf(const scene::Velocity& velocity, double rate) {
   return velocity.parameter / (2 * rate);
 }
 
-/// An arm that only pushes has no torque to follow.
-scene::Limits limitsOf(const scene::Limits& described, const hdv_info& info) {
+/// A simulated arm hurts nobody, and a recording keeps the forces that were felt.
+bool pushesInFull(const hdv_info& info, const ArmOptions& options) {
+  return options.full_when_slow || (info.capabilities & HDV_C_SIMULATED) != 0;
+}
+
+/// An arm that only pushes has no torque to follow. A slow one pushes less.
+scene::Limits limitsOf(const scene::Limits& described, const hdv_info& info, const ArmOptions& options) {
   scene::Limits limits = described;
   if (info.joint_count <= 3) limits.torque_slew = 0;
+  if (pushesInFull(info, options)) return limits;
+  const double most = mostForceAt(options.rate, info.rate_hz, info.max_force);
+  if (most == HUGE_VAL) return limits;
+  limits.force = limits.force > 0 ? std::min(limits.force, most) : most;
+  limits.torque *= shareHeld(longestHeld(options.rate, info.rate_hz));
   return limits;
+}
+
+/// [N] by the device and its file, however slow it is; 0: unknown.
+double fullForce(const scene::Limits& limits, const hdv_info& info) {
+  return Limiter(limits, info.max_force).maxForce();
 }
 
 /// What programs of the HDAPI are to see, and the device has not; "": it has all of it.
@@ -58,10 +75,10 @@ Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& desc
       q_world_device_(described.mount.orientation),
       origin_world_(described.mount.position),
       hand_(device_->hand(), device_->handle(), R_world_device_, origin_world_),
-      clients_(options.clients, limiter.maxForce(), described.limits.torque, 1 / options.rate),
+      clients_(options.clients, limiter.maxForce(), limiter.maxTorque(), 1 / options.rate),
       limiter_(std::move(limiter)),
       heat_(described.limits.motors),
-      weight_(described.limits, limiter_.maxForce()),
+      weight_(described.limits, fullForce(described.limits, device_->info())),
       former_passivity_(options.former_passivity) {}
 
 Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const scene::Servo& servo,
@@ -70,9 +87,12 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   if (!device) return Error{device.error()};
   (*device)->playBack(options.playback);
   if (auto opened = (*device)->open(); !opened) return Error{opened.error()};
-  const Limiter limiter(limitsOf(described.limits, (*device)->info()), (*device)->info().max_force);
+  const Limiter limiter(limitsOf(described.limits, (*device)->info(), options), (*device)->info().max_force);
   std::unique_ptr<Arm> arm(new Arm(std::move(*device), described, limiter, options));
   arm->as_found_ = options.found_pressed;
+  if (!pushesInFull(arm->info(), options))
+    arm->slowness_ = describeSlow(options.rate, arm->info().rate_hz, arm->info().max_force,
+                                  fullForce(described.limits, arm->info()));
   if (options.found_pressed) arm->limiter_.enableByFoundPressed();
   arm->watchSamples(described.limits);
   const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
@@ -219,7 +239,7 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
   command.mode = HDV_OFF;
   const bool located = std::isfinite(sample_.position[0]) &&
                        kinematics.jacobian(device_->handle(), sample_.position, J.data()) == HSP_OK && J.allFinite();
-  if (!located) limiter_.sentNothing();
+  if (!located) sendsNothing();
   const Weight::Torques weight = located ? weightTorques(J.topRows<3>(), dt) : Weight::Torques{};
   if (located && !limiter_.silent() && !comply(dt, force, weight)) {
     command.mode = HDV_TORQUE;
@@ -237,6 +257,15 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
   if (wrote) device_->cut();
   trip(Fault::kDeviceLost);
   limiter_.cut(Fault::kDeviceLost, 0);
+}
+
+/// A force that no torque stands for is not sent. Where the tip is known and its Jacobian is not, the module is at
+/// fault.
+void Arm::sendsNothing() noexcept HSP_RT {
+  limiter_.sentNothing();
+  if (!probe_.valid) return;
+  limiter_.trip(Fault::kNotFinite);
+  force_.setZero();
 }
 
 void Arm::send(Nanoseconds now) noexcept HSP_RT {

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "base/clock.hpp"
@@ -32,6 +33,7 @@ struct ArmOptions {
   const host::Playback* playback = nullptr;  ///< samples from a recording instead of the hardware
   scene::Clients clients = {};               ///< whether programs may push on it
   bool found_pressed = false;                ///< a hold button that was down before the run enables, as it did once
+  bool full_when_slow = false;               ///< a real arm pushes with its full force however slow it is, as once
   bool former_passivity = false;  ///< a steady push of a program counts as energy from nothing, as it once did
 };
 
@@ -109,6 +111,8 @@ class Arm {
   const Admittance* admittance() const noexcept { return admittance_ ? &*admittance_ : nullptr; }
   /// The passivity controller; nullptr: this arm needs none.
   const passivity::PassivityController* passivity() const noexcept { return passivity_ ? &*passivity_ : nullptr; }
+  /// Why it pushes less than its limits say; "": it does not.
+  const std::string& slowness() const { return slowness_; }
   /// It can turn the hand; an arm of three joints only pushes.
   bool turns() const { return device_->info().joint_count > 3; }
   /// An end of a link, world frame.
@@ -143,6 +147,7 @@ class Arm {
   void scaleToMotors(const Weight::Torques& gravity, hdv_command& command) noexcept HSP_RT;
   void heatMotors(double dt) noexcept HSP_RT;
   void send(Nanoseconds now) noexcept HSP_RT;
+  void sendsNothing() noexcept HSP_RT;
 
   std::unique_ptr<host::DeviceInstance> device_;
   Eigen::Matrix3d R_world_device_;
@@ -157,6 +162,7 @@ class Arm {
   Limiter limiter_;
   MotorHeat heat_;
   Weight weight_;
+  std::string slowness_;
   std::atomic<bool> cut_{false}, taken_{false};  // taken: a thread is inside the module
   std::atomic<double> cut_after_{0};
   std::atomic<bool> found_pressed_{false};

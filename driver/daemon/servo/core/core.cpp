@@ -205,7 +205,7 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   hsp_pose pose = model.pose;
   callShape(model, dt, pose);
   const Trouble trouble = judge(model, index, dt, pose);
-  if (trouble == Trouble::kPulls) model.pull.t = t;
+  if (model.pull.force > 0 && model.pull.t < 0) model.pull.t = t;
   const double gain_before = model.guard.gain();
   const bool good = trouble == Trouble::kNone;
   double pace = dt;

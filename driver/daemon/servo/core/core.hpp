@@ -57,7 +57,7 @@ struct ModelState {
   bool moves = false;            ///< its pose may change
   hsp_status status = HSP_OK;
   hsp_status failed_status = HSP_OK;  ///< the first that was no status of a step
-  Pull pull;                          ///< the first, where it reports to push only
+  Pull pull;                          ///< that silenced it; or the largest force that jumped
   Guard guard;
   ClaimBounds claims;         ///< what it may do
   bool overran = false;       ///< its last step was held against it for the time it took

@@ -54,6 +54,20 @@ bool Core::holdTorque(const ModelState& model, Claim& claim, uint32_t probe, dou
   return held;
 }
 
+namespace {
+
+/// Keeps the largest jump so far, as the plugin would have to report it; its time is noted after the step.
+void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, const hsp_contact& out) noexcept HSP_RT {
+  const double size = step.force.norm();
+  const double felt = step.max_force > 0 && size > step.max_force ? step.max_force / size : 1;
+  const double jump = std::max(Claim::kStep, model.claims.jump) + (felt * step.force - let).norm();
+  if (jump <= model.pull.force) return;
+  const bool inside = (out.flags & HSP_OUT_TRACED) != 0 && out.depth_m >= 0;
+  model.pull = Pull{-1, inside ? out.depth_m : -1, jump};
+}
+
+}  // namespace
+
 /// What of the answer to this probe was beyond the claim: it is then what the claim explains. This and what calls it go
 /// into judge(): they are asked of every answer in every tick, and calls cost as much as they do.
 [[gnu::always_inline]] inline Trouble Core::holdToClaim(ModelState& model, uint32_t index, uint32_t probe,
@@ -79,6 +93,7 @@ bool Core::holdTorque(const ModelState& model, Claim& claim, uint32_t probe, dou
   const Vector3d let = claim.judge(step, model.claims, dt, held);
   if (!held && !twists) return Trouble::kNone;
   if (held) {
+    if (!claim.excused()) noteJump(model, step, let, out);
     Map(out.force) = model.frame.vectorToModel(let);
     Map(out.torque) *= std::min(1.0, let.norm() / step.force.norm());
   }
@@ -132,8 +147,7 @@ void Core::fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP
 bool Core::pulls(ModelState& model) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     if (!pullsIn(outputs_[i], model.frame.pointToModel(last_position_[i]))) continue;
-    model.pull.depth = outputs_[i].depth_m;
-    model.pull.force = ConstMap(outputs_[i].force).norm();
+    model.pull = Pull{-1, outputs_[i].depth_m, ConstMap(outputs_[i].force).norm()};
     return true;
   }
   return false;

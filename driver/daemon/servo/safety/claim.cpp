@@ -59,7 +59,8 @@ bool Claim::surelyExplained(double square, const ClaimStep& step, const ClaimBou
   return square <= per_metre * per_metre * (step.p_model - p_model_).squaredNorm();
 }
 
-/// Holds `let` back to what there is room for. The share of the change that what is explained goes along with.
+/// Moves `let` back until its change fits the room. @return the share of this change by which the explained force
+/// follows
 double Claim::holdBack(Vector3d& let, const Vector3d& from, const Vector3d& change, const Room& room,
                        const ClaimStep& step, double dt, bool& held) noexcept HSP_RT {
   const double size = change.norm(), most = room.moved + room.jump, follows = room.moved + room.drift;

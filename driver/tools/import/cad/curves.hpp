@@ -4,6 +4,7 @@
 #include <Geom2d_Curve.hxx>
 #include <Geom_Curve.hxx>
 #include <gp_XYZ.hxx>
+#include <numbers>
 #include <stdexcept>
 
 #include "kernels/brep/part.hpp"
@@ -12,6 +13,8 @@ namespace hapticd::cad {
 
 /// Metres in a length of Open CASCADE.
 inline constexpr double kMetres = 1e-3;
+
+inline constexpr double kFullTurn = 2 * std::numbers::pi;  ///< [rad]
 
 /// Why a face or a curve cannot be kept; the words follow its name.
 struct Unkept : std::runtime_error {

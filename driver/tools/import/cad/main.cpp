@@ -3,7 +3,6 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 
-#include <CLI/CLI.hpp>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Standard_ErrorHandler.hxx>
@@ -17,6 +16,7 @@
 #include "base/regular_file.hpp"
 #include "cad_import/part_builder.hpp"
 #include "cad_import/shape_fixes.hpp"
+#include "command_line/command_line.hpp"
 #include "kernels/brep/part_file.hpp"
 
 namespace hapticd::cad {
@@ -84,15 +84,16 @@ int guarded(const Options& options) {
 }  // namespace hapticd::cad
 
 int main(int argc, char** argv) {
-  CLI::App app("Converts CAD files (STEP, IGES, BREP) into parts. hapticd import starts it.", "hapticd-import");
+  const hapticd::command_line::Program app(
+      "Converts CAD files (STEP, IGES, BREP) into parts. hapticd import starts it.", "hapticd-import");
   hapticd::cad::Options options;
-  app.add_option("file", options.file, ".step, .stp, .iges, .igs, .brep or .rle")->required();
-  app.add_option("-o,--out", options.out, "the part file, .hpart");
-  app.add_option("--memory", options.memory_mb, "most memory [MB]");
-  app.add_option("--time", options.time_s, "most time of the processor [s]");
-  app.add_flag("--check", options.check, "write nothing, say what would be lost");
-  app.add_flag("--json", options.json, "report as JSON");
-  CLI11_PARSE(app, argc, argv);
+  app.addOption("file", options.file, ".step, .stp, .iges, .igs, .brep or .rle").required();
+  app.addOption("-o,--out", options.out, "the part file, .hpart");
+  app.addOption("--memory", options.memory_mb, "most memory [MB]");
+  app.addOption("--time", options.time_s, "most time of the processor [s]");
+  app.addFlag("--check", options.check, "write nothing, say what would be lost");
+  app.addFlag("--json", options.json, "report as JSON");
+  if (const auto ended = app.parse(argc, argv)) return *ended;
   hapticd::cad::setLimits(options);
   // What Open CASCADE tells goes nowhere: the report has what matters.
   Message::DefaultMessenger()->ChangePrinters().Clear();

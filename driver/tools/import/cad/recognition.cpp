@@ -7,7 +7,6 @@
 #include <Geom_BezierSurface.hxx>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 namespace hapticd::cad {
@@ -20,8 +19,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kNear = 1e-9;  ///< [m] farthest that a point of a recognised surface may be from it
-constexpr double kFullTurn = 2 * std::numbers::pi;
+constexpr double kFarthestOff = 1e-9;  ///< [m] farthest that a point of a recognised surface may be from it
 
 Vector3d inMetres(const gp_XYZ& v) {
   return Vector3d(v.X(), v.Y(), v.Z()) * kMetres;
@@ -89,7 +87,7 @@ std::optional<Surface> planeOf(const Handle(Geom_BSplineSurface) & spline, const
   const Vector3d n = mean(cloud.normals).normalized();
   for (int i = 1; i <= spline->NbUPoles(); ++i)
     for (int j = 1; j <= spline->NbVPoles(); ++j)
-      if (std::abs(n.dot(inMetres(spline->Pole(i, j).XYZ()) - cloud.middle)) > kNear) return {};
+      if (std::abs(n.dot(inMetres(spline->Pole(i, j).XYZ()) - cloud.middle)) > kFarthestOff) return {};
   for (const Vector3d& normal : cloud.normals)
     if (normal.dot(n) < 0) return {};
   Surface s = frame(SurfaceKind::kPlane, cloud.middle, n, n.unitOrthogonal(), false);
@@ -120,7 +118,7 @@ std::optional<Surface> cylinderOf(const Cloud& cloud) {
   double r = 0;
   if (!center(cloud, across, c, r) || !(std::abs(r) < 1e3)) return {};
   for (const Vector3d& p : cloud.points)
-    if (std::abs((across * (p - c)).norm() - std::abs(r)) > kNear) return {};
+    if (std::abs((across * (p - c)).norm() - std::abs(r)) > kFarthestOff) return {};
   Surface s = frame(SurfaceKind::kCylinder, c, axis, cloud.middle - c, r < 0);
   s.z = plain(axis * kMetres);
   s.r[0] = std::abs(r);
@@ -133,7 +131,7 @@ std::optional<Surface> sphereOf(const Cloud& cloud) {
   double r = 0;
   if (!center(cloud, Matrix3d::Identity(), c, r) || !(std::abs(r) < 1e3)) return {};
   for (const Vector3d& p : cloud.points)
-    if (std::abs((p - c).norm() - std::abs(r)) > kNear) return {};
+    if (std::abs((p - c).norm() - std::abs(r)) > kFarthestOff) return {};
   const Vector3d toward = (cloud.middle - c).normalized();  // poles and seam as far from the face as can be
   Surface s = frame(SurfaceKind::kSphere, c, toward.unitOrthogonal(), toward, r < 0);
   s.r[0] = std::abs(r);
@@ -159,7 +157,7 @@ std::optional<Surface> coneOf(const Cloud& cloud) {
   const double ca = height / slant, sa = wide / slant;
   for (const Vector3d& p : cloud.points) {
     const double h = axis.dot(p - apex), w = (p - apex - h * axis).norm();
-    if (std::abs(w * ca - h * sa) > kNear || h <= 0) return {};
+    if (std::abs(w * ca - h * sa) > kFarthestOff || h <= 0) return {};
   }
   const Vector3d out = (way - height * axis).normalized() * ca - axis * sa;
   Surface s =

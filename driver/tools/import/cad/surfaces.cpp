@@ -17,7 +17,6 @@
 #include <TColStd_Array1OfReal.hxx>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "kernels/brep/spline_check.hpp"
 #include "kernels/spline/surface_data.hpp"
@@ -30,8 +29,6 @@ using brep::Surface;
 using brep::SurfaceKind;
 using brep::Vector;
 using brep::Vector2;
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 Vector plain(const gp_XYZ& v) {
   return {v.X(), v.Y(), v.Z()};
@@ -46,7 +43,7 @@ Surface framed(SurfaceKind kind, const gp_Ax3& axes, double along, double r0, do
   s.y = plain(axes.YDirection().XYZ());
   s.z = plain(axes.Direction().XYZ() * along);
   s.r = {r0 * kMetres, r1 * kMetres};
-  s.period[0] = kTurn;
+  s.period[0] = kFullTurn;
   return s;
 }
 
@@ -103,8 +100,8 @@ Surface splineRecord(const Handle(Geom_BSplineSurface) & s, Part& part) {
 
 Handle(Geom_BSplineSurface)
     asSpline(const Handle(Geom_Surface) & surface, const Vector2& lo, const Vector2& hi, double& error) {
-  constexpr double kNear = 1e-5;  // [mm]
-  constexpr int kDegree = 8, kMostSegments = 100;
+  constexpr double kSplineError = 1e-5;  // [mm]
+  constexpr int kSplineDegree = 8, kMostPatches = 100;
   auto spline = Handle(Geom_BSplineSurface)::DownCast(surface);
   if (!Handle(Geom_BezierSurface)::DownCast(surface).IsNull()) spline = GeomConvert::SurfaceToBSplineSurface(surface);
   if (!spline.IsNull() && std::max(spline->UDegree(), spline->VDegree()) <= spline::kMaxDegree) {
@@ -115,7 +112,8 @@ Handle(Geom_BSplineSurface)
   }
   const Handle(Geom_RectangularTrimmedSurface) piece =
       new Geom_RectangularTrimmedSurface(surface, lo[0], hi[0], lo[1], hi[1]);
-  const GeomConvert_ApproxSurface fit(piece, kNear, GeomAbs_C1, GeomAbs_C1, kDegree, kDegree, kMostSegments, 1);
+  const GeomConvert_ApproxSurface fit(piece, kSplineError, GeomAbs_C1, GeomAbs_C1, kSplineDegree, kSplineDegree,
+                                      kMostPatches, 1);
   if (!fit.HasResult())
     throw Unkept("its surface of kind " + std::string(surface->DynamicType()->Name()) + " has no spline");
   error = std::max(fit.MaxError(), 1e-12) * kMetres;
@@ -147,7 +145,7 @@ bool swept(const Handle(Geom_Surface) & surface, const Vector2& lo, const Vector
     s.basis = basis.index;
     s.o = metres(turned->Axis().Location().XYZ());
     s.z = plain(turned->Axis().Direction().XYZ());
-    s.period[0] = kTurn;
+    s.period[0] = kFullTurn;
     if (turned->IsVPeriodic()) s.period[1] = turned->VPeriod();
     error = basis.error;
   } else if (const auto offset = Handle(Geom_OffsetSurface)::DownCast(surface); !offset.IsNull()) {
@@ -177,7 +175,7 @@ bool analytic(const Handle(Geom_Surface) & surface, Surface& s) {
     s = framed(SurfaceKind::kSphere, ball->Position(), 1, ball->Radius(), 0);
   } else if (const auto torus = Handle(Geom_ToroidalSurface)::DownCast(surface); !torus.IsNull()) {
     s = framed(SurfaceKind::kTorus, torus->Position(), 1, torus->MajorRadius(), torus->MinorRadius());
-    s.period[1] = kTurn;
+    s.period[1] = kFullTurn;
   } else {
     return false;
   }

@@ -29,7 +29,7 @@ TEST(MaFile, ReadsVerticesEdgesAndTriangles) {
 }
 
 TEST(MaFile, SaysWhichLineIsWrongAndWhatWasExpected) {
-  EXPECT_EQ(complaintOf(""), "body.ma:1: empty, expected the numbers of vertices, edges and triangles");
+  EXPECT_EQ(complaintOf(""), "body.ma:1: the file is empty, expected the numbers of vertices, edges and triangles");
   EXPECT_NE(complaintOf("v 0 0 0 1\n").find("body.ma:1: 'v', expected three whole numbers"), std::string::npos);
   EXPECT_NE(complaintOf("3 0\n").find("body.ma:1: too few numbers, expected three"), std::string::npos);
   EXPECT_NE(complaintOf("3 -1 0\n").find("body.ma:1: -1 of a kind, expected 0 to 10000000"), std::string::npos);

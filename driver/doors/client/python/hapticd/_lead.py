@@ -48,7 +48,21 @@ class _Slot:
         self._memory.close()
 
 
-class Lead:
+class Ending:
+    """What `end()` ends, for `with`."""
+
+    def end(self) -> None:
+        raise NotImplementedError
+
+    def __exit__(self, kind: object, *_: object) -> None:
+        try:
+            self.end()
+        except HapticdError:
+            if kind is None:
+                raise  # else it would hide what went wrong first
+
+
+class Lead(Ending):
     """Something that this program leads. Ends with `end()`, with the client, or with `with`."""
 
     def __init__(self, fd: int, size: int, unlead: Callable[[], Any],
@@ -76,13 +90,6 @@ class Lead:
 
     def __enter__(self) -> "Lead":
         return self
-
-    def __exit__(self, kind: object, *_: object) -> None:
-        try:
-            self.end()
-        except HapticdError:
-            if kind is None:
-                raise  # else it would hide what went wrong first
 
 
 class PoseLead(Lead):

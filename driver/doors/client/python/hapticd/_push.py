@@ -11,7 +11,7 @@ import warnings
 from typing import TYPE_CHECKING, Callable, Optional, Sequence
 
 from ._error import HapticdError, NoForceWarning
-from ._lead import ForceLead
+from ._lead import Ending, ForceLead
 from ._state import FAULTS, Bell, State, StatePage
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ _PATIENCE = 0.1  # s between two looks at whether anything is alive
 Force = Sequence[float]
 
 
-class ForceThread:
+class ForceThread(Ending):
     """Calls `callback(state)` in a thread once a tick; what it gives back, three numbers in N (or six with the torque in
     N m), pushes on the hand; None answers nothing. An exception in the callback ends the push, is printed at once, stays
     in `error`, and is raised by `end()`; so is the end of the daemon. `end()` warns where no tick was answered, or answers
@@ -131,10 +131,3 @@ class ForceThread:
 
     def __enter__(self) -> "ForceThread":
         return self
-
-    def __exit__(self, kind: object, *_: object) -> None:
-        try:
-            self.end()
-        except HapticdError:
-            if kind is None:
-                raise  # else it would hide what went wrong first

@@ -25,8 +25,9 @@ struct Gantry : hapticd::Device {
   int failure, every;
   bool hardware;
   Log log{};
-  static constexpr const char* kFailures[] = {"none",   "lost",  "not_finite", "stale",    "fault",   "uncalibrated",
-                                              "random", "moves", "jumps",      "released", "gravity", "orientation"};
+  static constexpr const char* kFailures[] = {"none",         "lost",        "not_finite", "stale", "fault",
+                                              "uncalibrated", "random",      "moves",      "jumps", "released",
+                                              "gravity",      "orientation", "jacobian"};
   static constexpr hapticd::DeviceInfo kInfo{"org.hapticd.test.gantry", "gantry", "1.0.0", "MIT", "A gantry."};
   static constexpr auto fields() {
     using F = Fields<Gantry>;
@@ -57,6 +58,7 @@ struct Gantry : hapticd::Device {
     const bool failed = t >= fail_at && t < well_at;
     bad_gravity_ = failed && failure == 10;
     bad_orientation_ = failed && failure == 11;
+    bad_jacobian_ = failed && failure == 12;
     sample.position[0] = 0;
     sample.position[1] = -depth;
     sample.flags = failure == 5 && t < well_at ? 0u : static_cast<uint32_t>(HDV_S_CALIBRATED);
@@ -114,8 +116,9 @@ struct Gantry : hapticd::Device {
     orientation[1] = orientation[2] = orientation[3] = 0;
     return HSP_OK;
   }
-  static hsp_status jacobian(const hdv_device*, const double*, double* J) noexcept HSP_RT {
+  static hsp_status jacobian(const hdv_device* device, const double*, double* J) noexcept HSP_RT {
     for (int i = 0; i < 18; ++i) J[i] = i % 4 == 0 && i < 9 ? 1 : 0;
+    if (of(device).bad_jacobian_) J[5] = std::numeric_limits<double>::quiet_NaN();
     return HSP_OK;
   }
   static hsp_status gravity(const hdv_device* device, const double*, const double*, double* torque) noexcept HSP_RT {
@@ -133,7 +136,7 @@ struct Gantry : hapticd::Device {
  private:
   uint64_t start_ns_ = 0, random_ = 1;
   int bad_left_ = 0, bad_ = 0;
-  bool bad_gravity_ = false, bad_orientation_ = false;
+  bool bad_gravity_ = false, bad_orientation_ = false, bad_jacobian_ = false;
 };
 
 }  // namespace

@@ -46,6 +46,14 @@ struct Recorded : Rig {
     ASSERT_TRUE(arms[0]->start(0, Eigen::Vector3d(0, -9.81, 0)));
   }
 
+  /// As in versions in which a steady push of a program counted as energy from nothing.
+  void pushByTheFormerLaw() {
+    former_passivity = true;
+    arms[0] = std::move(
+        *Arm::open(scene.devices[0], scene.servo, {1000, false, nullptr, scene.clients, false, false, true}, quiet));
+    ASSERT_TRUE(arms[0]->start(0, Eigen::Vector3d(0, -9.81, 0)));
+  }
+
   /// As in versions in which neither torques nor steps after a set were held to a claim.
   void holdToFormerClaims() {
     former_claims = true;
@@ -55,9 +63,20 @@ struct Recorded : Rig {
     loop = std::make_unique<Loop>(world->core(), world->lockstep(), arms, clock, settings, *telemetry);
   }
 
+  /// A loop of 100 Hz. @param full the arm pushes with all of its force, as in versions before slow ones pushed less
+  void slowDown(bool full) {
+    rate = 100;
+    full_when_slow = full;
+    settings.period_ns = 10'000'000;
+    arms[0] = std::move(*Arm::open(scene.devices[0], scene.servo, {rate, false, nullptr, {}, false, full}, quiet));
+    ASSERT_TRUE(arms[0]->start(0, Eigen::Vector3d(0, -9.81, 0)));
+    loop = std::make_unique<Loop>(world->core(), world->lockstep(), arms, clock, settings, *telemetry);
+  }
+
   void record() {
-    const auto streams = flightStreams(scene, arms, 1000, 1, 0);
-    const RunFacts facts{1000, settings.period_ns, settings.ticks, true, found_pressed, former_claims};
+    const auto streams = flightStreams(scene, arms, rate, 1000 / rate, 0);
+    const RunFacts facts{rate,          settings.period_ns, settings.ticks, true,
+                         found_pressed, former_claims,      full_when_slow, former_passivity};
     about = aboutRun(scene, *world, arms, facts, streams);
     telemetry->attach(std::make_unique<Flight>(std::move(*record::FlightRing::create(streams, about)), arms, 8));
     loop->run();
@@ -75,7 +94,8 @@ struct Recorded : Rig {
   }
 
   record::About about;
-  bool found_pressed = false, former_claims = false;
+  double rate = 1000;
+  bool found_pressed = false, former_claims = false, full_when_slow = false, former_passivity = false;
 };
 
 void expectSame(const ReplayOutcome& outcome) {
@@ -144,6 +164,24 @@ TEST(Replay, LetsAButtonThatWasFoundPressedEnableAsItDidOnce) {
   about.erase("enable_released_first");
   rig.about.json = about.dump();
   expectSame(rig.replay());
+}
+
+/// A recording that says nothing of the rule was made when a slow arm pushed with all of its force.
+TEST(Replay, IsTheSameOnASlowArmUnderEitherLaw) {
+  for (const bool full : {false, true}) {
+    Recorded rig("wall", {number(0, HSP_REAL, 2000)}, {number(4, HSP_BOOL, 1)});
+    rig.slowDown(full);
+    double most = 0;
+    rig.every = [&](Nanoseconds) { most = std::max(most, rig.arms[0]->force().norm()); };
+    rig.record();
+    EXPECT_EQ(most > 2, full) << most;
+    EXPECT_EQ(rig.arms[0]->slowness().empty(), full);
+    auto about = nlohmann::json::parse(rig.about.json);
+    ASSERT_EQ(about.at("slow_arms_push_less"), !full);
+    if (full) about.erase("slow_arms_push_less");
+    rig.about.json = about.dump();
+    expectSame(rig.replay());
+  }
 }
 
 /// Sets the first parameter of the first model before each tick, up and down.
@@ -252,6 +290,42 @@ TEST(Replay, IsTheSameWhereProgramsPushed) {
     EXPECT_EQ(rig.arms[0]->limiter().fault(), Fault::kStopped) << "nothing but the end of the run";
     expectSame(rig.replay());
   }
+}
+
+/// A program that pushes with 2 N along x.
+void helpTheHand(Recorded& rig, link::PushSlot& slot, uint64_t tick) {
+  if (tick == 5) {
+    Order order;
+    order.param = static_cast<uint32_t>(Order::Led::kForce);
+    order.kind = Order::Kind::kLead;
+    order.push = &slot;
+    rig.loop->give(order);
+  }
+  hapticd_push push{};
+  push.tick = tick;
+  push.force[0] = 2;
+  if (tick > 5) slot.put(push);
+}
+
+/// A recording that says nothing of the rule was made before there was one.
+TEST(Replay, IsTheSameWhereProgramsPushedByEitherLawOfPassivity) {
+  std::vector<double> damping;
+  for (const bool former : {false, true}) {
+    Recorded rig("wall", {}, {number(1, HSP_REAL, 0.02), number(2, HSP_ENUM, 7), number(5, HSP_REAL, 0.3)}, {},
+                 {scene::ClientMode::kAdd, 3, false});  // it moves along x
+    if (former) rig.pushByTheFormerLaw();
+    link::PushSlot slot;
+    rig.every = [&rig, &slot, tick = uint64_t{0}](Nanoseconds) mutable { helpTheHand(rig, slot, tick++); };
+    rig.record();
+    ASSERT_NE(rig.arms[0]->passivity(), nullptr);
+    damping.push_back(rig.arms[0]->passivity()->damping());
+    auto about = nlohmann::json::parse(rig.about.json);
+    ASSERT_EQ(about.at("spares_steady_pushes"), !former);
+    if (former) about.erase("spares_steady_pushes");
+    rig.about.json = about.dump();
+    expectSame(rig.replay());
+  }
+  EXPECT_NE(damping[0], damping[1]) << "two laws";
 }
 
 TEST(BlackBox, HasTheSameRowsAsTheShortOneThatItReplaces) {

@@ -59,13 +59,13 @@ class LeafGrid {
 };
 
 struct LeafTally {
-  int nowhere = 0, one = 0, unknown = 0;
+  int nowhere = 0, one = 0, unknown = 0, passed_over = 0;
 };
 
 /// Newton over the whole leaf: no border is the surface's, no trim leaves anything out. False: it gave up, and says so.
 bool footFrom(const Model& model, Leaf leaf, const Array2d& uv, const Vector3d& p, Hit& hit) {
   leaf.borders = 0;
-  const LeafStart start{uv, FeetOfLeaf::kOne, false};
+  const LeafStart start{uv, {FeetOfLeaf::kOne}, false};
   return leafFoot(model.geometry(), leaf, model.face(leaf.face), model.part().faces[leaf.face].surface, p, start, hit)
       .alone;
 }
@@ -82,11 +82,28 @@ bool hasFootInside(const Model& model, const Leaf& leaf, const LeafGrid& grid, c
   return false;
 }
 
+/// A leaf that is passed over after one evaluation is farther than the limit.
+void lookFromAfar(const Model& model, Leaf leaf, const Vector3d& p, const LeafSight& sight, const LeafGrid& grid,
+                  LeafTally& tally) {
+  leaf.borders = 0;
+  for (const double share : {0.5, 0.9, 0.99, 1.0, 1.01}) {
+    LeafStart start{footNear(leaf.bow, leaf.bow.local(p)), sight, false};
+    start.limit2 = share * grid.least();
+    Hit hit;
+    const std::uint32_t surface = model.part().faces[leaf.face].surface;
+    const PieceAnswer answer = leafFoot(model.geometry(), leaf, model.face(leaf.face), surface, p, start, hit);
+    if (answer.evaluations > 1 || hit.d2 < 1e300) continue;
+    ++tally.passed_over;
+    EXPECT_LE(answer.region2, grid.least() * (1 + 1e-9)) << p.transpose();
+    EXPECT_GT(answer.region2, start.limit2) << p.transpose();
+  }
+}
+
 void lookAtLeaf(const Model& model, const Leaf& leaf, const Vector3d& p, LeafGrid& grid, LeafTally& tally) {
   const Vector3d q = leaf.bow.local(p);
   grid.lookFrom(p);
-  EXPECT_LE(leafDistance2(leaf.bow, q), grid.least() * (1 + 1e-9)) << p.transpose();
-  switch (feetSeenFrom(leaf.bow, q)) {
+  const LeafSight sight = feetSeenFrom(leaf.bow, q);
+  switch (sight.feet) {
     case FeetOfLeaf::kNowhere:
       ++tally.nowhere;
       EXPECT_FALSE(hasFootInside(model, leaf, grid, p)) << p.transpose();
@@ -96,6 +113,7 @@ void lookAtLeaf(const Model& model, const Leaf& leaf, const Vector3d& p, LeafGri
       Hit hit;
       const bool arrived = footFrom(model, leaf, footNear(leaf.bow, q), p, hit);
       EXPECT_TRUE(!arrived || hit.d2 <= grid.least() * (1 + 1e-9) + 1e-18) << p.transpose();
+      lookFromAfar(model, leaf, p, sight, grid, tally);
       break;
     }
     default:
@@ -127,6 +145,7 @@ void expectTrueOf(const std::string& file) {
               100.0 * tally.unknown / all);
   EXPECT_GT(tally.nowhere, 0);
   EXPECT_GT(tally.one, 0);
+  EXPECT_GT(tally.passed_over, tally.one);
   EXPECT_LT(tally.unknown, 0.5 * all);  // near poles, and at centres of curvature
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Meshes: the discs about rows of triangles, and ticks that look at the rows about the probe alone.
+/// The discs about rows of triangles, and ticks that look at the rows about the probe alone.
 #include "kernels/brep/near_rows.hpp"
 
 #include <gtest/gtest.h>
@@ -87,13 +87,8 @@ TEST(RowSlab, BoundsNoTriangleFromAbove) {
     for (std::size_t i = 0; i < 4; ++i) {
       if (body.tree.node(n).child[i] >= 0) continue;
       const RowSlab& slab = body.slabs[static_cast<std::size_t>(body.tree.node(n).row[i])];
-      FourSlabs four{};
-      for (int axis = 0; axis < 3; ++axis) {
-        four.center[axis] = Float4{} + slab.center[axis];
-        four.normal[axis] = Float4{} + slab.normal[axis];
-      }
-      four.half = Float4{} + slab.half;
-      four.radius = Float4{} + slab.radius;
+      FourSlabs four = emptyFour(slab);
+      for (int lane = 0; lane < 4; ++lane) put(slab, lane, four);
       const ElementRow row = BoxTree::rowOf(body.tree.node(n).child[i]);
       for (int k = 0; k < 40; ++k) {
         const std::uint32_t corner = model.part().triangles[body.elements[row.first].index()].corner[k % 3u];
@@ -103,9 +98,9 @@ TEST(RowSlab, BoundsNoTriangleFromAbove) {
         for (std::uint32_t e = row.first; e < row.first + row.count; ++e)
           truth = std::min(truth, distanceTo(model.part(), body.elements[e].index(), p));
         const BoxProbe probe(body.tree, p);
-        const auto bound = static_cast<double>(slabDistance(slab, probe));
+        const auto bound = static_cast<double>(rowDistance(slab, probe));
         ASSERT_LE(bound, truth * truth) << p.transpose();
-        ASSERT_LE(static_cast<double>(slabDistances(four, probe)[k % 4]), truth * truth) << p.transpose();
+        ASSERT_LE(static_cast<double>(rowDistances(four, probe)[k % 4]), truth * truth) << p.transpose();
         close += bound > 0.25 * truth * truth;
       }
     }
@@ -114,7 +109,7 @@ TEST(RowSlab, BoundsNoTriangleFromAbove) {
 
 /// Walks at several speeds, with rests and jumps, beside a search that has no budget for rows about the probe.
 void walkBeside(const Model& model, unsigned seed, bool spares) {
-  const SearchBudget whole{2048, NearRows::kMostElements};
+  const SearchBudget whole{2048, NearTriangles::kMostRows * BodyTree::kMeshRow};
   Search near(model), all(model);
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;

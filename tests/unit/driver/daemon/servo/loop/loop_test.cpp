@@ -77,6 +77,22 @@ TEST(Loop, EveryFailureOfTheDeviceEndsInZeroForceWithItsName) {
   }
 }
 
+TEST(Loop, AJacobianThatIsNoNumberIsAFaultAndItsForceIsNotCalledSent) {
+  Rig rig(12);
+  rig.loop->run();
+  EXPECT_EQ(rig.arms[0]->limiter().fault(), Fault::kNotFinite);
+  EXPECT_TRUE(rig.log->only_numbers);
+  const std::vector<BlackBoxRow> rows = rig.telemetry->blackBox();
+  double before = 0;
+  for (const auto& row : rows) {
+    if (row.t < 0.05)
+      before = row.force[1];
+    else
+      EXPECT_EQ(row.force[1], 0) << row.t;
+  }
+  EXPECT_GT(before, 1);
+}
+
 TEST(Loop, StopRampsTheForceDownBeforeItEnds) {
   Rig rig(
       0,

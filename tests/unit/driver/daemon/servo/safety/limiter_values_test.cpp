@@ -213,6 +213,24 @@ TEST(Limiter, CountsWhatTookAwaySomethingAndNothingElse) {
   EXPECT_EQ(first.clips().any, 1u) << "in the first tick too";
 }
 
+/// A force that grows more slowly than limits.slew lets it is not counted as cut.
+TEST(Limiter, CountsNoSlewOfAForceThatGrowsSlowly) {
+  scene::Limits limits = generous();
+  limits.slew = 1000;
+  limits.torque_slew = 100;
+  Limiter limiter(limits, 8.5);
+  for (int i = 1; i <= 5; ++i) EXPECT_EQ(applied(limiter, {0.5 * i, 0, 0}, {0, 0.05 * i, 0}).force.x(), 0.5 * i);
+  EXPECT_EQ(limiter.clips().any, 0u);
+}
+
+TEST(Limiter, PowerBoundsAForceBelowANewtonToo) {
+  scene::Limits limits = generous();
+  limits.power = 0.1;
+  Limiter limiter(limits, 8.5);
+  limiter.watchVelocity({1, 0, 0});
+  EXPECT_NEAR(applied(limiter, {0.8, 0, 0}).force.x(), 0.1, 1e-12);
+}
+
 TEST(Limiter, AClearBeginsTheRampAnew) {
   scene::Limits limits = generous();
   limits.ramp_in = 0.1;

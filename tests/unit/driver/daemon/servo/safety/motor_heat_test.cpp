@@ -81,6 +81,18 @@ TEST(MotorHeat, SparesFromTenKelvinBelowItsLimitAndIsAFaultFiveBeyond) {
   EXPECT_TRUE(spared && hot);
 }
 
+TEST(MotorHeat, IsNoFaultAtFiveKelvinBeyondItsLimitButAboveThem) {
+  for (const double ambient : {105.0, 105.001}) {
+    scene::Motor motor = re25();
+    motor.ambient = ambient;
+    motor.max_temperature = 100;
+    MotorHeat heat({motor});
+    const double none = 0;
+    heat.heat(&none, 0);
+    EXPECT_EQ(heat.overheated(), ambient > 105) << ambient;
+  }
+}
+
 TEST(MotorHeat, WatchesEveryMotor) {
   for (size_t hot = 0; hot < 3; ++hot) {
     MotorHeat heat({re25(), re25(), re25()});

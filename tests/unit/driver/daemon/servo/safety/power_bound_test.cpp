@@ -20,6 +20,23 @@ TEST(PowerBound, IsPowerOverSpeedWhereNothingLagsAndNothingAccelerates) {
   EXPECT_EQ(bound.most(-kAlong, 1), HUGE_VAL) << "what the hand does is its own";
 }
 
+TEST(PowerBound, ReckonsWithHalfAsMuchAgainAsWasSeen) {
+  PowerBound bound;
+  bound.expect(2e-3, 0);
+  bound.watch(Vector3d::Zero());
+  bound.pass(1e-3);
+  bound.watch({0.01, 0, 0});  // 10 m/s^2, for 3 ms
+  EXPECT_NEAR(1 / bound.most(kAlong, 1), 0.01 + 1.5 * 10 * 3e-3, 1e-9);
+}
+
+TEST(PowerBound, TakesTheFirstEstimateForNoAcceleration) {
+  PowerBound bound;
+  bound.expect(2e-3, 0);
+  bound.pass(1e-3);
+  bound.watch({0.5, 0, 0});  // after a pause, the hand in full motion
+  EXPECT_NEAR(bound.most(kAlong, 1), 2, 1e-12);
+}
+
 TEST(PowerBound, ReckonsWithTheLagAndTheAccelerationsOfLate) {
   PowerBound bound;
   bound.expect(2e-3, 0);

@@ -17,6 +17,12 @@ TEST(SampleSpeed, IsTheWayOverTheTimeBetweenTwoStamps) {
   EXPECT_NEAR(speed.update({5, 0.003, 0.004}, 3'000'000, 2e-3), 2.5, 1e-9);
 }
 
+TEST(SampleSpeed, OfAnArmThatNamesNoRateTakesTwoMillisecondsAtLeast) {
+  SampleSpeed speed(0, 0);
+  speed.update({0, 0, 0}, 1'000'000, 1);
+  EXPECT_NEAR(speed.update({0.01, 0, 0}, 1'100'000, 1e-4), 5, 1e-9);
+}
+
 /// Measured each ms, delivered two at a time and stamped as they come: nobody moved twice as fast.
 TEST(SampleSpeed, OfPairsIsThatOfTheHand) {
   SampleSpeed speed(1000, 0);

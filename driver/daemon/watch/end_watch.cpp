@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include "watch/end_watch.hpp"
+
+#include <chrono>
+#include <utility>
+
+namespace hapticd::watch {
+
+EndWatch::~EndWatch() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  stopped_.notify_one();
+  thread_.join();
+}
+
+std::error_code EndWatch::start() {
+  return thread_.start("hapticd-watch", [this] { watch(); });
+}
+
+void EndWatch::watch() {
+  std::unique_lock lock(mutex_);
+  while (!stopped_.wait_for(lock, std::chrono::nanoseconds(kLookEvery), [this] { return stop_; })) look(monotonicNow());
+}
+
+/// A run of slow ticks ramps its forces out first, however long that takes; one whose tick does not end never will.
+void EndWatch::look(Nanoseconds now) noexcept {
+  const uint64_t ticks = servo_.ticks();
+  const bool moved = std::exchange(ticks_, ticks) != ticks;
+  if (servo_.stopAsked() == 0 || moved) {
+    still_since_ = now;
+    return;
+  }
+  if (now - still_since_ >= kEndWithin && !std::exchange(told_, true)) late_();
+}
+
+}  // namespace hapticd::watch

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+/// Text for handlers of signals: nothing here allocates.
+#pragma once
+#include <unistd.h>
+
+#include <cstddef>
+
+namespace hapticd::watch {
+
+constexpr size_t kLongestPath = 1024;
+
+/// A line put together without the C library's buffers.
+class Line {
+ public:
+  Line& add(const char* text) noexcept {
+    for (; *text != '\0' && length_ + 1 < sizeof text_; ++text) text_[length_++] = *text;
+    text_[length_] = '\0';
+    return *this;
+  }
+  /// A plugin's name as part of a file's: whatever it holds, it stays in its folder.
+  Line& addName(const char* name) noexcept {
+    for (; *name != '\0' && length_ + 1 < sizeof text_; ++name) {
+      const bool plain = (*name >= 'a' && *name <= 'z') || (*name >= 'A' && *name <= 'Z') ||
+                         (*name >= '0' && *name <= '9') || *name == '_' || *name == '-';
+      text_[length_++] = plain ? *name : '_';
+    }
+    text_[length_] = '\0';
+    return *this;
+  }
+  const char* text() const noexcept { return text_; }
+  bool write(int fd) const noexcept { return ::write(fd, text_, length_) == static_cast<ssize_t>(length_); }
+
+ private:
+  char text_[3 * kLongestPath] = "";
+  size_t length_ = 0;
+};
+
+}  // namespace hapticd::watch

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdlib>
+
+#include "watch/process_end.hpp"
+
+namespace hapticd::watch {
+
+namespace {
+std::atomic<void (*)()> told_first{nullptr};
+
+[[noreturn]] [[maybe_unused]] void plainExit(int code) noexcept {
+  if (void (*heard)() = told_first.load()) heard();
+  endProcess(code);
+}
+}  // namespace
+
+void onPlainExit(void (*heard)()) {
+  told_first.store(heard);
+}
+
+void endProcess(int code) noexcept {
+  for (;;) syscall(SYS_exit_group, code);
+}
+
+}  // namespace hapticd::watch
+
+#ifndef HAPTICD_SANITIZED
+// In the place of the C library's: modules find the program's names before that one's. What it calls itself, as in
+// exit() and posix_spawn(), stays its own. The sanitizers replace these as well.
+extern "C" {
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): these names are the C library's
+__attribute__((visibility("default"))) void _exit(int code) {
+  hapticd::watch::plainExit(code);
+}
+__attribute__((visibility("default"))) void _Exit(int code) noexcept {
+  hapticd::watch::plainExit(code);
+}
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
+}
+#endif

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/arm_reach.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace hapticd::diagnostics {
+namespace {
+
+using Eigen::Vector3d;
+
+/// [m] From a tip to the model in one of its poses; a box is nearer than what it holds.
+double awayFrom(const Eigen::AlignedBox3d& box, const scene::Pose& pose, const Vector3d& tip) {
+  return box.exteriorDistance(Vector3d(pose.orientation.conjugate() * (tip - pose.position)));
+}
+
+/// [m] Over all poses of its path; nothing where nobody knows.
+std::optional<double> distanceTo(const scene::Model& model, const host::ShapeInstance& shape,
+                                 const servo::Contact& contact, const Vector3d& tip) {
+  Eigen::AlignedBox3d box;
+  if (shape.bounds(box.min().data(), box.max().data())) {
+    double least = awayFrom(box, model.pose, tip);
+    for (const scene::PathPoint& point : model.path) least = std::min(least, awayFrom(box, point.pose, tip));
+    return least;
+  }
+  if (!contact.traced || model.kinematic) return std::nullopt;
+  return (Vector3d(contact.world.point) - tip).norm();
+}
+
+}  // namespace
+
+double reachOf(const scene::Device& device, const host::DeviceInstance& arm, const Vector3d& tip_device) {
+  constexpr int kPoses = 4000;
+  std::vector<double> limits;
+  for (const scene::Value& value : device.parameters)
+    if (value.id == "arm.limits") limits = value.numbers;
+  const uint32_t joints = arm.kinematics().joint_count;
+  const bool given = limits.size() == 2 * joints;
+  std::mt19937_64 random(1);  // the same poses in every run
+  double farthest = 0;
+  for (int pose = 0; pose < kPoses; ++pose) {
+    std::array<double, HDV_MAX_JOINTS> q{};
+    for (size_t i = 0; i < joints; ++i) {
+      const double part = static_cast<double>(random() >> 11) * 0x1p-53;
+      q[i] = given ? limits[2 * i] + part * (limits[2 * i + 1] - limits[2 * i]) : M_PI * (2 * part - 1);
+    }
+    Vector3d tip = Vector3d::Zero();
+    std::array<double, 4> turn{};
+    if (arm.kinematics().forward(arm.handle(), q.data(), tip.data(), turn.data()) < 0 || !tip.allFinite()) continue;
+    farthest = std::max(farthest, (tip - tip_device).norm());
+  }
+  return farthest;
+}
+
+std::optional<NearestModel> nearestModel(const scene::Scene& scene, const servo::World& world, servo::Core& core,
+                                         const Vector3d& tip, uint32_t probe) {
+  std::optional<NearestModel> nearest;
+  for (uint32_t i = 0; i < scene.models.size(); ++i) {
+    const auto away = distanceTo(scene.models[i], *world.shapes()[i], core.contact(i, probe), tip);
+    if (!away) return std::nullopt;
+    if (!nearest || *away < nearest->away) nearest = {i, *away};
+  }
+  return nearest;
+}
+
+}  // namespace hapticd::diagnostics

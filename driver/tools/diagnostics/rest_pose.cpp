@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/rest_pose.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace hapticd::diagnostics {
+namespace {
+
+using document::Node;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Numbers of a list of this length; none of any other.
+std::vector<double> numbersOf(const Node* list, size_t count) {
+  std::vector<double> numbers;
+  if (list == nullptr || list->items.size() != count) return numbers;
+  for (const Node& item : list->items) numbers.push_back(document::toNumber(item.scalar).value_or(0));
+  return numbers;
+}
+
+struct Link {
+  double a, alpha, d, theta;
+  double low = -M_PI / 2, high = M_PI / 2;  // [rad]; without limits half of what a joint usually turns
+};
+
+/// Standard Denavit-Hartenberg, read leniently: whatever is wrong in the file was told before.
+struct Links {
+  std::vector<Link> rows;
+  Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
+  Vector3d tool = Vector3d::Zero();
+};
+
+Links linksOf(const Node& arm) {
+  Links links;
+  links.base.translation() = vectorBelow(arm, "origin");
+  if (const std::vector<double> q = numbersOf(arm.find("base_orientation"), 4); !q.empty())
+    links.base.rotate(Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized());
+  links.tool = vectorBelow(arm, "tool_position");
+  const Node *rows = arm.find("dh"), *limits = arm.find("limits");
+  for (size_t i = 0; rows != nullptr && i < rows->items.size(); ++i) {
+    const std::vector<double> row = numbersOf(&rows->items[i], 4);
+    if (row.empty()) continue;
+    Link link{row[0], row[1], row[2], row[3]};
+    const bool given = limits != nullptr && i < limits->items.size();
+    if (const std::vector<double> limit = numbersOf(given ? &limits->items[i] : nullptr, 2); !limit.empty())
+      link.low = limit[0], link.high = limit[1];
+    links.rows.push_back(link);
+  }
+  return links;
+}
+
+/// The tip and how it moves with each joint, as singular values: the greatest first.
+struct Motion {
+  Vector3d tip, values = Vector3d::Zero();
+  Matrix3d directions;
+};
+
+Motion motionAt(const Links& links, const std::vector<double>& q) {
+  std::vector<Vector3d> axes, points;
+  Eigen::Isometry3d frame = links.base;
+  for (size_t i = 0; i < links.rows.size(); ++i) {
+    const Link& link = links.rows[i];
+    axes.emplace_back(frame.linear().col(2)), points.emplace_back(frame.translation());
+    frame.rotate(Eigen::AngleAxisd(link.theta + q[i], Vector3d::UnitZ()));
+    frame.translate(Vector3d(link.a, 0, link.d));
+    frame.rotate(Eigen::AngleAxisd(link.alpha, Vector3d::UnitX()));
+  }
+  Motion motion;
+  motion.tip = frame * links.tool;
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(3, std::max<Eigen::Index>(3, static_cast<Eigen::Index>(q.size())));
+  for (size_t i = 0; i < q.size(); ++i) J.col(static_cast<Eigen::Index>(i)) = axes[i].cross(motion.tip - points[i]);
+  const Eigen::JacobiSVD<Eigen::MatrixXd> parts(J, Eigen::ComputeThinU);
+  motion.values = parts.singularValues().head<3>();
+  motion.directions = parts.matrixU();
+  return motion;
+}
+
+/// A pose to choose from: how far the tip moves in the direction in which it moves least, and how far it is from the
+/// middle.
+struct Candidate {
+  std::vector<double> q;
+  Motion motion;
+  double away = 0;
+};
+
+std::vector<double> middleOf(const Links& links) {
+  std::vector<double> q;
+  for (const Link& link : links.rows) q.push_back((link.low + link.high) / 2);
+  return q;
+}
+
+/// The middle first, then poses at random, the same in every run.
+std::vector<Candidate> candidatesFor(const Links& links) {
+  constexpr int kPoses = 3000;
+  constexpr double kInside = 0.8;  // of the way between the stops
+  std::mt19937_64 random(1);
+  const std::vector<double> middle = middleOf(links);
+  std::vector<Candidate> all{{middle, motionAt(links, middle)}};
+  for (int pose = 0; pose < kPoses; ++pose) {
+    Candidate one{middle, {}};
+    for (size_t i = 0; i < middle.size(); ++i) {
+      const double part = (static_cast<double>(random() >> 11) * 0x1p-53 - 0.5) * kInside;
+      const double joint = middle[i] + part * (links.rows[i].high - links.rows[i].low);
+      one.q[i] = std::round(joint * 100) / 100;  // as it is told
+      one.away += part * part;
+    }
+    one.motion = motionAt(links, one.q);
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
+/// Directions in which the tip moves anywhere.
+int freedomOf(const std::vector<Candidate>& all) {
+  constexpr double kMoves = 1e-3;  // of the way of the direction in which it moves most
+  Vector3d most = Vector3d::Zero();
+  for (const Candidate& one : all) most = most.cwiseMax(one.motion.values);
+  int freedom = 0;
+  while (freedom < 3 && most[freedom] > kMoves * most[0]) ++freedom;
+  return freedom;
+}
+
+/// The tip is in one plane wherever the joints are, and not on the surface of a ball.
+bool staysInPlane(const std::vector<Candidate>& all, const Motion& motion) {
+  const Vector3d across = motion.directions.col(2);
+  return std::all_of(all.begin(), all.end(),
+                     [&](const Candidate& one) { return std::abs(across.dot(one.motion.tip - motion.tip)) < 1e-9; });
+}
+
+/// z as far as the tip can move so, or y, or x.
+Vector3d pushOf(const Motion& motion, int freedom) {
+  if (freedom == 3 || freedom == 0) return Vector3d::UnitZ();
+  const auto moves = motion.directions.leftCols(freedom);
+  for (const int axis : {2, 1, 0}) {
+    const Vector3d along = moves * (moves.transpose() * Vector3d::Unit(axis));
+    if (along.norm() > 0.5) return along.normalized();
+  }
+  return motion.directions.col(0);
+}
+
+}  // namespace
+
+Vector3d vectorBelow(const Node& map, std::string_view key) {
+  const std::vector<double> p = numbersOf(map.find(key), 3);
+  return p.empty() ? Vector3d(0, 0, 0) : Vector3d(p[0], p[1], p[2]);
+}
+
+RestPose restPoseOf(const Node& arm) {
+  const Links links = linksOf(arm);
+  RestPose rest;
+  if (links.rows.empty()) return rest;
+  const std::vector<Candidate> all = candidatesFor(links);
+  rest.freedom = freedomOf(all);
+  const int last = std::max(rest.freedom - 1, 0);
+  double best = 0;
+  for (const Candidate& one : all) best = std::max(best, one.motion.values[last]);
+  constexpr double kWellEnough = 0.2, kWell = 0.6;  // of the best
+  const Candidate* chosen = &all.front();
+  rest.middle = chosen->motion.values[last] >= kWellEnough * best;
+  for (const Candidate& one : all) {
+    const bool better = chosen == &all.front() || one.away < chosen->away;
+    if (!rest.middle && one.motion.values[last] >= kWell * best && better) chosen = &one;
+  }
+  rest.joints = chosen->q;
+  rest.tip = chosen->motion.tip;
+  rest.push = pushOf(chosen->motion, rest.freedom);
+  rest.flat = rest.freedom == 2 && staysInPlane(all, chosen->motion);
+  return rest;
+}
+
+}  // namespace hapticd::diagnostics

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/slow_arm.hpp"
+
+#include <algorithm>
+
+#include "diagnostics/wire_of.hpp"
+#include "host/device_instance.hpp"
+#include "servo/safety/held_command.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+double number(const scene::Device& device, const char* id) {
+  for (const scene::Value& value : device.parameters)
+    if (value.id == id) return value.number;
+  return 0;
+}
+
+/// [N] as the limiter has it: the smaller of the two that are known.
+double forceOf(const scene::Device& device, double own) {
+  const double asked = device.limits.force;
+  return asked > 0 && own > 0 ? std::min(asked, own) : std::max(asked, own);
+}
+
+}  // namespace
+
+double namedRate(const scene::Device& device) {
+  if (const double given = number(device, "rate"); given > 0) return given;
+  const auto arm = host::DeviceInstance::create(device, [](int, const std::string&, const std::string&) {});
+  if (!arm) return 0;
+  const auto wire = wireOf(device, (*arm)->kinematics().joint_count);
+  return wire ? wire->rate : 0;
+}
+
+std::string slownessOf(const scene::Device& device, double servo_rate) {
+  if (device.module == "simulated") return "";
+  const double own = std::max(number(device, "device.max_force"), number(device, "max_force"));
+  return servo::describeSlow(servo_rate, namedRate(device), own, forceOf(device, own));
+}
+
+document::Problems slowArms(const scene::Scene& scene) {
+  document::Problems warnings;
+  for (const scene::Device& device : scene.devices)
+    if (const std::string slow = slownessOf(device, scene.servo.rate); !slow.empty())
+      document::report(warnings, scene.file.string(), 0, 0, "servo.rate", device.name + ": " + slow);
+  return warnings;
+}
+
+}  // namespace hapticd::diagnostics

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/travel_advice.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "diagnostics/node_path.hpp"
+#include "diagnostics/wire_of.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+using codec::Field;
+using codec::Role;
+using document::Node;
+
+/// From least to greatest.
+struct Way {
+  double low = 0, high = 0;
+  double length() const { return high - low; }
+};
+
+/// What a field can say; nothing for one that goes on past its end.
+std::optional<Way> sayable(const Field& field) {
+  if (field.role != Role::kPosition || field.wraps || field.type == codec::Type::kFloat) return std::nullopt;
+  const auto [least, most] = codec::rangeOf(field.type, field.bits);
+  const double a = least * field.scale + field.offset, b = most * field.scale + field.offset;
+  return Way{std::min(a, b), std::max(a, b)};
+}
+
+std::vector<double> limitsOf(const scene::Device& device) {
+  for (const scene::Value& value : device.parameters)
+    if (value.id == "arm.limits") return value.numbers;
+  return {};
+}
+
+/// Its zero is where the arm was held when it was calibrated: only the length of a way is known.
+bool zeroedByPose(const scene::Device& device) {
+  return std::any_of(device.parameters.begin(), device.parameters.end(),
+                     [](const scene::Value& value) { return value.id == "calibration.method" && value.number > 1; });
+}
+
+/// "" or what of the way between the stops a field cannot say.
+std::string tooShort(const Field& field, const Way& said, const Way& stops, bool placed) {
+  const double room = 0.02 * stops.length();  // stops are measured to no better
+  const bool covers =
+      placed ? said.low <= stops.low + room && said.high >= stops.high - room : said.length() >= stops.length() - room;
+  if (covers || !(stops.length() > 0)) return "";
+  const double times = placed ? std::max(std::abs(stops.low), std::abs(stops.high)) /
+                                    std::max({std::abs(said.low), std::abs(said.high), 1e-300})
+                              : stops.length() / said.length();
+  return fmt::format(
+      "its numbers end at {:.4g} and {:.4g}, before arm.limits of joint {} do, {:.4g} and {:.4g}; expected "
+      "{}a wider type, an offset, or wraps: true where it counts on past its end",
+      said.low, said.high, field.index + 1, stops.low, stops.high,
+      times > 1.05 ? fmt::format("a scale that is {:.3g} times as large, ", times) : std::string());
+}
+
+/// [m] From corner to corner of the box of all places of the tip, each joint in three positions.
+double extentOf(const host::DeviceInstance& arm, const std::vector<Way>& ways) {
+  Eigen::AlignedBox3d box;
+  size_t count = 1;
+  for (size_t i = 0; i < ways.size(); ++i) count *= 3;
+  for (size_t pose = 0; pose < count; ++pose) {
+    std::array<double, HDV_MAX_JOINTS> q{};
+    for (size_t i = 0, left = pose; i < ways.size(); ++i, left /= 3)
+      q[i] = ways[i].low + ways[i].length() * 0.5 * static_cast<double>(left % 3);
+    Eigen::Vector3d tip = Eigen::Vector3d::Zero();
+    std::array<double, 4> turn{};
+    if (arm.kinematics().forward(arm.handle(), q.data(), tip.data(), turn.data()) >= 0 && tip.allFinite())
+      box.extend(tip);
+  }
+  return box.isEmpty() ? 0 : box.diagonal().norm();
+}
+
+/// Without stops in the file its workspace is all that tells how far the arm was meant to move.
+void narrowWorkspace(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
+                     const codec::Wire& wire, document::Problems& warnings) {
+  constexpr size_t kMostJoints = 6;  // 729 poses
+  constexpr double kSmall = 0.35;    // of the workspace's width
+  const Node* given = find(root, {"limits", "workspace"});
+  const size_t joints = arm.kinematics().joint_count;
+  if (given == nullptr || device.limits.workspace <= 0 || joints > kMostJoints) return;
+  std::vector<Way> ways(joints, Way{});
+  for (const Field& field : wire.input.fields)
+    if (field.role == Role::kPosition) {
+      const auto said = sayable(field);
+      if (!said || field.index >= joints) return;
+      ways[field.index] = {std::max(said->low, -M_PI), std::min(said->high, M_PI)};
+    }
+  const double extent = extentOf(arm, ways), whole = extentOf(arm, std::vector<Way>(joints, Way{-M_PI, M_PI}));
+  if (extent >= kSmall * 2 * device.limits.workspace || extent >= 0.5 * whole) return;
+  document::report(
+      warnings, device.file.string(), given->line, given->column, "limits.workspace",
+      fmt::format("{:g} m about the origin, but the positions that wire.input can say move the tip by {:.3g} "
+                  "m at most; expected a larger scale of the positions (rad of one count), or a smaller "
+                  "workspace",
+                  device.limits.workspace, extent));
+}
+
+}  // namespace
+
+void adviseTravel(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
+                  document::Problems& warnings) {
+  const size_t joints = arm.kinematics().joint_count;
+  const auto wire = wireOf(device, joints);
+  const Node* fields = find(root, {"parameters", "wire", "input", "fields"});
+  if (!wire || fields == nullptr) return;
+  const std::vector<double> limits = limitsOf(device);
+  if (limits.size() != 2 * joints) return narrowWorkspace(root, device, arm, *wire, warnings);
+  for (size_t i = 0; i < wire->input.fields.size() && i < fields->items.size(); ++i) {
+    const Field& field = wire->input.fields[i];
+    const auto said = sayable(field);
+    if (!said || field.index >= joints) continue;
+    const Way stops{limits[2u * field.index], limits[2u * field.index + 1]};
+    const std::string wrong = tooShort(field, *said, stops, !zeroedByPose(device));
+    if (wrong.empty()) continue;
+    const Node* scale = fields->items[i].find("scale");
+    const Node& at = scale != nullptr ? *scale : fields->items[i];
+    document::report(warnings, device.file.string(), at.line, at.column,
+                     fmt::format("parameters.wire.input.fields[{}].scale", i), wrong);
+  }
+}
+
+}  // namespace hapticd::diagnostics

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#include "kernels/brep/row_box.hpp"
+
+#include <cmath>
+
+namespace hapticd::brep {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+AlignedBox3d TurnedBox::upright() const {
+  const Vector3d center = frame.transpose() * box.center();
+  const Vector3d half = frame.cwiseAbs().transpose() * (0.5 * box.sizes());
+  const Vector3d rounding = Vector3d::Constant(1e-14 * (center.cwiseAbs() + half).maxCoeff());
+  return {center - half - rounding, center + half + rounding};
+}
+
+RowBox rowBox(const TurnedBox& turned, const BoxTree& tree) {
+  const Vector3d center = turned.frame.transpose() * turned.box.center() - tree.origin();
+  const Vector3d half = 0.5 * turned.box.sizes();
+  RowBox row;
+  for (int i = 0; i < 3; ++i) {
+    row.center[i] = static_cast<float>(center[i]);
+    for (int k = 0; k < 3; ++k) row.axis[i][k] = static_cast<float>(turned.frame(i, k));
+    // Along a rounded axis the other two add a little; the margin is for the rounded center and the rounded probe.
+    row.half[i] = static_cast<float>(half[i] * (1 + 1e-6) + 1e-6 * half.sum() + tree.margin());
+  }
+  constexpr double kLeastRadii = 30;  // radii of half the box: what is as flat as
+                                      // this, the box holds as closely
+  if (!(turned.outer < kLeastRadii * half.maxCoeff())) return row;
+  const Vector3d middle = turned.box.center();
+  row.focus[0] = static_cast<float>(turned.focus[0] - middle[0]);
+  row.focus[1] = static_cast<float>(turned.focus[1] - middle[2]);
+  const double room = 2e-6 * (turned.outer + half.sum()) + 2 * tree.margin();
+  row.inner = static_cast<float>(turned.inner * (1 - 1e-6) - room);
+  row.outer = static_cast<float>(turned.outer * (1 + 1e-6) + room);
+  return row;
+}
+
+}  // namespace hapticd::brep

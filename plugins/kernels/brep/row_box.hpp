@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+/// The box that holds an element, turned with it: nearly flat or straight as they are, it bounds them far
+/// closer than the box of their tree.
+#pragma once
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "kernels/brep/box_tree.hpp"
+
+namespace hapticd::brep {
+
+/// A box in a frame of its own, as it is measured. What bends like an arc about a line along axis 1 is thinner than its
+/// box: it keeps between two cylinders about that line.
+struct TurnedBox {
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: unit axes at right angles
+  Eigen::AlignedBox3d box;                              ///< of frame * x, for every x that it holds
+  Eigen::Vector2d focus{0, 0};                          ///< where the line is, along axes 0 and 2
+  double inner = 0;                                     ///< [m] radii of the cylinders
+  double outer = std::numeric_limits<double>::infinity();
+
+  /// [main] The axes' box about it.
+  Eigen::AlignedBox3d upright() const;
+};
+
+/// The same as a search sees it: in single precision, in the coordinates of its tree's nodes [m].
+struct RowBox {
+  float center[3]{}, axis[3][3]{};
+  float half[3]{};   ///< what it holds is no farther than this from the center along each axis
+  float focus[2]{};  ///< of the cylinders, from the center along axes 0 and 2
+  float inner = -kWhole, outer = kWhole;
+
+  static constexpr float kWhole = 1e18F;  ///< its square is a float
+};
+
+/// Four of them that are compared at once.
+struct alignas(64) FourRowBoxes {
+  Float4 center[3], axis[3][3];
+  Float4 half[3];
+  Float4 focus[2], inner, outer;
+};
+
+/// [rt] Four empty places, infinitely far from everything.
+inline FourRowBoxes emptyFour(const RowBox&) noexcept {
+  FourRowBoxes boxes{};
+  boxes.half[0] = Float4{} - RowBox::kWhole;
+  boxes.outer = Float4{} + RowBox::kWhole;
+  return boxes;
+}
+
+/// [rt] Makes a box one of four.
+inline void put(const RowBox& box, int lane, FourRowBoxes& to) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    to.center[i][lane] = box.center[i];
+    for (int k = 0; k < 3; ++k) to.axis[i][k][lane] = box.axis[i][k];
+    to.half[i][lane] = box.half[i];
+  }
+  for (int i = 0; i < 2; ++i) to.focus[i][lane] = box.focus[i];
+  to.inner[lane] = box.inner;
+  to.outer[lane] = box.outer;
+}
+
+/// [main] What single precision leaves of the axes is what the result holds the box along.
+RowBox rowBox(const TurnedBox& turned, const BoxTree& tree);
+
+/// Rounding of the axes, and of the way to a probe, moves the bound by less than this share.
+inline constexpr float kRowShare = 1 - 1e-5F;
+
+/// [rt] Lower bounds of the squared distances [m^2] to what each of four boxes holds.
+inline Float4 rowDistances(const FourRowBoxes& boxes, const BoxProbe& probe) noexcept {
+  constexpr Float4 kZero{};
+  const Float4 way[3] = {probe.at[0] - boxes.center[0], probe.at[1] - boxes.center[1], probe.at[2] - boxes.center[2]};
+  Float4 along[3], square[3];
+  for (int i = 0; i < 3; ++i) {
+    along[i] = way[0] * boxes.axis[i][0] + way[1] * boxes.axis[i][1] + way[2] * boxes.axis[i][2];
+    const Float4 beyond = (along[i] > kZero ? along[i] : -along[i]) - boxes.half[i];
+    const Float4 beside = beyond > kZero ? beyond : kZero;
+    square[i] = beside * beside;
+  }
+  const Float4 x = along[0] - boxes.focus[0], z = along[2] - boxes.focus[1];
+  const Float4 radius = squareRoots(x * x + z * z);
+  const Float4 inside = boxes.inner - radius, outside = radius - boxes.outer;
+  const Float4 either = inside > outside ? inside : outside;
+  const Float4 beside = either > kZero ? either : kZero;
+  const Float4 bent = beside * beside, flat = square[0] + square[2];
+  return ((bent > flat ? bent : flat) + square[1]) * kRowShare;
+}
+
+/// [rt] The same for one.
+inline float rowDistance(const RowBox& box, const BoxProbe& probe) noexcept {
+  const float way[3] = {probe.at[0][0] - box.center[0], probe.at[1][0] - box.center[1], probe.at[2][0] - box.center[2]};
+  float along[3], square[3];
+  for (int i = 0; i < 3; ++i) {
+    along[i] = way[0] * box.axis[i][0] + way[1] * box.axis[i][1] + way[2] * box.axis[i][2];
+    const float beside = std::max(std::abs(along[i]) - box.half[i], 0.0F);
+    square[i] = beside * beside;
+  }
+  const float x = along[0] - box.focus[0], z = along[2] - box.focus[1];
+  const float radius = std::sqrt(x * x + z * z);
+  const float beside = std::max(std::max(box.inner - radius, radius - box.outer), 0.0F);
+  return (std::max(beside * beside, square[0] + square[2]) + square[1]) * kRowShare;
+}
+
+}  // namespace hapticd::brep

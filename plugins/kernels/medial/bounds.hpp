@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+/// Bounds that several files of this room hold to.
+#pragma once
+
+namespace hapticd::medial {
+
+inline constexpr double kNearAxis = 1e-4;        ///< [m] from so near the direction to the probe says little
+inline constexpr double kSteepestRadius = 0.99;  ///< slope of the radius beyond which spheres are nested
+
+}  // namespace hapticd::medial

@@ -1,0 +1,20 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Every program ends a wrong command line with 2 and says what is wrong; its help ends with 0.
+
+Usage: usage.py PROGRAM...
+"""
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
+from e2e import check, finish, program
+
+for path in sys.argv[1:]:
+    name, run = os.path.basename(path), program(path)
+    code, out, err = run("--help")
+    check(f"{name} --help ends with 0 and shows its options", code == 0 and "--help" in out and not err, f"{code} {out} {err}")
+    code, out, err = run("--no-such-option")
+    check(f"{name} ends a wrong option with 2", code == 2 and not out, f"{code} {out}")
+    check(f"{name} says how to go on", "--help" in err, err)
+finish()

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+/// What a program reads from its command line, and what it says of it.
+#include "command_line/command_line.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+namespace hapticd::command_line {
+namespace {
+
+/// A program with one subcommand that has an option of each kind.
+struct Example {
+  Program program{"An example.", "example"};
+  Command draw = program.addSubcommand("draw", "Draw something.");
+  std::string file, colour = "red";
+  double scale = 1;
+  int copies = 1;
+  std::optional<double> angle;
+  std::vector<double> corner, weights;
+  bool quiet = false;
+  int calls = 0;
+
+  Example() {
+    program.requireSubcommand();
+    program.version("example 7");
+    draw.addOption("file", file, "file to draw").required();
+    draw.addOption("--colour", colour, "its colour").oneOf({"red", "blue"});
+    draw.addOption("--scale", scale, "its scale").within(0.5, 2).showDefault();
+    draw.addOption("--copies", copies, "how many").wholeWithin(1, 9);
+    draw.addOption("--angle", angle, "its angle [rad]");
+    draw.addOption("--corner", corner, "x y").expected(2).needs("--angle");
+    draw.addOption("--weights", weights, "numbers").delimiter(',').oneValueEach();
+    draw.addFlag("-q,--quiet", quiet, "say nothing").excludes("--copies");
+    draw.callback([this] { ++calls; });
+  }
+
+  /// The exit code, or -1 for a program that goes on. `said` is what it printed.
+  int parse(std::vector<const char*> words) {
+    words.insert(words.begin(), "example");
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    const auto ended = program.parse(static_cast<int>(words.size()), words.data());
+    said = testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr();
+    return ended.value_or(-1);
+  }
+  std::string said;
+};
+
+TEST(CommandLine, ReadsEveryKindOfValueAndRunsTheCommandOnce) {
+  Example e;
+  ASSERT_EQ(e.parse({"draw", "a.svg", "--colour", "blue", "--scale", "1.5", "--angle", "0.25", "--corner", "3", "4",
+                     "--weights", "1,2", "--weights", "3", "-q"}),
+            -1)
+      << e.said;
+  EXPECT_EQ(e.file, "a.svg");
+  EXPECT_EQ(e.colour, "blue");
+  EXPECT_EQ(e.scale, 1.5);
+  EXPECT_EQ(e.angle, 0.25);
+  EXPECT_EQ(e.corner, (std::vector<double>{3, 4}));
+  EXPECT_EQ(e.weights, (std::vector<double>{1, 2, 3}));
+  EXPECT_TRUE(e.quiet);
+  EXPECT_EQ(e.copies, 1) << "was not given";
+  EXPECT_TRUE(e.draw.given("--scale"));
+  EXPECT_FALSE(e.draw.given("--copies"));
+  EXPECT_EQ(e.calls, 1);
+}
+
+TEST(CommandLine, RefusesWhatBreaksARuleWithTheExitCodeOfBadUsage) {
+  const std::vector<std::pair<std::vector<const char*>, std::string>> wrong = {
+      {{}, "A subcommand is required"},
+      {{"draw"}, "file is required"},
+      {{"draw", "a", "--colour", "green"}, "--colour: green not in {red,blue}"},
+      {{"draw", "a", "--scale", "3"}, "--scale: Value 3 not in range 0.5 to 2"},
+      {{"draw", "a", "--scale", "nan"}, "--scale: Value nan not in range 0.5 to 2"},
+      {{"draw", "a", "--scale", "much"}, "--scale: Value much not in range 0.5 to 2"},
+      {{"draw", "a", "--copies", "0"}, "--copies: Value 0 not in range 1 to 9"},
+      {{"draw", "a", "--angle", "x"}, "--angle"},
+      {{"draw", "a", "--corner", "1", "2"}, "--corner requires --angle"},
+      {{"draw", "a", "--corner", "1", "--angle", "2"}, "--corner"},
+      {{"draw", "a", "-q", "--copies", "2"}, "excludes"},
+      {{"draw", "a", "--weights", "1", "2"}, "2"},
+      {{"draw", "a", "--other"}, "--other"},
+  };
+  for (const auto& [words, text] : wrong) {
+    Example e;
+    EXPECT_EQ(e.parse(words), kBadUsage) << text;
+    EXPECT_NE(e.said.find(text), std::string::npos) << "expected \"" << text << "\" in: " << e.said;
+    EXPECT_EQ(e.calls, 0) << text;
+  }
+}
+
+TEST(CommandLine, HelpAndVersionEndTheProgramWell) {
+  Example e;
+  EXPECT_EQ(e.parse({"--version"}), 0);
+  EXPECT_EQ(e.said, "example 7\n");
+  EXPECT_EQ(e.parse({"draw", "--help"}), 0);
+  for (const char* text : {"Draw something.", "file TEXT REQUIRED", "--colour TEXT:{red,blue}", "-q,--quiet",
+                           "--scale FLOAT:FLOAT in [0.5 - 2]=1"})
+    EXPECT_NE(e.said.find(text), std::string::npos) << "expected \"" << text << "\" in: " << e.said;
+  EXPECT_EQ(e.calls, 0);
+}
+
+TEST(CommandLine, TellsItsTableForManualsAndCompletions) {
+  Example e;
+  ASSERT_EQ(e.program.subcommands().size(), 1u);
+  const Command draw = e.program.subcommands()[0];
+  EXPECT_EQ(draw.name(), "draw");
+  EXPECT_EQ(draw.description(), "Draw something.");
+  const std::vector<Option> options = draw.options();
+  ASSERT_EQ(options.size(), 9u);
+  EXPECT_TRUE(options[0].isHelp());
+  EXPECT_TRUE(options[1].positional());
+  EXPECT_EQ(options[1].positionalName(), "file");
+  EXPECT_FALSE(options[2].positional());
+  EXPECT_EQ(options[2].valueName(), "TEXT:{red,blue}");
+  EXPECT_EQ(options[2].longNames(), std::vector<std::string>{"colour"});
+  EXPECT_EQ(options[8].valueName(), "");
+  EXPECT_EQ(options[8].allNames(), "-q,--quiet");
+  EXPECT_EQ(options[8].description(), "say nothing");
+}
+
+TEST(CommandLine, LeavesTheWordsOfAForeignProgramAlone) {
+  Program program("A wrapper.", "wrapper");
+  std::string config;
+  bool env = false;
+  program.addOption("--config", config, "a file");
+  program.optionsMayFollowSubcommand();
+  const Command client = program.addSubcommand("client", "Run a program.");
+  client.addFlag("--env", env, "print");
+  client.takesForeignCommandLine();
+  const char* const words[] = {"wrapper", "client", "--env", "./it", "--config", "x", "-v"};
+  ASSERT_EQ(program.parse(7, words), std::nullopt);
+  EXPECT_TRUE(env);
+  EXPECT_EQ(config, "");
+  EXPECT_EQ(client.foreignCommandLine(), (std::vector<std::string>{"./it", "--config", "x", "-v"}));
+}
+
+TEST(CommandLine, ReadsWordsAndLists) {
+  double number = 0;
+  EXPECT_TRUE(read("1e3", number));
+  EXPECT_EQ(number, 1000);
+  EXPECT_FALSE(read("1e3x", number));
+  int whole = 0;
+  EXPECT_FALSE(read("1.5", whole));
+  EXPECT_EQ(split("a,,b", ','), (std::vector<std::string>{"a", "", "b"}));
+  EXPECT_EQ(trimmed("  a b\t\n"), "a b");
+}
+
+}  // namespace
+}  // namespace hapticd::command_line

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+/// No box of a row is farther from a probe than a point of what it holds.
+#include "kernels/brep/row_box.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "kernels/brep/model.hpp"
+#include "sample_solids.hpp"
+#include "sample_splines.hpp"
+#include "traced_shape/model_file.hpp"
+
+namespace hapticd::brep {
+namespace {
+
+using Eigen::Array2d;
+using Eigen::Vector3d;
+
+constexpr int kAlong = 9;  ///< points along a curve or an axis of a surface
+
+std::vector<Vector3d> pointsOfSurface(const Model& model, std::uint32_t face, const Array2d& lo, const Array2d& hi) {
+  std::vector<Vector3d> points;
+  spline::SurfacePoint at;
+  for (int i = 0; i <= kAlong; ++i)
+    for (int j = 0; j <= kAlong; ++j) {
+      const Array2d uv = lo + Array2d(i, j) / kAlong * (hi - lo);
+      model.geometry().surface(model.part().faces[face].surface, uv[0], uv[1], at);
+      points.push_back(at.S);
+    }
+  return points;
+}
+
+std::vector<Vector3d> pointsOfEdge(const Model& model, std::uint32_t edge, double t0, double t1) {
+  std::vector<Vector3d> points;
+  spline::CurvePoint at;
+  for (int i = 0; i <= kAlong; ++i) {
+    model.geometry().curve(model.part().edges[edge].curve, t0 + (t1 - t0) * i / kAlong, at);
+    points.push_back(at.C);
+  }
+  return points;
+}
+
+std::vector<Vector3d> pointsOf(const Model& model, Element element) {
+  const Part& part = model.part();
+  const std::uint32_t i = element.index();
+  switch (element.kind()) {
+    case ElementKind::kFace:
+      return pointsOfSurface(model, i, model.face(i).trim.lo(), model.face(i).trim.hi());
+    case ElementKind::kLeaf:
+      return pointsOfSurface(model, model.leaf(i).face, model.leaf(i).lo, model.leaf(i).hi);
+    case ElementKind::kPiece:
+      return pointsOfEdge(model, model.piece(i).edge, model.piece(i).t0, model.piece(i).t1);
+    case ElementKind::kPole:
+      return {vec(part.vertices[part.edges[i].first_vertex].point)};
+    default:
+      return pointsOfEdge(model, i, part.edges[i].t0, part.edges[i].t1);
+  }
+}
+
+struct RowTally {
+  std::int64_t looks = 0, close = 0;
+};
+
+/// Seen from as far as a metre and as near as a nanometre.
+void lookAtRow(const Model& model, const BodyTree& body, const RowBox& box, Element element, std::mt19937& random,
+               RowTally& tally) {
+  std::uniform_real_distribution<double> exponent(-9, 0);
+  std::normal_distribution<double> normal;
+  const std::vector<Vector3d> points = pointsOf(model, element);
+  for (const Vector3d& start : points) {
+    const Vector3d aside(normal(random), normal(random), normal(random));
+    const Vector3d p = start + std::pow(10, exponent(random)) * aside;
+    double truth = 1e300;
+    for (const Vector3d& point : points) truth = std::min(truth, (p - point).squaredNorm());
+    const auto bound = static_cast<double>(rowDistance(box, BoxProbe(body.tree, p)));
+    ASSERT_LE(bound, truth) << p.transpose() << ", element of kind " << static_cast<int>(element.kind());
+    ++tally.looks;
+    tally.close += bound > 0.5 * truth;
+  }
+}
+
+void expectBounds(const char* name, Part part) {
+  SCOPED_TRACE(name);
+  const Model model(std::move(part));
+  std::mt19937 random(11);
+  RowTally tally;
+  for (std::uint32_t b = 0; b < model.part().bodies.size(); ++b) {
+    const BodyTree& body = model.body(b);
+    for (std::int32_t n = 0; n < static_cast<std::int32_t>(body.tree.nodeCount()); ++n)
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (body.tree.node(n).child[i] >= 0) continue;
+        const RowBox& box = body.rows[static_cast<std::size_t>(body.tree.node(n).row[i])];
+        lookAtRow(model, body, box, body.elements[BoxTree::rowOf(body.tree.node(n).child[i]).first], random, tally);
+        if (testing::Test::HasFatalFailure()) return;
+      }
+  }
+  std::printf("%s: %lld looks, %.0f %% of them close\n", name, static_cast<long long>(tally.looks),
+              100.0 * static_cast<double>(tally.close) / static_cast<double>(tally.looks));
+  EXPECT_GT(tally.close, tally.looks / 5);
+}
+
+Part sheet(const std::string& file) {
+  return samples::sheetOf(readModelFile(HAPTICD_SOURCE_DIR "/config/models/" + file).surfaces);
+}
+
+TEST(RowBox, BoundsNoLeafAndNoPieceFromAbove) {
+  expectBounds("teapot", sheet("teapot.yaml"));
+  expectBounds("goblet", sheet("goblet.yaml"));
+  expectBounds("torus", sheet("torus.yaml"));
+}
+
+TEST(RowBox, BoundsNoFaceAndNoEdgeFromAbove) {
+  expectBounds("bracket", samples::bracket());
+  expectBounds("capped cylinder", samples::cappedCylinder(10, 20));
+  expectBounds("cone", samples::cone(10, 20));
+  expectBounds("torus", samples::torus(20, 5));
+  expectBounds("sphere", samples::sphere(10));
+  expectBounds("plate of 30 holes", samples::plate(6, 5, 0.6, 1.6, 5));
+}
+
+}  // namespace
+}  // namespace hapticd::brep
