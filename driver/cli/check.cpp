@@ -10,6 +10,7 @@
 #include "cli/command.hpp"
 #include "diagnostics/device_advice.hpp"
 #include "diagnostics/device_trial.hpp"
+#include "diagnostics/hand_path_advice.hpp"
 #include "diagnostics/hand_start.hpp"
 #include "diagnostics/model_trial.hpp"
 #include "diagnostics/slow_arm.hpp"
@@ -96,6 +97,32 @@ document::Problems farModels(const scene::Scene& scene) {
   return warnings;
 }
 
+/// A stiffness in N/mm, as data sheets have it, is a thousandth of what was meant: nobody feels it.
+document::Problems softModels(const scene::Scene& scene) {
+  constexpr double kUnfelt = 5;  // [N/m] 10 mm of it give 0.05 N, less than most arms rub
+  document::Problems warnings;
+  for (size_t i = 0; i < scene.models.size(); ++i)
+    for (const scene::Value& value : scene.models[i].parameters)
+      if (value.id == "stiffness" && value.kind == HSP_REAL && value.number < kUnfelt)
+        document::report(warnings, value.place, "models[" + std::to_string(i) + "].parameters.stiffness",
+                         document::numberText(value.number) + " N/m cannot be felt: 1 mm gives " +
+                             document::numberText(value.number * 1e-3) + " N; expected N/m (1 N/mm is 1000 N/m)");
+  return warnings;
+}
+
+/// A bound for programs that the arm's own is below.
+document::Problems idleBounds(const scene::Scene& scene) {
+  document::Problems warnings;
+  for (const scene::Device& device : scene.devices) {
+    const double bound = device.limits.force > 0 ? device.limits.force : infoOf(device).max_force;
+    if (bound > 0 && scene.clients.max_force > bound)
+      document::report(warnings, document::Place{scene.file.string()}, "clients.max_force",
+                       document::numberText(scene.clients.max_force) + " N, but " + device.name + " gives " +
+                           document::numberText(bound) + " N at most: programs get no more; expected that or less");
+  }
+  return warnings;
+}
+
 /// What `run` leaves out: a scene that seems to be in order would miss a model.
 document::Problems quarantinedModels(const scene::Scene& scene) {
   document::Problems warnings;
@@ -142,10 +169,12 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   if (!scene || !found.empty()) return verdict;
   const scene::Scene full = withArm(*scene);
   document::Problems more = unstable(full, trial.stiffness);
-  for (const auto& found_by : {&farModels, &quarantinedModels, &slowArms})
+  for (const auto& found_by : {&farModels, &softModels, &idleBounds, &quarantinedModels, &slowArms})
     for (const document::Problem& one : found_by(full)) more.push_back(one);
   document::Problems unread;
   if (const auto root = document::parseFile(file, unread)) adviseZeros(*root, file, more);
+  if (!options.files_only)
+    for (const document::Problem& one : unreachableRows(full)) more.push_back(one);
   if (!options.files_only)
     for (const document::Problem& one : adviseHands(full)) more.push_back(one);
   if (!options.device.empty())  // what its own check says

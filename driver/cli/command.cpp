@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -53,6 +54,14 @@ void applyDaemon(const scene::Daemon& daemon, scene::Scene& scene) {
 }
 
 }  // namespace
+
+std::string wrongPicture(const std::string& file) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  for (const char* other : {".png", ".jpg", ".jpeg", ".pdf", ".gif", ".webp", ".PNG", ".JPG", ".PDF"})
+    if (ending == other)
+      return file + ": pictures are SVG, which every browser shows; expected a name that ends in .svg";
+  return "";
+}
 
 SetupErrors::SetupErrors() {
   const std::lock_guard lock(waiting().mutex);

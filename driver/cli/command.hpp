@@ -21,6 +21,9 @@ constexpr int kWorked = 0;                          ///< exit code: worked
 constexpr int kFailed = 1;                          ///< exit code: failed while running
 constexpr int kBadInput = command_line::kBadUsage;  ///< exit code: bad input or usage
 
+/// [main] Why a picture, which is always SVG, cannot have this name; "": it can.
+std::string wrongPicture(const std::string& file);
+
 /// Prints "error: MESSAGE" and gives back the exit code.
 int fail(int exit_code, const std::string& message);
 

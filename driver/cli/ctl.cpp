@@ -13,6 +13,7 @@
 #include "cli/ctl_lead.hpp"
 #include "cli/named_files.hpp"
 #include "control/client.hpp"
+#include "control/presence.hpp"
 #include "document/node.hpp"
 #include "status/page_file.hpp"
 
@@ -97,6 +98,24 @@ int sendScene(const CtlArguments& options, Json request) {
   return show(options, client->askWith(lineOf(request), numbers));
 }
 
+/// No more comes: a daemon that ended in order ends the stream in order, one that died does not.
+int endOfStream(const CtlArguments& options) {
+  if (!control::wasKilled(socketOf(options))) return kWorked;
+  return fail(kFailed, "the daemon " + options.name +
+                           " was killed, or it crashed: nothing more comes\n  fix: start it again with hapticd run");
+}
+
+/// `stop` answers once the daemon has ended and its name is free: what is started next shall find it so.
+int stop(const CtlArguments& options, const std::string& line) {
+  constexpr double kPatience = 10;  // [s]
+  const int told = send(options, line);
+  if (told != kWorked || control::waitForEnd(socketOf(options), kPatience)) return told;
+  return fail(kFailed,
+              "the daemon " + options.name +
+                  " was told to end, and has not within 10 s; its forces are off\n  fix: wait for its process, or "
+                  "end it with kill PID (hapticd top shows it)");
+}
+
 /// Prints the triangles, and then each frame of vertices when it comes, a line of JSON each: until nobody reads them
 /// or the daemon ends.
 int follow(const CtlArguments& options) {
@@ -115,7 +134,7 @@ int follow(const CtlArguments& options) {
   }
   while (std::fflush(stdout) == 0) {
     const auto answer = client->ask(lineOf({{"do", "vertices"}, {"model", options.model}, {"after", seen}}));
-    if (!answer) break;  // the daemon has ended
+    if (!answer) return endOfStream(options);
     const Json json = Json::parse(*answer, nullptr, false);
     if (!json.is_object() || !json.value("ok", false)) break;  // or the model has left
     if (json.contains("xyz")) std::printf("%s\n", answer->c_str());
@@ -162,7 +181,11 @@ const Command addRequest(const Command& parent, const char* word, const char* do
     Json json = {{"do", word}};
     build(json);
     const bool scene = std::string(word) == "add" || std::string(word) == "reload";
-    exit_code = options->follow ? follow(*options) : scene ? sendScene(*options, json) : send(*options, lineOf(json));
+    const bool stops = std::string(word) == "stop";
+    exit_code = options->follow ? follow(*options)
+                : scene         ? sendScene(*options, json)
+                : stops         ? stop(*options, lineOf(json))
+                                : send(*options, lineOf(json));
   });
   return command;
 }
@@ -217,7 +240,7 @@ int showEvents(const CtlArguments& options) {
   constexpr double kLong = 1e6;
   while (options.follow && std::fflush(stdout) == 0) {
     const auto line = client->hear(kLong);
-    if (!line) break;  // the daemon has ended
+    if (!line) return endOfStream(options);
     std::printf("%s\n", line->c_str());
   }
   return kWorked;

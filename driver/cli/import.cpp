@@ -88,6 +88,10 @@ int importPatches(const ImportArguments& options, const Placement& placement) {
   printProblems(problems, stderr);
   if (!text) return kBadInput;
   auto model = parseBpt(*text, options.file);
+  if (!model && std::filesystem::path(options.file).extension() != ".bpt")
+    return fail(kBadInput, options.file +
+                               ": its name does not say what it holds, and it holds no Bezier patches; expected "
+                               "the ending .bpt, .stl, .obj, .ply, .step, .stp, .iges, .igs or .brep");
   if (!model) return fail(kBadInput, model.error());
   placeModel(*model, placement);
   if (options.outward != "auto") model->reversed = options.outward == "reversed";

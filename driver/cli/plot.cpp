@@ -84,6 +84,7 @@ record::RunNotes notesOf(const record::Recording& recording, uint32_t arm, bool&
 
 int plot(const PlotArguments& options) {
   const std::string out = options.out.empty() ? options.file + ".svg" : options.out;
+  if (const std::string wrong = wrongPicture(out); !wrong.empty()) return fail(kBadInput, wrong);
   if (options.from && options.to && *options.from >= *options.to)
     return fail(kBadInput, "--from is not before --to, expected a time before it");
   auto recording = record::Recording::open(options.file);

@@ -238,6 +238,7 @@ Result<void> showPage(const RunArguments& options, const servo::RunFiles* files,
 
 /// What is wrong with the files that the run shall write; "" if nothing is.
 std::string wrongFiles(const RunArguments& options) {
+  if (const std::string wrong = wrongPicture(options.picture); !wrong.empty()) return wrong;
   for (const std::string& file : {options.report, options.picture, options.record})
     if (!writable(file)) return file + ": cannot be written, expected a file in a folder that you may write to";
   if (const std::string file = writtenTwice(options); !file.empty())

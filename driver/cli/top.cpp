@@ -17,6 +17,7 @@
 
 #include "base/clock.hpp"
 #include "cli/command.hpp"
+#include "control/presence.hpp"
 #include "diagnostics/client_advice.hpp"
 #include "host/class_table.hpp"
 #include "servo/safety/limiter.hpp"
@@ -255,6 +256,13 @@ bool ended(const status::Page& page) {
   return kill(static_cast<pid_t>(page.pid), 0) != 0 && errno == ESRCH;
 }
 
+/// A daemon that ended in order took its files along.
+int endOfDaemon(const TopArguments& options) {
+  if (!control::wasKilled(status::runtimeFolder(false) + "/" + options.name + ".sock")) return kWorked;
+  return fail(kFailed,
+              "the daemon " + options.name + " was killed, or it crashed\n  fix: start it again with hapticd run");
+}
+
 int watch(const TopArguments& options, const status::Page& page) {
   const RawKeys keys;
   std::string sort = options.sort;
@@ -275,7 +283,7 @@ int watch(const TopArguments& options, const status::Page& page) {
     std::fflush(stdout);
     if (ended(page)) {
       std::puts("the daemon has ended");
-      return kWorked;
+      return endOfDaemon(options);
     }
   }
   return kWorked;
@@ -291,10 +299,10 @@ int stream(const TopArguments& options, const status::Page& page) {
     view.held = passed > 0 ? static_cast<double>(view.now.tick - before.tick) / passed : 0;
     before = view.now;
     sortModels(view.models, options.sort);
-    if (std::printf("%s\n", toJson(view).dump().c_str()) < 0 || std::fflush(stdout) != 0) break;
+    if (std::printf("%s\n", toJson(view).dump().c_str()) < 0 || std::fflush(stdout) != 0) return kWorked;
     clock.waitUntil(clock.now() + static_cast<Nanoseconds>(options.every * 1e9));
   }
-  return kWorked;
+  return endOfDaemon(options);
 }
 
 int top(const TopArguments& options) {

@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "base/regular_file.hpp"
+#include "document/foreign_file.hpp"
 #include "document/node.hpp"
 #include "document/slip.hpp"
 
@@ -176,6 +177,10 @@ Place placeOf(const YAML::Mark& mark, const std::string& file) {
 }  // namespace
 
 std::optional<Node> parseText(const std::string& text, const std::string& file, Problems& problems) {
+  if (const std::string foreign = foreignFile(text, file); !foreign.empty()) {
+    report(problems, file, 1, 1, "", foreign);
+    return std::nullopt;
+  }
   if (const size_t bad = firstBadByte(text); bad != std::string::npos) {
     report(problems, placeOf(text, bad, file), "",
            "a byte that is not text (code " + std::to_string(static_cast<unsigned char>(text[bad])) +

@@ -9,8 +9,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 
 #include "base/clock.hpp"
+#include "control/presence.hpp"
 
 namespace hapticd::control {
 
@@ -52,12 +54,14 @@ bool connectTo(const std::string& file) {
 
 Result<Client> Client::connect(const std::string& file) {
   const int fd = connected(file);
-  if (fd < 0)
-    return Error{
-        "no daemon answers at " + file + ": " +
-        (errno == EAGAIN ? "the daemon is busy, and its queue is full" : std::strerror(errno)) +
-        "\n  fix: start one with hapticd run, or name a running one with --name; only its user and group may connect"};
-  return Client(file, fd);
+  if (fd >= 0) return Client(file, fd);
+  const std::string why = errno == EAGAIN ? "the daemon is busy, and its queue is full" : std::strerror(errno);
+  std::string names;
+  for (const std::string& name : running(std::filesystem::path(file).parent_path().string()))
+    names += (names.empty() ? " (" : ", ") + name;
+  return Error{"no daemon answers at " + file + ": " + why +
+               "\n  fix: start one with hapticd run, or name a running one" + (names.empty() ? "" : names + ")") +
+               " with --name; only its user and group may connect"};
 }
 
 /// The kernel says so as soon as the other end is closed, however its process ended.

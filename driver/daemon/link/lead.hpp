@@ -14,6 +14,8 @@
 
 namespace hapticd::link {
 
+constexpr double kLargestPush = 1e6;  ///< [N], [N m] a record with a number beyond it is refused
+
 /// A record behind a count that is odd while the record is written. Lives in shared memory, zeroed at first.
 template <class Record>
 class LeadSlot {

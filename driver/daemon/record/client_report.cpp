@@ -33,6 +33,10 @@ void add(std::vector<ClientReport>& all, const ClientReport& one) {
   same->next_tick += one.next_tick;
   same->silences += one.silences;
   same->largest_n = std::max(same->largest_n, one.largest_n);
+  same->asked_n = std::max(same->asked_n, one.asked_n);
+  same->bounded += one.bounded;
+  same->refused += one.refused;
+  if (!one.why.empty()) same->why = one.why;
 }
 
 }  // namespace hapticd::record

@@ -16,6 +16,10 @@ struct ClientReport {
   uint64_t next_tick = 0;  ///< of these, one tick late
   uint64_t silences = 0;   ///< times that it fell silent, and its force ramped out
   double largest_n = 0;    ///< [N] of its force
+  double asked_n = 0;      ///< [N] the largest that it asked for
+  uint64_t bounded = 0;    ///< answers that were cut to the bound
+  uint64_t refused = 0;    ///< answers that were refused whole
+  std::string why;         ///< of the last of these; "": none was
 
   double sameTick() const { return share(in_time); }
   double nextTick() const { return share(next_tick); }

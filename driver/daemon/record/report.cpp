@@ -154,10 +154,29 @@ std::string limitText(const LimitReport& device, uint64_t ticks) {
   return text + ")\n";
 }
 
+/// A hand that leans on a stop feels it, and no model: it must not look for the force in the scene.
+std::string stopText(const StopReport& stop, const RunReport& report) {
+  constexpr double kTold = 0.1;  // [s] shorter ones are bumps
+  const double seconds = report.rate_hz > 0 ? static_cast<double>(stop.ticks) / report.rate_hz : 0;
+  if (seconds < kTold) return "";
+  return fmt::format("stop of {}: joint {} (q{}) stood at the end of its range for {:.1f} s: the arm goes no further\n",
+                     stop.device, stop.joint + 1, stop.joint, seconds);
+}
+
 Json clientJson(const ClientReport& client) {
-  return {{"device", client.device},        {"program", client.program},   {"pid", client.pid},
-          {"times", client.times},          {"answers", client.answers},   {"same_tick", client.sameTick()},
-          {"next_tick", client.nextTick()}, {"silences", client.silences}, {"largest_n", client.largest_n}};
+  return {{"device", client.device},
+          {"program", client.program},
+          {"pid", client.pid},
+          {"times", client.times},
+          {"answers", client.answers},
+          {"same_tick", client.sameTick()},
+          {"next_tick", client.nextTick()},
+          {"silences", client.silences},
+          {"largest_n", client.largest_n},
+          {"asked_n", client.asked_n},
+          {"bounded", client.bounded},
+          {"refused", client.refused},
+          {"why", client.why.empty() ? Json() : Json(client.why)}};
 }
 
 std::string clientText(const ClientReport& client, double answer_time) {
@@ -166,6 +185,10 @@ std::string clientText(const ClientReport& client, double answer_time) {
       "N\n",
       client.program, client.device, client.answers, 100 * client.sameTick(), 100 * client.nextTick(), client.silences,
       client.largest_n);
+  if (client.bounded > 0)
+    text += fmt::format("  it asked for up to {:.3g} N: {} answers were cut to its bound\n", client.asked_n,
+                        client.bounded);
+  if (client.refused > 0) text += fmt::format("  {} answers were refused: {}\n", client.refused, client.why);
   if (!late(client)) return text;
   return text + "  a tick of delay cuts the stiffest stable wall to a third\n  fix: " + lateFix(answer_time) + "\n";
 }
@@ -196,6 +219,8 @@ Result<void> writeJson(const RunReport& report, const std::string& file) {
     ticks = {{"clipped_ticks", device.any}};
     for (const auto& [limit, count] : device.ticks) ticks["by_limit"][limit] = count;
   }
+  json["stops"] = Json::object();
+  for (const StopReport& stop : report.stops) json["stops"][stop.device]["q" + std::to_string(stop.joint)] = stop.ticks;
   json["clients"] = Json::array();
   for (const ClientReport& client : report.clients) json["clients"].push_back(clientJson(client));
   for (const ModelReport& model : report.models) json["models"][model.name] = modelJson(model);
@@ -226,6 +251,7 @@ std::string summary(const RunReport& report) {
     if ((felt(model.contact) || report.models.size() <= kMostModels) && shown++ < kMostModels)
       text += modelText(model, report);
   for (const LimitReport& device : report.limits) text += limitText(device, report.ticks);
+  for (const StopReport& stop : report.stops) text += stopText(stop, report);
   for (const ClientReport& client : report.clients) text += clientText(client, report.answer_time);
   for (const std::string& fault : report.faults) text += "fault: " + fault + "\n";
   return text;

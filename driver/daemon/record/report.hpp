@@ -35,6 +35,13 @@ struct LimitReport {
   std::vector<std::pair<std::string, uint64_t>> ticks;  ///< by limit, those that did
 };
 
+/// How long a joint stood at the end of its range.
+struct StopReport {
+  std::string device;
+  uint32_t joint = 0;  ///< counted from 0, as the columns are
+  uint64_t ticks = 0;
+};
+
 struct RunReport {
   std::string scene;
   double seconds = 0, rate_hz = 0;  ///< simulated or real time of the run; ticks a second that were held
@@ -49,6 +56,7 @@ struct RunReport {
   double start_ms = 0;  ///< from the start of the program to the first tick
   std::vector<ModelReport> models;
   std::vector<LimitReport> limits;  ///< one per device
+  std::vector<StopReport> stops;    ///< of joints that stood at one
   std::vector<std::string> faults;
   std::vector<ClientReport> clients;  ///< programs that pushed
   double answer_time = 0;             ///< [s] that the servo listened for them

@@ -93,7 +93,11 @@ Json pushersJson(const Session& session, uint32_t index) {
                     {"program", report.program},
                     {"next_tick", report.nextTick()},
                     {"force_n", client.felt.load(std::memory_order_relaxed)},
-                    {"largest_n", report.largest_n}});
+                    {"largest_n", report.largest_n},
+                    {"asked_n", report.asked_n},
+                    {"bounded", report.bounded},
+                    {"refused", report.refused},
+                    {"why", report.why.empty() ? Json() : Json(report.why)}});
   }
   return list;
 }
@@ -116,7 +120,8 @@ Json modelJson(const Session& session, uint32_t place) {
           {"leader", leader ? Json(*leader) : Json()},
           {"pose", poseJson(session, place)},
           {"silenced", why.empty() ? Json() : Json(why)},
-          {"deforms", deforms}};
+          {"deforms", deforms},
+          {"waits", waitsForTip(session, place)}};
 }
 
 Json silencedJson(const Session& session) {
@@ -145,12 +150,20 @@ record::ClientReport reportOf(const ClientForces::Client& client, const Leads::P
   report.next_tick = read(client.next_tick);
   report.silences = read(client.silences);
   report.largest_n = read(client.largest);
+  report.asked_n = read(client.asked);
+  report.bounded = read(client.bounded);
+  report.refused = read(client.refused);
+  report.why = describe(read(client.why));
   return report;
 }
 
 double valueOf(const scene::Model& model, const hsp_param& param, uint32_t index) {
   const scene::Value* value = given(model, index);
   return value != nullptr ? value->number : param.def;
+}
+
+bool waitsForTip(const Session& session, uint32_t place) {
+  return nowOf(session, place).waits != 0;
 }
 
 std::string silencedWhy(const Session& session, uint32_t place) {
@@ -173,7 +186,7 @@ std::string statusAnswer(const Session& session) {
                        {"less_force", slow.empty() ? Json() : Json(slow)},
                        {"force_n", {arm.force[0], arm.force[1], arm.force[2]}},
                        {"position_m", {arm.position[0], arm.position[1], arm.position[2]}}});
-    if (session.runner.arms()[i]->clients().possible())
+    if (session.runner.arms()[i]->clients().possible() && session.leads.mayPush())
       devices.back()["clients"] = pushersJson(session, static_cast<uint32_t>(i));
   }
   return lineOf({{"ok", true},
@@ -199,6 +212,7 @@ std::string listAnswer(const Session& session) {
 
 std::string snapshotAnswer(const Session& session) {
   const record::FlightRing& ring = session.runner.telemetry().flight()->ring();
+  const auto mode = session.leads.mayPush() ? session.runner.scene().clients.mode : scene::ClientMode::kOff;
   Json next = Json::object(), models = Json::array(), devices = Json::array();
   // Before the poses: who reads from there on misses no motion of what it is told here.
   for (size_t i = 0; i < ring.specs().size(); ++i) next[ring.specs()[i].name] = ring.written(i);
@@ -214,7 +228,7 @@ std::string snapshotAnswer(const Session& session) {
                        {"buttons", arm.info().buttons},
                        {"simulated", arm.simulated()},
                        {"guided", arm.hand().guided()},
-                       {"clients", kClientModes[static_cast<size_t>(session.runner.scene().clients.mode)]},
+                       {"clients", kClientModes[static_cast<size_t>(mode)]},
                        {"leader", leader ? Json(*leader) : Json()}});
   }
   return lineOf(
@@ -309,6 +323,7 @@ std::string eventText(const Session& session, const hapticd_event& event) {
   json["value"] = event.value;
   if (event.kind == HAPTICD_FAULT) json["why"] = describe(static_cast<Fault>(event.code));
   if (event.probe < 0 || arm < session.runner.arms().size()) addProgram(session, event, json);
+  if (event.kind == HAPTICD_REFUSED && *whyRefused(event) != 0) json["why"] = whyRefused(event);
   if (event.kind == HAPTICD_SILENCED) json["why"] = silenceReason(event, json.value("model", ""));
   return lineOf(json);
 }

@@ -39,6 +39,9 @@ std::string statusAnswer(const Session& session);
 /// [main] Why a model is not felt for the rest of the run; "": it is.
 std::string silencedWhy(const Session& session, uint32_t place);
 
+/// [main] A tip was in the model when it came or was enabled: it is felt once none is.
+bool waitsForTip(const Session& session, uint32_t place);
+
 /// [main] Why an arm gets no force now, and what to do; "": it gets what is asked for.
 std::string noForceWhy(const Session& session, uint32_t arm);
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "session/program_name.hpp"
 #include "session/request_handler.hpp"
 
 namespace hapticd::servo {
@@ -31,6 +32,9 @@ Result<Leads::Target> RequestHandler::pushOf(const std::string& device) const {
   if (!runner_.scene().clients.push)
     return refuse("unsupported",
                   "the scene lets programs look on, and none push\n  fix: clients: {push: true} in the scene");
+  if (!leads_.mayPush())
+    return refuse("unsupported", "a reload took the permission to push back: " + scene_file_ +
+                                     "\n  fix: clients: add (or instead) in the scene, and hapticd ctl reload");
   if (!runner_.arms()[*arm]->clients().possible())
     return refuse("unsupported",
                   "the scene does not let programs push on its arms\n  fix: clients: add (or instead) in the scene");
@@ -42,6 +46,11 @@ Result<Leads::Target> RequestHandler::leadOf(const Request& request) const {
   if (!request.force.empty()) return pushOf(request.force);
   if (request.hand.empty()) {
     const auto place = placeOf(request.model);
+    if (!place && armOf(request.model))
+      return refuse("unknown",
+                    "\"" + request.model +
+                        "\" is an arm, not a model\n  fix: lead its simulated hand: hapticd ctl lead --hand \"" +
+                        request.model + "\"");
     if (!place) return Error{place.error()};
     if (!places_[*place].model.kinematic)
       return refuse("unsupported", "model \"" + request.model +
@@ -68,6 +77,7 @@ Result<std::string> RequestHandler::lead(const control::Peer& peer, const Reques
   if (!target) return Error{target.error()};
   if (!stays(peer) && staying() >= control::Server::kMaxStaying)
     return refuse("too_many", "too many programs lead or listen already: " + std::to_string(staying()));
+  runner_.nameLeader(peer.pid, programOf(peer.pid));
   auto memory = leads_.begin(*target, peer);
   if (!memory) return refuse("busy", memory.error());
   attached_ = std::move(*memory);

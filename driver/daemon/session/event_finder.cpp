@@ -5,6 +5,16 @@
 
 namespace hapticd::servo {
 
+namespace {
+
+constexpr uint32_t kWhy = 16;  ///< of the code of HAPTICD_REFUSED, see client.h
+
+uint32_t codeOf(Order::Led led, Follow::Refusal why) noexcept HSP_RT {
+  return static_cast<uint32_t>(led) + kWhy * static_cast<uint32_t>(why);
+}
+
+}  // namespace
+
 void EventFinder::add(uint32_t kind, int32_t model, int32_t probe, uint32_t code, double value) noexcept HSP_RT {
   if (count_ == found_.size()) return;
   found_[count_++] = {0, 0, kind, model, probe, code, value};
@@ -87,7 +97,7 @@ void EventFinder::look(double t, uint32_t index, const Core& core) noexcept HSP_
     note.level = model.level;
   }
   if (const uint64_t count = model.lead.refused(); refused(t, count, note))
-    add(HAPTICD_REFUSED, number, -1, static_cast<uint32_t>(Order::Led::kModel), static_cast<double>(count));
+    add(HAPTICD_REFUSED, number, -1, codeOf(Order::Led::kModel, model.lead.why()), static_cast<double>(count));
 }
 
 void EventFinder::look(double t, uint32_t index, const Arm& arm) noexcept HSP_RT {
@@ -100,9 +110,26 @@ void EventFinder::look(double t, uint32_t index, const Arm& arm) noexcept HSP_RT
           fault != Fault::kNone ? arm.limiter().measured() : 0);
   }
   if (const uint64_t count = arm.hand().refused(); refused(t, count, note))
-    add(HAPTICD_REFUSED, -1, number, static_cast<uint32_t>(Order::Led::kHand), static_cast<double>(count));
+    add(HAPTICD_REFUSED, -1, number, codeOf(Order::Led::kHand, arm.hand().why()), static_cast<double>(count));
   if (const uint64_t count = arm.clients().refused(); refused(t, count, note.pushes))
     add(HAPTICD_REFUSED, -1, number, static_cast<uint32_t>(Order::Led::kForce), static_cast<double>(count));
+}
+
+const char* whyRefused(const hapticd_event& event) {
+  if (event.kind != HAPTICD_REFUSED) return "";
+  switch (static_cast<Follow::Refusal>(event.code / kWhy)) {
+    case Follow::Refusal::kNotFinite:
+      return "a number is not finite";
+    case Follow::Refusal::kTime:
+      return "its time lies ahead or before 0, expected seconds of CLOCK_MONOTONIC, or 0";
+    case Follow::Refusal::kFar:
+      return "its position is farther than 10 m from the world's origin, expected m";
+    case Follow::Refusal::kNotUnit:
+      return "its orientation is not of unit length, expected a quaternion w, x, y, z";
+    case Follow::Refusal::kNone:
+      break;
+  }
+  return "";
 }
 
 const char* nameOfEvent(uint32_t kind) {

@@ -71,6 +71,9 @@ class EventFinder {
   size_t count_ = 0, leaving_ = 0;
 };
 
+/// [main] Of a target of a model or a hand that was refused: what was wrong with it; "": another event.
+const char* whyRefused(const hapticd_event& event);
+
 /// [main] "click", as in JSON; "" for a number that is none.
 const char* nameOfEvent(uint32_t kind);
 

@@ -8,7 +8,7 @@
 #include "hapticd/abi.h"
 #include "log/log.hpp"
 #include "servo/safety/fault.hpp"
-#include "session/program_name.hpp"
+#include "session/event_finder.hpp"
 #include "session/silence_reason.hpp"
 
 namespace hapticd::servo {
@@ -33,7 +33,6 @@ void EventLog::tell(const Flight& flight) {
   for (;;) {
     const std::vector<hapticd_event> events = flight.events(next_, kAtOnce);
     for (const hapticd_event& event : events) {
-      if (event.kind == HAPTICD_JOINED) nameLeader(event);
       const Message message = messageOf(event);
       note(event);
       if (!message.text.empty()) log::write(message.level, message.who, message.text);
@@ -71,14 +70,14 @@ void EventLog::pushesNoMore(uint32_t arm, uint32_t place, PusherLog::End how) {
   write(arm, pushers_.ends(arm, place, how, arms_[arm]->clients().clients()[place]));
 }
 
-/// While it lives.
-void EventLog::nameLeader(const hapticd_event& event) {
-  const auto pid = static_cast<pid_t>(event.value);
+void EventLog::leads(pid_t pid, const std::string& program) {
+  const std::lock_guard lock(mutex_);
   if (programs_.size() >= kMostPrograms) programs_.clear();
-  programs_[pid] = programOf(pid);
+  programs_[pid] = program;
 }
 
 std::string EventLog::leaderOf(const hapticd_event& event) const {
+  const std::lock_guard lock(mutex_);
   const auto found = programs_.find(static_cast<pid_t>(event.value));
   return fmt::format("process {:.0f}", event.value) +
          (found != programs_.end() ? " (" + found->second + ")" : std::string());
@@ -170,8 +169,8 @@ EventLog::Message EventLog::messageOfLeader(const hapticd_event& event) const {
   const std::string what = event.model >= 0 ? model(event) : device(event);
   if (event.kind == HAPTICD_REFUSED)
     return {HSP_LOG_WARNING, what,
-            fmt::format("{:.0f} record{} of its leader {} refused so far", event.value, event.value == 1 ? "" : "s",
-                        event.value == 1 ? "was" : "were")};
+            fmt::format("{:.0f} record{} of its leader {} refused so far{}{}", event.value, event.value == 1 ? "" : "s",
+                        event.value == 1 ? "was" : "were", *whyRefused(event) != 0 ? ": " : "", whyRefused(event))};
   return {HSP_LOG_INFO, what, leaderOf(event) + (event.kind == HAPTICD_JOINED ? " leads it" : " leads it no more")};
 }
 

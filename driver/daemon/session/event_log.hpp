@@ -30,6 +30,9 @@ class EventLog {
   /// [main] Writes the events since the last call.
   void tell(const Flight& flight);
 
+  /// [any] What a process calls itself that is about to lead: it may be gone when its event is told.
+  void leads(pid_t pid, const std::string& program);
+
   /// [any] A program begins to push on an arm, or ends.
   void pushes(uint32_t arm, uint32_t place, pid_t pid, const std::string& program);
   void pushesNoMore(uint32_t arm, uint32_t place, PusherLog::End how);
@@ -51,7 +54,6 @@ class EventLog {
   void tellOfPushers();
   void write(uint32_t arm, const PusherLog::Message& message) const;
   std::string leaderOf(const hapticd_event& event) const;
-  void nameLeader(const hapticd_event& event);
   std::string model(const hapticd_event& event) const;
   std::string device(const hapticd_event& event) const;
   Message messageOfModel(const hapticd_event& event) const;

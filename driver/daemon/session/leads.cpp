@@ -106,6 +106,12 @@ Result<void> Leads::endOfModel(uint32_t model) {
   return found == leads_.end() ? Result<void>() : end(found->target, found->peer);
 }
 
+void Leads::endPushes() {
+  const auto pushes = [](const Lead& lead) { return lead.target.led == Order::Led::kForce; };
+  for (auto found = leads_.begin(); (found = std::find_if(leads_.begin(), leads_.end(), pushes)) != leads_.end();)
+    (void)end(Target(found->target), control::Peer(found->peer), News::kEnds);  // the servo may be late: it obeys yet
+}
+
 void Leads::left(const control::Peer& peer) {
   while (holds(peer)) {
     const auto found =

@@ -55,6 +55,8 @@ class Leads {
   Result<void> end(const Target& target, const control::Peer& peer) { return end(target, peer, News::kEnds); }
   /// [main] Ends whatever leads a model: it moves otherwise, or leaves.
   Result<void> endOfModel(uint32_t model);
+  /// [main] Ends all pushes: the permission is gone. Whatever a program writes from now on, nobody reads.
+  void endPushes();
   /// [main] Ends all leads of a peer that is gone.
   void left(const control::Peer& peer);
 
@@ -64,6 +66,9 @@ class Leads {
   std::string program(pid_t pid) const;
   /// [main] Those that push on an arm.
   std::vector<Pusher> pushers(uint32_t arm) const;
+  /// [main] False: programs may not push, whatever the scene said at the start.
+  bool mayPush() const { return may_push_; }
+  void letPush(bool may) { may_push_ = may; }  ///< [main]
   /// [main] Something lives as long as the peer's connection.
   bool holds(const control::Peer& peer) const;
   /// [main] Numbers of the peers that hold something.
@@ -83,7 +88,7 @@ class Leads {
 
   Give give_;
   Tell tell_;
-  bool exclusive_;
+  bool exclusive_, may_push_ = true;
   uint32_t last_place_ = 0;
   std::vector<Lead> leads_;
   std::map<pid_t, std::string> programs_;            ///< of those that came last

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 /// Models that come and go while the daemon runs.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -9,6 +11,7 @@
 
 #include "host/replaced_library.hpp"
 #include "session/foreign_files.hpp"
+#include "session/kept_settings.hpp"
 #include "session/patience.hpp"
 #include "session/request_handler.hpp"
 #include "watch/quarantine.hpp"
@@ -19,9 +22,9 @@ namespace {
 
 using control::Request;
 
-/// What was added, and which of it is not what the person who added it takes it for.
-std::string addedText(const std::vector<scene::Model>& models, const host::Services::Log& log) {
-  nlohmann::ordered_json json = {{"ok", true}, {"models", models.size()}};
+/// Which of what was added is not what the person who added it takes it for, as `notes` of the answer.
+void tellReplaced(nlohmann::ordered_json& json, const std::vector<scene::Model>& models,
+                  const host::Services::Log& log) {
   std::set<std::string> told;
   for (const scene::Model& model : models) {
     if (!host::replacedSinceLoaded(model.library) || !told.insert(model.library.string()).second) continue;
@@ -31,7 +34,6 @@ std::string addedText(const std::vector<scene::Model>& models, const host::Servi
     json["notes"].push_back(text);
     log(HSP_LOG_WARNING, model.name, text);
   }
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 bool sameDevices(const scene::Scene& a, const scene::Scene& b) {
@@ -106,7 +108,9 @@ Result<std::string> RequestHandler::add(const control::Peer& peer, const Request
   for (const scene::Model& model : models)
     if (placeOf(model.name)) return refuse("busy", "a model named \"" + model.name + "\" exists already");
   if (auto done = adopt(models); !done) return Error{tellable(peer, done.error())};
-  return addedText(models, log_);
+  auto json = cameAnswer(models);
+  tellReplaced(json, models, log_);
+  return lineOf(json);
 }
 
 /// A plugin that ended a run is kept out of this one too.
@@ -153,6 +157,24 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
   return {};
 }
 
+/// With those that wait for a tip to leave them, as far as the servo has met them by now.
+nlohmann::ordered_json RequestHandler::cameAnswer(const std::vector<scene::Model>& models) {
+  constexpr double kMet = 0.05;  // [s] a search finds what is near every 5 ms
+  nlohmann::ordered_json json = {{"ok", true}, {"models", models.size()}}, waiting = nlohmann::ordered_json::array();
+  const auto now = [&] { return runner_.telemetry().statusWriter()->page().now.read().value_or(status::Now{}).t; };
+  const double came = now();
+  waitUntil([&] { return now() > came + kMet || runner_.loop().finished(); });
+  for (uint32_t i = 0; i < places_.size(); ++i) {
+    const std::string& name = places_[i].model.name;
+    const auto is = [&](const scene::Model& model) { return model.name == name; };
+    if (!places_[i].taken || std::none_of(models.begin(), models.end(), is) || !waitsForTip(session(), i)) continue;
+    waiting.push_back(name);
+    log_(HSP_LOG_WARNING, name, "a tip is in it: it is felt once the tip was outside");
+  }
+  if (!waiting.empty()) json["waiting"] = waiting;
+  return json;
+}
+
 Result<void> RequestHandler::remove(const std::string& model) {
   const auto place = placeOf(model);
   if (!place) return Error{place.error()};
@@ -186,11 +208,38 @@ Result<std::string> RequestHandler::reload(const control::Peer& peer, const Requ
     if (places_[i].taken) old.push_back(i);
   if (auto done = adopt(scene->models); !done)
     return Error{file + ": nothing was changed: " + tellable(peer, done.error())};
-  for (const uint32_t place : old)
-    if (auto done = release(place); !done) return Error{done.error()};
   scene_file_ = file;
   scene_passed_ = passed_.has_value();
-  return addedText(scene->models, log_);
+  takePermission(scene->clients);
+  for (const uint32_t place : old)
+    if (auto done = release(place); !done) return Error{done.error()};
+  auto json = cameAnswer(scene->models);
+  tellReplaced(json, scene->models, log_);
+  if (const auto kept = tellKept(*scene); !kept.empty()) json["kept"] = kept;
+  return lineOf(json);
+}
+
+/// A scene that lets nobody push ends the pushes of programs at once, in their ramp; one that lets them push gives back
+/// what another took, and no more than the start gave.
+void RequestHandler::takePermission(const scene::Clients& wanted) {
+  const bool may = wanted.mode != scene::ClientMode::kOff && wanted.push;
+  const scene::Clients& given = runner_.scene().clients;
+  if (given.mode == scene::ClientMode::kOff || !given.push) return;
+  if (!may && leads_.mayPush())
+    log_(HSP_LOG_WARNING, scene_file_, "no program may push any more: their forces ramp out");
+  leads_.letPush(may);
+  if (!may) leads_.endPushes();
+}
+
+/// What the scene says and the run does not do, told in the log as well.
+std::vector<std::string> RequestHandler::tellKept(const scene::Scene& wanted) const {
+  std::vector<std::string> kept = keptSettings(runner_.scene(), wanted);
+  if (!leads_.mayPush()) std::erase(kept, "clients.mode"), std::erase(kept, "clients.push");
+  if (!kept.empty())
+    log_(HSP_LOG_WARNING, scene_file_,
+         fmt::format("a reload cannot change {}: as before\n  fix: stop the daemon and start it with this scene",
+                     fmt::join(kept, ", ")));
+  return kept;
 }
 
 void RequestHandler::sweep() {

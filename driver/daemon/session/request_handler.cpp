@@ -214,6 +214,7 @@ Result<void> RequestHandler::able(const std::string& model, bool enabled) {
   Order order;
   order.kind = enabled ? Order::Kind::kEnable : Order::Kind::kDisable;
   order.target = *place;
+  if (enabled) order.param = Order::kOnceFree;
   places_[*place].enabled = enabled;
   return give(order);
 }

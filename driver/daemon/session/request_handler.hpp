@@ -5,6 +5,7 @@
 #include <atomic>
 #include <functional>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -82,9 +83,12 @@ class RequestHandler {
   Result<std::string> add(const control::Peer& peer, const control::Request& request);
   Result<void> refuseQuarantined(const std::vector<scene::Model>& models) const;
   Result<void> adopt(const std::vector<scene::Model>& models);
+  nlohmann::ordered_json cameAnswer(const std::vector<scene::Model>& models);
   Result<void> remove(const std::string& model);
   Result<void> release(uint32_t place);
   Result<std::string> reload(const control::Peer& peer, const control::Request& request);
+  void takePermission(const scene::Clients& wanted);
+  std::vector<std::string> tellKept(const scene::Scene& wanted) const;
   void sweep();
 
   Runner& runner_;

@@ -9,7 +9,9 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <vector>
 
+#include "base/clock.hpp"
 #include "document/suggestion.hpp"
 #include "log/log.hpp"
 #include "scene/load.hpp"
@@ -22,6 +24,7 @@ namespace {
 
 constexpr uint32_t kSpareModels = 64;
 constexpr const char* kGroup = "haptic";
+constexpr const char* kDefaultName = "hapticd";
 
 /// Where black boxes are kept: the state folder, or beside what the run shows.
 std::string stateFolder(const std::string& runtime_folder) {
@@ -30,7 +33,8 @@ std::string stateFolder(const std::string& runtime_folder) {
 }
 
 /// A run that ended in order removes its black box: one that is still there was left by a crash.
-void keepCrashed(const std::string& file, const std::string& name, const std::string& runtime_folder) {
+void keepCrashed(const std::string& file, const std::string& name, const std::string& runtime_folder,
+                 const std::string& run = "the last run") {
   std::error_code error;
   if (!std::filesystem::exists(file, error)) return;
   const std::string folder = stateFolder(runtime_folder);
@@ -41,8 +45,34 @@ void keepCrashed(const std::string& file, const std::string& name, const std::st
     if (!std::filesystem::exists(kept, error)) break;
   }
   if (std::filesystem::copy_file(file, kept, error))
-    log::write(HSP_LOG_WARNING, "", "the last run was killed or crashed; its last seconds are in " + kept);
+    log::write(HSP_LOG_WARNING, "", run + " was killed or crashed; its last seconds are in " + kept);
   std::filesystem::remove(file, error);
+}
+
+/// "hapticd-123": chosen by a run that found its name taken. No other run will ever have it.
+bool isAutomatic(const std::string& name) {
+  const std::string begin = std::string(kDefaultName) + "-";
+  return name.size() > begin.size() && name.compare(0, begin.size(), begin) == 0 &&
+         name.find_first_not_of("0123456789", begin.size()) == std::string::npos;
+}
+
+/// What a run with a name of its own left in memory when it was killed: its black box is kept, the rest goes.
+void clearDead(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  std::vector<fs::path> locks;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".lock" && isAutomatic(entry.path().stem().string())) locks.push_back(entry.path());
+  for (const fs::path& lock : locks) {
+    const int fd = ::open(lock.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+    if (fd < 0) continue;
+    if (flock(fd, LOCK_EX | LOCK_NB) == 0) {  // nobody lives who has it
+      const std::string name = lock.stem().string(), base = folder + "/" + name;
+      keepCrashed(base + ".blackbox.h5", name, folder, "the run " + name);
+      for (const char* ending : {".status", ".sock", ".lock"}) unlink((base + ending).c_str());
+    }
+    close(fd);
+  }
 }
 
 /// "models teapot, floor on simulated Premium 1.5; programs may push (clients: add)".
@@ -84,6 +114,20 @@ Result<bool> RunFiles::take(const std::string& name) {
   }
 }
 
+/// The same, and waits for one that is about to end: it serves no more, and holds its name until its report is written.
+Result<bool> RunFiles::takeOrWait(const std::string& name) {
+  constexpr Nanoseconds kPatience = 1'000'000'000, kPause = 10'000'000;
+  const std::string socket = folder_ + "/" + name + ".sock";
+  RealClock clock(0);
+  const Nanoseconds end = clock.now() + kPatience;
+  for (;;) {
+    auto taken = take(name);
+    std::error_code unknown;
+    if (!taken || *taken || clock.now() > end || std::filesystem::exists(socket, unknown)) return taken;
+    clock.waitUntil(clock.now() + kPause);
+  }
+}
+
 Result<std::unique_ptr<RunFiles>> RunFiles::open(const std::string& name, RunOptions& how) {
   std::unique_ptr<RunFiles> outside(new RunFiles);
   outside->folder_ = status::runtimeFolder(true);
@@ -95,12 +139,15 @@ Result<std::unique_ptr<RunFiles>> RunFiles::open(const std::string& name, RunOpt
                    "write to");
     return outside;
   }
-  auto taken = outside->take(name.empty() ? "hapticd" : name);
+  clearDead(outside->folder_);
+  auto taken = outside->takeOrWait(name.empty() ? kDefaultName : name);
   if (taken && !*taken && !name.empty())
     return Error{"--name " + name + ": another daemon runs as " + name + ", expected another name"};
   if (taken && !*taken) {
-    taken = outside->take("hapticd-" + std::to_string(getpid()));
-    log::write(HSP_LOG_INFO, "", "another daemon runs as hapticd; this one has the name " + outside->name_);
+    taken = outside->take(kDefaultName + ("-" + std::to_string(getpid())));
+    log::write(HSP_LOG_WARNING, "",
+               "another daemon runs as hapticd; this one has the name " + outside->name_ +
+                   "\n  programs find it by that name alone: hapticd ctl --name " + outside->name_);
   }
   if (!taken) return Error{taken.error()};
   const std::string base = outside->folder_ + "/" + outside->name_;

@@ -35,6 +35,7 @@ class RunFiles {
  private:
   RunFiles() = default;
   Result<bool> take(const std::string& name);
+  Result<bool> takeOrWait(const std::string& name);
   bool faulty() const;
   std::string folder_, name_, lock_file_;
   int lock_ = -1;  ///< descriptor of the lock on the name, held until the end

@@ -78,6 +78,8 @@ class Runner {
   void endBlackBox() { telemetry_->flight()->ring().removeFile(); }
   /// [any] The same thread: a model takes a place; "": it has left.
   void nameModel(uint32_t place, const std::string& name, const std::string& plugin);
+  /// [any] The same thread: a program is about to lead.
+  void nameLeader(pid_t pid, const std::string& program) { event_log_->leads(pid, program); }
   /// [any] The same thread: a program pushes on an arm.
   void namePusher(uint32_t arm, uint32_t place, pid_t pid, const std::string& program);
   /// [any] The same thread: it does no more.

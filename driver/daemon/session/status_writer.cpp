@@ -36,6 +36,7 @@ void StatusWriter::name(uint32_t place, const std::string& name, const std::stri
   if (place >= status::kMaxModels) return;
   auto& model = file_->page().model[place];
   model.step_us.clear();  // of the one before
+  model.now.write({});
   file_->page().feet[place].write({});
   model.name.write(named(name, plugin));
 }
@@ -101,6 +102,7 @@ void StatusWriter::models(uint64_t tick, const Core& core,
     now.status = model.status;
     now.trouble = static_cast<uint32_t>(model.guard.trouble());
     now.failed_status = model.failed_status;
+    now.waits = model.until_free ? 1 : 0;
     page.model[place].now.write(now);
     if (place < books.size())
       page.feet[place].write({books[place].nearestFeet(), books[place].heldFeet(), books[place].degradedFeet()});

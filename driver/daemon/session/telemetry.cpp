@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "session/telemetry.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -9,7 +10,9 @@ namespace hapticd::servo {
 Telemetry::Telemetry(const scene::Scene& scene, double rate, uint32_t places)
     : rate_(rate),
       models_(std::max<size_t>(scene.models.size(), places)),
-      rows_(static_cast<size_t>(std::ceil(kBlackBoxSeconds * rate))) {
+      rows_(static_cast<size_t>(std::ceil(kBlackBoxSeconds * rate))),
+      stops_(scene.devices.size()) {
+  for (const scene::Device& device : scene.devices) all_devices_.push_back(device.name);
   for (const scene::Model& model : scene.models) {
     names_.push_back(model.name);
     plugins_.push_back(model.plugin);
@@ -58,6 +61,8 @@ void Telemetry::tick(double t, double dt, Nanoseconds late, const Spent& spent, 
   if (flight_) flight_->tick(t, dt, late, spent.total, core, arms);
   if (status_) status_->tick({booked_, overruns_, missed_, t}, late, spent.total, core, arms, models_);
   ++booked_;
+  for (size_t i = 0; i < arms.size() && i < stops_.size(); ++i)
+    if (arms[i]->probe().valid) stops_[i].add(arms[i]->info(), arms[i]->sample());
   if (!arms.empty()) {
     const Arm& arm = *arms.front();
     for (int i = 0; i < 3; ++i) {
@@ -76,8 +81,16 @@ void Telemetry::keep(const BlackBoxRow& row) noexcept HSP_RT {
   if (row_count_ < rows_.size()) ++row_count_;
 }
 
-void Telemetry::bookArms(uint32_t index, double dt, const Core& core) noexcept HSP_RT {
+/// At the planned end of a run, and in a hold, nothing pushes back: how deep a hand sinks then is nothing of the model.
+bool Telemetry::held(const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+  const auto is = [](const auto& arm) { return arm->limiter().fault() == Fault::kStopped; };
+  return !arms.empty() && std::all_of(arms.begin(), arms.end(), is);
+}
+
+void Telemetry::bookArms(uint32_t index, double dt, const Core& core,
+                         const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
   for (uint32_t arm = 0; arm < devices_.size() && arm < core.probeCount(); ++arm) {
+    if (arm < arms.size() && arms[arm]->limiter().fault() == Fault::kStopped) continue;
     const Contact& contact = core.contact(index, arm);
     const double force = Eigen::Map<const Vector3d>(contact.world.force).norm();
     by_arm_[index * devices_.size() + arm].add(contact.traced && contact.world.depth_m > 0, contact.world.depth_m,
@@ -93,6 +106,7 @@ double Telemetry::pullOf(const Contact& contact, const Arm& arm) noexcept HSP_RT
 
 void Telemetry::bookModels(double dt, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms,
                            BlackBoxRow& row) noexcept HSP_RT {
+  const bool pushed = !held(arms);
   for (const uint32_t index : core.live()) {
     const ModelState& model = core.models()[index];
     if (model.status < row.status) row.status = model.status;
@@ -115,12 +129,12 @@ void Telemetry::bookModels(double dt, const Core& core, const std::vector<std::u
       double& shallow = deep < 0 ? odd.outside : odd.depthless;
       shallow = std::max(shallow, size);
     }
-    models_[index].add(depth > 0, depth, force, dt, model.step_ns);
+    models_[index].add(depth > 0 && pushed, depth, force, dt, model.step_ns);
     if (depth > -HUGE_VAL && model.status >= HSP_OK) models_[index].addFoot(held, model.status == HSP_DEGRADED);
     // What a model in trouble fades out with is no answer of it.
     const bool any = odd.untraced + odd.depthless + odd.outside + odd.pull > 0;
-    if (any && model.status >= HSP_OK && !model.guard.quarantined()) bookOdd(index, odd);
-    bookArms(index, dt, core);
+    if (any && pushed && model.status >= HSP_OK && !model.guard.quarantined()) bookOdd(index, odd);
+    bookArms(index, dt, core, arms);
     if (depth > -HUGE_VAL && (row.model == UINT32_MAX || depth > row.depth_m)) {
       row.depth_m = static_cast<float>(depth);
       row.model = index;
@@ -166,6 +180,9 @@ record::RunReport Telemetry::report(const std::vector<std::string>& faults) cons
     report.models.push_back(std::move(left));
   }
   report.clients = clients_;
+  for (size_t i = 0; i < stops_.size(); ++i)
+    for (uint32_t joint = 0; joint < HDV_MAX_JOINTS; ++joint)
+      if (stops_[i].ticks(joint) > 0) report.stops.push_back({all_devices_[i], joint, stops_[i].ticks(joint)});
   report.faults = faults;
   return report;
 }

@@ -14,6 +14,7 @@
 #include "servo/loop/tick_log.hpp"
 #include "session/flight.hpp"
 #include "session/status_writer.hpp"
+#include "session/stop_counts.hpp"
 
 namespace hapticd::servo {
 
@@ -91,7 +92,9 @@ class Telemetry final : public TickLog {
   std::vector<BlackBoxRow> fromFlight() const;
   void keep(const BlackBoxRow& row) noexcept HSP_RT;
   std::vector<record::ArmContact> armsOf(size_t place) const;
-  void bookArms(uint32_t index, double dt, const Core& core) noexcept HSP_RT;
+  static bool held(const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+  void bookArms(uint32_t index, double dt, const Core& core,
+                const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
   /// [N] What a model pushed with in a tick, the largest of all probes, though no contact can be told of it; and what
   /// it pulled in with.
   struct Odd {
@@ -111,6 +114,8 @@ class Telemetry final : public TickLog {
   std::vector<std::string> devices_;               ///< where there are several
   std::vector<record::ContactStatistics> by_arm_;  ///< [model * devices_.size() + arm]
   std::vector<BlackBoxRow> rows_;                  // where there is no flight
+  std::vector<StopCounts> stops_;                  ///< by arm
+  std::vector<std::string> all_devices_;           ///< their names
   BlackBoxRow newest_;
   size_t next_ = 0, row_count_ = 0;
   uint64_t ticks_ = 0, overruns_ = 0, missed_ = 0, allocations_ = 0;

@@ -69,8 +69,9 @@ struct ModelNow {
   uint64_t tick = 0;                      ///< when it was stepped last
   int32_t status = 0;
   uint32_t iterations = 0;
-  uint32_t trouble = 0;       ///< servo::Trouble: why it is not felt
-  int32_t failed_status = 0;  ///< the first status that was no status of a step
+  uint32_t trouble = 0;          ///< servo::Trouble: why it is not felt
+  int32_t failed_status = 0;     ///< the first status that was no status of a step
+  uint32_t waits = 0, none = 0;  ///< 1: it came, or was enabled, with a tip in it, and is not felt until none is
 };
 
 /// Ticks since a model came whose foot was proved the nearest, held by a contact, or neither.

@@ -100,7 +100,8 @@ enum {
   HAPTICD_LEFT,      /* a model was removed; model */
   HAPTICD_JOINED,  /* a program took a lead; model or probe, code: 0 of a model, 1 a hand, 2 a force, value: its pid */
   HAPTICD_LOST,    /* that lead has ended; the same */
-  HAPTICD_REFUSED, /* records of a lead were refused; model or probe, value: how many so far; once per second */
+  HAPTICD_REFUSED, /* records of a lead were refused; model or probe, value: how many so far; once per second; code: as
+                      above, and of a target 16 times why: 1 not finite, 2 its time, 3 too far, 4 no unit quaternion */
   HAPTICD_QUARANTINED, /* models of a plugin were left out, because it ended an earlier run */
   HAPTICD_EVENT_KINDS  /* one more than the last kind */
 };
@@ -177,7 +178,8 @@ HAPTICD_API hapticd_lead* hapticd_lead_hand(hapticd_client* client, const char* 
 HAPTICD_API hapticd_lead* hapticd_lead_force(hapticd_client* client, const char* device, hapticd_error* error);
 /* Says where a model or a hand shall be. Wait-free; one thread per lead. Returns 0, or -1: of a force, or ended. */
 HAPTICD_API int hapticd_lead_put(hapticd_lead* lead, const hapticd_target* target);
-/* Answers a tick with a force. Wait-free; one thread per lead. Returns 0, or -1: not of a force, or ended. */
+/* Answers a tick with a force. Wait-free; one thread per lead. Returns 0, or -1: not of a force, or ended, or a number
+ * that is not finite or beyond 1e6, which the daemon would refuse; nothing is pushed then. */
 HAPTICD_API int hapticd_lead_push(hapticd_lead* lead, const hapticd_push* push);
 /* Ends a lead and frees it: a model brakes and stays, a force ramps out. `lead` may be NULL. */
 HAPTICD_API void hapticd_lead_end(hapticd_lead* lead);

@@ -130,7 +130,8 @@ std::string tryStart(const scene::Scene& scene, const scene::Device& device) {
   hdv_start how{};
   how.struct_size = sizeof how;
   how.rate_hz = scene.servo.rate;
-  if (!arm || !(*arm)->open()) return "=";  // told by who reads the device file
+  if (!arm) return "=";  // told by who reads the device file
+  if (const auto opened = (*arm)->open(); !opened) return opened.error();
   const auto started = (*arm)->start(how);
   return started ? "=" : started.error();
 }

@@ -134,6 +134,9 @@ static void pushes(hapticd_client* c, const char* arm) {
     hapticd_lead_push(lead, &push);
   }
   check("states grow", grew && answered == 1000);
+  const hapticd_push wild[] = {{.force = {NAN, 0, 0}}, {.force = {0, -2e6, 0}}, {.torque = {0, 0, INFINITY}}};
+  for (size_t i = 0; i < sizeof wild / sizeof *wild; ++i)
+    check("a force out of its mind is refused here", hapticd_lead_push(lead, &wild[i]) == -1);
   const int ticks = hapticd_stream(c, "ticks");
   char* row = malloc(65536);
   uint64_t last = hapticd_written(c, ticks) - 1;

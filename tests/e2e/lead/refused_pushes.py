@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
-"""What the daemon would refuse of a program's push is told to the program.
+"""What the daemon refuses or cuts of a program's push is told to the program, in status and in the report.
 
 Usage: refused_pushes.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
 """
 import atexit
+import json
 import math
 import os
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
+import time
 import warnings
 
 HAPTICD, SOURCE = sys.argv[1], sys.argv[2]
@@ -53,13 +56,39 @@ def counted(client):
         check(f"{name} is no number of rows", "expected how many" in raises(action) or "counted from 0" in raises(action))
 
 
+def raw(client):
+    """As a program does that knows the memory and no library."""
+    client.ask(do="lead", force=ARM)
+    fd = client._line.descriptor()
+    count = 0
+    for force in ((math.nan, 0, 0), (1e7, 0, 0), (7, 0, 0)):
+        for _ in range(10):
+            os.pwrite(fd, struct.pack("<Q", count + 1), 0)
+            os.pwrite(fd, struct.pack("<Q6dQQ", client.streams["ticks"].written, *force, 0, 0, 0, 0, 0), 8)
+            os.pwrite(fd, struct.pack("<Q", count + 2), 0)
+            count += 2
+            time.sleep(0.01)
+        one = client.status()["devices"][0]["clients"][0]
+        if math.isnan(force[0]):
+            check("status counts refused answers, with the reason",
+                  one["refused"] > 0 and one["answers"] == 0 and one["why"] == "a number is not finite", one)
+        elif force[0] > 1e6:
+            check("the reason is that of the last", one["why"] == "a number is beyond 1e6", one)
+    check("status says what was asked for and what was cut",
+          one["asked_n"] == 7 and one["bounded"] > 0 and one["largest_n"] <= 3.0001, one)
+    os.close(fd)
+    return one
+
+
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
-    scene = os.path.join(scratch, "scene.yaml")
+    scene, report = os.path.join(scratch, "scene.yaml"), os.path.join(scratch, "report.json")
     with open(scene, "w") as file:
         file.write(SCENE.format(source=SOURCE))
     environment = dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch)
-    run = subprocess.Popen([HAPTICD, "run", scene, "--name", "refuses"], env=environment, stdout=subprocess.DEVNULL,
-                           stderr=subprocess.DEVNULL)
+    log = os.path.join(scratch, "log")
+    with open(log, "w") as told:
+        run = subprocess.Popen([HAPTICD, "run", scene, "--name", "refuses", "--report", report], env=environment,
+                               stdout=subprocess.PIPE, stderr=told, text=True)
     atexit.register(run.kill)
     until(lambda: os.path.exists(os.path.join(scratch, "refuses.sock")), 30)
     with warnings.catch_warnings():
@@ -67,6 +96,24 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
         with hapticd.connect("refuses", folder=scratch) as client:
             python(client)
             counted(client)
+        with hapticd.connect("refuses", folder=scratch) as client:
+            last = raw(client)
+        with hapticd.connect("refuses", folder=scratch) as client:
+            with client.lead_hand(ARM) as hand:
+                hand._put(struct.pack("<14d", 0.03, 0, 0, *[0] * 11))
+                check("a hand's target needs no orientation",
+                      until(lambda: abs(client.state(ARM).position[0] - 0.03) < 0.002, 30), client.state(ARM).position)
+                hand._put(struct.pack("<14d", 30, 0, 0, 1, *[0] * 10))
+                seen = lambda: [e for e in client.ask(do="events")["events"] if e["event"] == "refused" and "farther" in e.get("why", "")]
+                check("an event says why a target was refused", until(seen, 30), client.ask(do="events"))
     run.send_signal(signal.SIGTERM)
-    check("the run ends in order", run.wait(timeout=30) == 0)
+    out, _ = run.communicate(timeout=30)
+    with open(report) as file:
+        programs = json.load(file)["clients"]
+    check("the report has the same", any(one["refused"] >= last["refused"] and one["asked_n"] == 7 and one["bounded"] > 0
+                                         and one["why"] for one in programs), programs)
+    check("and the summary", "answers were refused" in out and "asked for up to 7 N" in out, out)
+    with open(log) as told:
+        text = told.read()
+    check("the log says why a target was refused", "refused so far: its position is farther" in text, text)
 finish()

@@ -15,12 +15,12 @@ namespace hapticd::servo {
 
 class ClientForces {
  public:
-  static constexpr uint32_t kMost = 8;           ///< programs that push on one arm
-  static constexpr double kSilentAfter = 3e-3;   ///< [s] after its last answer the force of a program ramps out
-  static constexpr double kFadeOut = 17e-3;      ///< [s] from all of it to none: none is left 20 ms after the answer
-  static constexpr double kFadeIn = 50e-3;       ///< [s] from none to all of it
-  static constexpr double kOldest = 20e-3;       ///< [s] an answer to an older tick is none
-  static constexpr double kLargestNumber = 1e6;  ///< [N], [N m] beyond it a program is out of its mind
+  static constexpr uint32_t kMost = 8;          ///< programs that push on one arm
+  static constexpr double kSilentAfter = 3e-3;  ///< [s] after its last answer the force of a program ramps out
+  static constexpr double kFadeOut = 17e-3;     ///< [s] from all of it to none: none is left 20 ms after the answer
+  static constexpr double kFadeIn = 50e-3;      ///< [s] from none to all of it
+  static constexpr double kOldest = 20e-3;      ///< [s] an answer to an older tick is none
+  static constexpr double kLargestNumber = link::kLargestPush;  ///< [N], [N m] beyond it a program is out of its mind
 
   /// Why an answer was refused.
   enum class Refusal : uint32_t { kNone, kNotFinite, kTooLarge, kAhead };

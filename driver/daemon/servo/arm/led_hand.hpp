@@ -44,13 +44,14 @@ class LedHand {
 
   const hapticd_target* taken() const noexcept { return lead_.taken(); }  ///< in the last step; nullptr: none
   uint64_t refused() const noexcept { return lead_.refused(); }
+  Follow::Refusal why() const noexcept { return lead_.why(); }  ///< the last was
 
  private:
   const hdv_ext_hand* hand_;
   hdv_device* device_;
   Eigen::Matrix3d R_world_device_;
   Eigen::Vector3d origin_world_;
-  LedPose lead_;
+  LedPose lead_{LedPose::Turns::kNever};
   hsp_pose pose_{};
 };
 

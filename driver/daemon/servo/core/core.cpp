@@ -207,10 +207,13 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   const Trouble trouble = judge(model, index, dt, pose);
   if (model.pull.force > 0 && model.pull.t < 0) model.pull.t = t;
   const double gain_before = model.guard.gain();
-  const double gain = model.guard.gain(trouble == Trouble::kNone, model.enabled, dt);
+  const bool good = trouble == Trouble::kNone;
+  double pace = dt;
+  const bool wanted = model.enabled && (!model.until_free || !good || enters(model, probes, pace));
+  const double gain = model.guard.gain(good, wanted, pace);
   const double fade = gain_before > 0 ? gain / gain_before : 0;
   for (uint32_t i = 0; i < probe_count_; ++i) {
-    if (trouble == Trouble::kNone) {
+    if (good) {
       takeContact(model, index, i, gain);
     } else {
       fadeContact(index, i, fade);

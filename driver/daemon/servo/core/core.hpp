@@ -49,6 +49,7 @@ struct ModelState {
   bool kinematic = false;
   bool enabled = true;                  ///< felt; otherwise faded out and only traced
   bool leaving = false;                 ///< fades out and then leaves its place
+  bool until_free = false;              ///< it came, or was enabled, while a tip may be in it: see enters()
   std::array<hsp_change, 8> changes{};  ///< live parameters for the next step
   uint32_t change_count = 0;
   uint32_t active_surfaces = 0;  ///< over all probes
@@ -171,6 +172,7 @@ class Core {
   void bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT;
   void bookContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT;
   void takeContact(ModelState& model, uint32_t index, uint32_t probe, double gain) noexcept HSP_RT;
+  bool enters(ModelState& model, std::span<const Probe> probes, double& pace) const noexcept HSP_RT;
   void clearContacts(uint32_t index) noexcept HSP_RT;
   void listLive() noexcept HSP_RT;
   void sendTransform(ModelState& model, uint32_t index) noexcept HSP_RT;

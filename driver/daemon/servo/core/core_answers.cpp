@@ -208,6 +208,24 @@ void Core::takeContact(ModelState& model, uint32_t index, uint32_t probe, double
   if (!frame.identity) transforms_ += 2;
 }
 
+/// Whether a model that came, or was enabled, may be felt. Not while a tip is in it: its whole force would come at once
+/// to a hand that met nothing on its way there. What pushes without a surface has no outside, so it fades in slowly.
+/// @param pace [s] of its fade in this tick
+bool Core::enters(ModelState& model, std::span<const Probe> probes, double& pace) const noexcept HSP_RT {
+  bool asked = false, pushes = false;
+  for (uint32_t i = 0; i < probe_count_; ++i) {
+    if (!probes[i].valid) continue;
+    const hsp_contact& out = outputs_[i];
+    if ((out.flags & HSP_OUT_TRACED) != 0 && out.depth_m > 0) return false;
+    asked = true;
+    pushes |= !ConstMap(out.force).isZero(0) || !ConstMap(out.torque).isZero(0);
+  }
+  if (!asked) return false;
+  if (pushes) pace *= Guard::kFadeIn / Guard::kFadeInOfField;
+  model.until_free = pushes && model.guard.gain() < 1;
+  return true;
+}
+
 void Core::clearContacts(uint32_t index) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     contacts_[size_t{index} * probe_count_ + i] = Contact{};

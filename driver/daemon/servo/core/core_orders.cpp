@@ -14,6 +14,7 @@ bool Core::obey(const Order& order, double t) noexcept HSP_RT {
   if (model.shape == nullptr) return false;
   switch (order.kind) {
     case Order::Kind::kEnable:
+      model.until_free |= order.param == Order::kOnceFree && !model.enabled;
       model.enabled = !model.leaving;
       return !model.leaving;
     case Order::Kind::kDisable:
@@ -52,6 +53,7 @@ bool Core::adopt(ModelState& place, const Order& order) noexcept HSP_RT {
   std::swap(place, *order.model);
   ++present_;
   place.guard.silence();  // fades in
+  place.until_free = true;
   listLive();
   return true;
 }

@@ -89,14 +89,16 @@ constexpr Bounds kAngular{Follow::kMostTurn, Follow::kMostTurnAcceleration};
 
 }  // namespace
 
-bool Follow::sound(const hapticd_target& target, double now) noexcept HSP_RT {
+Follow::Refusal Follow::refusalOf(const hapticd_target& target, double now) noexcept HSP_RT {
   const bool numbers = finite(target.position, 3) && finite(target.orientation, 4) && finite(target.linear, 3) &&
                        finite(target.angular, 3) && std::isfinite(target.time);
-  if (!numbers || target.time < 0 || target.time > now + kAhead) return false;
+  if (!numbers) return Refusal::kNotFinite;
+  if (target.time < 0 || target.time > now + kAhead) return Refusal::kTime;
   const Eigen::Map<const Vector3d> position(target.position);
-  if (position.cwiseAbs().maxCoeff() > kFarthest || position.norm() > kFarthest) return false;
+  if (position.cwiseAbs().maxCoeff() > kFarthest || position.norm() > kFarthest) return Refusal::kFar;
   const Eigen::Map<const Eigen::Vector4d> q(target.orientation);
-  return q.cwiseAbs().maxCoeff() < 2 && std::abs(q.norm() - 1) <= kUnitWithin;
+  const bool unit = q.cwiseAbs().maxCoeff() < 2 && std::abs(q.norm() - 1) <= kUnitWithin;
+  return unit ? Refusal::kNone : Refusal::kNotUnit;
 }
 
 void Follow::begin(const hsp_pose& pose) noexcept HSP_RT {

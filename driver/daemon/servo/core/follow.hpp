@@ -23,8 +23,14 @@ class Follow {
   static constexpr double kAhead = 0.1;        ///< [s] a late tick may see records that were written after it
   static constexpr double kUnitWithin = 1e-3;  ///< of the length of a quaternion
 
+  /// Why a target is not followed.
+  enum class Refusal : uint32_t { kNone, kNotFinite, kTime, kFar, kNotUnit };
+
   /// [rt] What may be followed; see hapticd_target. @param now [s] on the clock of its time
-  static bool sound(const hapticd_target& target, double now) noexcept HSP_RT;
+  static Refusal refusalOf(const hapticd_target& target, double now) noexcept HSP_RT;
+  static bool sound(const hapticd_target& target, double now) noexcept HSP_RT {
+    return refusalOf(target, now) == Refusal::kNone;
+  }
 
   /// [rt] From a pose and its velocities on; with no target yet it comes to rest.
   void begin(const hsp_pose& pose) noexcept HSP_RT;

@@ -11,6 +11,10 @@ namespace hapticd::servo {
 
 class LedPose {
  public:
+  /// What a record without an orientation (four zeros) means.
+  enum class Turns { kAsked, kNever };
+  explicit LedPose(Turns turns = Turns::kAsked) : turns_(turns) {}
+
   /// [rt] A leader begins. @param slot its memory, valid until end() @param from where the pose is now, with velocities
   void begin(const link::PoseSlot& slot, const hsp_pose& from) noexcept HSP_RT {
     slot_ = &slot;
@@ -44,10 +48,15 @@ class LedPose {
   const hapticd_target* taken() const noexcept { return fresh_ ? &taken_ : nullptr; }
   /// Records of this leader that were refused so far.
   uint64_t refused() const noexcept { return refused_; }
+  /// Why the last of them was.
+  Follow::Refusal why() const noexcept { return why_; }
 
  private:
   void judge(double t, double epoch) noexcept HSP_RT {
-    if (!Follow::sound(taken_, epoch + t)) {
+    double* const q = taken_.orientation;
+    if (turns_ == Turns::kNever && q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0) q[0] = 1;
+    if (const auto why = Follow::refusalOf(taken_, epoch + t); why != Follow::Refusal::kNone) {
+      why_ = why;
       ++refused_;
       return;
     }
@@ -58,6 +67,8 @@ class LedPose {
   uint64_t seen_ = 0, refused_ = 0;
   hapticd_target taken_{};
   Follow follow_;
+  Follow::Refusal why_ = Follow::Refusal::kNone;
+  Turns turns_;
   bool active_ = false, fresh_ = false;
 };
 

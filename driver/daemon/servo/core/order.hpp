@@ -36,9 +36,11 @@ struct Order {
     kHand,   ///< where the hand of a simulated arm wants to be
     kForce   ///< a force on the hand of an arm
   };
+  /// `param` of kEnable: the model is felt once no tip is in it.
+  static constexpr uint32_t kOnceFree = 1;
   Kind kind = Kind::kNone;
   uint32_t target = 0;  ///< model or arm
-  uint32_t param = 0;   ///< kSet; of leads: Led
+  uint32_t param = 0;   ///< kSet; of leads: Led; kEnable: kOnceFree or, in recordings of before, 0
   uint32_t ticket = 0;  ///< of the request, for the answer
   uint32_t place = 0;   ///< of leads of a force: which of the arm's
   double value = 0;     ///< kSet; kAccuracy: the level; kCut: 1 found before the tick's read, 0 at its write

@@ -29,6 +29,8 @@ class Guard {
   static constexpr double kFadeOut = 0.002;
   static constexpr double kLeave = 0.02;   ///< [s] the same where somebody wished it: a model that is disabled
   static constexpr double kFadeIn = 0.05;  ///< [s] a surface found again must not kick
+  /// [s] The same for what comes while the daemon runs and pushes without a surface: no hand can be out of it.
+  static constexpr double kFadeInOfField = 1;
 
   /// [rt] Judges the answer of one step.
   Trouble judge(hsp_status status, bool finite) noexcept HSP_RT;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Leads: memory that this program writes and the servo looks at once a tick.
+#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -65,6 +66,10 @@ int hapticd_lead_put(hapticd_lead* lead, const hapticd_target* target) {
 
 int hapticd_lead_push(hapticd_lead* lead, const hapticd_push* push) {
   if (!lead->pushes || lead->client->line.ended()) return -1;
+  // The daemon would refuse it and count, but cannot tell: nothing comes back along this way.
+  for (const double* numbers : {push->force, push->torque})
+    for (int i = 0; i < 3; ++i)
+      if (!(std::abs(numbers[i]) <= hapticd::link::kLargestPush)) return -1;
   reinterpret_cast<hapticd::link::PushSlot*>(lead->memory.data())->put(*push);
   return 0;
 }

@@ -129,6 +129,10 @@ Result<MeshFile> parseStlMesh(std::string_view bytes, const std::string& name) {
     std::memcpy(&count, bytes.data() + 80, sizeof count);
     if (bytes.size() == kStlHead + kStlTriangle * std::size_t{count} && count > 0)
       return parseBinaryStl(bytes, count, name);
+    if (bytes.substr(0, 5) != "solid")
+      return Error{name + ": a binary STL of " + std::to_string(count) + " triangles has " +
+                   std::to_string(kStlHead + kStlTriangle * std::size_t{count}) + " bytes, and this file has " +
+                   std::to_string(bytes.size()) + ": it is damaged, or no STL"};
   }
   return parseTextStl(bytes, name);
 }

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "control/presence.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+
+#include "base/clock.hpp"
+
+namespace hapticd::control {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isThere(const std::string& file) {
+  std::error_code unknown;
+  return fs::exists(fs::symlink_status(file, unknown));
+}
+
+/// Looks every 10 ms. @return whether it came true in time
+template <class Done>
+bool within(double seconds, Done&& done) {
+  constexpr Nanoseconds kPause = 10'000'000;
+  RealClock clock(0);
+  const Nanoseconds end = clock.now() + static_cast<Nanoseconds>(seconds * 1e9);
+  for (; clock.now() < end; clock.waitUntil(clock.now() + kPause))
+    if (done()) return true;
+  return done();
+}
+
+}  // namespace
+
+bool lives(const std::string& socket) {
+  const std::string lock = fs::path(socket).replace_extension(".lock").string();
+  const int fd = open(lock.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  // Another user's lock cannot be opened; the socket goes with it.
+  if (fd < 0) return errno == EACCES && isThere(socket);
+  const bool held = flock(fd, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  close(fd);
+  return held;
+}
+
+bool waitForEnd(const std::string& socket, double seconds) {
+  return within(seconds, [&] { return !lives(socket); });
+}
+
+bool wasKilled(const std::string& socket) {
+  constexpr double kAboutToEnd = 2;  // [s]
+  within(kAboutToEnd, [&] { return !isThere(socket) || !lives(socket); });
+  return isThere(socket) && !lives(socket);
+}
+
+std::vector<std::string> running(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (entry.path().extension() == ".sock" && lives(entry.path().string()))
+      names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace hapticd::control

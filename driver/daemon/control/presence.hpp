@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+/// Which daemons run, as their files tell: NAME.lock is held by its daemon for as long as it lives, NAME.sock is there
+/// while it serves. What died left both, and holds none.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace hapticd::control {
+
+/// [any] The daemon of this socket lives: it holds the lock on its name.
+bool lives(const std::string& socket);
+
+/// [main] Waits until the daemon of this socket has ended and its name is free. @return false: it lives yet
+bool waitForEnd(const std::string& socket, double seconds);
+
+/// [main] After its connection ended: the daemon has ended without putting its files away. Waits for one that is about
+/// to end in order.
+bool wasKilled(const std::string& socket);
+
+/// [main] Names of the daemons that live in a folder, in their order.
+std::vector<std::string> running(const std::string& folder);
+
+}  // namespace hapticd::control

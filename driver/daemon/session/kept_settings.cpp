@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "session/kept_settings.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "record/scene_json.hpp"
+
+namespace hapticd::servo {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Parameters by their names instead of in the order of the file.
+Json byName(const Json& values) {
+  Json named = Json::object();
+  for (const Json& value : values)
+    named[value.at("id").get<std::string>()] = {value.at("number"), value.at("text"), value.at("numbers")};
+  return named;
+}
+
+/// The keys of two objects whose values differ, objects within them by their own keys.
+void compare(const Json& a, const Json& b, const std::string& prefix, std::set<std::string>& found) {
+  if (a == b) return;
+  if (!a.is_object() || !b.is_object()) {
+    found.insert(prefix);
+    return;
+  }
+  Json all = a;
+  all.update(b);
+  for (const auto& [key, value] : all.items()) {
+    const char* gap = prefix.empty() || prefix.ends_with(": ") ? "" : ".";
+    compare(a.value(key, Json()), b.value(key, Json()), prefix + gap + key, found);
+  }
+}
+
+void compareDevices(Json a, Json b, std::set<std::string>& found) {
+  const std::string name = a.at("name").get<std::string>() + ": ";
+  compare(byName(a.at("parameters")), byName(b.at("parameters")), name, found);
+  for (Json* device : {&a, &b}) {
+    device->erase("parameters");
+    device->erase("library");
+  }
+  compare(a, b, name, found);
+}
+
+}  // namespace
+
+std::vector<std::string> keptSettings(const scene::Scene& running, const scene::Scene& wanted) {
+  const Json a = Json::parse(record::sceneToJson(running)), b = Json::parse(record::sceneToJson(wanted));
+  std::set<std::string> found;
+  compare(a.at("servo"), b.at("servo"), "servo", found);
+  compare(a.at("clients"), b.at("clients"), "clients", found);
+  for (size_t i = 0; i < std::min(a.at("devices").size(), b.at("devices").size()); ++i)
+    compareDevices(a.at("devices")[i], b.at("devices")[i], found);
+  return {found.begin(), found.end()};
+}
+
+}  // namespace hapticd::servo

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#include "document/foreign_file.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+namespace hapticd::document {
+
+namespace {
+
+struct Kind {
+  std::string_view ending, begins, name;
+};
+
+/// Where two have a name in common, the one that knows its first words comes first.
+constexpr Kind kKinds[] = {{".step", "ISO-10303-21", "a STEP file"},
+                           {".stp", "ISO-10303-21", "a STEP file"},
+                           {".iges", "", "an IGES file"},
+                           {".igs", "", "an IGES file"},
+                           {".brep", "DBRep_Drawable", "a B-rep"},
+                           {".stl", "solid ", "a mesh (STL)"},
+                           {".ply", "ply\n", "a mesh (PLY)"},
+                           {".obj", "", "a mesh (OBJ)"}};
+
+std::string endingOf(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+}  // namespace
+
+std::string foreignFile(std::string_view text, const std::string& file) {
+  const std::string ending = endingOf(file);
+  if (ending == ".hpart") return "a part, expected YAML; hapticd part info " + file + " shows what it holds";
+  const auto is = [&](const Kind& kind) {
+    return ending == kind.ending || (!kind.begins.empty() && text.substr(0, kind.begins.size()) == kind.begins);
+  };
+  const auto* const found = std::find_if(std::begin(kKinds), std::end(kKinds), is);
+  if (found == std::end(kKinds)) return "";
+  const std::string part = std::filesystem::path(file).stem().string() + ".hpart";
+  return std::string(found->name) + ", expected YAML: bring it in with hapticd import " + file + " -o " + part +
+         ", then geometry: " + part;
+}
+
+}  // namespace hapticd::document

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+/// Judges the path file of a simulated hand before a run follows it.
+#pragma once
+#include "description/scene.hpp"
+#include "document/problem.hpp"
+
+namespace hapticd::diagnostics {
+
+/// [main] Warns of rows where the arm cannot follow: it ends before, or a joint stands at its stop there.
+document::Problems unreachableRows(const scene::Scene& scene);
+
+}  // namespace hapticd::diagnostics

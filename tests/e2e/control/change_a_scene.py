@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""Models that come around the tip, and scenes that are loaded again: nobody is thrown, and no permission outlives its scene.
+
+Usage: change_a_scene.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
+"""
+import atexit
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+
+import numpy
+
+HAPTICD, SOURCE = sys.argv[1], sys.argv[2]
+sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
+sys.path.insert(0, os.path.join(SOURCE, "driver", "doors", "client", "python"))
+import hapticd
+from e2e import check, finish, refused, until
+
+HEAD = """hapticd: 1
+servo: {{rate: {rate}}}
+device: {source}/config/devices/simulated-premium15.yaml
+hand: {{script: {script}, tremor: 0, wander: 0}}
+clients: {clients}
+"""
+BALL = """  - name: {name}
+    plugin: nurbs_rigid
+    pose: {{position: [{x}, 0, 0]}}
+    parameters: {{geometry: {source}/config/models/sphere.yaml, stiffness: 800}}
+"""
+ARM = "simulated Premium 1.5"
+
+
+def write(folder, name, models, rate=1000, script="guided", clients="add"):
+    file = os.path.join(folder, name + ".yaml")
+    with open(file, "w") as out:
+        out.write(HEAD.format(source=SOURCE, rate=rate, script=script, clients=clients))
+        out.write("models:\n" + "".join(BALL.format(source=SOURCE, name=n, x=x) for n, x in models) if models else "models: []\n")
+    return file
+
+
+def largest(client, rows):
+    ticks = client.rows("ticks", last=rows)
+    return float(numpy.sqrt(sum(ticks["arm0_sent_f" + axis] ** 2 for axis in "xyz")).max())
+
+
+def around_the_tip(client, ball):
+    with client.lead_hand(ARM) as hand:
+        hand.put([0.09, 0, 0])
+        check("the hand is where the ball will be", until(lambda: abs(client.state(ARM).position[0] - 0.09) < 0.002))
+        first = client.streams["ticks"].written
+        answer = client.ask(do="add", file=ball)
+        check("the answer names the model that waits", answer.get("waiting") == ["ball"], answer)
+        check("and list says so", client.ask(do="list")["models"][-1]["waits"] is True, client.ask(do="list"))
+        client.wait(first + 500, timeout=30)
+        check("nothing pushes the hand that is inside", largest(client, 400) == 0, largest(client, 400))
+        hand.put([0.03, 0, 0])
+        check("outside it waits no more", until(lambda: not client.ask(do="list")["models"][-1]["waits"], 30))
+        hand.put([0.055, 0, 0])
+        check("and pushes who comes back", until(lambda: largest(client, 20) > 1, 30), largest(client, 20))
+        client.ask(do="disable", model="ball")
+        hand.put([0.09, 0, 0])
+        until(lambda: abs(client.state(ARM).position[0] - 0.09) < 0.002)
+        client.ask(do="enable", model="ball")
+        first = client.streams["ticks"].written
+        client.wait(first + 300, timeout=30)
+        check("the same when it is enabled around the tip", largest(client, 200) == 0, largest(client, 200))
+
+
+def permission(client, folder):
+    off = write(folder, "off", [], rate=4000, script="stroke", clients="off")
+    on = write(folder, "on", [])
+    pushes = lambda: float(client.rows("ticks", last=1)["arm0_client_fx"][-1])
+    push = client.push(ARM, lambda state: (0.7, 0, 0))
+    check("a program pushes", until(lambda: pushes() == 0.7), pushes())
+    answer = client.ask(do="reload", file=off)
+    check("what a reload cannot change is named", answer.get("kept") == ["servo.rate", f"{ARM}: hand.script"], answer)
+    check("and the permission is gone with the scene that gave it", until(lambda: pushes() == 0), pushes())
+    check("whatever the program answers", largest(client, 20) == 0, largest(client, 20))
+    try:
+        push.end()
+    except hapticd.HapticdError:
+        pass
+    check("who asks anew is refused", refused(lambda: client.lead_force(ARM), "took the permission to push back"))
+    answer = client.ask(do="reload", file=on)
+    check("a scene as at the start has nothing that is kept", "kept" not in answer, answer)
+    with client.push(ARM, lambda state: (0.7, 0, 0)):
+        check("and gives the permission back", until(lambda: pushes() == 0.7), pushes())
+
+
+with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
+    environment = dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch)
+    run = subprocess.Popen([HAPTICD, "run", write(scratch, "empty", []), "--name", "changed"], env=environment,
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    atexit.register(run.kill)
+    until(lambda: os.path.exists(os.path.join(scratch, "changed.sock")), 30)
+    with hapticd.connect("changed", folder=scratch) as client:
+        around_the_tip(client, write(scratch, "ball", [("ball", 0.1)]))
+        client.ask(do="remove", model="ball")
+        permission(client, scratch)
+    run.send_signal(signal.SIGTERM)
+    check("the run ends in order", run.wait(timeout=30) == 0)
+finish()

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+/// Models that come, or are enabled, while a tip is in them.
+#include <gtest/gtest.h>
+
+#include "servo/core/core.hpp"
+#include "test_world.hpp"
+
+namespace hapticd::servo {
+namespace {
+
+/// A world that runs, and a model that comes into it.
+struct Coming {
+  explicit Coming(const std::string& plugin) {
+    WorldOptions options;
+    options.spare_models = 1;
+    auto built = World::build(scene::Scene{}, options, quiet);
+    world = std::move(*built);
+    const scene::Model model = testModel(plugin);
+    auto shape = world->prepare(model, quiet);
+    state = Core::stateOf(**shape, model);
+    world->keep(0, std::move(*shape), model);
+    Order order;
+    order.kind = Order::Kind::kAdopt;
+    order.model = &state;
+    EXPECT_TRUE(world->core().obey(order, 0));
+  }
+  double forceAt(double y) { return tickOnce(*world, tick++, probeAt({0, y, 0})).y(); }
+  double largestAt(double y, int ticks) {
+    double largest = 0;
+    for (int i = 0; i < ticks; ++i) largest = std::max(largest, forceAt(y));
+    return largest;
+  }
+  void order(Order::Kind kind, uint32_t param) {
+    Order order;
+    order.kind = kind;
+    order.param = param;
+    EXPECT_TRUE(world->core().obey(order, tick * 1e-3));
+  }
+
+  static void quiet(int, const std::string&, const std::string&) {}
+  std::unique_ptr<World> world;
+  ModelState state;
+  int tick = 0;
+};
+
+TEST(Entering, AModelThatComesAroundTheTipIsNotFeltUntilTheTipWasOutside) {
+  Coming wall("wall");
+  EXPECT_EQ(wall.largestAt(-0.016, 500), 0.0);
+  EXPECT_TRUE(wall.world->core().models()[0].until_free);
+  EXPECT_EQ(wall.largestAt(0.001, 10), 0.0);
+  EXPECT_FALSE(wall.world->core().models()[0].until_free);
+  EXPECT_EQ(wall.largestAt(0.001, 60), 0.0);
+  EXPECT_DOUBLE_EQ(wall.largestAt(-0.001, 10), 1.0);
+}
+
+TEST(Entering, AModelThatComesElsewhereIsFeltAtOnce) {
+  Coming wall("wall");
+  wall.largestAt(0.05, 60);
+  EXPECT_DOUBLE_EQ(wall.forceAt(-0.001), 1.0);
+}
+
+TEST(Entering, AFieldWithoutASurfaceFadesInSlowly) {
+  Coming field("turning");
+  double before = 0;
+  for (int i = 0; i < 990; ++i) {
+    const double force = field.forceAt(0);
+    EXPECT_LE(force - before, 1.01e-3) << "in tick " << i;
+    before = force;
+  }
+  EXPECT_NEAR(before, 0.989, 0.002);
+  field.largestAt(0, 20);
+  EXPECT_DOUBLE_EQ(field.forceAt(0), 1.0);
+}
+
+TEST(Entering, AModelThatIsEnabledAroundTheTipWaitsAsWell) {
+  Coming wall("wall");
+  wall.largestAt(0.05, 60);
+  wall.order(Order::Kind::kDisable, 0);
+  wall.largestAt(-0.016, 60);
+  wall.order(Order::Kind::kEnable, Order::kOnceFree);
+  EXPECT_EQ(wall.largestAt(-0.016, 200), 0.0);
+  wall.largestAt(0.001, 60);
+  EXPECT_DOUBLE_EQ(wall.forceAt(-0.001), 1.0);
+}
+
+TEST(Entering, AnOrderOfAnEarlierRecordingFadesInAsItDidThen) {
+  Coming wall("wall");
+  wall.largestAt(0.05, 60);
+  wall.order(Order::Kind::kDisable, 0);
+  wall.largestAt(-0.001, 60);
+  wall.order(Order::Kind::kEnable, 0);
+  EXPECT_DOUBLE_EQ(wall.largestAt(-0.001, 60), 1.0);
+}
+
+TEST(Entering, EnablingWhatIsFeltChangesNothing) {
+  Coming wall("wall");
+  wall.largestAt(0.05, 60);
+  wall.forceAt(-0.001);
+  wall.order(Order::Kind::kEnable, Order::kOnceFree);
+  EXPECT_DOUBLE_EQ(wall.forceAt(-0.001), 1.0);
+}
+
+}  // namespace
+}  // namespace hapticd::servo
