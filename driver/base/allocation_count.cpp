@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "base/allocation_count.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstddef>
+#include <cstring>
 
 namespace {
 // Plain TLS of the executable: reading it never allocates itself.
@@ -17,6 +19,17 @@ __thread void (*look)() __attribute__((tls_model("initial-exec"))) = nullptr;
   asked();
   look = asked;
 }
+
+constexpr size_t kPlain = alignof(max_align_t);  ///< of what malloc gives
+const hapticd::OtherAllocator* other = nullptr;  ///< the one that ever was: its blocks may be freed at any time
+__thread bool from_other __attribute__((tls_model("initial-exec"))) = false;
+
+[[maybe_unused]] void* takeOther(size_t size, size_t alignment) {
+  return from_other ? other->take(size, alignment) : nullptr;
+}
+[[maybe_unused]] bool isOther(const void* block) {
+  return other != nullptr && block >= other->begin && block < other->end;
+}
 }  // namespace
 
 namespace hapticd {
@@ -25,6 +38,15 @@ uint64_t allocationsOfThread() noexcept {
 }
 void onAllocation(void (*asked)()) noexcept {
   look = asked;
+}
+bool allocateFrom([[maybe_unused]] const OtherAllocator* from) noexcept {
+#if defined(__GLIBC__) && !defined(HAPTICD_SANITIZED)
+  if (from != nullptr) other = from;
+  from_other = from != nullptr;
+  return true;
+#else
+  return false;
+#endif
 }
 }  // namespace hapticd
 
@@ -36,30 +58,47 @@ void* __libc_malloc(size_t);
 void* __libc_calloc(size_t, size_t);
 void* __libc_realloc(void*, size_t);
 void* __libc_memalign(size_t, size_t);
+void __libc_free(void*);
 
 __attribute__((visibility("default"))) void* malloc(size_t size) {
   countOne();
-  return __libc_malloc(size);
+  void* block = takeOther(size, kPlain);
+  return block != nullptr ? block : __libc_malloc(size);
 }
 __attribute__((visibility("default"))) void* calloc(size_t count, size_t size) {
   countOne();
-  return __libc_calloc(count, size);
+  size_t all = 0;
+  void* block = __builtin_mul_overflow(count, size, &all) ? nullptr : takeOther(all, kPlain);
+  return block != nullptr ? std::memset(block, 0, all) : __libc_calloc(count, size);
+}
+__attribute__((visibility("default"))) void free(void* block) {
+  if (isOther(block)) return other->give_back(block);
+  __libc_free(block);
 }
 __attribute__((visibility("default"))) void* realloc(void* block, size_t size) {
   countOne();
-  return __libc_realloc(block, size);
+  if (!isOther(block)) return __libc_realloc(block, size);
+  void* larger = takeOther(size, kPlain);
+  if (larger == nullptr) larger = __libc_malloc(size);
+  if (larger == nullptr) return nullptr;
+  std::memcpy(larger, block, std::min(size, other->size(block)));
+  other->give_back(block);
+  return larger;
 }
 __attribute__((visibility("default"))) void* memalign(size_t alignment, size_t size) {
   countOne();
-  return __libc_memalign(alignment, size);
+  void* block = takeOther(size, alignment);
+  return block != nullptr ? block : __libc_memalign(alignment, size);
 }
 __attribute__((visibility("default"))) void* aligned_alloc(size_t alignment, size_t size) {
   countOne();
-  return __libc_memalign(alignment, size);
+  void* block = takeOther(size, alignment);
+  return block != nullptr ? block : __libc_memalign(alignment, size);
 }
 __attribute__((visibility("default"))) int posix_memalign(void** block, size_t alignment, size_t size) {
   countOne();
-  *block = __libc_memalign(alignment, size);
+  *block = takeOther(size, alignment);
+  if (*block == nullptr) *block = __libc_memalign(alignment, size);
   return *block == nullptr ? ENOMEM : 0;
 }
 // NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)

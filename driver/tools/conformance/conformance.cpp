@@ -41,6 +41,7 @@ std::string fuzzOnce(const Recipe& recipe, uint64_t seed) {
   if (!(*made)->activate()) return "";  // parameters may contradict each other: refusing is right
   const auto [low, high] = (*made)->bounds();
   Vector3d q = onPath(**made, unit(random), unit(random));
+  (*made)->measureCost();
   for (int i = 0; i < 500; ++i) {
     const double dice = unit(random);
     uint32_t flags = 0;
@@ -56,6 +57,12 @@ std::string fuzzOnce(const Recipe& recipe, uint64_t seed) {
     const double dt = dice > 0.98 ? 0.05 : kConformanceDt;
     if (std::string wrong = wrongStatus((*made)->step({q}, dt, flags)); !wrong.empty())
       return "at step " + std::to_string(i) + ", " + placed(wrong, q);
+    if ((*made)->allocations() > 0) return "at step " + std::to_string(i) + ", " + placed("it allocates", q);
+    constexpr uint64_t kLong = 2'000'000;  // [ns] that a step sleeps: others on the machine make no step wait by itself
+    const StepCost& cost = (*made)->cost();
+    if (cost.waited && cost.wall_ns > cost.cpu_ns + kLong)
+      return "at step " + std::to_string(i) + ", " +
+             placed("it waits for " + text(static_cast<double>(cost.wall_ns - cost.cpu_ns) * 1e-6) + " ms", q);
   }
   return "";
 }

@@ -11,7 +11,8 @@ namespace hapticd::conformance {
 struct ConformanceTest {
   const char* name;
   const char* doc;
-  /// "": passed; "skip: why": does not apply; "warn: what": passed with a remark; otherwise what was wrong.
+  /// "": passed; "skip: why": does not apply; "warn: what": passed with a remark; "note: what": passed, and what was
+  /// measured; otherwise what was wrong.
   std::string (*run)(const Recipe& recipe, uint64_t seed);
   const char* needs = nullptr;  ///< the test without whose success this one would only repeat its failure
 };

@@ -109,22 +109,71 @@ std::vector<double> slopesOf(Subject& subject, const Place& place) {
   return slopes;
 }
 
+/// [N/m] The slopes of a press that waits at each place until what the shape remembers of its way has faded: a filter
+/// of velocities is no stiffness.
+std::vector<double> slopesAtRest(Subject& subject, const Place& place) {
+  constexpr int kPlaces = 10, kRest = 200;  // ticks: the longest that a hand would take for a delay
+  const double depth = pressDepth(subject);
+  const hsp_report& report = subject.report();
+  const double jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
+  std::vector<double> slopes;
+  double before = 0;
+  for (int i = 0; i <= kPlaces; ++i) {
+    const Vector3d p = place.foot - place.out * depth * i / kPlaces;
+    subject.step({p}, kConformanceDt, i == 0 ? uint32_t{HSP_IN_JUMP} : 0);
+    for (int k = 0; k < kRest; ++k) subject.step({p}, kConformanceDt);
+    const double force = Vector3d(subject.step({p}, kConformanceDt).contacts[0].force).dot(place.out);
+    if (i > 0) slopes.push_back(std::max(0.0, force - before - jump) * kPlaces / depth);
+    before = force;
+  }
+  std::sort(slopes.begin(), slopes.end());
+  return slopes;
+}
+
+/// [N/m] Of nine tenths of a press no more than that; 0 where there is too little of it to say.
+double stiffnessAt(Subject& subject, const Place& place, double claimed) {
+  constexpr double kDoubtful = 1.1;
+  const std::vector<double> slopes = slopesOf(subject, place);
+  if (slopes.size() < 10) return 0;
+  const double measured = slopes[slopes.size() * 9 / 10];
+  if (measured <= kDoubtful * claimed) return measured;
+  const std::vector<double> rested = slopesAtRest(subject, place);
+  return std::min(measured, rested[rested.size() * 9 / 10]);
+}
+
+/// How steep a force is, in words, beside what is claimed of it.
+std::string besideClaim(double claimed, double measured) {
+  return (claimed > 0 ? "it claims " + text(claimed) + " N/m" : std::string("it claims no stiffness")) +
+         ", but its force grows by " + text(measured) +
+         " N/m; expected report.max_stiffness of at least that in activate(), or, where the force vibrates or snaps, "
+         "hapticd::reportJumps(report, NEWTONS) there";
+}
+
 std::string stiffnessClaim(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   if (made.subject->moves()) return "skip: it moves, and its force with it";
   const double claimed = made.subject->report().max_stiffness;
-  return atEachPlace(recipe, [claimed](Subject& subject, const Place& place) {
-    constexpr double kRoom = 1.5, kNoise = 10;  // a law may be a little steeper somewhere; [N/m]
-    const std::vector<double> slopes = slopesOf(subject, place);
-    if (slopes.size() < 10) return std::string();
-    const double measured = slopes[slopes.size() * 9 / 10];
-    if (measured <= kRoom * claimed + kNoise) return std::string();
-    const std::string claim = claimed > 0 ? "claims " + text(claimed) + " N/m" : "claims no stiffness";
-    return "it " + claim + ", but its force grows by " + text(measured) +
-           " N/m; expected report.max_stiffness of at least that in activate(), or, where the force vibrates or snaps, "
-           "hapticd::reportJumps(report, NEWTONS) there";
+  constexpr double kFails = 1.5, kWarns = 1.1, kNoise = 10;  // a law may be a little steeper somewhere; [N/m]
+  double steepest = 0;
+  std::string wrong = atEachPlace(recipe, [claimed, &steepest](Subject& subject, const Place& place) {
+    const double measured = stiffnessAt(subject, place, claimed);
+    steepest = std::max(steepest, measured);
+    return measured <= kFails * claimed + kNoise ? std::string() : besideClaim(claimed, measured);
   });
+  if (!wrong.empty() || steepest == 0) return wrong;
+  if (steepest > kWarns * claimed + kNoise) return "warn: " + besideClaim(claimed, steepest);
+  return "note: it claims " + text(claimed) + " N/m, and its force grows by " + text(steepest) + " N/m at most";
+}
+
+/// "" or by how much a torque comes at once where the surface is met.
+std::string torqueAtOnce(const Vector3d& before, const Vector3d& now, double explained) {
+  constexpr double kRoom = 0.01, kLever = 0.1;  // [N m] not felt as a step; [m] a force so far from the tip turns it
+  const double jump = (now - before).norm();
+  if (jump <= kRoom + kLever * explained) return "";
+  return "the torque jumps by " + text(jump) +
+         " N m where the surface is met; expected it to grow from 0 with the depth, and about the probe, not about the "
+         "model's origin";
 }
 
 /// A force that comes at once where the surface is met buzzes, however small its slope is behind it.
@@ -138,19 +187,78 @@ std::string noStep(const Recipe& recipe, uint64_t) {
   return atEachPlace(recipe, [stiffness, jumps](Subject& subject, const Place& place) {
     constexpr double kRoom = 0.1;  // [N] not felt as a step
     bool known = false, inside = false;
-    Vector3d force = Vector3d::Zero(), at = Vector3d::Zero();
+    Vector3d force = Vector3d::Zero(), torque = Vector3d::Zero(), at = Vector3d::Zero();
     return press(subject, place, [&](const Answer& answer, const PressStep& step) {
       if (!step.settled) return std::string();
       const hsp_contact& c = answer.contacts[0];
       const bool entered = known && !inside && c.depth_m > 0;
       const double jump = (Vector3d(c.force) - force).norm(), way = (step.p - at).norm();
-      known = true, inside = c.depth_m > 0, force = Vector3d(c.force), at = step.p;
-      if (!entered || jump <= servo::Claim::kMargin * stiffness * way + kRoom + jumps) return std::string();
+      const double explained = servo::Claim::kMargin * stiffness * way + jumps;
+      const std::string turned = entered ? torqueAtOnce(torque, Vector3d(c.torque), explained) : std::string();
+      known = true, inside = c.depth_m > 0, force = Vector3d(c.force), torque = Vector3d(c.torque), at = step.p;
+      if (!turned.empty()) return turned;
+      if (!entered || jump <= explained + kRoom) return std::string();
       return "the force jumps by " + text(jump) + " N within " + text(way * 1e6) +
              " um where the surface is met; expected it to grow from 0 with the depth (a jump on purpose is claimed: "
              "HSP_R_JUMPS and max_jump)";
     });
   });
+}
+
+/// A press far below the surface, at rest, as far as the surface above it stays the same one.
+struct DeepPress {
+  std::vector<double> depth, force;  ///< [m], [N] outward
+};
+
+DeepPress pressDeep(Subject& subject, const Place& place) {
+  constexpr double kStep = 1e-4, kDeepest = 10e-3, kStrongest = 10;  // [m], [m], [N] more than most hands meet
+  const double size = subject.report().size_m, most = size > 0 ? std::min(kDeepest, size / 3) : kDeepest;
+  constexpr int kRest = 10;  // ticks: a damper has faded then, and a filter of velocities nearly
+  DeepPress press;
+  for (int i = 0; i * kStep <= most; ++i) {
+    const Vector3d p = place.foot - place.out * (i * kStep);
+    subject.step({p}, kConformanceDt, i == 0 ? uint32_t{HSP_IN_JUMP} : 0);
+    for (int k = 0; k < kRest; ++k) subject.step({p}, kConformanceDt);
+    const hsp_contact& c = subject.step({p}, kConformanceDt).contacts[0];
+    const bool same = (c.flags & HSP_OUT_TRACED) != 0 && Vector3d(c.normal).dot(place.out) > 0.9;
+    if (i > 0 && (!same || !(c.depth_m > press.depth.back()) || press.force.back() > kStrongest)) break;
+    press.depth.push_back(c.depth_m), press.force.push_back(Vector3d(c.force).dot(place.out));
+  }
+  return press;
+}
+
+/// What happens deeper than the other tests go: a law that turns steep, a click that sits there.
+std::string deepPress(const Recipe& recipe, uint64_t) {
+  constexpr double kRoom = 0.1;              // [N] not felt as a step
+  constexpr size_t kApart = 10;              // steps between which a slope is taken
+  constexpr double kSteep = 1.5, kJump = 3;  // as at the surface; of the claim, from one step to the next
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  const hsp_report& report = made.subject->report();
+  if (made.subject->moves() || (made.subject->description().flags & HSP_C_DEFORMS) != 0)
+    return "skip: it moves or gives way, and its force with it";
+  const double claimed = report.max_stiffness, jumps = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
+  if (!(claimed > 0)) return "skip: no stiffness is claimed";
+  std::string steep;
+  int left = 4;  // places: a slow shape would take too long for all of them
+  const std::string wrong = atEachPlace(recipe, [&](Subject& subject, const Place& place) {
+    if (left-- <= 0) return std::string();
+    const DeepPress press = pressDeep(subject, place);
+    for (size_t i = 1; i < press.force.size(); ++i) {
+      const double way = press.depth[i] - press.depth[i - 1], jump = std::abs(press.force[i] - press.force[i - 1]);
+      if (jump > kJump * claimed * way + kRoom + jumps)
+        return "the force jumps by " + text(jump) + " N within " + text(way * 1e6) + " um at a depth of " +
+               text(press.depth[i] * 1e3) + " mm, below " + text(place.foot) + "; expected what " + text(claimed) +
+               " N/m explain (a jump on purpose is claimed: HSP_R_JUMPS and max_jump)";
+      if (i < kApart || !steep.empty()) continue;
+      const double slope =
+          (press.force[i] - press.force[i - kApart] - jumps) / (press.depth[i] - press.depth[i - kApart]);
+      if (slope > kSteep * claimed + kRoom / (kApart * way))
+        steep = "warn: at a depth of " + text(press.depth[i] * 1e3) + " mm " + besideClaim(claimed, slope);
+    }
+    return std::string();
+  });
+  return wrong.empty() ? steep : wrong;
 }
 
 }  // namespace
@@ -162,6 +270,7 @@ std::vector<ConformanceTest> contactTests() {
       {"contact-flags", "HSP_OUT_TRACED and HSP_OUT_CONTACT agree with depth and normal", &contactFlags, kFinite},
       {"force-from-zero", "the force grows from zero where the surface is met", &noStep, kFinite},
       {"stiffness-vs-claim", "forces are no steeper than claimed", &stiffnessClaim, kFinite},
+      {"deep-press", "deep below the surface the force still follows the claim", &deepPress, kFinite},
       {"drawing-where-felt", "triangles and bounds of hsp.geometry/1 are where the surface is felt", &drawingWhereFelt,
        kFinite},
   };

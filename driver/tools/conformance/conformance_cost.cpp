@@ -104,15 +104,19 @@ std::string noAllocation(const Recipe& recipe, uint64_t) {
 std::string noLock(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
-  if (!countLocksOf(recipe.file)) return "skip: the file imports no lock function, or cannot be read";
-  uint64_t locks = 0;
-  for (int i = 0; i < kConformanceSteps; ++i) {
-    const Vector3d p = onPath(*made.subject, static_cast<double>(i) / kConformanceSteps);
-    const uint64_t before = locksCounted();
-    made.subject->step({p}, kConformanceDt);
-    locks += i % 5 != 0 ? locksCounted() - before : 0;  // searches belong to another thread, which may lock
-  }
-  return locks == 0 ? "" : std::to_string(locks) + " locks in " + std::to_string(kConformanceSteps) + " steps";
+  if (!countLocksOf(recipe.file)) return "skip: the file imports no lock function";
+  uint64_t steps = 0;
+  Vector3d first = Vector3d::Zero();
+  along(*made.subject, [&](const Answer&, const Vector3d& p) {
+    ++steps;
+    if (made.subject->locks() == 0) first = p;
+    return "";
+  });
+  const uint64_t locks = made.subject->locks();
+  if (locks == 0) return "";
+  return std::to_string(locks) + (locks == 1 ? " lock in " : " locks in ") + std::to_string(steps) +
+         " steps, first after the probe was at " + text(first) +
+         "; expected none: who holds it may keep the servo waiting";
 }
 
 /// Output to the terminal is the commonest one: without a buffer each line shows.

@@ -33,8 +33,13 @@ std::string descriptorComplete(const Recipe& recipe, uint64_t) {
   if (blank(c.version) || blank(c.license) || blank(c.doc)) return "version, license or doc is missing";
   for (uint32_t i = 0; i < c.param_count; ++i) {
     const hsp_param& p = paramAt(c, i);
-    if (blank(p.id) || blank(p.doc) || p.unit == nullptr)
-      return "parameter " + std::to_string(i) + " lacks id, unit or doc";
+    if (blank(p.id)) return "parameter " + std::to_string(i) + " (from 0) has no id";
+    if (blank(p.doc)) return std::string(p.id) + ": its doc is empty; expected a sentence";
+    if (p.unit == nullptr) return std::string(p.id) + ": its unit is NULL; expected \"\" where it has none";
+    if ((p.flags & HSP_P_LIVE) != 0 && p.kind > HSP_ENUM)
+      return std::string(p.id) +
+             ": HSP_P_LIVE on a path, text or list, which nothing can change while the shape is active; expected it on "
+             "numbers, switches and choices alone";
     if (!plainId(p.id))
       return "parameter \"" + std::string(p.id) +
              "\": expected an id of letters, digits, _ . and - alone: a scene names it";

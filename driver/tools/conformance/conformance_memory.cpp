@@ -61,6 +61,8 @@ std::string batchEqualsSingle(const Recipe& recipe, uint64_t) {
     const double part = static_cast<double>(i) / kConformanceSteps;
     const Vector3d p = onPath(*batch.subject, part), q = onPath(*batch.subject, part, 1.1);
     const Answer both = batch.subject->step({p, q}, kConformanceDt);
+    if (std::string wrong = wrongStatus(both); !wrong.empty())
+      return "one of two probes got " + wrong + ", at " + text(p) + " or " + text(q);
     const Answer &a = one.subject->step({p}, kConformanceDt), &b = two.subject->step({q}, kConformanceDt);
     if (std::memcmp(&both.contacts[0], &a.contacts[0], sizeof(hsp_contact)) != 0 ||
         std::memcmp(&both.contacts[1], &b.contacts[0], sizeof(hsp_contact)) != 0)
@@ -214,6 +216,7 @@ std::vector<ConformanceTest> memoryTests() {
        kSame},
       {"reset-equals-fresh", "reset() forgets", &resetEqualsFresh, kSame},
       {"batch-equals-single", "probes of one step do not mix", &batchEqualsSingle, kSame},
+      {"eight-probes", "each of eight probes has memory of its own, and no block is overrun", &eightProbes, kSame},
       {"jump-flag", "after a jump the nearest foot is found", &jumpFlag, kSame},
       {"state-roundtrip", "a saved state can be loaded", &stateRoundtrip, kFinite},
       {"state-garbage-rejected", "garbage is refused as a state", &stateGarbage},

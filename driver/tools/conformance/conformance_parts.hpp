@@ -51,6 +51,9 @@ std::string createDestroyLeak(const Recipe& recipe, uint64_t);
 /// "" or why what it draws by hsp.geometry/1 is not where it is felt; "skip: why" where it draws nothing.
 std::string drawingWhereFelt(const Recipe& recipe, uint64_t);
 
+/// "" or what goes wrong with as many probes as a run may have, in guarded memory.
+std::string eightProbes(const Recipe& recipe, uint64_t);
+
 /// "": a status that a step may have, and an answer that is finite.
 std::string wrongStatus(const Answer& answer);
 

@@ -101,6 +101,48 @@ std::string normalUnit(const Recipe& recipe, uint64_t) {
   });
 }
 
+double medianOf(std::vector<double> values) {
+  if (values.empty()) return 1;
+  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Both are lengths in m: depth changes by as much as the probe moves along the normal, and the foot is a depth away.
+class LengthsInMetres {
+ public:
+  void add(const hsp_contact& c, const Vector3d& p, const Vector3d& before, double depth_before) {
+    constexpr double kOutside = 1e-4;  // [m]
+    if (const double away = (p - Vector3d(c.point)).norm(); !(c.depth_m > 0) && away > kOutside) {
+      ++outside_;
+      if (c.depth_m == 0) ++flat_;
+    }
+    constexpr double kLeast = 1e-7, kFar = 1e-5;  // [m] of a step, of a foot
+    const double out = Vector3d(c.normal).dot(p - before);
+    if (std::abs(out) > std::max(kLeast, 0.5 * (p - before).norm())) rates_.push_back((depth_before - c.depth_m) / out);
+    if (std::abs(c.depth_m) > kFar) feet_.push_back((p - Vector3d(c.point)).norm() / std::abs(c.depth_m));
+  }
+  std::string wrong() const {
+    constexpr double kFar = 3;  // a law may measure its depth another way, but in m
+    if (2 * flat_ > outside_)
+      return "depth_m is 0 outside of the shape, where HSP_OUT_TRACED is set; expected minus the distance to the "
+             "surface";
+    const double rate = std::abs(medianOf(rates_)), foot = medianOf(feet_);
+    if (rate > kFar || rate < 1 / kFar)
+      return "depth_m changes by " + text(rate) +
+             " m where the probe moves by 1 m along the normal; expected 1: look for a depth that is not in m";
+    if (foot > kFar || foot < 1 / kFar)
+      return "point is " + text(foot) +
+             " times as far from the probe as depth_m says; expected the foot on the surface, in m, in the model's "
+             "frame";
+    return "";
+  }
+
+ private:
+  std::vector<double> rates_, feet_;
+  size_t outside_ = 0, flat_ = 0;  ///< steps outside; those of them that say a depth of 0
+};
+
 /// Where the probe moves along the normal, depth falls by as much: else depth or normal has the wrong sign, and with it
 /// the force that is made of them.
 std::string depthOutward(const Recipe& recipe, uint64_t) {
@@ -110,18 +152,21 @@ std::string depthOutward(const Recipe& recipe, uint64_t) {
   double agrees = 0, depth = 0;
   Vector3d last = Vector3d::Zero();
   bool known = false;
+  LengthsInMetres lengths;
   along(*made.subject, [&](const Answer& answer, const Vector3d& p) {
     const hsp_contact& c = answer.contacts[0];
     const bool traced = (c.flags & HSP_OUT_TRACED) != 0;
     known = known && !answer.jumped;
     const double out = Vector3d(c.normal).dot(p - last), way = (p - last).norm();
     if (traced && known) agrees -= out * std::clamp(c.depth_m - depth, -way, way);
+    if (traced && known) lengths.add(c, p, last, depth);
     known = traced;
     depth = c.depth_m;
     last = p;
     return std::string();
   });
-  return agrees >= 0 ? "" : "depth grows toward the outward normal: depth or normal has the wrong sign";
+  if (agrees < 0) return "depth grows toward the outward normal: depth or normal has the wrong sign";
+  return (made.subject->description().flags & HSP_C_DEFORMS) != 0 ? "" : lengths.wrong();  // there it gives way
 }
 
 std::string energyNonIncreasing(const Recipe& recipe, uint64_t) {

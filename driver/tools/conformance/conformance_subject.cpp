@@ -12,6 +12,7 @@
 #include "base/thread_usage.hpp"
 #include "conformance/allocation_place.hpp"
 #include "conformance/conformance_parts.hpp"
+#include "conformance/lock_count.hpp"
 #include "conformance/step_watch.hpp"
 #include "host/class_table.hpp"
 
@@ -69,7 +70,10 @@ Result<std::unique_ptr<Subject>> Subject::make(const Recipe& recipe) {
   subject->class_ = host::findClass<hsp_class>(**entry, recipe.class_name);
   if (subject->class_ == nullptr || !host::complete(*subject->class_)) return Error{"lacks a required function"};
   const hsp_class& c = *subject->class_;
-  subject->shape_ = c.create(&c, subject->services_->abi());
+  {
+    const CallWatch watch(Inside::kCreate);
+    subject->shape_ = c.create(&c, subject->services_->abi());
+  }
   if (subject->shape_ == nullptr) return Error{"create() made no instance: " + subject->services_->lastError()};
   for (uint32_t i = 0; i < c.param_count; ++i) {
     const scene::Value* given = recipe.find(paramAt(c, i).id);
@@ -77,6 +81,7 @@ Result<std::unique_ptr<Subject>> Subject::make(const Recipe& recipe) {
       subject->damping_ = std::max(subject->damping_, given != nullptr ? given->number : paramAt(c, i).def);
     if (given == nullptr) continue;
     const hsp_value value = host::toAbi(*given);
+    const CallWatch watch(Inside::kSet);
     if (c.set(subject->shape_, i, &value) < 0)
       return Error{"set(" + given->id + "): " + subject->services_->lastError()};
   }
@@ -84,6 +89,7 @@ Result<std::unique_ptr<Subject>> Subject::make(const Recipe& recipe) {
 }
 
 Subject::~Subject() {
+  const CallWatch watch(Inside::kDestroy);
   deactivate();
   if (shape_ != nullptr) class_->destroy(shape_);
 }
@@ -98,6 +104,7 @@ hsp_status Subject::activateRaw(uint32_t probes, hsp_report& report) {
   how.pose.orientation[0] = 1;
   report = {};
   report.struct_size = sizeof report;
+  const CallWatch watch(Inside::kActivate);
   return class_->activate(shape_, &how, &report);
 }
 
@@ -106,7 +113,7 @@ Result<void> Subject::activate(uint32_t probes) {
   active_ = true;
   pose_ = {};
   pose_.orientation[0] = 1;
-  steps_ = allocations_ = 0;
+  steps_ = allocations_ = locks_ = 0;
   last_.clear();
   const auto* surfaces = static_cast<const hsp_ext_surfaces*>(extension(HSP_EXT_SURFACES));
   traced_.assign(probes, std::vector<uint8_t>(surfaces != nullptr ? surfaces->surface_count : 0, 0));
@@ -196,7 +203,7 @@ const Answer& Subject::run(const std::vector<hsp_probe>& probes, double dt) {
   step.out_stride = static_cast<uint32_t>(out_stride);
   step.dt_s = steps_ == 0 ? 0 : dt;
   step.pose = &pose_;
-  call(step, probes[0]);
+  call(step);
   answer_.contacts.resize(probes.size());
   for (size_t i = 0; i < probes.size(); ++i)
     std::memcpy(&answer_.contacts[i], &out_[i * out_stride], sizeof(hsp_contact));
@@ -207,17 +214,18 @@ const Answer& Subject::run(const std::vector<hsp_probe>& probes, double dt) {
   return answer_;
 }
 
-void Subject::call(const hsp_step& step, const hsp_probe& first) {
+void Subject::call(const hsp_step& step) {
   const Usage used = measured_ ? usageOfThread() : Usage{};
-  const uint64_t before = allocationsOfThread();
+  const uint64_t before = allocationsOfThread(), locked = locksCounted();
   const Nanoseconds begun = monotonicNow();
   {
-    const StepWatch watch(first);
+    const StepWatch watch(step);
     const AllocationWatch allocations;
     answer_.status = class_->step(shape_, &step);
   }
   step_ns_ = monotonicNow() - begun;
   allocations_ += allocationsOfThread() - before;
+  locks_ += locksCounted() - locked;
   if (!measured_) return;
   const Usage now = usageOfThread();
   cost_ = {step_ns_, now.cpu_ns - used.cpu_ns, now.waits != used.waits};
@@ -228,6 +236,11 @@ bool Subject::roomUntouched() const {
   for (size_t i = 0; i < out_.size(); ++i)
     if (i % out_stride >= sizeof(hsp_contact) && out_[i] != kUntouched) return false;
   return true;
+}
+
+void Subject::reserve(size_t probes) {
+  in_.assign(probes * (sizeof(hsp_probe) + room_), kUntouched);
+  out_.assign(probes * (sizeof(hsp_contact) + room_), kUntouched);
 }
 
 void Subject::reset() {

@@ -67,6 +67,8 @@ class Subject {
   /// Room between the records of a step, to see that the strides are used.
   void widen(size_t bytes) { room_ = bytes; }
   bool roomUntouched() const;
+  /// Takes the memory of the records of a step now, in that of who asks for it.
+  void reserve(size_t probes);
   void reset();
 
   const hsp_class& description() const { return *class_; }
@@ -81,11 +83,12 @@ class Subject {
   std::pair<Eigen::Vector3d, Eigen::Vector3d> bounds() const;
   uint64_t stepNs() const { return step_ns_; }           ///< of the last step, wall clock
   uint64_t allocations() const { return allocations_; }  ///< in all steps since activate
+  uint64_t locks() const { return locks_; }              ///< the same, once countLocksOf() has begun
 
  private:
   Subject() = default;
   void search(const std::vector<hsp_probe>& probes);
-  void call(const hsp_step& step, const hsp_probe& first);
+  void call(const hsp_step& step);
   const Answer& run(const std::vector<hsp_probe>& probes, double dt);
 
   std::shared_ptr<host::Library> library_;
@@ -102,7 +105,7 @@ class Subject {
   std::vector<std::vector<uint8_t>> traced_;  // [probe][surface]
   std::vector<uint8_t> in_, out_;             // records with room between them
   size_t room_ = 0;
-  uint64_t steps_ = 0, step_ns_ = 0, allocations_ = 0;
+  uint64_t steps_ = 0, step_ns_ = 0, allocations_ = 0, locks_ = 0;
   uint32_t given_ = 0;
   bool measured_ = false;
   StepCost cost_;

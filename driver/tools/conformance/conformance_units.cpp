@@ -14,12 +14,13 @@ struct Foreign {
 
 /// Units that authors write, and what a scene has in their place.
 constexpr Foreign kForeign[] = {
-    {"mm", "m"},       {"cm", "m"},   {"um", "m"},          {"nm", "m"},    {"km", "m"},       {"in", "m"},
-    {"inch", "m"},     {"g", "kg"},   {"mg", "kg"},         {"t", "kg"},    {"ms", "s"},       {"us", "s"},
-    {"ns", "s"},       {"min", "s"},  {"h", "s"},           {"kHz", "Hz"},  {"MHz", "Hz"},     {"rpm", "rad/s"},
-    {"mN", "N"},       {"kN", "N"},   {"kgf", "N"},         {"deg", "rad"}, {"degree", "rad"}, {"degrees", "rad"},
-    {"\u00b0", "rad"}, {"kPa", "Pa"}, {"MPa", "Pa"},        {"GPa", "Pa"},  {"bar", "Pa"},     {"psi", "Pa"},
-    {"mV", "V"},       {"mA", "A"},   {"%", "a part of 1"}, {"mJ", "J"},    {"mW", "W"},
+    {"mm", "m"},       {"cm", "m"},          {"um", "m"},    {"nm", "m"},    {"km", "m"},          {"in", "m"},
+    {"inch", "m"},     {"g", "kg"},          {"mg", "kg"},   {"t", "kg"},    {"ms", "s"},          {"us", "s"},
+    {"ns", "s"},       {"min", "s"},         {"h", "s"},     {"kHz", "Hz"},  {"MHz", "Hz"},        {"rpm", "rad/s"},
+    {"mN", "N"},       {"kN", "N"},          {"kgf", "N"},   {"deg", "rad"}, {"degree", "rad"},    {"degrees", "rad"},
+    {"\u00b0", "rad"}, {"kPa", "Pa"},        {"MPa", "Pa"},  {"GPa", "Pa"},  {"bar", "Pa"},        {"psi", "Pa"},
+    {"Newton", "N"},   {"lbf", "N"},         {"meter", "m"}, {"metre", "m"}, {"rad/sec", "rad/s"}, {"mV", "V"},
+    {"mA", "A"},       {"%", "a part of 1"}, {"mJ", "J"},    {"mW", "W"},
 };
 
 /// The first part of a unit, such as "mm" of "N/mm", that is not SI; nullptr: none is known to be.

@@ -82,7 +82,43 @@ const Named kNames[] = {
     {SYS_recvfrom, "recvfrom"},
 };
 
+uint32_t probes_of_step = 0;
+
+/// Keeps what was overrun; then the same access, without a handler, ends the process.
+void onFault(int signal, siginfo_t* info, void*) {
+  last_step->overrun = overrunAt(info->si_addr);
+  if (last_step->overrun.block > 0) last_step->probes = probes_of_step;
+  ::signal(signal, SIG_DFL);
+}
+
+/// ", in step() with the probe at X, Y, Z m"; nobody knows which of several it was.
+std::string placesOfStep() {
+  std::string places;
+  const uint32_t count = std::min(last_step->count, LastStep::kMost);
+  for (uint32_t i = 0; i < count; ++i) places += (i > 0 ? "; " : "") + text(Eigen::Vector3d(last_step->position[i]));
+  return (count > 1 ? ", in step() with one of the probes at " : ", in step() with the probe at ") + places;
+}
+
+std::string overrunWords() {
+  const Overrun& over = last_step->overrun;
+  if (last_step->probes == 0) return "";
+  const std::string block = "a block of " + std::to_string(over.block) + " bytes",
+                    many = std::to_string(last_step->probes);
+  if (over.freed) return ": it uses " + block + " that it has freed";
+  return ": it reads or writes byte " + std::to_string(over.at) + " of " + block + "; with " + many +
+         " probes a step has " + many +
+         " records, and what is kept for each probe needs room for activation.max_probes of them";
+}
+
 }  // namespace
+
+void tellOverruns(uint32_t probes) {
+  probes_of_step = probes;
+  struct sigaction action{};
+  action.sa_sigaction = &onFault;
+  action.sa_flags = SA_SIGINFO;
+  sigaction(SIGSEGV, &action, nullptr);
+}
 
 void shareLastStep() {
   if (last_step == &unshared) {
@@ -93,8 +129,19 @@ void shareLastStep() {
 }
 
 std::string whereItEnded() {
-  if (last_step->inside == 0) return "";
-  return ", in step() with the probe at " + text(Eigen::Vector3d(last_step->position));
+  std::string where;
+  const Inside inside = last_step->inside;
+  if (inside == Inside::kCreate) where = ", in create()";
+  if (inside == Inside::kSet) where = ", in set()";
+  if (inside == Inside::kActivate) where = ", in activate()";
+  if (inside == Inside::kDestroy) where = ", in deactivate() or destroy()";
+  if (inside == Inside::kStep) where = placesOfStep();
+  return where + overrunWords();
+}
+
+bool endedBeforeSteps() {
+  const Inside inside = last_step->inside;
+  return inside == Inside::kCreate || inside == Inside::kSet || inside == Inside::kActivate;
 }
 
 bool watchSystemCalls() {
@@ -112,15 +159,25 @@ std::string systemCallName(long number) {
   return "number " + std::to_string(number);
 }
 
-StepWatch::StepWatch(const hsp_probe& probe) noexcept {
-  std::copy_n(probe.position, 3, last_step->position);
-  last_step->inside = 1;
+CallWatch::CallWatch(Inside inside) noexcept {
+  last_step->inside = inside;
+}
+
+CallWatch::~CallWatch() {
+  last_step->inside = Inside::kNothing;
+}
+
+StepWatch::StepWatch(const hsp_step& step) noexcept {
+  last_step->count = std::min(step.count, LastStep::kMost);
+  for (uint32_t i = 0; i < last_step->count; ++i)
+    std::copy_n(HSP_AT(const hsp_probe, step.in, step.in_stride, i)->position, 3, last_step->position[i]);
+  last_step->inside = Inside::kStep;
   gate = watches_calls ? kShut : kOpen;
 }
 
 StepWatch::~StepWatch() {
   gate = kOpen;
-  last_step->inside = 0;
+  last_step->inside = Inside::kNothing;
 }
 
 }  // namespace hapticd::conformance

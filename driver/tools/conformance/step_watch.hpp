@@ -4,21 +4,36 @@
 #include <cstdint>
 #include <string>
 
+#include "conformance/guarded_memory.hpp"
 #include "hapticd/shape.h"
 
 namespace hapticd::conformance {
 
-/// The step that a child is in, in memory that it shares with its parent: a crash leaves no other trace of it.
+/// What of a plugin was called and has not returned.
+enum class Inside : uint32_t { kNothing, kCreate, kSet, kActivate, kStep, kDestroy };
+
+/// Where a child is, in memory that it shares with its parent: a crash leaves no other trace of it.
 struct LastStep {
-  double position[3];  ///< [m] of the first probe
-  uint32_t inside;     ///< 1: step() was called and has not returned
+  static constexpr uint32_t kMost = 8;
+  double position[kMost][3];  ///< [m] of the probes of a step
+  uint32_t count;             ///< of them
+  Inside inside;
+  uint32_t probes;  ///< 0, or how many there were where a fault ended it in guarded memory
+  Overrun overrun;
 };
 
 /// [main] Makes the shared memory, once and before the first child, and forgets the last step of the child before.
 void shareLastStep();
 
-/// [main] Where the last child was: ", in step() with the probe at X, Y, Z m", or "" when it was not in a step.
+/// [main] Where the last child was: ", in step() with the probe at X, Y, Z m", ", in activate()", or "" when it was not
+/// in the plugin; and what it overran.
 std::string whereItEnded();
+
+/// [main] True where the last child ended before there was an active shape.
+bool endedBeforeSteps();
+
+/// [main] From now on a fault in guarded memory tells the parent which block was overrun. @param probes of each step
+void tellOverruns(uint32_t probes);
 
 /// [main] From now on system calls of this thread within steps are counted. False: this kernel, or this kind of
 /// processor, does not tell.
@@ -35,10 +50,19 @@ SystemCalls systemCalls();
 /// "write" for its number, "number 999" for one without a name here.
 std::string systemCallName(long number);
 
+/// Stands around a call of the plugin other than step().
+class CallWatch {
+ public:
+  explicit CallWatch(Inside inside) noexcept;
+  ~CallWatch();
+  CallWatch(const CallWatch&) = delete;
+  CallWatch& operator=(const CallWatch&) = delete;
+};
+
 /// Stands around one call of step().
 class StepWatch {
  public:
-  explicit StepWatch(const hsp_probe& probe) noexcept;
+  explicit StepWatch(const hsp_step& step) noexcept;
   ~StepWatch();
   StepWatch(const StepWatch&) = delete;
   StepWatch& operator=(const StepWatch&) = delete;

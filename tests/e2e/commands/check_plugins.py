@@ -91,24 +91,40 @@ SLIPS = {"prints": ("no-system-call-in-step", "it prints in"), "asks": ("no-syst
          "leaks": ("create-destroy-leak", "bytes in each life, from create() to destroy()"),
          "claims": ("step-cost-vs-claim", "the claimed worst is 1 (report.worst_ns)"),
          "allocates": ("no-allocation-in-step", "::keepDepth"),
+         "four_places": ("eight-probes", "it reads or writes byte 128 of a block of 128 bytes; with 8 probes"),
+         "four_shared": ("eight-probes", "of eight in one step gets another force than alone"),
+         "depth_mm": ("depth-falls-outward", "depth_m changes by 1000 m where the probe moves by 1 m along the normal"),
+         "foot_mm": ("depth-falls-outward", "times as far from the probe as depth_m says"),
+         "flat_outside": ("depth-falls-outward", "depth_m is 0 outside of the shape"),
+         "locks": ("no-lock-in-step", "who holds it may keep the servo waiting"),
+         "clicks": ("deep-press", "the force jumps by 2.05 N within 100 um at a depth of 3.1 mm"),
+         "torque_at_once": ("force-from-zero", "the torque jumps by 0.3 N m where the surface is met"),
+         "live_path": ("descriptor-complete", "file: HSP_P_LIVE on a path"),
+         "crashes_early": ("activate", "it crashed: Segmentation fault, in activate()"),
          "one_member": ("param-roundtrip", "expected a member of its own for each line of the table")}
 for shape, (test, words) in SLIPS.items():
     mine = [t for t in tests if t["plugin"] == shape and t["result"] == "fail"]
     check(f"{shape} fails by {test} first", mine and mine[0]["name"] == test and words in mine[0]["why"], mine)
-for shape in ("throws", "crashes", "nan", "shares", "computes", "asks", "no_invalid", "reads_velocity", "leaks", "claims", "allocates"):
+for shape in ("throws", "crashes", "nan", "shares", "computes", "asks", "no_invalid", "reads_velocity", "leaks", "claims", "allocates", "four_places", "four_shared", "flat_outside", "locks", "clicks", "live_path", "crashes_early", "torque_at_once"):
     mine = [t["name"] for t in tests if t["plugin"] == shape and t["result"] == "fail"]
     check(f"{shape} fails by one test alone", len(mine) == 1, mine)
 inward = {t["name"]: t["why"] for t in tests if t["plugin"] == "normal_inward" and t["result"] == "fail"}
 check("a normal that points inward is told, not the force that follows it", "turn the sign of normal first" in inward.get("force-outward", ""), inward)
 leak = [t["why"] for t in tests if t["plugin"] == "leaks" and t["result"] == "fail"][0]
 check("a leak is told by its size", 1000 <= float(re.search(r"about ([0-9]+) bytes", leak)[1]) < 1100, leak)
-for shape in ("right", "unit", "sawtooth", "sawtooth_late", "vibrates", "live"):  # sawtooth: memory that comes and goes is no leak; vibrates: a claimed jump is no stiffness
+for shape in ("right", "unit", "sawtooth", "sawtooth_late", "vibrates", "live", "steepens", "filters"):  # sawtooth: memory that comes and goes is no leak; vibrates: a claimed jump is no stiffness
     check(f"{shape} passes", not [t for p, t in failed if p == shape], failed)
 unit = [t for t in tests if t["plugin"] == "unit" and t["result"] == "warn"]
 check("a unit that is not SI is warned of", len(unit) == 1 and 'the unit is "N/mm", expected m for mm' in unit[0]["why"], unit)
 live = [t for t in tests if t["plugin"] == "live" and t["result"] == "warn"]
 check("a stiffness that may change without consent is warned of", len(live) == 1 and "expected HSP_P_LIVE | HSP_P_SAFETY" in live[0]["why"], live)
-check("no other shape is warned of", {t["plugin"] for t in tests if t["result"] == "warn"} == {"unit", "live"})
+check("no other shape is warned of", {t["plugin"] for t in tests if t["result"] == "warn"} == {"unit", "live", "steepens"})
+steep = {t["name"]: t["why"] for t in tests if t["plugin"] == "steepens"}
+check("a law that turns steep below the surface is warned of", "at a depth of 2." in steep["deep-press"] and "its force grows by" in steep["deep-press"], steep)
+measured = [t["why"] for t in tests if (t["plugin"], t["name"], t["result"]) == ("right", "stiffness-vs-claim", "pass")]
+check("what was measured stands beside the claim", measured == ["it claims 500 N/m, and its force grows by 500 N/m at most"], measured)
+bare = subprocess.run([HAPTICD, "plugin", "check", "slips.so", "--timeout", "15"], capture_output=True, text=True, timeout=280, cwd=BROKEN).stdout
+check("a bare name finds the same locks", "who holds it may keep the servo waiting" in bare, bare[-500:])
 jump = [t["why"] for t in tests if (t["plugin"], t["name"]) == ("millimetres", "force-continuous")][0]
 check("a jump has its place in m and its size in N", re.search(r"^at [-0-9.e, ]+ m: the force jumped by [0-9.e+]+ N while", jump), jump)
 for shape in ("throws", "no_invalid", "allocates"):

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+/// Eight probes, as many as a run may have: what a shape keeps for each needs a place of its own.
+#include <vector>
+
+#include "conformance/conformance_parts.hpp"
+#include "conformance/guarded_memory.hpp"
+#include "conformance/step_watch.hpp"
+
+namespace hapticd::conformance {
+namespace {
+
+using Eigen::Vector3d;
+using Positions = std::vector<Vector3d>;  ///< of all probes in one step
+
+constexpr uint32_t kProbes = 8;
+
+/// One step of the run.
+struct Together {
+  Positions at;
+  uint32_t flags = 0;
+};
+
+/// Each probe on its own part of the path, then all of them pressing, each where the shape can be touched.
+std::vector<Together> stepsOf(const Subject& subject) {
+  constexpr int kAlong = kConformanceSteps / 4;
+  std::vector<Together> steps;
+  for (int i = 0; i < kAlong; ++i) {
+    Together step;
+    for (uint32_t probe = 0; probe < kProbes; ++probe)
+      step.at.push_back(onPath(subject, static_cast<double>(i) / kAlong, 0.7 * probe));
+    steps.push_back(step);
+  }
+  const auto& places = subject.places();
+  std::vector<std::vector<PressStep>> presses;
+  for (size_t probe = 0; probe < kProbes && !places.empty(); ++probe)
+    presses.push_back(pressAt(places[probe % places.size()], pressDepth(subject)));
+  for (size_t i = 0; !presses.empty() && i < presses[0].size(); ++i) {
+    Together step{{}, i == 0 ? uint32_t{HSP_IN_JUMP} : 0};
+    for (const auto& press : presses) step.at.push_back(press[i].p);
+    steps.push_back(step);
+  }
+  return steps;
+}
+
+/// A shape of eight probes, whose own memory and whose records are guarded.
+std::unique_ptr<Subject> guardedSubject(const Recipe& recipe, std::string& error) {
+  tellOverruns(kProbes);
+  const GuardedMemory guarded;
+  Made made(recipe, kProbes);
+  error = made.error;
+  if (error.empty()) made.subject->reserve(kProbes);
+  return std::move(made.subject);
+}
+
+/// "" or the first probe whose answer another probe has changed.
+std::string eachAsAlone(const Recipe& recipe, const std::vector<Together>& steps, const std::vector<Answer>& together) {
+  for (uint32_t probe = 0; probe < kProbes; ++probe) {
+    const Made alone(recipe);
+    if (!alone.error.empty()) return alone.error;
+    for (size_t i = 0; i < steps.size(); ++i) {
+      const Answer& answer = alone.subject->step({steps[i].at[probe]}, kConformanceDt, steps[i].flags);
+      const Vector3d expected(answer.contacts[0].force), got(together[i].contacts[probe].force);
+      const double apart = (got - expected).norm();
+      if (apart <= 1e-6 * (1 + expected.norm())) continue;
+      return placed("probe " + std::to_string(probe + 1) + " of eight in one step gets another force than alone, by " +
+                        text(apart) + " N at step " + std::to_string(i) +
+                        "; expected what is kept for a probe in a place of its own, one for each of "
+                        "activation.max_probes",
+                    steps[i].at[probe]);
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string eightProbes(const Recipe& recipe, uint64_t) {
+  std::string error;
+  const std::unique_ptr<Subject> subject = guardedSubject(recipe, error);
+  if (!error.empty()) return "eight probes: " + error;
+  const std::vector<Together> steps = stepsOf(*subject);
+  std::vector<Answer> answers;
+  for (const Together& step : steps) {
+    answers.push_back(subject->step(step.at, kConformanceDt, step.flags));
+    if (std::string wrong = wrongStatus(answers.back()); !wrong.empty()) return "with eight probes: " + wrong;
+  }
+  const bool coupled = subject->moves() || (subject->description().flags & HSP_C_DEFORMS) != 0;
+  return coupled ? "" : eachAsAlone(recipe, steps, answers);  // what moves or deforms is pushed by all of them
+}
+
+}  // namespace hapticd::conformance
