@@ -50,6 +50,7 @@ struct ModelState {
   bool enabled = true;                  ///< felt; otherwise faded out and only traced
   bool leaving = false;                 ///< fades out and then leaves its place
   bool until_free = false;              ///< it came, or was enabled, while a tip may be in it: see enters()
+  double free_for = 0;                  ///< [s] that no tip was in it since
   std::array<hsp_change, 8> changes{};  ///< live parameters for the next step
   uint32_t change_count = 0;
   uint32_t active_surfaces = 0;  ///< over all probes

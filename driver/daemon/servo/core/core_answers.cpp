@@ -56,6 +56,8 @@ bool Core::holdTorque(const ModelState& model, Claim& claim, uint32_t probe, dou
 
 namespace {
 
+constexpr double kFreeFor = 0.05;  ///< [s] a search finds what is near every 5 ms, later on a busy machine
+
 /// Keeps the largest jump so far, as the plugin would have to report it; its time is noted after the step.
 void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, const hsp_contact& out) noexcept HSP_RT {
   const double size = step.force.norm();
@@ -210,17 +212,23 @@ void Core::takeContact(ModelState& model, uint32_t index, uint32_t probe, double
 
 /// Whether a model that came, or was enabled, may be felt. Not while a tip is in it: its whole force would come at once
 /// to a hand that met nothing on its way there. What pushes without a surface has no outside, so it fades in slowly.
+/// In its first ticks no search has told what is near, and a model that has not been looked at seems to be free.
 /// @param pace [s] of its fade in this tick
 bool Core::enters(ModelState& model, std::span<const Probe> probes, double& pace) const noexcept HSP_RT {
   bool asked = false, pushes = false;
   for (uint32_t i = 0; i < probe_count_; ++i) {
     if (!probes[i].valid) continue;
     const hsp_contact& out = outputs_[i];
-    if ((out.flags & HSP_OUT_TRACED) != 0 && out.depth_m > 0) return false;
+    if ((out.flags & HSP_OUT_TRACED) != 0 && out.depth_m > 0) {
+      model.free_for = 0;
+      return false;
+    }
     asked = true;
     pushes |= !ConstMap(out.force).isZero(0) || !ConstMap(out.torque).isZero(0);
   }
   if (!asked) return false;
+  model.free_for += pace;
+  if (model.free_for < kFreeFor) return false;
   if (pushes) pace *= Guard::kFadeIn / Guard::kFadeInOfField;
   model.until_free = pushes && model.guard.gain() < 1;
   return true;

@@ -14,7 +14,7 @@ bool Core::obey(const Order& order, double t) noexcept HSP_RT {
   if (model.shape == nullptr) return false;
   switch (order.kind) {
     case Order::Kind::kEnable:
-      model.until_free |= order.param == Order::kOnceFree && !model.enabled;
+      if (order.param == Order::kOnceFree && !model.enabled) model.until_free = true, model.free_for = 0;
       model.enabled = !model.leaving;
       return !model.leaving;
     case Order::Kind::kDisable:
@@ -54,6 +54,7 @@ bool Core::adopt(ModelState& place, const Order& order) noexcept HSP_RT {
   ++present_;
   place.guard.silence();  // fades in
   place.until_free = true;
+  place.free_for = 0;
   listLive();
   return true;
 }
