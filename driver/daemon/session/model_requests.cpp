@@ -159,7 +159,7 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
 
 /// With those that wait for a tip to leave them, as far as the servo has met them by now.
 nlohmann::ordered_json RequestHandler::cameAnswer(const std::vector<scene::Model>& models) {
-  constexpr double kMet = 0.05;  // [s] a search finds what is near every 5 ms
+  constexpr double kMet = 0.25;  // [s] the search has met a new model within some 0.1 s, and then it is stepped
   nlohmann::ordered_json json = {{"ok", true}, {"models", models.size()}}, waiting = nlohmann::ordered_json::array();
   const auto now = [&] { return runner_.telemetry().statusWriter()->page().now.read().value_or(status::Now{}).t; };
   const double came = now();

@@ -110,7 +110,7 @@ for number in (signal.SIGTERM, signal.SIGINT):
 hangs(RUN, "broken", "where: set_up_loop", signal.SIGTERM)
 hangs(TRACE, "ending", "how: loop, after: 40", signal.SIGINT)
 hangs(EXPLAIN, "ending", "how: loop, after: 40", signal.SIGTERM)
-hangs(TUNE, "ending", "how: loop, after: 700", signal.SIGTERM)
+hangs(TUNE, "ending", "how: loop, after: 400", signal.SIGTERM)
 
 # A recording of a model that behaves is replayed with one that does not: parameters may be changed, choices by number.
 recording = os.path.join(FOLDER, "run.h5")
