@@ -20,7 +20,7 @@ __thread void (*look)() __attribute__((tls_model("initial-exec"))) = nullptr;
   look = asked;
 }
 
-constexpr size_t kPlain = alignof(max_align_t);  ///< of what malloc gives
+[[maybe_unused]] constexpr size_t kPlain = alignof(max_align_t);  ///< of what malloc gives
 const hapticd::OtherAllocator* other = nullptr;  ///< the one that ever was: its blocks may be freed at any time
 __thread bool from_other __attribute__((tls_model("initial-exec"))) = false;
 
