@@ -78,8 +78,8 @@ int importMesh(const MeshImport& options) {
   importing::MeshReport report;
   std::string part;
   try {
-    const importing::MeshOptions how{placed ? 1 : placement.scale, unitOf(placement),
-                                     options.smooth_angle * std::numbers::pi / 180};
+    const importing::MeshOptions how{placed ? 1 : placement.scale, options.smooth_angle * std::numbers::pi / 180,
+                                     unitOf(placement)};
     const std::string name = std::filesystem::path(options.file).filename().string();
     part = brep::writePart(importing::meshPart(*mesh, how, name, report));
   } catch (const std::exception& error) {

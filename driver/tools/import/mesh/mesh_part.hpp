@@ -9,8 +9,8 @@ namespace hapticd::importing {
 
 struct MeshOptions {
   double scale = 1;         ///< metres per unit of the file
-  std::string unit = "m";   ///< what the file's numbers were taken for, as the part notes it
   double smooth_angle = 0;  ///< [rad] normals are interpolated over edges that bend by less
+  std::string unit{"m"};    ///< what the file's numbers were taken for, as the part notes it
 };
 
 /// What was found in a mesh, and what was done about it.
