@@ -107,6 +107,10 @@ int kinematics(const KinematicsArguments& options) {
   if (!loaded.device) return kBadInput;
   auto device = host::DeviceInstance::create(*loaded.device, logToTerminal);
   if (!device) return fail(kFailed, device.error());
+  if (const std::string wrong =
+          overwrites(options.out, {{options.joints, "the file of joints"}, {options.file, "the device file"}});
+      !wrong.empty())
+    return fail(kBadInput, wrong);
   auto rows = readRows(options.joints, (*device)->kinematics().joint_count);
   if (!rows) return fail(kBadInput, rows.error());
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(

@@ -129,7 +129,7 @@ std::optional<std::filesystem::path> Reader::existingFile(const Node& node, cons
   } else {
     std::vector<std::string> neighbours;
     for (fs::directory_iterator entry(full.parent_path(), error), end; !error && entry != end; entry.increment(error))
-      neighbours.push_back(entry->path().filename().string());
+      if (entry->path().filename() != file_.filename()) neighbours.push_back(entry->path().filename().string());
     problem(node, key,
             "there is no file " + full.string() + ", expected the path of a file" +
                 (written.is_absolute() ? "" : ", relative to the file that names it") +
@@ -191,6 +191,8 @@ std::string belongsTo(const Table& table, const std::string& name) {
   for (const Key& key : table.keys)
     if (key.type == Type::kObject && key.table->find(name) != nullptr)
       return std::string("; ") + name + " belongs under " + key.name;
+  if (table.other != nullptr && table.other->find(name) != nullptr)
+    return "; " + name + " belongs in " + table.other_file;
   return table.find("parameters") != nullptr ? "; a parameter of the plugin or module belongs under parameters" : "";
 }
 

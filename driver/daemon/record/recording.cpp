@@ -152,10 +152,25 @@ Result<void> Recording::readBlocks(std::span<const std::byte> bytes, uint64_t ad
       stream.first_ = stream.rows_ - kept;
       stream.rows_ = kept;
     } else {
+      if (stream.rows_ > space) noteDamage(stream, space, address, bytes);
       stream.rows_ = std::min(stream.rows_, space);
     }
   }
   return {};
+}
+
+/// A writer says how many rows there are after it has written them: where they are not there, they were there once.
+/// @param stopped where no more blocks could be read
+void Recording::noteDamage(const RecordedStream& stream, uint64_t space, uint64_t stopped,
+                           std::span<const std::byte> bytes) {
+  if (!damage_.empty()) return;  // the first stream has the ticks
+  const uint64_t size = bytes.size();
+  const auto block = at<BlockHeader>(bytes, stopped);
+  const bool cut = !block || block->magic == BlockHeader::kMagic;
+  damage_ = (cut ? "it ends at byte " + std::to_string(size) + ", in the middle of its rows"
+                 : "it is damaged at byte " + std::to_string(stopped)) +
+            ": " + std::to_string(stream.rows_ - space) + " of " + std::to_string(stream.rows_) + " rows of " +
+            stream.name_ + " are lost; copy the file again from where it was recorded";
 }
 
 Result<void> Recording::readColumns() {

@@ -219,9 +219,9 @@ constexpr Format kAllFormats[] = {
 
 constexpr Table kModelTable{kModelKeys};
 constexpr Table kClientsTable{kClientsKeys};
-constexpr Table kDeviceReferenceTable{kDeviceReferenceKeys};
-constexpr Table kSceneTable{kSceneKeys};
-constexpr Table kDeviceTable{kDeviceKeys};
+constexpr Table kDeviceReferenceTable{kDeviceReferenceKeys, &kDeviceTable, "the device file"};
+constexpr Table kSceneTable{kSceneKeys, &kDeviceTable, "the device file"};
+constexpr Table kDeviceTable{kDeviceKeys, &kSceneTable, "the scene file"};
 constexpr Table kDaemonTable{kDaemonKeys};
 constexpr std::span<const Format> kFormats{kAllFormats};
 

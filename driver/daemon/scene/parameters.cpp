@@ -87,9 +87,11 @@ void ParameterReader::nothing(const Entry& entry, const std::string& key, uint32
 void ParameterReader::unknown(const Entry& entry, const std::string& key, const std::string& id) {
   std::vector<std::string> ids = info_.paramIds();
   if (ids.empty()) return in_->problem(entry.key, key, "unknown key: " + info_.name + " has no parameters");
+  // Within a group, only the names of this group fit: another one's would be as unknown there.
+  const std::string group = id.substr(0, id.find('.') == id.npos ? 0 : id.rfind('.'));
+  if (!group.empty()) std::erase_if(ids, [&](const std::string& one) { return one.rfind(group + ".", 0) != 0; });
   in_->problem(entry.key, key,
-               "unknown parameter of " + info_.name + ", expected one of " +
-                   document::listed(idsIn(info_, id.substr(0, id.find('.') == id.npos ? 0 : id.rfind('.'))), 24) +
+               "unknown parameter of " + info_.name + ", expected one of " + document::listed(idsIn(info_, group), 24) +
                    document::suggestion(id, ids));
 }
 
