@@ -144,6 +144,22 @@ struct Verdict {
   document::Problems problems, warnings;
 };
 
+/// The modules of a scene's arms: what runs would refuse, or crash in, is told before any of them is loaded here.
+document::Problems badModules(const scene::Scene& scene) {
+  document::Problems problems;
+  for (size_t i = 0; i < scene.devices.size(); ++i) {
+    const scene::Device& device = scene.devices[i];
+    const ModuleTrial trial = tryModule(device);
+    if (trial.error.empty()) continue;
+    const document::Place place =
+        device.place.file.empty() ? document::Place{device.file.string()} : document::Place(device.place);
+    document::report(
+        problems, place, "device",
+        trial.error.substr(0, trial.error.find('\n')) + "; all of it: hapticd check " + device.file.string());
+  }
+  return problems;
+}
+
 Verdict checkOne(const std::string& file, const CheckArguments& options) {
   std::optional<scene::Scene> scene;
   Verdict verdict{file, scene::checkFile(file, catalog(), &scene), {}};
@@ -154,18 +170,24 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
     found = std::move(other.problems);
     if (!scene) return verdict;
   }
+  if (scene && !options.files_only)
+    if (document::Problems bad = badModules(*scene); !bad.empty()) {
+      found.insert(found.end(), bad.begin(), bad.end());
+      return verdict;  // what follows would call these modules in this process
+    }
   ModelTrial trial;
   if (scene && !options.files_only) trial = tryModels(*scene, servo::maxForceOf(withArm(*scene)));
   found.insert(found.end(), trial.problems.begin(), trial.problems.end());
   if (scene && !options.files_only)
     for (const document::Problem& hand : unreachableHands(withArm(*scene))) found.push_back(hand);
   if (!scene) {
-    const document::Problems more = tryDevice(file, catalog(), found);
+    const document::Problems more = tryDevice(file, catalog(), found, &verdict.warnings);
     found.insert(found.end(), more.begin(), more.end());
     document::sortByPlace(found);
   }
-  verdict.warnings = trial.warnings;
-  if (!scene && found.empty()) verdict.warnings = adviseDevice(file, catalog());
+  verdict.warnings.insert(verdict.warnings.end(), trial.warnings.begin(), trial.warnings.end());
+  if (!scene && found.empty())
+    for (const document::Problem& one : adviseDevice(file, catalog())) verdict.warnings.push_back(one);
   if (!scene || !found.empty()) return verdict;
   const scene::Scene full = withArm(*scene);
   document::Problems more = unstable(full, trial.stiffness);
