@@ -171,6 +171,22 @@ void addWarnings(const scene::Scene& full, const std::vector<double>& stiffness,
   verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());
 }
 
+/// The modules of a scene's arms: what runs would refuse, or crash in, is told before any of them is loaded here.
+document::Problems badModules(const scene::Scene& scene) {
+  document::Problems problems;
+  for (size_t i = 0; i < scene.devices.size(); ++i) {
+    const scene::Device& device = scene.devices[i];
+    const ModuleTrial trial = tryModule(device);
+    if (trial.error.empty()) continue;
+    const document::Place place =
+        device.place.file.empty() ? document::Place{device.file.string()} : document::Place(device.place);
+    document::report(
+        problems, place, "device",
+        trial.error.substr(0, trial.error.find('\n')) + "; all of it: hapticd check " + device.file.string());
+  }
+  return problems;
+}
+
 Verdict checkOne(const std::string& file, const CheckArguments& options) {
   std::optional<scene::Scene> scene;
   Verdict verdict{file, scene::checkFile(file, catalog(), &scene), {}};
@@ -182,6 +198,11 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
     verdict.whole = found.empty();
     if (!scene) return verdict;
   }
+  if (scene && !options.files_only)
+    if (document::Problems bad = badModules(*scene); !bad.empty()) {
+      found.insert(found.end(), bad.begin(), bad.end());
+      return verdict;  // what follows would call these modules in this process
+    }
   ModelTrial trial;
   if (scene && !options.files_only) trial = tryModels(*scene, servo::maxForceOf(withArm(*scene)));
   found.insert(found.end(), trial.problems.begin(), trial.problems.end());
@@ -189,15 +210,15 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
     for (const document::Problem& hand : unreachableHands(withArm(*scene))) found.push_back(hand);
   if (!scene && !found.empty()) tryTheRest(options, verdict);
   if (!scene) {
-    const document::Problems more = tryDevice(file, catalog(), found);
+    const document::Problems more = tryDevice(file, catalog(), found, &verdict.warnings);
     found.insert(found.end(), more.begin(), more.end());
     document::sortByPlace(found);
   }
   verdict.warnings.insert(verdict.warnings.end(), trial.warnings.begin(), trial.warnings.end());
   verdict.whole = verdict.whole && found.empty();
-  if (!scene && found.empty()) verdict.warnings = adviseDevice(file, catalog());
-  if (!scene) return verdict;
-  addWarnings(withArm(*scene), trial.stiffness, options, verdict);
+  if (!scene && found.empty())
+    for (const document::Problem& one : adviseDevice(file, catalog())) verdict.warnings.push_back(one);
+  if (scene) addWarnings(withArm(*scene), trial.stiffness, options, verdict);
   return verdict;
 }
 

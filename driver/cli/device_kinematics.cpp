@@ -2,6 +2,8 @@
 /// `hapticd device kinematics`: forward kinematics, Jacobian and torques of an arm, offline, for joints of a CSV file.
 #include <Eigen/Core>
 #include <array>
+#include <iostream>
+#include <iterator>
 #include <memory>
 #include <string>
 
@@ -29,7 +31,12 @@ std::string headerOf(size_t joints) {
 Result<document::CsvTable> readRows(const std::string& file, size_t joints) {
   const std::string q = headerOf(joints);
   document::Problems problems;
-  auto table = document::readCsv(file, kMaxCsvBytes, {{q, q + ",fx,fy,fz", q + ",fx,fy,fz,tx,ty,tz"}}, problems);
+  document::CsvRules form;
+  form.headers = {q, q + ",fx,fy,fz", q + ",fx,fy,fz,tx,ty,tz"};
+  const bool input = file == "-";
+  const std::string text = input ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : "";
+  auto table =
+      input ? document::parseCsv(text, "-", form, problems) : document::readCsv(file, kMaxCsvBytes, form, problems);
   if (!table) return Error{problems.front().text()};
   return std::move(*table);
 }
@@ -141,7 +148,8 @@ void addDeviceKinematics(const Command& app, int& exit_code) {
   command.addOption("file", options->file, "device file (YAML)").required();
   command
       .addOption("--joints", options->joints,
-                 "CSV with q1,q2,... [rad; m for sliding joints] and optionally fx,fy,fz[,tx,ty,tz] [N, N m]")
+                 "CSV with q1,q2,... [rad; m for sliding joints] and optionally fx,fy,fz[,tx,ty,tz] [N, N m]; - for "
+                 "standard input")
       .required();
   command.addOption("-o,--out", options->out, "CSV file to write; - for standard output");
   command.footer(

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "diagnostics/limit_advice.hpp"
+#include "diagnostics/motor_advice.hpp"
 #include "diagnostics/node_path.hpp"
 #include "diagnostics/safety_advice.hpp"
 #include "diagnostics/travel_advice.hpp"
@@ -122,6 +123,7 @@ document::Problems adviseDevice(const std::filesystem::path& file, host::Catalog
     poseBeyondStops(*root, *loaded.device, warnings);
     adviseWire(*root, *loaded.device, (*arm)->kinematics().joint_count, warnings);
     adviseTravel(*root, *loaded.device, **arm, warnings);
+    adviseMotors(*root, *loaded.device, (*arm)->kinematics().joint_count, warnings);
   }
   document::sortByPlace(warnings);
   return warnings;
