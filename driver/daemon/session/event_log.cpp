@@ -9,6 +9,7 @@
 #include "log/log.hpp"
 #include "servo/safety/fault.hpp"
 #include "session/event_finder.hpp"
+#include "session/program_name.hpp"
 #include "session/silence_reason.hpp"
 
 namespace hapticd::servo {
