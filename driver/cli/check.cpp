@@ -21,6 +21,7 @@
 #include "document/node.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
+#include "host/file_stamp.hpp"
 #include "scene/device_draft.hpp"
 #include "tune/stability.hpp"
 #include "watch/quarantine.hpp"
@@ -109,7 +110,7 @@ document::Problems quarantinedModels(const scene::Scene& scene) {
   if (dir.empty()) return warnings;
   for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir))
     for (size_t i = 0; i < scene.models.size(); ++i)
-      if (scene.models[i].plugin == entry.plugin)
+      if (entry.holds(scene.models[i].plugin, host::identityOnDisk(scene.models[i].library)))
         document::report(warnings, scene.models[i].place, "models[" + std::to_string(i) + "].plugin",
                          entry.plugin + " is in quarantine, as it ended an earlier run by " + entry.reason +
                              "; runs leave " + scene.models[i].name +

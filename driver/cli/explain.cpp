@@ -9,9 +9,11 @@
 #include <vector>
 
 #include "base/clock.hpp"
+#include "base/offline_tick.hpp"
 #include "base/os.hpp"
 #include "cli/command.hpp"
 #include "cli/guarded_command.hpp"
+#include "cli/tick_watch.hpp"
 #include "diagnostics/explain_cost.hpp"
 #include "diagnostics/slow_arm.hpp"
 #include "document/reader.hpp"
@@ -60,6 +62,7 @@ std::vector<uint64_t> measureSteps(servo::World& world, const scene::Scene& scen
     servo::Lockstep lockstep = world.lockstep();
     std::vector<uint64_t> costs;
     for (int i = 0; i < kTicks; ++i) {
+      const OfflineTick counted;
       world.core().publish(i * dt, {&probe, 1});
       lockstep.before(i * dt);
       world.core().tick(i * dt, i == 0 ? 0 : dt, {&probe, 1});
@@ -163,6 +166,7 @@ int explain(const ExplainArguments& options) {
   auto scene = loadSceneOrReport(options.scene, options.device);
   if (!scene) return kBadInput;
   const GuardedCommand guarded;
+  const TickWatch watched;
   if (options.cost || options.json) return explainCost(options, *scene);
   const SetupErrors once;
   Details details;

@@ -7,6 +7,7 @@
 
 #include "cli/class_info.hpp"
 #include "cli/command.hpp"
+#include "host/file_stamp.hpp"
 #include "watch/quarantine.hpp"
 
 namespace hapticd::cli {
@@ -14,14 +15,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Of the file that a scene would get under that name.
+std::string noteOf(const watch::QuarantinedPlugin& entry) {
+  const auto found = catalog().shape(entry.plugin);
+  if (!found || entry.holds(entry.plugin, host::identityOnDisk((*found)->file)))
+    return "IN QUARANTINE: " + entry.reason + "; runs leave it out until: hapticd plugin clear " + entry.plugin;
+  return "NOTE: " + entry.file + " ended a run by " + entry.reason +
+         "; the file has changed since, or is another one, so it runs again";
+}
+
 /// Why runs leave a plugin out, by its name.
 std::map<std::string, std::string> quarantineNotes() {
   std::map<std::string, std::string> notes;
   const auto dir = watch::stateDir();
   if (dir.empty()) return notes;
-  for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir))
-    notes[entry.plugin] =
-        "IN QUARANTINE: " + entry.reason + "; runs leave it out until: hapticd plugin clear " + entry.plugin;
+  for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir)) notes[entry.plugin] = noteOf(entry);
   return notes;
 }
 

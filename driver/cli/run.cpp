@@ -20,6 +20,7 @@
 #include "cli/view_process.hpp"
 #include "diagnostics/enable_button.hpp"
 #include "document/node.hpp"
+#include "host/file_stamp.hpp"
 #include "log/log.hpp"
 #include "record/allocation_text.hpp"
 #include "record/pace_report.hpp"
@@ -196,13 +197,26 @@ int conclude(const RunArguments& options, servo::Runner& runner, const std::vect
   return faults.empty() ? kWorked : kFailed;
 }
 
-/// Models of a plugin that crashed the daemon stay out until the user clears it. @return a message for each
+/// The file of a plugin that ended an earlier run was built anew, or is another one of that name: it is tried again.
+void tellTriedAgain(const scene::Model& model, const watch::QuarantinedPlugin& entry) {
+  log::write(HSP_LOG_WARNING, "",
+             "model " + model.name + ": plugin '" + entry.plugin + "' ended an earlier run by " + entry.reason + " (" +
+                 entry.file + "); the file has changed since, or is another one, so it runs again\n  fix: " +
+                 "hapticd plugin check " + model.library.string() + "; once it is repaired: hapticd plugin clear " +
+                 entry.plugin);
+}
+
+/// Models of a plugin that crashed the daemon stay out until its file changes or the user clears it. @return a message
+/// for each
 std::vector<std::string> leaveOutQuarantined(scene::Scene& scene, const std::filesystem::path& dir) {
   std::vector<std::string> messages;
   if (dir.empty()) return messages;
   for (const watch::QuarantinedPlugin& entry : watch::quarantined(dir))
     std::erase_if(scene.models, [&](const scene::Model& model) {
-      if (model.plugin != entry.plugin) return false;
+      if (!entry.holds(model.plugin, host::identityOnDisk(model.library))) {
+        if (model.plugin == entry.plugin) tellTriedAgain(model, entry);
+        return false;
+      }
       messages.push_back("model " + model.name + ": plugin '" + entry.plugin + "' ended an earlier run by " +
                          entry.reason + "; the model is left out; once the plugin is repaired: hapticd plugin clear " +
                          entry.plugin);

@@ -8,9 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "base/offline_tick.hpp"
 #include "cli/command.hpp"
 #include "cli/guarded_command.hpp"
 #include "cli/probe_path.hpp"
+#include "cli/tick_watch.hpp"
 #include "cli/trace_writer.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "servo/velocity/probe_velocity.hpp"
@@ -62,6 +64,7 @@ Result<void> traceRows(const scene::Scene& scene, servo::World& world, const std
     } else if (velocity) {
       velocity->reset();
     }
+    const OfflineTick counted;
     world.core().publish(t, {&probe, 1});
     lockstep.before(t);
     world.core().tick(t, dt, {&probe, 1});
@@ -104,6 +107,7 @@ int trace(const TraceArguments& options) {
   auto models = chosenModels(*scene, options.models);
   if (!models) return fail(kBadInput, models.error());
   const GuardedCommand guarded;
+  const TickWatch watched;
   const SetupErrors once;
   auto world = servo::World::build(*scene, {.rate = scene->servo.rate}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());

@@ -15,6 +15,7 @@
 #include "cli/command.hpp"
 #include "cli/guarded_command.hpp"
 #include "cli/probe_path.hpp"
+#include "cli/tick_watch.hpp"
 #include "record/recording.hpp"
 #include "tune/page.hpp"
 #include "tune/write_scene.hpp"
@@ -166,6 +167,7 @@ int tuneScene(const TuneArguments& options) {
   if (!scene) return kBadInput;
   if (scene->models.empty()) return fail(kBadInput, options.scene + ": the scene has no model, expected one to tune");
   const GuardedCommand guarded;
+  const TickWatch watched;
   auto world = servo::World::build(*scene, {.rate = scene->servo.rate}, logToTerminal);
   if (!world) return fail(kBadInput, world.error());
   const bool uses_velocity = (*world)->needsVelocity();

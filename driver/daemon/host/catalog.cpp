@@ -71,6 +71,31 @@ std::optional<fs::path> shippedFile(const fs::path& relative) {
   return std::nullopt;
 }
 
+namespace {
+
+/// Folders that hold what ships with this program: beside it, and where it was installed.
+std::vector<fs::path> shippedRoots() {
+  const fs::path beside = executableDir() / "..";
+  std::vector<fs::path> roots;
+  for (const fs::path& root :
+       {beside / "lib" / "hapticd", beside / HAPTICD_INSTALL_LIBDIR / "hapticd", fs::path(HAPTICD_INSTALL_MODULES)})
+    roots.push_back(root.lexically_normal());
+  return roots;
+}
+
+}  // namespace
+
+bool ships(const fs::path& library) {
+  if (findBuiltIn(library) != nullptr) return true;
+  std::error_code error;
+  const fs::path folder = fs::weakly_canonical(library, error).parent_path();
+  const auto roots = shippedRoots();
+  return std::any_of(roots.begin(), roots.end(), [&](const fs::path& root) {
+    return fs::weakly_canonical(root / "plugins", error) == folder ||
+           fs::weakly_canonical(root / "devices", error) == folder;
+  });
+}
+
 SearchPath SearchPath::standard() {
   SearchPath path;
   if (const char* listed = std::getenv("HAPTICD_PLUGIN_PATH")) {
@@ -78,10 +103,7 @@ SearchPath SearchPath::standard() {
     for (std::string dir; std::getline(dirs, dir, ':');)
       if (!dir.empty()) path.plugins.emplace_back(dir), path.devices.emplace_back(dir);
   }
-  const fs::path beside = executableDir() / "..";
-  for (const fs::path& root :
-       {beside / "lib" / "hapticd", beside / HAPTICD_INSTALL_LIBDIR / "hapticd", fs::path(HAPTICD_INSTALL_MODULES)}) {
-    const fs::path normal = root.lexically_normal();
+  for (const fs::path& normal : shippedRoots()) {
     if (std::find(path.plugins.begin(), path.plugins.end(), normal / "plugins") != path.plugins.end()) continue;
     path.plugins.push_back(normal / "plugins");
     path.devices.push_back(normal / "devices");

@@ -30,6 +30,9 @@ struct SearchPath {
   void prepend(const std::vector<std::filesystem::path>& dirs);
 };
 
+/// [main] True for what is built in, and for a file in a folder of shipped modules. Others are somebody else's.
+bool ships(const std::filesystem::path& library);
+
 /// A file that looks like a plugin or module: its description, or the reason why there is none.
 struct CatalogFile {
   std::filesystem::path path;

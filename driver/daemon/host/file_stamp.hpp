@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace hapticd::host {
 
@@ -13,5 +14,13 @@ using FileStamp = std::array<int64_t, 5>;
 
 /// [main] Nothing: there is no such file.
 std::optional<FileStamp> stampOf(const std::filesystem::path& file);
+
+/// One line that another build of a file does not have: its size, the time of its last change, and its real path.
+std::string identityText(const std::filesystem::path& real, const std::optional<FileStamp>& stamp);
+
+/// [main] That of a file as it is on the disk.
+std::string identityOnDisk(const std::filesystem::path& file);
+/// [main] That of a file as its code was loaded, whatever it has become since; "": it was not.
+std::string identityLoaded(const std::filesystem::path& file);
 
 }  // namespace hapticd::host

@@ -88,6 +88,27 @@ std::shared_ptr<Library> Library::loaded(const std::filesystem::path& file) {
   return found != all.loaded.end() ? found->second.lock() : nullptr;
 }
 
+std::string identityText(const std::filesystem::path& real, const std::optional<FileStamp>& stamp) {
+  if (!stamp) return real.string();
+  return std::to_string((*stamp)[2]) + " bytes of " + std::to_string((*stamp)[3]) + "." + std::to_string((*stamp)[4]) +
+         " " + real.string();
+}
+
+std::string identityOnDisk(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::canonical(file, error);
+  return error ? file.string() : identityText(real, stampOf(real));
+}
+
+std::string identityLoaded(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::canonical(file, error);
+  Registry& all = registry();
+  const std::lock_guard lock(all.mutex);
+  const auto first = error ? all.first.end() : all.first.find(real);
+  return first != all.first.end() ? identityText(real, first->second) : "";
+}
+
 bool replacedSinceLoaded(const std::filesystem::path& file) {
   std::error_code error;
   const std::filesystem::path real = std::filesystem::canonical(file, error);

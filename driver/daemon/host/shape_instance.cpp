@@ -6,7 +6,10 @@
 #include <functional>
 
 #include "base/call_name.hpp"
+#include "base/owner_file.hpp"
+#include "host/catalog.hpp"
 #include "host/class_table.hpp"
+#include "host/file_stamp.hpp"
 
 namespace hapticd::host {
 namespace {
@@ -76,6 +79,7 @@ Result<std::unique_ptr<ShapeInstance>> ShapeInstance::create(const scene::Model&
 
   ownCode(reinterpret_cast<const void*>(instance->class_->create), instance->owner_);
   keepPlace(instance->owner_, placeOf(model));
+  keepFile(instance->owner_, identityLoaded(model.library), !ships(model.library));
   const Calling calling(instance->owner_);
   const CallName creating("create");
   instance->shape_ = instance->class_->create(instance->class_, instance->services_.abi());

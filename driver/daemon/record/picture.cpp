@@ -132,7 +132,8 @@ double leastDepth(const std::vector<Sample>& samples) {
 
 std::vector<Quantity> quantitiesOf(const RunReport& report, const std::vector<Sample>& samples, bool positions) {
   const auto always = [](const Sample&) { return true; };
-  const auto in_contact = [](const Sample& s) { return s.depth_m > 0; };
+  // As the report counts them: while forces are held at zero, at the end of a run too, nothing is felt.
+  const auto in_contact = [](const Sample& s) { return s.depth_m > 0 && s.fault == 0; };
   const bool simulated = report.virtual_time;
   std::vector<Quantity> all = {{"penetration depth", "mm", kDepth, [](const Sample& s) { return s.depth_m * 1e3; },
                                 in_contact, "% of the ticks in contact", false, leastDepth(samples)},

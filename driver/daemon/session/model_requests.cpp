@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "document/suggestion.hpp"
+#include "host/file_stamp.hpp"
 #include "host/replaced_library.hpp"
 #include "session/foreign_files.hpp"
 #include "session/kept_settings.hpp"
@@ -127,7 +128,7 @@ Result<void> RequestHandler::refuseQuarantined(const std::vector<scene::Model>& 
   if (runner_.stateDir().empty()) return {};
   for (const watch::QuarantinedPlugin& entry : watch::quarantined(runner_.stateDir()))
     for (const scene::Model& model : models)
-      if (model.plugin == entry.plugin)
+      if (entry.holds(model.plugin, host::identityOnDisk(model.library)))
         return refuse("quarantined", "model \"" + model.name + "\": plugin '" + entry.plugin +
                                          "' ended an earlier run by " + entry.reason +
                                          "\n  fix: repair it, then: hapticd plugin clear " + entry.plugin);

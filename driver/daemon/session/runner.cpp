@@ -70,7 +70,10 @@ std::unique_ptr<watch::Watchdog> watchdogOf(watch::Watched& watched, bool may_la
 }
 
 Result<void> runInVirtualTime(Loop& loop, const watch::Watched& watched) {
-  watch::EndWatch end(watched, [] { watch::endAnyway(keepsTheEnd()); });
+  const auto hung = [] {
+    if (const Owner* keeps = keepsTheEnd()) watch::dieOf("a step that did not come back", keeps);
+  };
+  watch::EndWatch end(watched, [] { watch::endAnyway(keepsTheEnd()); }, hung);
   if (const auto code = end.start()) return Error{"cannot start the thread that watches the end: " + code.message()};
   loop.run();
   return {};

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "watch/crash.hpp"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -15,6 +17,7 @@
 #include "base/call_name.hpp"
 #include "base/fatal_signals_posix.hpp"
 #include "base/os.hpp"
+#include "base/owner_file.hpp"
 #include "watch/process_end.hpp"
 #include "watch/quarantine.hpp"
 #include "watch/signal_words.hpp"
@@ -28,9 +31,18 @@ struct Prepared {
   std::atomic<Watched*> servo{nullptr};
   std::atomic<int> process{0};  ///< a fork of it is none of our business
   char dir[kLongestPath] = "";  // "": nothing is written
+  /// The C library's last words, where it keeps them: a length, and the text behind it.
+  const char* const* last_words = nullptr;
 };
 Prepared prepared;
 std::atomic<int> dying{0};  ///< the thread that ends the process
+
+/// What a crash in the daemon's own code says of the code that does not ship with it.
+enum class Suspicion {
+  kNone,   ///< nothing: a signal from outside, or a culprit that is known
+  kCrash,  ///< it may have done it
+  kTorn    ///< memory was overwritten or freed twice, and whoever did it has gone: most likely it did
+};
 
 /// Of that thread alone. The reason and the culprit are fixed at the first step: what the later ones find is a process
 /// that is falling apart.
@@ -40,8 +52,9 @@ struct Death {
   const Owner* culprit = nullptr;
   bool called = false;         ///< it was, by the thread that ends the process
   const char* call = nullptr;  ///< its function; nullptr: a step
-  int not_remembered = 0;      ///< errno
-  Line reason, black_box;      ///< its file, once it is written
+  Suspicion suspicion = Suspicion::kNone;
+  int not_remembered = 0;  ///< errno
+  Line reason, black_box;  ///< its file, once it is written
 };
 Death death;
 
@@ -59,6 +72,16 @@ const Owner* culpritOf(int signal, const siginfo_t& info, const void* context) n
   return isWorker() ? nullptr : ownerInterrupted(context);  // a thread that a plugin or module began itself
 }
 
+/// True where the allocator found its own records overwritten: whoever did that was there before, and is gone. Code
+/// that does not ship with the daemon is the likeliest to have done it.
+bool allocatorAborted() noexcept {
+  constexpr const char* kItsWords[] = {"free", "alloc", "corrupt", "chunk"};
+  const char* said = prepared.last_words != nullptr ? *prepared.last_words : nullptr;
+  if (said == nullptr) return false;
+  return std::any_of(std::begin(kItsWords), std::end(kItsWords),
+                     [said](const char* word) { return std::strstr(said + sizeof(unsigned), word) != nullptr; });
+}
+
 /// nullptr: nothing is watched, or this process is a fork of the one that is.
 Watched* watchedHere() noexcept {
   return prepared.process.load() == getpid() ? prepared.servo.load() : nullptr;
@@ -69,6 +92,8 @@ void dieBySystem(int signal) noexcept {
   std::signal(signal, SIG_DFL);
   std::raise(signal);
 }
+
+[[noreturn]] void die(const char* reason, const Owner* culprit, Suspicion suspicion) noexcept;
 
 void onFatal(int signal, siginfo_t* info, void* context) {
   Watched* servo = watchedHere();
@@ -84,7 +109,13 @@ void onFatal(int signal, siginfo_t* info, void* context) {
         .write(STDERR_FILENO);
     return;
   }
-  dieOf(words(signal).text(), culpritOf(signal, *info, context));
+  const Owner* culprit = culpritOf(signal, *info, context);
+  const bool own = info->si_code > 0 || (info->si_code == SI_TKILL && info->si_pid == getpid());
+  const bool torn = signal == SIGABRT && allocatorAborted();
+  die(words(signal).text(), culprit,
+      culprit != nullptr || !own ? Suspicion::kNone
+      : torn                     ? Suspicion::kTorn
+                                 : Suspicion::kCrash);
 }
 
 Line& addOwner(Line& line, const Owner& owner) noexcept {
@@ -160,9 +191,17 @@ void writeBlackBox(Watched& servo) noexcept {
   death.black_box = file;
 }
 
+/// Who ended the process: the culprit, or where memory was torn all that do not ship with us; nullptr: there are no
+/// more.
+const Owner* leftOut(size_t number) noexcept {
+  if (death.suspicion == Suspicion::kTorn) return foreignOwner(number);
+  return number == 0 ? death.culprit : nullptr;
+}
+
 /// A device module cannot be left out of the next start: it is named, and no more.
 bool mayBeLeftOut() noexcept {
-  return death.culprit != nullptr && !death.culprit->device && prepared.dir[0] != '\0';
+  const Owner* first = leftOut(0);
+  return first != nullptr && !first->device && prepared.dir[0] != '\0';
 }
 
 void remember(Watched&) noexcept {
@@ -170,9 +209,19 @@ void remember(Watched&) noexcept {
   errno = 0;
   const int fd = open(Line().add(prepared.dir).add("/").add(kQuarantineFile).text(),
                       O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0640);
-  Line line;
-  line.add(death.culprit->module.c_str()).add("\t").add(death.reason.text()).add("\n");
-  const bool written = fd >= 0 && line.write(fd) && fsync(fd) == 0;
+  bool written = fd >= 0;
+  for (size_t i = 0; const Owner* owner = leftOut(i); ++i) {
+    Line line;
+    const char* file = fileOf(owner);
+    line.add(owner->module.c_str())
+        .add("\t")
+        .add(death.reason.text())
+        .add(*file != '\0' ? "\t" : "")
+        .add(file)
+        .add("\n");
+    written = written && line.write(fd);
+  }
+  written = written && fsync(fd) == 0;
   if (!written) death.not_remembered = errno != 0 ? errno : ENOSPC;
   if (fd >= 0) close(fd);
 }
@@ -188,6 +237,21 @@ void tellCulprit(Line& line) noexcept {
     line.add("the daemon itself");
   line.add(" was ended by ").add(death.reason.text());
   if (death.called) addCall(line.add(","), *culprit, death.call);
+  if (death.suspicion == Suspicion::kTorn) line.add(": memory was overwritten, or freed twice");
+  line.add("\n  ");
+}
+
+/// "plugin 'torus' of model 'ring', plugin ...": what does not ship with hapticd. False: there is nothing.
+bool addForeign(Line& line) noexcept {
+  size_t count = 0;
+  for (; const Owner* owner = foreignOwner(count); ++count) addOwner(line.add(count > 0 ? ", " : ""), *owner);
+  return count > 0;
+}
+
+/// What is tried before the daemon itself is reported.
+void tellForeign(Line& line) noexcept {
+  if (death.suspicion == Suspicion::kNone || foreignOwner(0) == nullptr) return;
+  addForeign(line.add("what does not ship with hapticd is the likeliest cause: "));
   line.add("\n  ");
 }
 
@@ -196,14 +260,18 @@ void tellCure(Line& line, bool drives) noexcept {
     line.add(
             "the next start leaves its models out\n  fix: look at the plugin (hapticd plugin check FILE.so), then: "
             "hapticd plugin clear ")
-        .add(death.culprit->module.c_str())
+        .add(leftOut(0)->module.c_str())
         .add("\n");
   } else if (mayBeLeftOut()) {
     const char* why = strerrordesc_np(death.not_remembered);
     line.add("it could not be put in quarantine, so the next start loads it again: ").add(prepared.dir);
     line.add(": ").add(why != nullptr ? why : "not written").add("\n  fix: take it out of the scene\n");
-  } else if (death.culprit != nullptr && !death.culprit->device && !drives) {
-    line.add("the command has ended\n  fix: repair the plugin; hapticd plugin check FILE.so looks for the cause\n");
+  } else if (death.culprit != nullptr && !death.culprit->device) {
+    line.add(drives ? "the run" : "the command")
+        .add(" has ended\n  fix: repair the plugin; hapticd plugin check FILE.so looks for the cause\n");
+  } else if (death.suspicion != Suspicion::kNone && foreignOwner(0) != nullptr) {
+    line.add("it has ended\n  fix: try that first (hapticd plugin check FILE.so); if it passes, report this with the ")
+        .add("output of: hapticd doctor --json\n");
   } else if (!drives) {
     line.add("the command has ended\n  fix: report it with the output of: hapticd doctor --json\n");
   } else {
@@ -218,6 +286,7 @@ void tell(Watched& servo) noexcept {
     line.add(death.motors_off ? "the motors were switched off first" : "to switch the motors off crashed as well");
   if (*death.black_box.text() != '\0') line.add("; the last seconds are in ").add(death.black_box.text());
   if (servo.drives()) line.add("\n  ");
+  tellForeign(line);
   tellCure(line, servo.drives());
   line.write(STDERR_FILENO);
 }
@@ -231,6 +300,24 @@ constexpr void (*kSteps[])(Watched&) noexcept = {&cutMotors, &remember, &writeBl
   endProcess(1);
 }
 
+void die(const char* reason, const Owner* culprit, Suspicion suspicion) noexcept {
+  Watched* servo = prepared.servo.load();
+  if (servo == nullptr) endProcess(1);
+  int nobody = 0;
+  const int self = os::threadId();
+  if (!dying.compare_exchange_strong(nobody, self) && nobody != self) awaitEnd();
+  // A step that crashes itself (the device's cut, on a heap just torn) brings this thread here again: on with the next.
+  if (nobody == 0) {
+    death.reason.add(reason);
+    death.culprit = culprit;
+    death.suspicion = suspicion;
+    death.called = culprit != nullptr && culprit == calledHere();
+    death.call = callNameHere();
+  }
+  for (size_t step = death.step++; step < std::size(kSteps); step = death.step++) kSteps[step](*servo);
+  endProcess(1);
+}
+
 }  // namespace
 
 void guardAgainstCrash(Watched& servo, const std::filesystem::path& dir) {
@@ -239,6 +326,7 @@ void guardAgainstCrash(Watched& servo, const std::filesystem::path& dir) {
   const std::string text = dir.string();
   prepared.dir[0] = '\0';
   if (text.size() < kLongestPath) std::memcpy(prepared.dir, text.c_str(), text.size() + 1);
+  prepared.last_words = static_cast<const char* const*>(dlsym(RTLD_DEFAULT, "__abort_msg"));
   prepared.process.store(getpid());
   prepared.servo.store(&servo);
   onPlainExit([] { dieOfExit("a call of _exit()"); });
@@ -286,20 +374,7 @@ void endAnyway(const Owner* keeps) noexcept {
 }
 
 void dieOf(const char* reason, const Owner* culprit) noexcept {
-  Watched* servo = prepared.servo.load();
-  if (servo == nullptr) endProcess(1);
-  int nobody = 0;
-  const int self = os::threadId();
-  if (!dying.compare_exchange_strong(nobody, self) && nobody != self) awaitEnd();
-  // A step that crashes itself (the device's cut, on a heap just torn) brings this thread here again: on with the next.
-  if (nobody == 0) {
-    death.reason.add(reason);
-    death.culprit = culprit;
-    death.called = culprit != nullptr && culprit == calledHere();
-    death.call = callNameHere();
-  }
-  for (size_t step = death.step++; step < std::size(kSteps); step = death.step++) kSteps[step](*servo);
-  endProcess(1);
+  die(reason, culprit, Suspicion::kNone);
 }
 
 }  // namespace hapticd::watch

@@ -27,12 +27,22 @@ void EndWatch::watch() {
 /// A run of slow ticks ramps its forces out first, however long that takes; one whose tick does not end never will.
 void EndWatch::look(Nanoseconds now) noexcept {
   const uint64_t ticks = servo_.ticks();
+  lookForHang(ticks);
   const bool moved = std::exchange(ticks_, ticks) != ticks;
   if (servo_.stopAsked() == 0 || moved) {
     still_since_ = now;
     return;
   }
   if (now - still_since_ >= kEndWithin && !std::exchange(told_, true)) late_();
+}
+
+/// Counted in looks, not in time: a process that a debugger or a laptop's lid has stopped comes back to a good tick.
+void EndWatch::lookForHang(uint64_t ticks) noexcept {
+  const Nanoseconds begun = servo_.tickBegun(), cpu = servo_.cpuTime();
+  const bool same = std::exchange(tick_begun_, begun) == begun && begun != 0 && ticks == ticks_;
+  if (!same) looked_ = 0, cpu_before_ = cpu;
+  looked_ += kLookEvery;
+  if (same && (cpu - cpu_before_ >= kHungAfter || looked_ >= kWaitsAfter)) hung_();
 }
 
 }  // namespace hapticd::watch

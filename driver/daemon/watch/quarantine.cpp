@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 
 namespace hapticd::watch {
 
@@ -33,11 +34,15 @@ std::vector<QuarantinedPlugin> quarantined(const fs::path& dir) {
   std::vector<QuarantinedPlugin> list;
   std::ifstream in(dir / kQuarantineFile);
   for (std::string line; std::getline(in, line);) {
-    const size_t tab = line.find('\t');
-    const std::string plugin = line.substr(0, tab);
-    const bool known = std::any_of(list.begin(), list.end(), [&](const auto& entry) { return entry.plugin == plugin; });
-    if (plugin.empty() || known) continue;
-    list.push_back({plugin, tab == std::string::npos ? "" : line.substr(tab + 1)});
+    std::istringstream parts(line);
+    QuarantinedPlugin read;
+    std::getline(parts, read.plugin, '\t');
+    std::getline(parts, read.reason, '\t');
+    std::getline(parts, read.file);
+    const bool known = std::any_of(list.begin(), list.end(), [&](const auto& entry) {
+      return entry.plugin == read.plugin && entry.file == read.file;
+    });
+    if (!read.plugin.empty() && !known) list.push_back(std::move(read));
   }
   return list;
 }
@@ -49,7 +54,7 @@ Result<bool> clearQuarantine(const fs::path& dir, const std::string& plugin) {
   size_t kept = 0;
   for (const QuarantinedPlugin& entry : before)
     if (entry.plugin != plugin) {
-      out << entry.plugin << '\t' << entry.reason << '\n';
+      out << entry.plugin << '\t' << entry.reason << (entry.file.empty() ? "" : "\t" + entry.file) << '\n';
       ++kept;
     }
   out.close();

@@ -11,19 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr const char* kField = "skip: it names no surface (HSP_OUT_TRACED): a force without a surface has no sign";
-
-/// Runs a test at each place where the shape can be touched; the first objection ends it.
-std::string atEachPlace(const Recipe& recipe, const std::function<std::string(Subject&, const Place&)>& test) {
-  const Made made(recipe);
-  if (!made.error.empty()) return made.error;
-  if (recipe.touch.places.empty())
-    return recipe.touch.traced || !recipe.touch.felt ? "skip: no contact was found to test, see contact-found" : kField;
-  for (const Place& place : recipe.touch.places)
-    if (std::string wrong = test(*made.subject, place); !wrong.empty()) return wrong;
-  return "";
-}
-
 /// Every test of contact is empty without one, so that its lack is a failure.
 std::string contactFound(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
@@ -43,26 +30,57 @@ std::string contactFound(const Recipe& recipe, uint64_t) {
 
 /// The sign that hurts: by the whole press, since a detent may pull for some of it. The foot tells the way out, not the
 /// normal, which may have the wrong sign as well.
+std::string wrongSign(Subject& subject, const Place& place) {
+  double outward = 0, most = 0, depth = 0, normal = 0;
+  press(subject, place, [&](const Answer& answer, const PressStep&) {
+    const hsp_contact& c = answer.contacts[0];
+    if ((c.flags & HSP_OUT_TRACED) == 0 || !(c.depth_m > 0)) return std::string();
+    const double force = Vector3d(c.force).dot(place.out);
+    outward += force;
+    normal += Vector3d(c.normal).dot(place.out);
+    if (force < most) most = force, depth = c.depth_m;
+    return std::string();
+  });
+  if (outward >= 0) return "";
+  const Vector3d& f = place.foot;
+  return "the sign is wrong: pressed at " + text(f.x()) + ", " + text(f.y()) + ", " + text(f.z()) +
+         " m, the forces pull the hand in, with " + text(-most) + " N at a depth of " + text(depth * 1e3) +
+         " mm; expected a force that points out of the shape" +
+         (normal < 0 ? ": its normal points into the shape as well; where depth_m is above 0 outside, turn depth_m, "
+                       "else turn the sign of normal first"
+                     : ", as its normal does: turn the sign of force");
+}
+
+/// What a run would silence, by the same judgement: from some mm outside straight in, and as it is pressed.
+std::string pullsThere(Subject& subject, const Place& place) {
+  constexpr double kFar = 5e-3;  // [m] a magnet would be felt there
+  constexpr int kSteps = 100;
+  const auto objection = [](const hsp_contact& c, const Vector3d& p) {
+    if (!servo::pullsIn(c, p)) return std::string();
+    const double away = (p - Vector3d(c.point)).norm() * 1e3;
+    return placed("it reports to push only (HSP_R_PUSHES), and pulls with " + text(Vector3d(c.force).norm()) + " N, " +
+                      text(away) + " mm " + (c.depth_m > 0 ? "below" : "outside of") +
+                      " the surface: a run silences it at the first such answer; expected a force that points out of "
+                      "the shape, or, where it pulls on purpose, as a magnet does, no HSP_R_PUSHES in activate()",
+                  p);
+  };
+  for (int i = 0; i <= kSteps; ++i) {
+    const Vector3d p = place.foot + place.out * (kFar * (kSteps - i) / kSteps);
+    const Answer& answer = subject.step({p}, kConformanceDt, i == 0 ? uint32_t{HSP_IN_JUMP} : 0);
+    if (std::string pulls = objection(answer.contacts[0], p); !pulls.empty()) return pulls;
+  }
+  std::string pulls;
+  press(subject, place,
+        [&](const Answer& answer, const PressStep& step) { return pulls = objection(answer.contacts[0], step.p); });
+  return pulls;
+}
+
 std::string forceOutward(const Recipe& recipe, uint64_t) {
   return atEachPlace(recipe, [](Subject& subject, const Place& place) {
-    double outward = 0, most = 0, depth = 0, normal = 0;
-    press(subject, place, [&](const Answer& answer, const PressStep&) {
-      const hsp_contact& c = answer.contacts[0];
-      if ((c.flags & HSP_OUT_TRACED) == 0 || !(c.depth_m > 0)) return std::string();
-      const double force = Vector3d(c.force).dot(place.out);
-      outward += force;
-      normal += Vector3d(c.normal).dot(place.out);
-      if (force < most) most = force, depth = c.depth_m;
-      return std::string();
-    });
-    if (outward >= 0) return std::string();
-    const Vector3d& f = place.foot;
-    return "the sign is wrong: pressed at " + text(f.x()) + ", " + text(f.y()) + ", " + text(f.z()) +
-           " m, the forces pull the hand in, with " + text(-most) + " N at a depth of " + text(depth * 1e3) +
-           " mm; expected a force that points out of the shape" +
-           (normal < 0 ? ": its normal points into the shape as well; where depth_m is above 0 outside, turn depth_m, "
-                         "else turn the sign of normal first"
-                       : ", as its normal does: turn the sign of force");
+    std::string wrong = wrongSign(subject, place);
+    const bool pushes =
+        (subject.report().flags & HSP_R_PUSHES) != 0 && !subject.moves();  // where it is, it tells after
+    return wrong.empty() && pushes ? pullsThere(subject, place) : wrong;
   });
 }
 
@@ -149,6 +167,31 @@ std::string besideClaim(double claimed, double measured) {
          "hapticd::reportJumps(report, NEWTONS) there";
 }
 
+double middleOf(std::vector<double> sorted) {
+  std::sort(sorted.begin(), sorted.end());
+  return sorted.empty() ? 0 : sorted[sorted.size() / 2];
+}
+
+/// "" or how the slope that a contact tells is of the wrong sign, or far too small for a check of stability by it. 0
+/// tells nothing, and one that is too large errs to the safe side.
+std::string toldStiffness(Subject& subject, const Place& place) {
+  constexpr double kFar = 3, kNoise = 10;  // a law may be steeper somewhere; [N/m]
+  std::vector<double> told;
+  press(subject, place, [&told](const Answer& answer, const PressStep& step) {
+    const hsp_contact& c = answer.contacts[0];
+    if (step.settled && c.depth_m > 0 && c.stiffness != 0) told.push_back(c.stiffness);
+    return std::string();
+  });
+  const std::vector<double> slopes = slopesOf(subject, place);
+  if (told.size() < 10 || slopes.size() < 10) return "";
+  const double says = middleOf(told), is = middleOf(slopes);
+  const bool soft = (subject.description().flags & HSP_C_DEFORMS) != 0;  // there it may tell the part that is nearest
+  if (soft ? says >= 0 : kFar * says + kNoise >= is) return "";
+  return placed("contact.stiffness tells " + text(says) + " N/m, and the force grows by " + text(is) +
+                    " N/m there; expected the local slope of the force over the depth (0: not told)",
+                place.foot);
+}
+
 std::string stiffnessClaim(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
@@ -159,7 +202,7 @@ std::string stiffnessClaim(const Recipe& recipe, uint64_t) {
   std::string wrong = atEachPlace(recipe, [claimed, &steepest](Subject& subject, const Place& place) {
     const double measured = stiffnessAt(subject, place, claimed);
     steepest = std::max(steepest, measured);
-    return measured <= kFails * claimed + kNoise ? std::string() : besideClaim(claimed, measured);
+    return measured <= kFails * claimed + kNoise ? toldStiffness(subject, place) : besideClaim(claimed, measured);
   });
   if (!wrong.empty() || steepest == 0) return wrong;
   if (steepest > kWarns * claimed + kNoise) return "warn: " + besideClaim(claimed, steepest);
@@ -211,8 +254,8 @@ struct DeepPress {
 };
 
 DeepPress pressDeep(Subject& subject, const Place& place) {
-  constexpr double kStep = 1e-4, kDeepest = 10e-3, kStrongest = 10;  // [m], [m], [N] more than most hands meet
-  const double size = subject.report().size_m, most = size > 0 ? std::min(kDeepest, size / 3) : kDeepest;
+  constexpr double kStep = 1e-4, kStrongest = 10;  // [m], [N] more than most hands meet
+  const double most = deepestPress(subject);
   constexpr int kRest = 10;  // ticks: a damper has faded then, and a filter of velocities nearly
   DeepPress press;
   for (int i = 0; i * kStep <= most; ++i) {
@@ -267,6 +310,12 @@ std::vector<ConformanceTest> contactTests() {
   return {
       {"contact-found", "the shape can be found and touched", &contactFound, kFinite},
       {"force-outward", "forces in contact push out of the shape", &forceOutward, kFinite},
+      {kFoot, "the foot is on the surface, a depth away, and the normal points from it to the probe", &footAndNormal,
+       "depth-falls-outward"},
+      {"force-along-normal", "a shape that only pushes, and has no friction, pushes along its normal",
+       &forceAlongNormal, kFoot},
+      {"loops-give-no-energy", "a loop into the shape, along below its surface and out again gives no energy",
+       &loopsGiveNoEnergy, kFinite},
       {"contact-flags", "HSP_OUT_TRACED and HSP_OUT_CONTACT agree with depth and normal", &contactFlags, kFinite},
       {"force-from-zero", "the force grows from zero where the surface is met", &noStep, kFinite},
       {"stiffness-vs-claim", "forces are no steeper than claimed", &stiffnessClaim, kFinite},

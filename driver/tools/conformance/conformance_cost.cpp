@@ -88,7 +88,7 @@ std::string noAllocation(const Recipe& recipe, uint64_t) {
   watchAllocations();
   uint64_t steps = 0, seen = 0;
   Vector3d first = Vector3d::Zero();
-  along(*made.subject, [&](const Answer&, const Vector3d& p) {
+  alongAndDeep(*made.subject, [&](const Answer&, const Vector3d& p) {
     ++steps;
     if (seen == 0) first = p;
     seen = made.subject->allocations();
@@ -107,7 +107,7 @@ std::string noLock(const Recipe& recipe, uint64_t) {
   if (!countLocksOf(recipe.file)) return "skip: the file imports no lock function";
   uint64_t steps = 0;
   Vector3d first = Vector3d::Zero();
-  along(*made.subject, [&](const Answer&, const Vector3d& p) {
+  alongAndDeep(*made.subject, [&](const Answer&, const Vector3d& p) {
     ++steps;
     if (made.subject->locks() == 0) first = p;
     return "";
@@ -127,7 +127,7 @@ std::string noSystemCall(const Recipe& recipe, uint64_t) {
   if (!watchSystemCalls()) return "skip: this kernel does not tell (it takes Linux 5.11 on x86-64)";
   uint64_t steps = 0;
   Vector3d first = Vector3d::Zero();
-  along(*made.subject, [&](const Answer&, const Vector3d& p) {
+  alongAndDeep(*made.subject, [&](const Answer&, const Vector3d& p) {
     if (steps++ == 0 || systemCalls().steps == 0) first = p;
     return "";
   });

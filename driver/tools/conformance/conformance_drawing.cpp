@@ -67,13 +67,6 @@ std::string outsideBounds(const Drawing& drawing, const Vector3d& low, const Vec
   return "";
 }
 
-/// The answer to a probe that comes to p and rests there.
-hsp_contact answerAtRest(Subject& subject, const Vector3d& p) {
-  subject.step({p}, kConformanceDt, HSP_IN_JUMP);
-  const Answer& answer = subject.step({p}, kConformanceDt);
-  return answer.status >= HSP_OK && finite(answer) ? answer.contacts[0] : hsp_contact{};
-}
-
 /// Probes close before and behind one triangle: both must find the surface there, and be deeper behind it.
 void compareTriangle(Subject& subject, const Drawing& drawing, size_t triangle, Compared& to) {
   const auto& corner = drawing.triangles[triangle];

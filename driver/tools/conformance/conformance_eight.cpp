@@ -13,6 +13,8 @@ using Eigen::Vector3d;
 using Positions = std::vector<Vector3d>;  ///< of all probes in one step
 
 constexpr uint32_t kProbes = 8;
+/// [bytes] Behind a single record, which ends 8 bytes before what may be guarded: they are looked at after each step.
+constexpr size_t kRest = 8;
 
 /// One step of the run.
 struct Together {
@@ -42,23 +44,30 @@ std::vector<Together> stepsOf(const Subject& subject) {
   return steps;
 }
 
-/// A shape of eight probes, whose own memory and whose records are guarded.
-std::unique_ptr<Subject> guardedSubject(const Recipe& recipe, std::string& error) {
-  tellOverruns(kProbes);
+/// A shape of so many probes, whose own memory and whose records are guarded.
+std::unique_ptr<Subject> guardedSubject(const Recipe& recipe, uint32_t probes, std::string& error) {
+  tellOverruns(probes);
   const GuardedMemory guarded;
-  Made made(recipe, kProbes);
+  Made made(recipe, probes);
   error = made.error;
-  if (error.empty()) made.subject->reserve(kProbes);
+  if (!error.empty()) return nullptr;
+  if (probes == 1) made.subject->widen(kRest);
+  made.subject->reserve(probes);
   return std::move(made.subject);
 }
 
 /// "" or the first probe whose answer another probe has changed.
 std::string eachAsAlone(const Recipe& recipe, const std::vector<Together>& steps, const std::vector<Answer>& together) {
   for (uint32_t probe = 0; probe < kProbes; ++probe) {
-    const Made alone(recipe);
-    if (!alone.error.empty()) return alone.error;
+    std::string error;
+    const std::unique_ptr<Subject> alone = guardedSubject(recipe, 1, error);
+    if (!error.empty()) return error;
     for (size_t i = 0; i < steps.size(); ++i) {
-      const Answer& answer = alone.subject->step({steps[i].at[probe]}, kConformanceDt, steps[i].flags);
+      const Answer& answer = alone->step({steps[i].at[probe]}, kConformanceDt, steps[i].flags);
+      if (!alone->roomUntouched())
+        return placed(std::string(kBeyond) + " (" + std::to_string(sizeof(hsp_contact)) +
+                          " bytes); expected the record of the probe alone to be written, and the next by HSP_AT",
+                      steps[i].at[probe]);
       const Vector3d expected(answer.contacts[0].force), got(together[i].contacts[probe].force);
       const double apart = (got - expected).norm();
       if (apart <= 1e-6 * (1 + expected.norm())) continue;
@@ -76,7 +85,7 @@ std::string eachAsAlone(const Recipe& recipe, const std::vector<Together>& steps
 
 std::string eightProbes(const Recipe& recipe, uint64_t) {
   std::string error;
-  const std::unique_ptr<Subject> subject = guardedSubject(recipe, error);
+  const std::unique_ptr<Subject> subject = guardedSubject(recipe, kProbes, error);
   if (!error.empty()) return "eight probes: " + error;
   const std::vector<Together> steps = stepsOf(*subject);
   std::vector<Answer> answers;

@@ -55,6 +55,34 @@ std::string along(Subject& subject, const std::function<std::string(const Answer
   return "";
 }
 
+std::string alongAndDeep(Subject& subject, const std::function<std::string(const Answer&, const Vector3d&)>& look) {
+  constexpr int kIn = 100;
+  if (std::string objection = along(subject, look); !objection.empty()) return objection;
+  for (const Place& place : subject.places())
+    for (int i = 0; i <= 2 * kIn; ++i) {
+      const Vector3d p = place.foot - place.out * (deepestPress(subject) * (kIn - std::abs(i - kIn)) / kIn);
+      const Answer& answer = subject.step({p}, kConformanceDt, i == 0 ? uint32_t{HSP_IN_JUMP} : 0);
+      if (std::string objection = look(answer, p); !objection.empty()) return placed(objection, p);
+    }
+  return "";
+}
+
+std::string atEachPlace(const Recipe& recipe, const std::function<std::string(Subject&, const Place&)>& test) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  if (recipe.touch.places.empty())
+    return recipe.touch.traced || !recipe.touch.felt ? "skip: no contact was found to test, see contact-found" : kField;
+  for (const Place& place : recipe.touch.places)
+    if (std::string wrong = test(*made.subject, place); !wrong.empty()) return wrong;
+  return "";
+}
+
+hsp_contact answerAtRest(Subject& subject, const Vector3d& p) {
+  subject.step({p}, kConformanceDt, HSP_IN_JUMP);
+  const Answer& answer = subject.step({p}, kConformanceDt);
+  return answer.status >= HSP_OK && finite(answer) ? answer.contacts[0] : hsp_contact{};
+}
+
 std::string wrongStatus(const Answer& answer) {
   const bool known = answer.status == HSP_OK || answer.status == HSP_DEGRADED || answer.status == HSP_E_NUMERIC;
   if (!known) return "status " + std::to_string(answer.status);

@@ -14,7 +14,10 @@ constexpr double kConformanceDt = 1e-3;  ///< [s] of every step
 constexpr int kConformanceSteps = 2000;  ///< once around the path
 
 /// Tests without which others mean nothing.
-constexpr const char *kInTime = "steps-end-in-time", *kFinite = "finite-outputs", *kSame = "determinism-bitwise";
+constexpr const char *kInTime = "steps-end-in-time", *kFinite = "finite-outputs", *kSame = "determinism-bitwise",
+                     *kFoot = "foot-and-normal", *kGuarded = "eight-probes";
+/// How an objection begins that names an overrun which did not end the process.
+constexpr const char* kBeyond = "it writes behind its hsp_contact";
 
 /// Gives an active instance, or is why there is none.
 struct Made {
@@ -36,6 +39,30 @@ Eigen::Vector3d onPath(const Subject& subject, double part, double phase = 0);
 /// objection ends the run.
 std::string along(Subject& subject, const std::function<std::string(const Answer&, const Eigen::Vector3d&)>& look,
                   int steps = kConformanceSteps);
+
+/// The same, and then straight in at each place, as deep as `deepestPress`, and out again: what sits there, such as a
+/// click or a second layer, may allocate, lock or print too.
+std::string alongAndDeep(Subject& subject,
+                         const std::function<std::string(const Answer&, const Eigen::Vector3d&)>& look);
+
+/// Runs a test at each place where the shape can be touched, on one instance; the first objection ends it. "skip: why"
+/// where there is none.
+std::string atEachPlace(const Recipe& recipe, const std::function<std::string(Subject&, const Place&)>& test);
+
+/// Why a shape whose force has no surface is not tested.
+constexpr const char* kField = "skip: it names no surface (HSP_OUT_TRACED): a force without a surface has no sign";
+
+/// The answer to a probe that comes to p by a jump and rests there; zero where there is none to judge.
+hsp_contact answerAtRest(Subject& subject, const Eigen::Vector3d& p);
+
+/// "" or why point, normal and depth do not belong to one surface.
+std::string footAndNormal(const Recipe& recipe, uint64_t);
+
+/// "" or how far the force of a shape that only pushes lies off its normal.
+std::string forceAlongNormal(const Recipe& recipe, uint64_t);
+
+/// "" or the energy that a hand gets which goes in, along below the surface, and out again.
+std::string loopsGiveNoEnergy(const Recipe& recipe, uint64_t);
 
 /// "warn: ..." for parameters whose units are not SI.
 std::string unitsSi(const Recipe& recipe, uint64_t);

@@ -91,6 +91,12 @@ double pressDepth(const Subject& subject) {
   return size > 0 ? std::min(kDeep, size / 4) : kDeep;
 }
 
+double deepestPress(const Subject& subject) {
+  constexpr double kDeepest = 10e-3;
+  const double size = subject.report().size_m;
+  return size > 0 ? std::min(kDeepest, size / 3) : kDeepest;
+}
+
 std::vector<PressStep> pressAt(const Place& place, double depth) {
   constexpr int kIn = 100, kRound = 40, kOut = 50;
   std::vector<PressStep> steps;

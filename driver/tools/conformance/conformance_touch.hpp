@@ -42,6 +42,9 @@ struct PressStep {
 /// [m] How deep a press goes, as far as it begins outside: 1 mm, and less for a small shape.
 double pressDepth(const Subject& subject);
 
+/// [m] How deep a shape is pressed where its depths are looked at: 10 mm, and less for a small shape.
+double deepestPress(const Subject& subject);
+
 /// From outside straight in, once round on a small circle, and out again, without a jump.
 std::vector<PressStep> pressAt(const Place& place, double depth);
 

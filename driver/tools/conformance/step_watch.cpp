@@ -105,6 +105,10 @@ std::string overrunWords() {
   const std::string block = "a block of " + std::to_string(over.block) + " bytes",
                     many = std::to_string(last_step->probes);
   if (over.freed) return ": it uses " + block + " that it has freed";
+  if (last_step->probes == 1)
+    return ": it reads or writes byte " + std::to_string(over.at) + " of " + block +
+           "; a step of one probe has one record (" + std::to_string(sizeof(hsp_contact)) +
+           " bytes), and what it keeps must lie within what it has allocated";
   return ": it reads or writes byte " + std::to_string(over.at) + " of " + block + "; with " + many +
          " probes a step has " + many +
          " records, and what is kept for each probe needs room for activation.max_probes of them";
@@ -137,6 +141,10 @@ std::string whereItEnded() {
   if (inside == Inside::kDestroy) where = ", in deactivate() or destroy()";
   if (inside == Inside::kStep) where = placesOfStep();
   return where + overrunWords();
+}
+
+bool overran() {
+  return last_step->probes > 0;
 }
 
 bool endedBeforeSteps() {

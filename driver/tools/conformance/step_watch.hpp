@@ -29,6 +29,9 @@ void shareLastStep();
 /// in the plugin; and what it overran.
 std::string whereItEnded();
 
+/// [main] True where the last child ended by a fault in guarded memory: it is known which block was overrun.
+bool overran();
+
 /// [main] True where the last child ended before there was an active shape.
 bool endedBeforeSteps();
 

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "base/clock.hpp"
+#include "base/offline_tick.hpp"
 #include "hapticd/abi.h"
 #include "host/library.hpp"
 #include "servo/loop/lockstep.hpp"
@@ -75,6 +76,7 @@ Result<Measured> pass(const scene::Scene& scene, const tune::Motion& motion) {
     const double t = static_cast<double>(i) * motion.period;
     probe.position = motion.position[i];
     probe.velocity = motion.velocity[i];
+    const OfflineTick counted;
     core.publish(t, {&probe, 1});
     const Nanoseconds searched = monotonicNow();
     lockstep.before(t);

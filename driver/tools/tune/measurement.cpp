@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/clock.hpp"
+#include "base/offline_tick.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "servo/velocity/probe_velocity.hpp"
 #include "world/world.hpp"
@@ -53,6 +54,7 @@ Result<Cost> pass(const scene::Scene& scene, const Motion& motion, VelocityFrom 
     const double t = static_cast<double>(i) * motion.period, dt = i == 0 ? 0 : motion.period;
     probe.position = motion.position[i];
     if (from == VelocityFrom::kMotion) probe.velocity = motion.velocity[i];
+    const OfflineTick counted;
     core.publish(t, {&probe, 1});
     lockstep.before(t);
     const Nanoseconds begun = monotonicNow();

@@ -92,7 +92,7 @@ struct Floor : hapticd::Shape {
       own += 0.05 * (in.velocity[1] - own);
       return -20 * own * std::min(1.0, depth * 1e3);
     }
-    const double before = own;
+    const double before = (in.flags & HSP_IN_JUMP) != 0 ? depth : own;
     own = depth;
     return 0.01 * stiffness * (depth - before);
   }

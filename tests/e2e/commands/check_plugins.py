@@ -134,6 +134,30 @@ said = subprocess.run([HAPTICD, "plugin", "check", os.path.join(BROKEN, "slips.s
 check("an exception is told once, and the rest is counted", said.count("vector::_M_range_check") == 1 and "tests were not run: first mend steps-end-in-time" in said, said)
 check("a number that is not one is told alone", "nan J" not in said and "-0 N at" not in said, said)
 
+# A force, a foot or a normal that goes astray by a little, and what is honest though it rubs, damps, clicks or pulls.
+code, tests, failed, err = examined(os.path.join(BROKEN, "strays.so"), "--timeout", "60")
+STRAYS = {"swirls": ("force-along-normal", "lies 11.3099 degrees off its normal; expected force = normal times a size"),
+          "swirls_unsaid": ("loops-give-no-energy", "a hand that goes round and round is driven on"),
+          "swirls_round": ("loops-give-no-energy", "along below the surface, and out gave"),
+          "swirls_a_little": ("loops-give-no-energy", "along below the surface, and out gave"),
+          "foot_off": ("foot-and-normal", "point is not on the surface: a probe at the point that is named"),
+          "foot_slipped": ("foot-and-normal", "expected the nearest point of the surface"),
+          "normal_tilted": ("foot-and-normal", "degrees off the line from point to the probe"),
+          "depth_short": ("foot-and-normal", "outside, depth_m is minus the distance to point"),
+          "pulls_outside": ("force-outward", "reports to push only (HSP_R_PUSHES), and pulls with 0.2 N, "),
+          "allocates_deep": ("no-allocation-in-step", "allocations in"),
+          "snaps_on": ("jump-flag", "expected what is kept for the probe to be forgotten at HSP_IN_JUMP"),
+          "told_wrong": ("stiffness-vs-claim", "contact.stiffness tells -500 N/m, and the force grows by 500 N/m there")}
+for shape, (test, words) in STRAYS.items():
+    mine = [(t["name"], t["why"]) for t in tests if t["plugin"] == shape and t["result"] == "fail"]
+    check(f"{shape} fails by {test} first", mine and mine[0][0] == test and words in mine[0][1], mine)
+for shape in ("straight", "rubs", "drags", "magnet", "snaps"):
+    mine = [(t["name"], t["result"], t["why"]) for t in tests if t["plugin"] == shape and t["result"] in ("fail", "warn")]
+    check(f"{shape} passes", {t["plugin"] for t in tests} >= {shape} and not mine, mine)
+over = [(t["name"], t["why"]) for t in tests if t["plugin"] == "overruns" and t["result"] == "fail"]
+check("memory that was overrun is named beside the crash that it caused", over and "first mend eight-probes" in over[0][1] and
+      over[1][0] == "eight-probes" and "it writes behind its hsp_contact (152 bytes)" in over[1][1], over)
+
 # What is drawn is compared with what is felt.
 code, tests, failed, err = examined(os.path.join(BROKEN, "drawn.so"), "--timeout", "60")
 DRAWN = {"drawn_small_bounds": "a vertex at ", "drawn_millimetres": "lie away from the surface that is felt", "drawn_turned": "lie away from the surface",

@@ -60,6 +60,24 @@ def crash(folder, environment, how, reasons):
     hapticd(environment, "plugin", "clear", "deadly")
 
 
+def builtAnew(folder, environment):
+    """A file that was built after the crash is another plugin: it is tried, and what was known of it is told."""
+    file, scene = os.path.join(folder, "plugins", os.path.basename(SHAPES)), sceneOf(folder, "segv")
+    hapticd(environment, "run", scene, "--for", "1")
+    code, _, err = hapticd(environment, "run", scene, "--for", "0.2")
+    check("the same file is left out", code == 1 and "the model is left out" in err, (code, err))
+    os.utime(file, ns=(1_700_000_000_000_000_000, 1_700_000_000_123_456_789))
+    check("check of the scene does not say that a file that was built anew is in quarantine",
+          "quarantine" not in hapticd(environment, "check", "--files-only", scene)[1])
+    code, _, err = hapticd(environment, "run", scene, "--for", "1")
+    check("a file that was built anew runs again, and the run says what its last build did",
+          code == 1 and all(word in err for word in ("the file has changed since", file, "hapticd plugin check", "motors were switched off first")), (code, err))
+    code, _, err = hapticd(environment, "run", scene, "--for", "0.2")
+    check("if that one ends a run, it is left out too", code == 1 and "the model is left out" in err, (code, err))
+    check("clear takes both builds out", hapticd(environment, "plugin", "clear", "deadly")[0] == 0 and
+          hapticd(environment, "plugin", "clear", "deadly")[0] == 2)
+
+
 class Manager:
     """The service manager's end of the notification socket."""
 
@@ -126,6 +144,7 @@ with tempfile.TemporaryDirectory() as scratch:
     for signal, words in (("segv", ["SIGSEGV"]), ("fpe", ["SIGFPE"]), ("bus", ["SIGBUS"]), ("ill", ["SIGILL"]), ("abort", ["SIGABRT"]),
                           ("hang", ["did not come back", "never slept"])):
         crash(scratch, surroundings, signal, words)
+    builtAnew(scratch, surroundings)
     service(scratch, surroundings)
     unit(scratch)
 finish()

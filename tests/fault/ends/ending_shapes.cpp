@@ -113,7 +113,8 @@ struct Broken : hapticd::Shape {
   int where, surfaces, steps = 0;
   static constexpr const char* kWheres[] = {"nowhere",    "set_up",        "reset",       "stored",
                                             "search",     "start_tracing", "lies",        "thread",
-                                            "taken_down", "destroyed",     "set_up_exit", "set_up_loop"};
+                                            "taken_down", "destroyed",     "set_up_exit", "set_up_loop",
+                                            "tears"};
   static constexpr hapticd::ShapeInfo kInfo{"org.hapticd.test.broken", "broken", "1.0.0", "MIT", "Crashes."};
   static constexpr auto fields() {
     using F = Fields<Broken>;
@@ -141,6 +142,7 @@ struct Broken : hapticd::Shape {
   }
   hsp_status touch(const hsp_probe&, const hsp_step&, hsp_contact& out) noexcept HSP_RT {
     out.force[1] = 0.5;
+    if (is("tears")) (&out)[1].force[0] = 1e3;  // behind its record: what the allocator keeps there
     return is("reset") && ++steps > 400 ? HSP_E_NUMERIC : HSP_OK;
   }
   const void* extension(const char* name) {

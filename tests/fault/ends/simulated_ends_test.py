@@ -82,6 +82,28 @@ ends(CHECK, "broken", "where: set_up", "in its activate()", "Segmentation fault"
 ends(CHECK, "broken", "where: set_up_exit", "in its activate()", "ended the process")
 
 
+# Memory that a plugin overwrote ends the daemon's own code later: what does not ship with hapticd is named first.
+process = start((*RUN,), scene("broken", "where: tears"))
+said = said_by(process)
+check("torn memory: exit code 1", process.returncode == 1, (process.returncode, said))
+check("torn memory: the plugin that does not ship is named, and its check comes first",
+      all(word in said for word in ("memory was overwritten, or freed twice", "does not ship with hapticd", "'broken' of model 'bad'", "hapticd plugin check")) and
+      "doctor" not in said, said)
+kept = quarantined()
+check("torn memory: it is in quarantine", kept.startswith("broken\t") and "SIGABRT" in kept, kept)
+sphere = os.path.join(SOURCE, "config", "models", "sphere.yaml")
+with open(os.path.join(FOLDER, "ours.yaml"), "w") as out:
+    out.write(f"hapticd: 1\nmodels:\n  - {{name: good, plugin: nurbs_rigid, parameters: {{geometry: {sphere}}}}}\n"
+              "  - {name: bad, plugin: broken, parameters: {where: tears}}\n")
+said = said_by(start((*RUN,), os.path.join(FOLDER, "ours.yaml")))
+check("torn memory: a plugin that ships is not suspected", "'broken' of model 'bad'" in said and "'nurbs_rigid' of" not in said, said)
+check("torn memory: nor left out", [line.split("\t")[0] for line in quarantined().splitlines()] == ["broken"])
+
+# A step that never comes back ends by itself, after 5 s of processor time.
+for command in (RUN, TRACE, EXPLAIN, TUNE):
+    ends(command, "ending", "how: loop, after: 40", "", "a step that did not come back")
+
+
 def busy(process, seconds):
     """It has used so much processor time: it is in its loop."""
     end = time.monotonic() + 60

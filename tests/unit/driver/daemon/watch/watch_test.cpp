@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "watch/crash.hpp"
+#include "watch/end_watch.hpp"
 #include "watch/notify.hpp"
 #include "watch/quarantine.hpp"
 #include "watch/watchdog.hpp"
@@ -371,6 +372,59 @@ TEST(Quarantine, RemembersEachPluginOnceAndForgetsItOnOrder) {
   ASSERT_EQ(quarantined(dir).size(), 1u);
   EXPECT_EQ(quarantined(dir)[0].plugin, "b");
   std::filesystem::remove_all(dir);
+}
+
+TEST(Quarantine, HoldsAFileAndNotEveryOneOfItsName) {
+  const auto dir = std::filesystem::temp_directory_path() / ("quarantine-files" + std::to_string(getpid()));
+  std::filesystem::create_directories(dir);
+  std::ofstream(dir / kQuarantineFile)
+      << "a\tSIGSEGV\t8 bytes of 1.2 /x/a.so\na\tSIGFPE\t9 bytes of 3.4 /x/a.so\nb\tSIGBUS\n";
+  const auto list = quarantined(dir);
+  ASSERT_EQ(list.size(), 3u);
+  EXPECT_TRUE(list[0].holds("a", "8 bytes of 1.2 /x/a.so"));
+  EXPECT_FALSE(list[0].holds("a", "9 bytes of 3.4 /x/a.so"));
+  EXPECT_FALSE(list[0].holds("b", "8 bytes of 1.2 /x/a.so"));
+  EXPECT_TRUE(list[2].holds("b", "whatever the file is: an older version wrote no more"));
+  EXPECT_TRUE(*clearQuarantine(dir, "b"));
+  ASSERT_EQ(quarantined(dir).size(), 2u);
+  EXPECT_EQ(quarantined(dir)[1].file, "9 bytes of 3.4 /x/a.so");
+  EXPECT_TRUE(*clearQuarantine(dir, "a"));
+  EXPECT_TRUE(quarantined(dir).empty());
+  std::filesystem::remove_all(dir);
+}
+
+/// Looks at one tick that takes `looks` looks, in each of which the servo computes for `cpu`.
+int hungIn(Fake& servo, Nanoseconds looks, Nanoseconds cpu) {
+  int hung = 0;
+  EndWatch watch(servo, [] {}, [&hung] { ++hung; });
+  servo.begun = 0;
+  watch.look(1);
+  servo.begun = 1;
+  servo.cpu += 20 * EndWatch::kHungAfter;  // in the set-up, before the thread had told its clock
+  for (Nanoseconds i = 0; i < looks; ++i) watch.look(1), servo.cpu += cpu;
+  return hung;
+}
+
+TEST(EndWatch, EndsATickThatComputesOnAndOnAndOneThatWaits) {
+  constexpr Nanoseconds kLook = EndWatch::kLookEvery, kHung = EndWatch::kHungAfter / kLook;
+  Fake servo;
+  EXPECT_EQ(hungIn(servo, kHung, kLook), 0);
+  EXPECT_GT(hungIn(servo, kHung + 2, kLook), 0);
+  EXPECT_EQ(hungIn(servo, EndWatch::kWaitsAfter / kLook - 1, 0), 0);
+  EXPECT_GT(hungIn(servo, EndWatch::kWaitsAfter / kLook + 2, 0), 0);
+}
+
+TEST(EndWatch, LeavesSlowTicksAloneHoweverManyThereAre) {
+  Fake servo;
+  int hung = 0;
+  EndWatch watch(servo, [] {}, [&hung] { ++hung; });
+  for (servo.tick = 0; servo.tick < 20; ++servo.tick)
+    for (Nanoseconds looks = 0; looks < 50; ++looks) {
+      servo.begun = static_cast<Nanoseconds>(servo.tick) + 1;
+      servo.cpu += EndWatch::kLookEvery;
+      watch.look(1);
+    }
+  EXPECT_EQ(hung, 0);
 }
 
 }  // namespace

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+/// Ticks of commands that run the core without a loop, such as trace and tune: counted, so that one that does not come
+/// back is seen from another thread.
+#pragma once
+#include <atomic>
+#include <cstdint>
+
+namespace hapticd {
+
+namespace detail {
+inline std::atomic<uint64_t> offline_begun{0}, offline_ended{0};
+}
+
+/// Stands around one tick.
+class OfflineTick {
+ public:
+  OfflineTick() noexcept { count(detail::offline_begun); }
+  ~OfflineTick() { count(detail::offline_ended); }
+  OfflineTick(const OfflineTick&) = delete;
+  OfflineTick& operator=(const OfflineTick&) = delete;
+
+  static uint64_t ended() noexcept { return detail::offline_ended.load(std::memory_order_relaxed); }
+  /// The number of the tick going on, from 1; 0: none is.
+  static uint64_t current() noexcept {
+    const uint64_t begun = detail::offline_begun.load(std::memory_order_relaxed);
+    return begun != ended() ? begun : 0;
+  }
+
+ private:
+  /// One thread at a time has ticks of this kind.
+  static void count(std::atomic<uint64_t>& number) noexcept {
+    number.store(number.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  }
+};
+
+}  // namespace hapticd

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "base/owner_file.hpp"
+
+#include <atomic>
+
+namespace hapticd {
+
+namespace {
+
+/// A list that only grows, at its head, and is never destroyed: handlers read it at any moment.
+struct FileOfOwner {
+  const Owner* owner;
+  std::string identity;
+  bool foreign;
+  const FileOfOwner* next;
+};
+std::atomic<const FileOfOwner*> newest_file{nullptr};
+
+/// A later entry of the same module stands for this one.
+bool isRepeated(const FileOfOwner* entry) noexcept {
+  for (const FileOfOwner* later = newest_file.load(); later != entry; later = later->next)
+    if (later->foreign && later->owner->module == entry->owner->module) return true;
+  return false;
+}
+
+}  // namespace
+
+void keepFile(const Owner* owner, const std::string& identity, bool foreign) {
+  if (fileOf(owner) == identity) return;
+  auto* kept = new FileOfOwner{owner, identity, foreign, newest_file.load()};
+  while (!newest_file.compare_exchange_weak(kept->next, kept)) {
+  }
+}
+
+const char* fileOf(const Owner* owner) noexcept {
+  for (const FileOfOwner* entry = newest_file.load(); entry != nullptr; entry = entry->next)
+    if (entry->owner == owner) return entry->identity.c_str();
+  return "";
+}
+
+const Owner* foreignOwner(size_t number) noexcept {
+  for (const FileOfOwner* entry = newest_file.load(); entry != nullptr; entry = entry->next)
+    if (entry->foreign && !isRepeated(entry) && number-- == 0) return entry->owner;
+  return nullptr;
+}
+
+}  // namespace hapticd

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+/// While a command runs the core by itself: a plugin whose step does not come back is named, and ends the command.
+#pragma once
+#include "base/offline_tick.hpp"
+#include "base/thread_usage.hpp"
+#include "watch/crash.hpp"
+#include "watch/end_watch.hpp"
+
+namespace hapticd::cli {
+
+class TickWatch {
+ public:
+  /// [main] In the thread that ticks. Where no thread can be started, nothing is watched.
+  TickWatch() { (void)watch_.start(); }
+
+ private:
+  /// The ticks of a command, as EndWatch sees them.
+  class Ticks final : public watch::Watched {
+   public:
+    uint64_t ticks() const noexcept override { return OfflineTick::ended(); }
+    Nanoseconds tickBegun() const noexcept override { return static_cast<Nanoseconds>(OfflineTick::current()); }
+    Nanoseconds nextTick() const noexcept override { return 0; }
+    Nanoseconds cpuTime() const noexcept override { return static_cast<Nanoseconds>(os::cpuTime(clock_)); }
+    bool simulated() const noexcept override { return true; }
+    bool drives() const noexcept override { return false; }
+    void stop() noexcept override {}
+    Nanoseconds stopAsked() const noexcept override { return 0; }
+    void cut(double) noexcept override {}
+    bool cutLeft() const noexcept override { return true; }
+    const Owner* inServo() const noexcept override { return calledBy(Worker::kMain); }
+    const void* blackBox() const noexcept override { return nullptr; }
+    size_t blackBoxBytes() const noexcept override { return 0; }
+
+   private:
+    os::CpuClock clock_ = os::cpuClockOfThread();
+  };
+
+  static void end() noexcept {
+    if (const Owner* keeps = calledBy(Worker::kMain)) watch::dieOf("a step that did not come back", keeps);
+  }
+
+  Ticks ticks_;
+  watch::EndWatch watch_{ticks_, [] {}, &TickWatch::end};
+};
+
+}  // namespace hapticd::cli

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+/// Energy of closed ways with a leg along below the surface: a force that circulates, however small, gives energy in
+/// one sense, and a way that only goes through the shape does not meet it.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "conformance/conformance_parts.hpp"
+
+namespace hapticd::conformance {
+namespace {
+
+using Eigen::Vector3d;
+
+/// What a hand got on its way.
+struct Work {
+  double given = 0, moved = 0;  ///< [J] in all, and as it went to and fro
+  double aside = 0;             ///< [J] of that which was given, by the part of the force that lies across the normal
+};
+
+/// From outside in, along by twice the depth, out, and back outside; at each corner the probe rests.
+std::vector<Vector3d> loopAt(const Place& place, const Vector3d& aside, double depth) {
+  constexpr int kLeg = 40, kRest = 10;
+  const Vector3d out = depth * place.out, way = 2 * depth * aside;
+  const std::vector<Vector3d> corners{place.foot + out, place.foot - out, place.foot - out + way,
+                                      place.foot + out + way, place.foot + out};
+  std::vector<Vector3d> points{corners[0]};
+  for (size_t i = 0; i + 1 < corners.size(); ++i) {
+    for (int k = 1; k <= kLeg; ++k) points.push_back(corners[i] + (corners[i + 1] - corners[i]) * k / kLeg);
+    points.insert(points.end(), kRest, corners[i + 1]);
+  }
+  return points;
+}
+
+Work walk(Subject& subject, const std::vector<Vector3d>& points) {
+  Work work;
+  Vector3d force = Vector3d::Zero(), across = Vector3d::Zero(), last = points.front();
+  for (size_t i = 0; i < points.size(); ++i) {
+    const Answer& answer = subject.step({points[i]}, kConformanceDt, i == 0 ? uint32_t{HSP_IN_JUMP} : 0);
+    const Vector3d now(answer.contacts[0].force), normal(answer.contacts[0].normal);
+    const Vector3d now_across = now - now.dot(normal) * normal;
+    const double step = i > 0 ? 0.5 * (force + now).dot(points[i] - last) : 0;
+    work.given += step, work.moved += std::abs(step);
+    if (i > 0) work.aside += 0.5 * (across + now_across).dot(points[i] - last);
+    force = now, across = now_across, last = points[i];
+  }
+  return work;
+}
+
+/// Both ways round; a spring gives back what it took, and friction keeps some of it. What a force across the normal did
+/// not give is no circulation: a shape that is softer in places, and pushes along its normal alone, gives a little too.
+std::string gives(Subject& subject, const Place& place, const Vector3d& aside) {
+  constexpr double kRounding = 0.02, kLeast = 1e-8;  // of the work that went to and fro; [J]
+  const hsp_report& report = subject.report();
+  const double depth = pressDepth(subject);
+  const double jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;  // a pulse on purpose works too
+  std::vector<Vector3d> points = loopAt(place, aside, depth);
+  for (int sense = 0; sense < 2; ++sense) {
+    subject.reset();  // what a soft shape has stored on the way before is no energy of this one
+    const double before = subject.energy();
+    const Work work = walk(subject, points);
+    const double gained = std::isnan(before) ? 0 : subject.energy() - before;
+    if (std::min(work.given, work.aside) > kRounding * work.moved + kLeast + 2 * depth * jump - gained)
+      return placed("a loop in, " + text(2 * depth * 1e3) + " mm along below the surface, and out gave " +
+                        text(std::min(work.given, work.aside) * 1e3) + " mJ to the hand, of " + text(work.moved * 1e3) +
+                        " mJ that went to and fro: a hand that goes round and round is driven on; expected no force "
+                        "along the surface but friction, which points against the motion",
+                    place.foot);
+    points.assign(points.rbegin(), points.rend());
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string loopsGiveNoEnergy(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  if (made.subject->moves()) return "skip: it moves, and gravity works on it as well as the hand";
+  int left = 6;  // places: a slow shape would take too long for all of them
+  const std::string wrong = atEachPlace(recipe, [&left](Subject& subject, const Place& place) {
+    if (left-- <= 0) return std::string();
+    const Vector3d u = place.out.unitOrthogonal(), v = place.out.cross(u);
+    std::string given = gives(subject, place, u);
+    return given.empty() ? gives(subject, place, v) : given;
+  });
+  // A body that gives way answers by what it is made of near the probe, which is no potential of its place.
+  const bool soft = (made.subject->description().flags & HSP_C_DEFORMS) != 0;
+  return soft && !wrong.empty() && wrong.rfind("skip: ", 0) != 0 ? "note: " + wrong : wrong;
+}
+
+}  // namespace hapticd::conformance

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+/// Whether point, normal and depth of an answer belong to one surface, as the ABI promises: the host predicts contacts
+/// by them, judges pulls and edges by them, and draws them.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "conformance/conformance_parts.hpp"
+
+namespace hapticd::conformance {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kOffPart = 0.01;   ///< of a length: a foot that is followed is not exact
+constexpr double kOffLeast = 1e-6;  ///< [m]
+constexpr double kOffAngle = 0.02;  ///< [rad] a little more than a degree
+
+/// What the answer to a probe at rest says of the surface.
+struct Foot {
+  bool known = false;
+  Vector3d p = Vector3d::Zero(), point = Vector3d::Zero(), normal = Vector3d::Zero();
+  double depth = 0, residual = 0;
+  bool edge = false;
+
+  double away() const { return (p - point).norm(); }
+  /// [m] How far lengths like these may be off.
+  double room() const { return kOffLeast + kOffPart * away() + std::abs(residual); }
+};
+
+Foot footFor(Subject& subject, const Vector3d& p) {
+  const hsp_contact c = answerAtRest(subject, p);
+  Foot foot;
+  foot.known = (c.flags & HSP_OUT_TRACED) != 0;
+  foot.p = p, foot.point = Vector3d(c.point), foot.normal = Vector3d(c.normal);
+  foot.depth = c.depth_m, foot.residual = c.residual_m;
+  foot.edge = (c.flags & HSP_OUT_EDGE) != 0;
+  return foot;
+}
+
+/// A probe at the foot is on the surface: its depth is 0. And the foot is as far away as an outer depth says; inside, a
+/// law may measure its depth another way.
+std::string offTheSurface(Subject& subject, const Foot& foot) {
+  const Foot there = footFor(subject, foot.point);
+  if (there.known && std::abs(there.depth) > foot.room() + std::abs(there.residual))
+    return placed("point is not on the surface: a probe at the point that is named, " + text(foot.point) +
+                      ", is told a depth of " + text(there.depth) + " m; expected the nearest point of the surface",
+                  foot.p);
+  if (foot.depth < 0 && std::abs(foot.away() + foot.depth) > foot.room())
+    return placed("point is " + text(foot.away()) + " m away and depth_m says " + text(foot.depth) +
+                      " m; outside, depth_m is minus the distance to point, which is the nearest point of the surface",
+                  foot.p);
+  return "";
+}
+
+/// Where the foot stays while the probe goes aside, it lies on an edge, and many normals are right; where it leaps,
+/// another part of the surface is nearer.
+bool staysOrLeaps(const Foot& before, const Foot& after) {
+  constexpr double kStays = 0.2, kLeaps = 5;  // of the way of the probe
+  const double foot = (after.point - before.point).norm(), probe = (after.p - before.p).norm();
+  return foot < kStays * probe || foot > kLeaps * probe;
+}
+
+/// The normal points from the foot to the probe outside, and back inside; and depth does not change across it.
+std::string wrongNormal(Subject& subject, const Foot& foot, double aside) {
+  if (foot.edge || foot.away() < 10 * kOffLeast) return "";
+  const Vector3d u = foot.normal.unitOrthogonal(), v = foot.normal.cross(u);
+  double steepest = 0;
+  for (const Vector3d& side : {u, v}) {
+    const Foot one = footFor(subject, foot.p - aside * side), other = footFor(subject, foot.p + aside * side);
+    if (!one.known || !other.known || one.edge || other.edge || staysOrLeaps(one, other)) return "";
+    steepest = std::max(steepest, std::abs(other.depth - one.depth) / (2 * aside));
+  }
+  const double angle = std::asin(std::min(1.0, foot.normal.cross((foot.p - foot.point).normalized()).norm()));
+  if (angle > kOffAngle + foot.residual / foot.away())
+    return placed("the normal lies " + text(angle * 180 / M_PI) + " degrees off the line from point to the probe; " +
+                      "expected the outward unit normal of the surface at point, the nearest one (on an edge, " +
+                      "HSP_OUT_EDGE)",
+                  foot.p);
+  if (steepest > 2.5 * kOffAngle + foot.residual / aside)
+    return placed("depth_m changes by " + text(steepest) +
+                      " m where the probe goes 1 m across the normal; expected 0: it changes along the normal alone",
+                  foot.p);
+  return "";
+}
+
+std::string wrongFoot(Subject& subject, const Place& place) {
+  const double reach = pressDepth(subject);
+  for (const double part : {1.0, 0.3, -0.3}) {
+    const Foot foot = footFor(subject, place.foot + part * reach * place.out);
+    if (!foot.known) continue;
+    std::string wrong = offTheSurface(subject, foot);
+    if (wrong.empty()) wrong = wrongNormal(subject, foot, 0.03 * reach);
+    if (!wrong.empty()) return wrong;
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string footAndNormal(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  if (made.subject->moves() || (made.subject->description().flags & HSP_C_DEFORMS) != 0)
+    return "skip: it moves or gives way, and its foot with it";
+  return atEachPlace(recipe, &wrongFoot);
+}
+
+std::string forceAlongNormal(const Recipe& recipe, uint64_t) {
+  const Made made(recipe);
+  if (!made.error.empty()) return made.error;
+  if ((made.subject->report().flags & HSP_R_PUSHES) == 0)
+    return "skip: it does not report to push only and without friction (HSP_R_PUSHES)";
+  return atEachPlace(recipe, [](Subject& subject, const Place& place) {
+    return press(subject, place, [](const Answer& answer, const PressStep& step) {
+      constexpr double kLeast = 0.02;  // [N] of a force whose direction is told
+      const hsp_contact& c = answer.contacts[0];
+      const Vector3d force(c.force), normal(c.normal);
+      if (!step.settled || (c.flags & HSP_OUT_EDGE) != 0 || force.norm() < kLeast) return std::string();
+      const double angle = std::atan2(force.cross(normal).norm(), std::abs(force.dot(normal)));
+      if (angle <= kOffAngle) return std::string();
+      return "it reports to push only and to have no friction (HSP_R_PUSHES), and its force of " + text(force.norm()) +
+             " N on a probe at rest lies " + text(angle * 180 / M_PI) +
+             " degrees off its normal; expected force = normal times a size, or, for friction, no HSP_R_PUSHES in "
+             "activate()";
+    });
+  });
+}
+
+}  // namespace hapticd::conformance
