@@ -103,7 +103,7 @@ size_t Tree::count() const {
   return 0;
 }
 
-double Tree::number(double least, double most) const {
+double Tree::number(double least, double most, const char* unit) const {
   const double allowed = std::clamp(0.0, least, most);
   if (value_ == nullptr) return allowed;
   const Json& json = jsonOf(value_);
@@ -117,7 +117,8 @@ double Tree::number(double least, double most) const {
   }
   if (value >= least && value <= most) return value;
   const std::string range =
-      least == most ? shortText(least) : "a number from " + shortText(least) + " to " + shortText(most);
+      (least == most ? shortText(least) : "a number from " + shortText(least) + " to " + shortText(most)) +
+      (*unit != '\0' ? " " : "") + unit;
   const bool text = json.is_string() && std::isnan(value);
   fail(shown(json) + ", expected " + range + (text ? document::numberMeant(json.get_ref<const std::string&>()) : ""));
   return allowed;
