@@ -10,6 +10,7 @@
 #include "cli/command.hpp"
 #include "document/csv.hpp"
 #include "document/reader.hpp"
+#include "host/class_table.hpp"
 #include "host/device_instance.hpp"
 
 namespace hapticd::cli {
@@ -66,7 +67,7 @@ class Table {
     const hsp_status status = std::min({kinematics_.forward(device_, q.data(), p.data(), o.data()),
                                         kinematics_.jacobian(device_, q.data(), J.data()),
                                         kinematics_.gravity(device_, q.data(), gravity_.data(), held.data())});
-    if (status < 0) return Error{"the kinematics failed for these joints (status " + std::to_string(status) + ")"};
+    if (status < 0) return Error{"the kinematics failed for these joints (" + host::statusName(status) + ")"};
     line_.clear();
     add(values.data(), n);
     add(p.data(), 3);
