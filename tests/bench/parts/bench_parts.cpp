@@ -238,8 +238,9 @@ void measure(Part part, const char* name, const char* source = nullptr) {
               faces, load, static_cast<double>(model.bytes()) / static_cast<double>(faces), model.leafCount(),
               model.pieceCount());
   constexpr int kTicks = 50000;
-  const auto slow = strokes(model, 1e-4, kTicks), middle = strokes(model, 3e-4, kTicks),
-             fast = strokes(model, 1e-3, kTicks);
+  const auto slowest = strokes(model, 5e-5, kTicks), slow = strokes(model, 1e-4, kTicks),
+             middle = strokes(model, 3e-4, kTicks), fast = strokes(model, 1e-3, kTicks);
+  measureWalks(model, "walk, 0.05 m/s", slowest);
   measureWalks(model, "walk, 0.1 m/s", slow);
   measureWalks(model, "walk, 0.3 m/s", middle);
   measureWalks(model, "walk, 1 m/s", fast);
