@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/regular_file.hpp"
+#include "document/json_text.hpp"
 #include "record/layout.hpp"
 
 namespace hapticd::record {
@@ -159,7 +160,7 @@ Result<void> Recording::readBlocks(std::span<const std::byte> bytes, uint64_t ad
 }
 
 Result<void> Recording::readColumns() {
-  const Json about = Json::parse(about_, nullptr, false);
+  const Json about = document::parseJson(about_);
   if (!about.is_object() || !about.contains("columns") || !about["columns"].is_object())
     return Error{"does not describe its columns: it is damaged"};
   for (RecordedStream& stream : streams_) {
