@@ -265,7 +265,7 @@ std::string wireOf(const NewDeviceArguments& o) {
   return text;
 }
 
-/// Where another mechanism rests, its numbers say.
+/// The block mount. Only the rest position of a PHANToM is known; that of another mechanism follows from its numbers.
 std::string mountOf(const NewDeviceArguments& o) {
   if (o.kind == "phantom")
     return "mount: {position: [0, 0, 0.09]}     # m: where its frame stands in the world; this one puts the tip at "

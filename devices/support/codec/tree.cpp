@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "document/json_text.hpp"
 #include "document/meant.hpp"
 #include "document/suggestion.hpp"
 
@@ -45,7 +46,7 @@ struct Document::Data {
 };
 
 Document::Document(const std::string& json, std::string name) : data_(new Data{Json(), std::move(name), {}}) {
-  data_->json = Json::parse(json, nullptr, false);
+  data_->json = document::parseJson(json);
   if (data_->json.is_discarded()) throw std::invalid_argument(data_->name + ": cannot be read, expected a mapping");
 }
 

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/regular_file.hpp"
+#include "document/json_text.hpp"
 #include "record/layout.hpp"
 
 namespace hapticd::record {
@@ -174,7 +175,7 @@ void Recording::noteDamage(const RecordedStream& stream, uint64_t space, uint64_
 }
 
 Result<void> Recording::readColumns() {
-  const Json about = Json::parse(about_, nullptr, false);
+  const Json about = document::parseJson(about_);
   if (!about.is_object() || !about.contains("columns") || !about["columns"].is_object())
     return Error{"does not describe its columns: it is damaged"};
   for (RecordedStream& stream : streams_) {

@@ -69,7 +69,7 @@ void massesAtTheEnds(const Node& root, const std::string& file, document::Proble
       "is pushed up; expected one [x, y, z] for each link, in m from its far end, in its frame");
 }
 
-/// An arm cannot be held for its calibration where its stops do not let it be.
+/// Warns if the arm would be calibrated in a pose that lies beyond its stops: nobody can hold it there.
 void poseBeyondStops(const Node& root, const scene::Device& device, document::Problems& warnings) {
   const Node* pose = find(root, {"parameters", "calibration", "pose"});
   const scene::Value* limits = nullptr;
