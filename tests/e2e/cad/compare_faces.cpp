@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// Trims and feet of an imported part against Open CASCADE's, face by face, at random points.
+/// Trims, feet and sides of an imported part against Open CASCADE's, face by face, at random points.
 ///   compare_faces FILE.step|FILE.brep PART.hpart COUNT      prints one line of JSON
 /// The part has to keep the file's own parameters, and one body in the file's own frame.
 #include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepClass3d_SolidClassifier.hxx>
 #include <BRepClass_FaceClassifier.hxx>
 #include <BRepExtrema_DistShapeShape.hxx>
 #include <BRepTools.hxx>
@@ -26,7 +27,7 @@
 #include <vector>
 
 #include "kernels/brep/part_file.hpp"
-#include "kernels/brep/search.hpp"
+#include "kernels/brep/tracer.hpp"
 
 namespace {
 
@@ -41,6 +42,7 @@ struct Shape {
   TopoDS_Shape whole;
   std::vector<TopoDS_Face> faces;
   std::vector<Bnd_Box> boxes;
+  TopoDS_Shape solid;  ///< null: not just one
 };
 
 Shape readShape(const std::string& file) {
@@ -59,6 +61,9 @@ Shape readShape(const std::string& file) {
     shape.boxes.emplace_back();
     BRepBndLib::Add(shape.faces.back(), shape.boxes.back());
   }
+  int solids = 0;
+  for (TopExp_Explorer at(shape.whole, TopAbs_SOLID); at.More(); at.Next(), ++solids) shape.solid = at.Current();
+  if (solids != 1) shape.solid.Nullify();
   return shape;
 }
 
@@ -70,6 +75,7 @@ brep::Part readOurs(const std::string& file) {
 
 struct Tally {
   long trims = 0, trim_wrong = 0, beside = 0, unmatched = 0, feet = 0, proved = 0, no_answer = 0;
+  long sides = 0, side_wrong = 0;  ///< of the only solid, farther from it than its tolerance
   double farther = 0, nearer = 0;  ///< [mm] largest difference of ours to theirs, each way
 };
 
@@ -81,6 +87,7 @@ class Comparison {
     for (std::uint32_t f = 0; f < model_.part().faces.size(); ++f) match(f);
     for (long i = 0; i < count; ++i) compareTrim();
     for (long i = 0; i < count; ++i) compareFoot();
+    if (!shape_.solid.IsNull() && model_.placements().size() == 1 && model_.placements()[0].solid) compareSides(count);
     return tally_;
   }
 
@@ -140,10 +147,36 @@ class Comparison {
     return false;
   }
 
-  void compareFoot() {
+  Vector3d anywhere() {
     const Eigen::AlignedBox3d& box = model_.bounds();
     Vector3d p = box.min();
     for (int k = 0; k < 3; ++k) p[k] += (1.3 * share() - 0.15) * box.sizes()[k];
+    return p;
+  }
+
+  /// Every other point is within 1 mm of the surface.
+  void compareSides(long count) {
+    BRepClass3d_SolidClassifier judge(shape_.solid);
+    brep::Tracer tracer(model_);
+    const double least = kBeside + model_.part().tolerance / kMetres;
+    for (long i = 0; i < count; ++i) {
+      Vector3d p = anywhere();
+      contact::Foot foot = tracer.nearest(p);
+      if (i % 2 == 0) foot = tracer.nearest(p = foot.point + (2 * share() - 1) * kMetres * foot.normal);
+      if (foot.distance / kMetres < least) continue;
+      const Vector3d q = p / kMetres;
+      judge.Perform(gp_Pnt(q.x(), q.y(), q.z()), 1e-9);
+      if (judge.State() != TopAbs_IN && judge.State() != TopAbs_OUT) continue;
+      ++tally_.sides;
+      const bool wrong = (foot.depth > 0) != (judge.State() == TopAbs_IN);
+      tally_.side_wrong += wrong;
+      if (wrong && tally_.side_wrong < 5)
+        std::fprintf(stderr, "side of %.9g %.9g %.9g: %.3g mm from it\n", q.x(), q.y(), q.z(), foot.distance / kMetres);
+    }
+  }
+
+  void compareFoot() {
+    const Vector3d p = anywhere();
     const brep::Nearest& found = search_.nearest(p);
     search_.reset();
     const Vector3d q = p / kMetres;
@@ -192,7 +225,8 @@ int main(int count, char** arguments) {
   const Tally t = Comparison(readShape(arguments[1]), model).run(std::atol(arguments[3]));
   std::printf(
       "{\"trims\": %ld, \"trim_wrong\": %ld, \"beside\": %ld, \"unmatched\": %ld, \"feet\": %ld, \"proved\": %ld, "
-      "\"no_answer\": %ld, \"farther_mm\": %.3g, \"nearer_mm\": %.3g}\n",
-      t.trims, t.trim_wrong, t.beside, t.unmatched, t.feet, t.proved, t.no_answer, t.farther, t.nearer);
+      "\"no_answer\": %ld, \"sides\": %ld, \"side_wrong\": %ld, \"farther_mm\": %.3g, \"nearer_mm\": %.3g}\n",
+      t.trims, t.trim_wrong, t.beside, t.unmatched, t.feet, t.proved, t.no_answer, t.sides, t.side_wrong, t.farther,
+      t.nearer);
   return 0;
 }
