@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd`: one program, a subcommand a file.
+#include <algorithm>
 #include <exception>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -29,6 +31,34 @@ std::string unknownCommand(const hapticd::cli::Command& app, int argc, char** ar
          "\", expected one of " + hapticd::document::listed(names, 30) + hapticd::document::suggestion(argv[at], names);
 }
 
+/// What is wrong with the first option that no command of this line has; "" if there is none. The parser would complain
+/// of the words behind it.
+std::string unknownOption(const hapticd::cli::Command& app, int argc, char** argv) {
+  std::vector<hapticd::cli::Command> path{app};
+  std::vector<std::string> names;
+  const auto take = [&names](const hapticd::cli::Command& command) {
+    for (const auto& option : command.options())
+      for (const std::string& name : option.longNames()) names.push_back("--" + name);
+  };
+  take(app);
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    for (const auto& command : path.back().subcommands())
+      if (command.name() == word) {
+        if (word == "client") return "";  // what follows is another program's
+        take(command);
+        path.push_back(command);
+        break;
+      }
+    const std::string name = word.substr(0, word.find('='));
+    if (word.rfind("--", 0) != 0 || word == "--" || std::find(names.begin(), names.end(), name) != names.end())
+      continue;
+    return "there is no option " + name + hapticd::document::suggestion(name, names) +
+           (name == "--unit" ? "; --scale is metres per unit of the file: 0.001 for millimetres" : "") + "; see --help";
+  }
+  return "";
+}
+
 }  // namespace
 
 // NOLINTNEXTLINE(bugprone-exception-escape): a table of commands that is wrong ends the program, and says so
@@ -49,6 +79,7 @@ int main(int argc, char** argv) {
   app.optionsMayFollowSubcommand();
   for (const auto add : kCommands) add(app, exit_code);
   if (const std::string wrong = unknownCommand(app, argc, argv); !wrong.empty()) return fail(kBadInput, wrong);
+  if (const std::string wrong = unknownOption(app, argc, argv); !wrong.empty()) return fail(kBadInput, wrong);
   try {
     if (const auto ended = app.parse(argc, argv)) return *ended;
   } catch (const std::exception& error) {

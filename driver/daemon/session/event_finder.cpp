@@ -7,7 +7,8 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr uint32_t kWhy = 16;  ///< of the code of HAPTICD_REFUSED, see client.h
+constexpr double kStalled = 0.25;  ///< [s] without a tick: no load of a machine that can hold a rate makes so much
+constexpr uint32_t kWhy = 16;      ///< of the code of HAPTICD_REFUSED, see client.h
 
 uint32_t codeOf(Order::Led led, Follow::Refusal why) noexcept HSP_RT {
   return static_cast<uint32_t>(led) + kWhy * static_cast<uint32_t>(why);
@@ -47,6 +48,8 @@ void EventFinder::order(const Order& order) noexcept HSP_RT {
 }
 
 void EventFinder::tick(double t, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+  if (t - last_t_ >= kStalled) add(HAPTICD_STALLED, -1, -1, 0, t - last_t_);
+  last_t_ = t;
   if (leaving_ > 0) lookForLeft(core);
   for (const uint32_t index : core.live())
     if (index < models_.size()) look(t, index, core);
@@ -133,9 +136,9 @@ const char* whyRefused(const hapticd_event& event) {
 }
 
 const char* nameOfEvent(uint32_t kind) {
-  static constexpr const char* kNames[] = {"",         "click",    "touch",    "fault",      "cleared",
-                                           "silenced", "degraded", "restored", "came",       "left",
-                                           "joined",   "lost",     "refused",  "quarantined"};
+  static constexpr const char* kNames[] = {"",         "click",    "touch",    "fault",       "cleared",
+                                           "silenced", "degraded", "restored", "came",        "left",
+                                           "joined",   "lost",     "refused",  "quarantined", "stalled"};
   static_assert(std::size(kNames) == HAPTICD_EVENT_KINDS);
   return kind < std::size(kNames) ? kNames[kind] : "";
 }

@@ -65,6 +65,7 @@ class EventFinder {
   template <class Note>
   bool refused(double t, uint64_t now, Note& note) noexcept HSP_RT;
 
+  double last_t_ = std::numeric_limits<double>::quiet_NaN();  ///< [s] of the tick before
   std::vector<ModelNote> models_;
   std::vector<ArmNote> arms_;
   std::array<hapticd_event, kMost> found_{};

@@ -146,6 +146,11 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
       return {HSP_LOG_INFO, who, "is in the scene now"};
     case HAPTICD_LEFT:
       return {HSP_LOG_INFO, who, "has left the scene"};
+    case HAPTICD_STALLED:
+      return {HSP_LOG_WARNING, "",
+              fmt::format("no tick for {:.2f} s, until {:.2f} s: the process was stopped (SIGSTOP, a debugger), or the "
+                          "machine had no time for it",
+                          event.value, event.t)};
     default:
       return {HSP_LOG_DEBUG, "", ""};
   }

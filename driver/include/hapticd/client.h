@@ -103,6 +103,7 @@ enum {
   HAPTICD_REFUSED, /* records of a lead were refused; model or probe, value: how many so far; once per second; code: as
                       above, and of a target 16 times why: 1 not finite, 2 its time, 3 too far, 4 no unit quaternion */
   HAPTICD_QUARANTINED, /* models of a plugin were left out, because it ended an earlier run */
+  HAPTICD_STALLED,     /* no tick for a while: the process was stopped, or got no processor; value: s */
   HAPTICD_EVENT_KINDS  /* one more than the last kind */
 };
 typedef struct hapticd_event {

@@ -139,6 +139,10 @@ models:
                          (("plugin", "chek", "x.so"), '(did you mean "check"?)')):
         code, out, err = ask(*wrong)
         check(f"{' '.join(wrong)} is told", code == 2 and meant in err, err)
+    code, out, err = ask("import", "a.stl", "--unit", "mm", "-o", "x.hpart")
+    check("an option that is not there is named, with the one that was meant", code == 2 and "there is no option --unit" in err and "--scale" in err, err)
+    code, out, err = ask("run", "a.yaml", "--reprot", "r.json")
+    check("and the nearest one", code == 2 and '(did you mean "--report"?)' in err, err)
     medial = "format: hapticd-model/2\nmedial:\n  points: [[[0, 0, 0], [0.1, 0]], [[0, 0, 0.1], [0.1, 0, 0.1]]]\n" \
              "  radius: [[0.01, -0.012], [0.01]]\n  stiffness: soft\n  mass: -1\n  dampng: 1\n"
     body = "hapticd: 1\nmodels:\n  - {name: m, plugin: mat_deformable, parameters: {geometry: m.yaml}}\n"

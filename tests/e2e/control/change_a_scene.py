@@ -86,7 +86,7 @@ def words_of_answers(client, folder):
     check("a model that the scene does not have is met with those that it has", 'no model "bal", expected one of ball' in told, told)
 
 
-def stopped(run, environment):
+def stopped(run, environment, client):
     """A daemon that was stopped looks alive by its files."""
     top = lambda: subprocess.run([HAPTICD, "top", "--name", "changed", "--once"], env=environment, capture_output=True, text=True, timeout=60)
     run.send_signal(signal.SIGSTOP)
@@ -94,6 +94,8 @@ def stopped(run, environment):
     run.send_signal(signal.SIGCONT)
     check("top tells that it stands still", still.returncode == 1 and "stands still" in still.stderr, (still.returncode, still.stderr))
     check("and that it goes on", until(lambda: top().returncode == 0), "")
+    stalls = lambda: [e for e in client.ask(do="events")["events"] if e["event"] == "stalled"]
+    check("the standstill is an event, with its length", until(stalls) and stalls()[-1]["value"] > 0.3, stalls())
 
 
 def permission(client, folder):
@@ -128,7 +130,7 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
         client.ask(do="remove", model="ball")
         words_of_answers(client, scratch)
         permission(client, scratch)
-    stopped(run, environment)
+        stopped(run, environment, client)
     run.send_signal(signal.SIGTERM)
     check("the run ends in order", run.wait(timeout=30) == 0)
 finish()

@@ -37,6 +37,13 @@ TEST_F(EventWords, AreAtTheLevelThatAPersonNeeds) {
   EXPECT_EQ(of(HAPTICD_SILENCED, static_cast<uint32_t>(Trouble::kOverrun)).level, HSP_LOG_ERROR);
 }
 
+TEST_F(EventWords, TellHowLongNoTickCame) {
+  const auto stalled = of(HAPTICD_STALLED, 0, 1.5);
+  EXPECT_EQ(stalled.level, HSP_LOG_WARNING);
+  EXPECT_NE(stalled.text.find("no tick for 1.50 s"), std::string::npos) << stalled.text;
+  EXPECT_NE(stalled.text.find("SIGSTOP"), std::string::npos) << stalled.text;
+}
+
 TEST_F(EventWords, NameTheModel) {
   for (const uint32_t kind : {HAPTICD_CLICK, HAPTICD_DEGRADED, HAPTICD_RESTORED, HAPTICD_CAME, HAPTICD_LEFT,
                               HAPTICD_JOINED, HAPTICD_LOST, HAPTICD_REFUSED}) {

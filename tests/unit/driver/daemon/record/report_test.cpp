@@ -281,6 +281,56 @@ TEST_F(Report, DrawsEveryPeakAndEscapesNames) {
   EXPECT_LT(svg.size(), 200000u);
 }
 
+TEST_F(Report, NamesTheModelWhoseOneStepMadeTicksMiss) {
+  RunReport report = sample();
+  report.models.push_back({"donut", "torus", {}});
+  for (int i = 0; i < 1000; ++i) report.models[1].contact.add(false, 0, 0, 1e-3, 2000);
+  EXPECT_EQ(paceText(report, 1000), "");
+  report.models[1].contact.add(false, 0, 0, 1e-3, 20'000'000);
+  EXPECT_EQ(paceText(report, 1000), "") << "no tick was missed";
+  report.missed_ticks = 19;
+  EXPECT_NE(paceText(report, 1000).find("slow: 19 ticks were missed, and donut took 20 ms in its longest step"),
+            std::string::npos)
+      << paceText(report, 1000);
+  report.virtual_time = true;
+  EXPECT_EQ(paceText(report, 1000), "") << "the wall clock of a busy machine makes as much";
+  report.models[1].contact.add(false, 0, 0, 1e-3, 2'000'000'000);
+  EXPECT_NE(paceText(report, 1000).find("slow: donut took 2e+03 ms in its longest step"), std::string::npos)
+      << paceText(report, 1000);
+}
+
+TEST_F(Report, DoubtsADepthThatNoArmReaches) {
+  RunReport report = sample();
+  EXPECT_EQ(summary(report).find("in m?"), std::string::npos) << summary(report);
+  report.models[0].contact.add(true, 2.7, 1.5, 1e-3, 0);
+  EXPECT_NE(summary(report).find("ball says a depth of 2.7 m, deeper than an arm reaches: is its depth_m in m? a depth "
+                                 "in mm would be 0.0027 m"),
+            std::string::npos)
+      << summary(report);
+}
+
+TEST_F(Report, MarksWhatHappenedAndWhoseItIs) {
+  std::vector<Sample> samples(1000);
+  for (size_t i = 0; i < samples.size(); ++i) {
+    samples[i].t = static_cast<double>(i) * 1e-3;
+    samples[i].depth_m = i < 500 ? -0.03 : 1e-3;
+    samples[i].model = 0;
+  }
+  RunNotes notes{.models = {"ring"}};
+  notes.moments = {{0.7, "ring is silenced"}, {9, "beyond the picture"}};
+  notes.arm = "left";
+  ASSERT_TRUE(drawRun(sample(), samples, notes, file("run.svg")));
+  std::string svg = read(file("run.svg"));
+  for (const char* words : {"ring is silenced", ", left<", "mm and more are drawn at the foot"})
+    EXPECT_NE(svg.find(words), std::string::npos) << words;
+  EXPECT_EQ(svg.find("beyond the picture"), std::string::npos);
+  for (Sample& sample : samples) sample.depth_m = std::nan(""), sample.model = -1;
+  ASSERT_TRUE(drawRun(sample(), samples, {}, file("run.svg")));
+  svg = read(file("run.svg"));
+  EXPECT_NE(svg.find("no model was near enough to be traced"), std::string::npos);
+  EXPECT_EQ(svg.find("1e-0"), std::string::npos) << "an axis of nothing but zeros";
+}
+
 TEST_F(Report, SaysWhenThereIsNothingToDraw) {
   EXPECT_FALSE(drawRun(sample(), {}, {}, file("run.svg")));
 }
