@@ -75,12 +75,12 @@ bool turnsWithoutRows(const KinematicsCalls& calls, const Joints& q, const Tip& 
   if (calls.jacobian(q, J) < 0) return false;
   const double* rows = J.data() + 3 * calls.joints();
   if (!std::all_of(rows, rows + 3 * calls.joints(), [](double value) { return value == 0; })) return false;
-  constexpr double kNudge = 1e-3, kTurns = 0.1;  // [rad or m], of a radian for a radian
+  constexpr double kMoved = 1e-3, kTurns = 0.1;  // [rad or m], of a radian for a radian
   for (Eigen::Index joint = 0; joint < calls.joints(); ++joint) {
     Joints moved = q;
-    moved[joint] += kNudge;
+    moved[joint] += kMoved;
     Tip after;
-    if (calls.forward(moved, after) >= 0 && after.orientation.angularDistance(tip.orientation) > kTurns * kNudge)
+    if (calls.forward(moved, after) >= 0 && after.orientation.angularDistance(tip.orientation) > kTurns * kMoved)
       return true;
   }
   return false;
