@@ -2,12 +2,15 @@
 /// `hapticd check`: validates files and prints every problem, warns of what cannot be stable; also prints the JSON
 /// Schema of a format.
 #include <algorithm>
+#include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string_view>
 #include <vector>
 
 #include "cli/colour.hpp"
 #include "cli/command.hpp"
+#include "cli/scene_advice.hpp"
 #include "diagnostics/device_advice.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/hand_path_advice.hpp"
@@ -19,6 +22,7 @@
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
 #include "host/file_stamp.hpp"
+#include "scene/device_draft.hpp"
 #include "tune/stability.hpp"
 #include "watch/quarantine.hpp"
 #include "world/arm_force.hpp"
@@ -86,31 +90,6 @@ document::Problems unstable(const scene::Scene& scene, const std::vector<double>
   return warnings;
 }
 
-/// A model so far away that no arm reaches it was meant in other units.
-document::Problems farModels(const scene::Scene& scene) {
-  constexpr double kFar = 10;  // [m]
-  document::Problems warnings;
-  for (size_t i = 0; i < scene.models.size(); ++i)
-    if (const double away = scene.models[i].pose.position.norm(); away > kFar)
-      document::report(
-          warnings, scene.models[i].place, "models[" + std::to_string(i) + "].pose.position",
-          document::numberText(away) + " m from the world's origin, where no arm reaches; expected metres");
-  return warnings;
-}
-
-/// A stiffness in N/mm, as data sheets have it, is a thousandth of what was meant: nobody feels it.
-document::Problems softModels(const scene::Scene& scene) {
-  constexpr double kUnfelt = 5;  // [N/m] 10 mm of it give 0.05 N, less than most arms rub
-  document::Problems warnings;
-  for (size_t i = 0; i < scene.models.size(); ++i)
-    for (const scene::Value& value : scene.models[i].parameters)
-      if (value.id == "stiffness" && value.kind == HSP_REAL && value.number < kUnfelt)
-        document::report(warnings, value.place, "models[" + std::to_string(i) + "].parameters.stiffness",
-                         document::numberText(value.number) + " N/m cannot be felt: 1 mm gives " +
-                             document::numberText(value.number * 1e-3) + " N; expected N/m (1 N/mm is 1000 N/m)");
-  return warnings;
-}
-
 /// A bound for programs that the arm's own is below.
 document::Problems idleBounds(const scene::Scene& scene) {
   document::Problems warnings;
@@ -143,7 +122,71 @@ document::Problems quarantinedModels(const scene::Scene& scene) {
 struct Verdict {
   std::string file;
   document::Problems problems, warnings;
+  bool whole = true;  ///< false: some checks need what is missing or wrong, so they were left out
 };
+
+/// "models[3].pose" is about a model that is among these.
+bool isOfThese(const std::string& key, const std::vector<bool>& models) {
+  constexpr std::string_view kModels = "models[";
+  if (key.rfind(kModels, 0) != 0) return false;
+  const size_t index = std::strtoul(key.c_str() + kModels.size(), nullptr, 10);
+  return index < models.size() && models[index];
+}
+
+/// A scene with problems has other models, in which a person would find the next problem only after these were mended.
+void tryTheRest(const CheckArguments& options, Verdict& verdict) {
+  const auto draft = scene::sceneDraft(verdict.file, catalog());
+  verdict.whole = !draft && std::none_of(verdict.problems.begin(), verdict.problems.end(),
+                                         [](const document::Problem& problem) { return problem.key.empty(); });
+  if (!draft || options.files_only) return;
+  std::vector<bool> unsound(draft->models.size());
+  for (size_t i = 0; i < unsound.size(); ++i) {
+    std::vector<bool> one(unsound.size());
+    one[i] = true;
+    unsound[i] = std::any_of(verdict.problems.begin(), verdict.problems.end(),
+                             [&](const document::Problem& problem) { return isOfThese(problem.key, one); });
+  }
+  const ModelTrial trial = tryModels(*draft, servo::maxForceOf(withArm(*draft)), unsound);
+  verdict.problems.insert(verdict.problems.end(), trial.problems.begin(), trial.problems.end());
+  document::sortByPlace(verdict.problems);
+  verdict.warnings = trial.warnings;
+  for (const auto& found_by : {&farModels, &softModels})
+    for (const document::Problem& one : found_by(*draft))
+      if (!isOfThese(one.key, unsound)) verdict.warnings.push_back(one);
+}
+
+/// What is in order, and yet cannot be meant, or cannot be stable.
+void addWarnings(const scene::Scene& full, const std::vector<double>& stiffness, const CheckArguments& options,
+                 Verdict& verdict) {
+  document::Problems more = unstable(full, stiffness);
+  for (const auto& found_by : {&farModels, &softModels, &idleBounds, &quarantinedModels, &slowArms})
+    for (const document::Problem& one : found_by(full)) more.push_back(one);
+  document::Problems unread;
+  if (const auto root = document::parseFile(verdict.file, unread)) adviseZeros(*root, verdict.file, more);
+  if (!options.files_only && verdict.problems.empty())  // these run the scene
+    for (const auto& found_by : {&unreachableRows, &adviseHands})
+      for (const document::Problem& one : found_by(full)) more.push_back(one);
+  if (!options.device.empty())  // what its own check says
+    for (const scene::Device& device : full.devices)
+      for (const document::Problem& one : adviseDevice(device.file, catalog())) more.push_back(one);
+  verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());
+}
+
+/// The modules of a scene's arms: what runs would refuse, or crash in, is told before any of them is loaded here.
+document::Problems badModules(const scene::Scene& scene) {
+  document::Problems problems;
+  for (size_t i = 0; i < scene.devices.size(); ++i) {
+    const scene::Device& device = scene.devices[i];
+    const ModuleTrial trial = tryModule(device);
+    if (trial.error.empty()) continue;
+    const document::Place place =
+        device.place.file.empty() ? document::Place{device.file.string()} : document::Place(device.place);
+    document::report(
+        problems, place, "device",
+        trial.error.substr(0, trial.error.find('\n')) + "; all of it: hapticd check " + device.file.string());
+  }
+  return problems;
+}
 
 Verdict checkOne(const std::string& file, const CheckArguments& options) {
   std::optional<scene::Scene> scene;
@@ -153,35 +196,30 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
     scene::Loaded other = scene::load(file, catalog(), {true, options.device});
     scene = std::move(other.scene);
     found = std::move(other.problems);
+    verdict.whole = found.empty();
     if (!scene) return verdict;
   }
+  if (scene && !options.files_only)
+    if (document::Problems bad = badModules(*scene); !bad.empty()) {
+      found.insert(found.end(), bad.begin(), bad.end());
+      return verdict;  // what follows would call these modules in this process
+    }
   ModelTrial trial;
   if (scene && !options.files_only) trial = tryModels(*scene, servo::maxForceOf(withArm(*scene)));
   found.insert(found.end(), trial.problems.begin(), trial.problems.end());
   if (scene && !options.files_only)
     for (const document::Problem& hand : unreachableHands(withArm(*scene))) found.push_back(hand);
+  if (!scene && !found.empty()) tryTheRest(options, verdict);
   if (!scene) {
-    const document::Problems more = tryDevice(file, catalog(), found);
+    const document::Problems more = tryDevice(file, catalog(), found, &verdict.warnings);
     found.insert(found.end(), more.begin(), more.end());
     document::sortByPlace(found);
   }
-  verdict.warnings = trial.warnings;
-  if (!scene && found.empty()) verdict.warnings = adviseDevice(file, catalog());
-  if (!scene || !found.empty()) return verdict;
-  const scene::Scene full = withArm(*scene);
-  document::Problems more = unstable(full, trial.stiffness);
-  for (const auto& found_by : {&farModels, &softModels, &idleBounds, &quarantinedModels, &slowArms})
-    for (const document::Problem& one : found_by(full)) more.push_back(one);
-  document::Problems unread;
-  if (const auto root = document::parseFile(file, unread)) adviseZeros(*root, file, more);
-  if (!options.files_only)
-    for (const document::Problem& one : unreachableRows(full)) more.push_back(one);
-  if (!options.files_only)
-    for (const document::Problem& one : adviseHands(full)) more.push_back(one);
-  if (!options.device.empty())  // what its own check says
-    for (const scene::Device& device : full.devices)
-      for (const document::Problem& one : adviseDevice(device.file, catalog())) more.push_back(one);
-  verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());
+  verdict.warnings.insert(verdict.warnings.end(), trial.warnings.begin(), trial.warnings.end());
+  verdict.whole = verdict.whole && found.empty();
+  if (!scene && found.empty())
+    for (const document::Problem& one : adviseDevice(file, catalog())) verdict.warnings.push_back(one);
+  if (scene) addWarnings(withArm(*scene), trial.stiffness, options, verdict);
   return verdict;
 }
 
@@ -207,6 +245,7 @@ int check(const CheckArguments& options) {
   if (!options.schema.empty()) return printSchema(options.schema);
   if (options.files.empty()) return fail(kBadInput, "no file given, expected `hapticd check FILE...`");
   size_t problems = 0, bad_files = 0;
+  bool whole = true;
   Json files = Json::array();
   for (const std::string& file : options.files) {
     const Verdict verdict = checkOne(file, options);
@@ -218,6 +257,7 @@ int check(const CheckArguments& options) {
     else
       print(verdict, options.quiet);
     problems += verdict.problems.size();
+    whole = whole && verdict.whole;
     bad_files += verdict.problems.empty() ? 0 : 1;
   }
   if (options.json)
@@ -226,8 +266,9 @@ int check(const CheckArguments& options) {
         Json{{"problems", problems}, {"files", files}}.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
   if (problems == 0) return kWorked;
   std::fflush(stdout);
-  std::fprintf(stderr, "%zu problem%s in %zu of %zu file%s\n", problems, problems == 1 ? "" : "s", bad_files,
-               options.files.size(), options.files.size() == 1 ? "" : "s");
+  std::fprintf(stderr, "%zu problem%s in %zu of %zu file%s%s\n", problems, problems == 1 ? "" : "s", bad_files,
+               options.files.size(), options.files.size() == 1 ? "" : "s",
+               whole ? "" : "; some checks need these mended first, and may find more");
   return kBadInput;
 }
 

@@ -60,7 +60,23 @@ std::string defaultText(const host::ParamInfo& p) {
   }
 }
 
-void printParam(const host::ParamInfo& p) {
+/// What a file gives for it.
+std::string valueText(const host::ParamInfo& p, const scene::Value& value) {
+  if (p.kind == HSP_REAL || p.kind == HSP_INT) return document::numberText(value.number);
+  if (p.kind == HSP_BOOL) return value.number != 0 ? "true" : "false";
+  if (p.kind == HSP_ENUM) {
+    const auto choice = static_cast<size_t>(std::max(value.number, 0.0));
+    return choice < p.choices.size() ? p.choices[choice] : "";
+  }
+  if (p.kind != HSP_ARRAY) return value.text;
+  constexpr size_t kShown = 12;
+  std::string text = "[";
+  for (size_t i = 0; i < std::min(kShown, value.numbers.size()); ++i)
+    text += (i > 0 ? ", " : "") + document::numberText(value.numbers[i]);
+  return text + (value.numbers.size() > kShown ? ", ...]" : "]");
+}
+
+void printParam(const host::ParamInfo& p, const scene::Value* value) {
   std::string facts = typeText(p);
   const bool ranged = p.kind == HSP_REAL || p.kind == HSP_INT || p.kind == HSP_ARRAY;
   if (p.kind == HSP_ARRAY) facts += ", " + countText(p);
@@ -68,6 +84,7 @@ void printParam(const host::ParamInfo& p) {
   const bool is_required = (p.flags & HSP_P_REQUIRED) != 0;
   const std::string def = defaultText(p);
   facts += is_required ? "; required" : def.empty() ? "" : "; default " + def;
+  if (value != nullptr && p.kind != HSP_DATA) facts += "; in this file " + valueText(p, *value);
   if ((p.flags & HSP_P_LIVE) != 0) facts += "; may change while running";
   if ((p.flags & HSP_P_LIVE) != 0 && (p.flags & HSP_P_SAFETY) != 0) facts += " with consent (ctl set --consent)";
   if ((p.flags & HSP_P_ACCURACY) != 0) facts += "; trades speed for accuracy";
@@ -141,7 +158,7 @@ void printUnusable(const std::vector<const host::CatalogFile*>& files) {
     if (!file->error.empty()) std::printf("not usable: %s\n", file->error.c_str());
 }
 
-void printClass(const host::ClassInfo& info) {
+void printClass(const host::ClassInfo& info, const std::vector<scene::Value>& values) {
   std::printf("%s %s (%s)\n%s\n\n", info.name.c_str(), info.version.c_str(), info.id.c_str(), info.doc.c_str());
   std::printf("  file     %s\n  licence  %s\n  ABI      %u.%u\n", info.file.c_str(), info.license.c_str(),
               HSP_ABI_MAJOR, info.abi_minor);
@@ -149,7 +166,11 @@ void printClass(const host::ClassInfo& info) {
     std::printf("  moves    %s\n  deforms  %s\n", (info.flags & HSP_C_MOVES) != 0 ? "may" : "no",
                 (info.flags & HSP_C_DEFORMS) != 0 ? "may" : "no");
   std::printf("\nparameters%s\n", info.params.empty() ? ": none" : "");
-  for (const host::ParamInfo& param : info.params) printParam(param);
+  for (const host::ParamInfo& param : info.params) {
+    const auto given =
+        std::find_if(values.begin(), values.end(), [&](const scene::Value& value) { return value.id == param.id; });
+    printParam(param, given != values.end() ? &*given : nullptr);
+  }
 }
 
 std::string searchedText(const std::vector<std::filesystem::path>& dirs) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "description/scene.hpp"
 #include "host/catalog.hpp"
 
 namespace hapticd::cli {
@@ -24,7 +25,8 @@ nlohmann::ordered_json classJson(const host::ClassInfo& info);
 void printUnusable(const std::vector<const host::CatalogFile*>& files);
 
 /// Documentation of one class from its parameter table.
-void printClass(const host::ClassInfo& info);
+/// @param values of the file, which stand beside the defaults
+void printClass(const host::ClassInfo& info, const std::vector<scene::Value>& values = {});
 
 /// "  searched:" and a folder a line.
 std::string searchedText(const std::vector<std::filesystem::path>& dirs);

@@ -8,7 +8,7 @@ namespace hapticd::cli {
 using AddCommand = void(const Command& app, int& exit_code);
 
 // clang-format off: a command is a line
-AddCommand addCheck, addClient, addCompletion, addCtl, addDevice, addDeviceCalibrate, addDeviceControls, addDeviceDecode,
+AddCommand addCheck, addClient, addCompletion, addCtl, addDevice, addDeviceCalibrate, addDeviceCheck, addDeviceControls, addDeviceDecode,
     addDeviceKinematics, addDeviceNew, addDeviceRecord, addDeviceTwin, addDoctor, addExplain, addExport, addImport, addManual, addPart,
     addPlot, addPlugin, addPluginCheck, addPluginNew, addReplay, addRun, addTop, addTrace, addTune, addView;
 
@@ -20,6 +20,7 @@ constexpr AddCommand* kCommands[] = {
     addCtl,
     addDevice,
     addDeviceCalibrate,
+    addDeviceCheck,
     addDeviceControls,
     addDeviceDecode,
     addDeviceKinematics,

@@ -14,6 +14,7 @@
 #include "cli/named_files.hpp"
 #include "control/client.hpp"
 #include "control/presence.hpp"
+#include "document/json_text.hpp"
 #include "document/node.hpp"
 #include "status/page_file.hpp"
 
@@ -66,7 +67,7 @@ int showSocket(const CtlArguments& options) {
 /// Prints an answer.
 int show(const CtlArguments& options, const Result<std::string>& answer) {
   if (!answer) return fail(kFailed, answer.error());
-  Json json = Json::parse(*answer, nullptr, false);
+  Json json = document::parseJson(*answer);
   if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
   if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
   if (!options.obj.empty()) return saveObj(json, options.obj);
@@ -86,7 +87,7 @@ int sendScene(const CtlArguments& options, Json request) {
   const bool again = !request.contains("file");
   if (again) {
     const auto answer = client->ask(lineOf({{"do", "status"}}));
-    const Json status = answer ? Json::parse(*answer, nullptr, false) : Json();
+    const Json status = answer ? document::parseJson(*answer) : Json();
     if (!status.is_object()) return show(options, answer);
     request["file"] = status.value("scene", "");
   }
@@ -126,7 +127,7 @@ int follow(const CtlArguments& options) {
   uint64_t seen = 0;
   for (const char* word : {"vertices", "geometry"}) {  // the first says whether there are any
     const auto answer = client->ask(lineOf({{"do", word}, {"model", options.model}}));
-    const Json json = answer ? Json::parse(*answer, nullptr, false) : Json();
+    const Json json = answer ? document::parseJson(*answer) : Json();
     if (!answer) return fail(kFailed, answer.error());
     if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
     if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));
@@ -135,7 +136,7 @@ int follow(const CtlArguments& options) {
   while (std::fflush(stdout) == 0) {
     const auto answer = client->ask(lineOf({{"do", "vertices"}, {"model", options.model}, {"after", seen}}));
     if (!answer) return endOfStream(options);
-    const Json json = Json::parse(*answer, nullptr, false);
+    const Json json = document::parseJson(*answer);
     if (!json.is_object() || !json.value("ok", false)) break;  // or the model has left
     if (json.contains("xyz")) std::printf("%s\n", answer->c_str());
     seen = json.value("frame", seen);
@@ -225,7 +226,7 @@ int showEvents(const CtlArguments& options) {
   for (const char* word : {"subscribe", "events"}) {
     if (word == std::string("subscribe") && !options.follow) continue;
     const auto answer = client->ask(lineOf({{"do", word}}));
-    const Json json = answer ? Json::parse(*answer, nullptr, false) : Json();
+    const Json json = answer ? document::parseJson(*answer) : Json();
     if (!answer) return fail(kFailed, answer.error());
     if (!json.is_object()) return fail(kFailed, "the answer is not valid JSON: " + *answer);
     if (!json.value("ok", false)) return fail(kFailed, json.value("error", std::string("refused")));

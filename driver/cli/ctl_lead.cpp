@@ -16,6 +16,7 @@
 #include "base/clock.hpp"
 #include "cli/command.hpp"
 #include "control/client.hpp"
+#include "document/json_text.hpp"
 #include "link/lead.hpp"
 
 namespace hapticd::cli {
@@ -86,7 +87,7 @@ int leadByLines(const LeadOptions& options) {
   request[options.hand.empty() ? "model" : "hand"] = options.hand.empty() ? options.model : options.hand;
   auto reply = client->askForMore(request.dump(-1, ' ', false, Json::error_handler_t::replace));
   if (!reply) return fail(kFailed, reply.error());
-  const Json answer = Json::parse(reply->line, nullptr, false);
+  const Json answer = document::parseJson(reply->line);
   if (!answer.is_object() || !answer.value("ok", false))
     return fail(kFailed, answer.is_object() ? answer.value("error", std::string("refused")) : reply->line);
   void* memory = mmap(nullptr, HAPTICD_LEAD_BYTES, PROT_READ | PROT_WRITE, MAP_SHARED, reply->descriptor.get(), 0);

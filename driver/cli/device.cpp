@@ -231,7 +231,7 @@ int info(const std::string& file, bool with_parameters, bool as_json) {
   printLimits(description.limits, servo::maxForceOf(alone));
   printHardware(**device);
   if (with_parameters)
-    if (auto about = catalog().device(description.module)) printClass(**about);
+    if (auto about = catalog().device(description.module)) printClass(**about, description.parameters);
   return kWorked;
 }
 

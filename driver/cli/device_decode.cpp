@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -44,10 +45,12 @@ capture::ArmFacts factsOf(const scene::Device& device, size_t joints) {
   facts.joints = joints;
   for (const scene::Value& value : device.parameters) {
     if (value.id == "arm.limits") facts.limits = value.numbers;
+    if (value.id == "arm.max_torque") facts.max_torque = value.numbers;
     if (value.id == "calibration.method") facts.zeroed = value.number > 1;  // pose
     if (value.id == "health.max_speed") facts.max_speed = value.number;
     if (value.id == "health.least_rate") facts.least_rate = value.number;
   }
+  if (facts.max_torque.size() == 1) facts.max_torque.assign(joints, facts.max_torque[0]);
   return facts;
 }
 
@@ -127,6 +130,17 @@ bool lacksCommas(const std::string& line) {
          line.find_first_not_of(" ;\t\r", end) != std::string::npos;
 }
 
+/// The same numbers as the table has them.
+std::string withCommas(const std::string& line) {
+  std::string text, word;
+  for (std::istringstream in(line); in >> word;) {
+    while (!word.empty() && (word.back() == ';' || word.back() == '\r')) word.pop_back();
+    if (!word.empty()) text += (text.empty() ? "" : ",") + word;
+  }
+  std::replace(text.begin(), text.end(), ';', ',');
+  return text;
+}
+
 /// The names of a table's columns: its first line, or those that an order or a state begins with.
 std::vector<std::string> namesIn(const std::string& text, const std::vector<std::string>& known, size_t joints) {
   std::string name;
@@ -148,7 +162,7 @@ Result<std::string> encodeTable(const DecodeArguments& options, const Described&
                                 const EncodeColumns& columns, const document::CsvTable& table) {
   std::string out;
   std::vector<double> joints(HDV_MAX_JOINTS, 0.0);
-  capture::Saturation saturation;
+  capture::Saturation saturation(described.arm.max_torque);
   for (size_t i = 0; i < table.rows(); ++i) {
     const std::string line = options.input + ": line " + std::to_string(table.lines[i]) + ": ";
     const auto values = columns.row(table.row(i), *described.device, joints);
@@ -177,8 +191,8 @@ std::optional<std::string> tableOf(const DecodeArguments& options) {
                                      options.file),
            std::nullopt;
   if (const std::string line = firstLine(*text); lacksCommas(line))
-    return (void)fail(kBadInput,
-                      options.input + ": \"" + line.substr(0, 40) + "\", expected commas between the numbers: 0.1,0,0"),
+    return (void)fail(kBadInput, options.input + ": \"" + line.substr(0, 40) +
+                                     "\", expected commas between the numbers: " + withCommas(line.substr(0, 40))),
            std::nullopt;
   PlainTable plain = plainTable(*text);
   if (plain.left_out > 0)

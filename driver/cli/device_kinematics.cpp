@@ -2,12 +2,15 @@
 /// `hapticd device kinematics`: forward kinematics, Jacobian and torques of an arm, offline, for joints of a CSV file.
 #include <Eigen/Core>
 #include <array>
+#include <iostream>
+#include <iterator>
 #include <memory>
 #include <string>
 
 #include "cli/command.hpp"
 #include "document/csv.hpp"
 #include "document/reader.hpp"
+#include "host/class_table.hpp"
 #include "host/device_instance.hpp"
 
 namespace hapticd::cli {
@@ -29,7 +32,12 @@ std::string headerOf(size_t joints) {
 Result<document::CsvTable> readRows(const std::string& file, size_t joints) {
   const std::string q = headerOf(joints);
   document::Problems problems;
-  auto table = document::readCsv(file, kMaxCsvBytes, {{q, q + ",fx,fy,fz", q + ",fx,fy,fz,tx,ty,tz"}}, problems);
+  document::CsvRules form;
+  form.headers = {q, q + ",fx,fy,fz", q + ",fx,fy,fz,tx,ty,tz"};
+  const bool input = file == "-";
+  const std::string text = input ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : "";
+  auto table =
+      input ? document::parseCsv(text, "-", form, problems) : document::readCsv(file, kMaxCsvBytes, form, problems);
   if (!table) return Error{problems.front().text()};
   return std::move(*table);
 }
@@ -59,7 +67,7 @@ class Table {
     const hsp_status status = std::min({kinematics_.forward(device_, q.data(), p.data(), o.data()),
                                         kinematics_.jacobian(device_, q.data(), J.data()),
                                         kinematics_.gravity(device_, q.data(), gravity_.data(), held.data())});
-    if (status < 0) return Error{"the kinematics failed for these joints (status " + std::to_string(status) + ")"};
+    if (status < 0) return Error{"the kinematics failed for these joints (" + host::statusName(status) + ")"};
     line_.clear();
     add(values.data(), n);
     add(p.data(), 3);
@@ -107,6 +115,10 @@ int kinematics(const KinematicsArguments& options) {
   if (!loaded.device) return kBadInput;
   auto device = host::DeviceInstance::create(*loaded.device, logToTerminal);
   if (!device) return fail(kFailed, device.error());
+  if (const std::string wrong =
+          overwrites(options.out, {{options.joints, "the file of joints"}, {options.file, "the device file"}});
+      !wrong.empty())
+    return fail(kBadInput, wrong);
   auto rows = readRows(options.joints, (*device)->kinematics().joint_count);
   if (!rows) return fail(kBadInput, rows.error());
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
@@ -137,7 +149,8 @@ void addDeviceKinematics(const Command& app, int& exit_code) {
   command.addOption("file", options->file, "device file (YAML)").required();
   command
       .addOption("--joints", options->joints,
-                 "CSV with q1,q2,... [rad; m for sliding joints] and optionally fx,fy,fz[,tx,ty,tz] [N, N m]")
+                 "CSV with q1,q2,... [rad; m for sliding joints] and optionally fx,fy,fz[,tx,ty,tz] [N, N m]; - for "
+                 "standard input")
       .required();
   command.addOption("-o,--out", options->out, "CSV file to write; - for standard output");
   command.footer(

@@ -70,6 +70,8 @@ std::string wrongIn(const NewDeviceArguments& o) {
   const size_t lengths = o.kind == "phantom" ? 2 : o.kind == "delta" ? 8 : static_cast<size_t>(o.joints);
   if (!o.lengths.empty() && o.lengths.size() != lengths)
     return fmt::format("--lengths: {} numbers, expected {} for a {}", o.lengths.size(), lengths, o.kind);
+  if (std::any_of(o.lengths.begin(), o.lengths.end(), [](double length) { return length < 0; }))
+    return "--lengths: expected 0 m or more each; a link that points the other way has a twist, not a length below 0";
   if (const std::string wrong = wrongLists(o); !wrong.empty()) return wrong;
   if (!(o.force > 0)) return "--force: expected a number above 0";
   if (o.checksum.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") != std::string::npos)
@@ -263,7 +265,7 @@ std::string wireOf(const NewDeviceArguments& o) {
   return text;
 }
 
-/// Where another mechanism rests, its numbers say.
+/// The block mount. Only the rest position of a PHANToM is known; that of another mechanism follows from its numbers.
 std::string mountOf(const NewDeviceArguments& o) {
   if (o.kind == "phantom")
     return "mount: {position: [0, 0, 0.09]}     # m: where its frame stands in the world; this one puts the tip at "

@@ -58,20 +58,16 @@ int toCsv(const record::Recording& recording, const ExportArguments& options) {
   return kWorked;
 }
 
-/// Writing over the recording itself would destroy it.
-bool sameFile(const std::string& a, const std::string& b) {
-  std::error_code error;
-  return std::filesystem::equivalent(a, b, error);
-}
-
 int exportRecording(const ExportArguments& options) {
   if (options.mcap.empty() && options.csv.empty())
     return fail(kBadInput, "nothing to write, expected --mcap FILE or --csv FOLDER");
   for (const std::string& file : {options.mcap, options.csv})
-    if (!file.empty() && sameFile(options.file, file))
-      return fail(kBadInput, file + ": is the recording itself, expected another file");
+    if (const std::string wrong = overwrites(file, {{options.file, "the recording"}}); !wrong.empty())
+      return fail(kBadInput, wrong);
   auto recording = record::Recording::open(options.file);
   if (!recording) return fail(kBadInput, recording.error());
+  if (const std::string& damage = (*recording)->damage(); !damage.empty())
+    std::fprintf(stderr, "warning: %s: %s\n", options.file.c_str(), damage.c_str());
   const int code = options.mcap.empty() ? kWorked : toMcap(**recording, options.mcap);
   return code == kWorked && !options.csv.empty() ? toCsv(**recording, options) : code;
 }

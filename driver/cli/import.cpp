@@ -112,6 +112,9 @@ int importPatches(const ImportArguments& options, const Placement& placement) {
 }
 
 int importModel(const ImportArguments& options) {
+  if (std::filesystem::path(options.file).extension() == ".hpart")
+    return fail(kBadInput, options.file + ": is a part already, as import writes it: name it in a scene (geometry: " +
+                               options.file + "); hapticd part info shows what it holds");
   const bool from_cad = isCadFile(options.file) && !options.medial;
   if (const std::string wrong = misplaced(options, from_cad); !wrong.empty())
     return fail(kBadInput, options.file + ": " + wrong);

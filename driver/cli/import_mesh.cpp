@@ -14,13 +14,15 @@ namespace hapticd::cli {
 namespace {
 
 constexpr std::size_t kMaxMeshBytes = std::size_t{4} << 30;
-constexpr double kTooLarge = 10;  ///< [m] a part so large was probably stated in millimetres
+constexpr double kTooLarge = 10;    ///< [m] a part so large was probably stated in millimetres
+constexpr double kTooSmall = 1e-3;  ///< [m] and one so small was scaled twice: no fingertip feels a form of it
 
 std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
   const nlohmann::ordered_json report = {{"part", out},
                                          {"triangles", r.triangles},
                                          {"points", r.points},
                                          {"shells", r.shells},
+                                         {"crossing_triangles", r.crossings.pairs},
                                          {"closed", r.closed},
                                          {"volume_m3", r.volume},
                                          {"size_m", {r.size.x(), r.size.y(), r.size.z()}},
@@ -34,6 +36,16 @@ std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
   return report.dump(2);
 }
 
+/// What the part notes as the unit of its file.
+std::string unitOf(const importing::Placement& placement) {
+  char text[64];
+  if (placement.fit > 0)
+    std::snprintf(text, sizeof text, "whatever makes it fit into %.6g m", placement.fit);
+  else
+    std::snprintf(text, sizeof text, "%.6g m", placement.scale);
+  return placement.fit > 0 || placement.scale != 1 ? text : "m";
+}
+
 void print(const importing::MeshReport& r, const std::string& out) {
   std::printf("%s: %zu triangles, %zu points, %.4g x %.4g x %.4g m, %s\n", out.c_str(), r.triangles, r.points,
               r.size.x(), r.size.y(), r.size.z(),
@@ -42,6 +54,11 @@ void print(const importing::MeshReport& r, const std::string& out) {
   if (r.size.maxCoeff() > kTooLarge)
     std::fprintf(stderr, "warning: the part is %.4g m large; if the file counts millimetres, add --scale 0.001\n",
                  r.size.maxCoeff());
+  else if (r.size.maxCoeff() < kTooSmall)
+    std::fprintf(
+        stderr,
+        "warning: the part is %.3g mm large, too small to be felt; is --scale (metres per unit of the file) right?\n",
+        r.size.maxCoeff() * 1e3);
 }
 
 }  // namespace
@@ -61,7 +78,8 @@ int importMesh(const MeshImport& options) {
   importing::MeshReport report;
   std::string part;
   try {
-    const importing::MeshOptions how{placed ? 1 : placement.scale, options.smooth_angle * std::numbers::pi / 180};
+    const importing::MeshOptions how{placed ? 1 : placement.scale, options.smooth_angle * std::numbers::pi / 180,
+                                     unitOf(placement)};
     const std::string name = std::filesystem::path(options.file).filename().string();
     part = brep::writePart(importing::meshPart(*mesh, how, name, report));
   } catch (const std::exception& error) {

@@ -12,18 +12,21 @@
 
 namespace {
 
-/// The first word that is neither an option nor a subcommand, where a subcommand should stand; "" if there is none.
-std::string unknownCommand(const hapticd::cli::Command& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') return "";
-  for (const auto& command : app.subcommands())
-    if (command.name() == argv[1]) return "";
-  return argv[1];
-}
-
 std::vector<std::string> commandNames(const hapticd::cli::Command& app) {
   std::vector<std::string> names;
   for (const auto& command : app.subcommands()) names.push_back(command.name());
   return names;
+}
+
+/// What is wrong with the first word that is neither an option nor a subcommand, where a subcommand should stand, at
+/// any depth; "" if there is none. A word after an option may be its value: the parser looks at that.
+std::string unknownCommand(const hapticd::cli::Command& app, int argc, char** argv, int at = 1) {
+  const std::vector<std::string> names = commandNames(app);
+  if (at >= argc || argv[at][0] == '-' || names.empty()) return "";
+  for (const auto& command : app.subcommands())
+    if (command.name() == argv[at]) return unknownCommand(command, argc, argv, at + 1);
+  return std::string("there is no subcommand \"") + (at > 1 ? std::string(argv[at - 1]) + " " : "") + argv[at] +
+         "\", expected one of " + hapticd::document::listed(names, 30) + hapticd::document::suggestion(argv[at], names);
 }
 
 }  // namespace
@@ -45,10 +48,7 @@ int main(int argc, char** argv) {
   addGlobalOptions(app);
   app.optionsMayFollowSubcommand();
   for (const auto add : kCommands) add(app, exit_code);
-  if (const std::string word = unknownCommand(app, argc, argv); !word.empty())
-    return fail(kBadInput, "there is no subcommand \"" + word + "\", expected one of " +
-                               hapticd::document::listed(commandNames(app), 30) +
-                               hapticd::document::suggestion(word, commandNames(app)));
+  if (const std::string wrong = unknownCommand(app, argc, argv); !wrong.empty()) return fail(kBadInput, wrong);
   try {
     if (const auto ended = app.parse(argc, argv)) return *ended;
   } catch (const std::exception& error) {

@@ -158,9 +158,14 @@ void print(const std::string& file, const Json& info) {
               source["unit"].get<std::string>().c_str(), info["tolerance_m"].get<double>());
   if (info.contains("box_m")) {
     const Json &size = info["box_m"]["size"], &low = info["box_m"]["low"];
-    const auto mm = [](const Json& length) { return std::round(1e9 * length.get<double>()) * 1e-6 + 0.0; };
-    std::printf("  size: %.4g x %.4g x %.4g mm, from (%.4g, %.4g, %.4g) mm on\n", mm(size[0]), mm(size[1]), mm(size[2]),
-                mm(low[0]), mm(low[1]), mm(low[2]));
+    const double most = std::max({size[0].get<double>(), size[1].get<double>(), size[2].get<double>()});
+    const bool large = most >= 1;
+    const auto in = [large](const Json& length) {
+      return std::round(1e9 * length.get<double>()) * (large ? 1e-9 : 1e-6) + 0.0;
+    };
+    const char* unit = large ? "m" : "mm";
+    std::printf("  size: %.4g x %.4g x %.4g %s, from (%.4g, %.4g, %.4g) %s on\n", in(size[0]), in(size[1]), in(size[2]),
+                unit, in(low[0]), in(low[1]), in(low[2]), unit);
   }
   if (info["faces"].get<std::size_t>() > 0) {
     std::printf("  faces: %s\n", listed(info["face_kinds"]).c_str());

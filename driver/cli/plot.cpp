@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "hapticd/client.h"
+#include "hapticd/shape.h"
 #include "record/picture.hpp"
 #include "record/recording.hpp"
 #include "session/about.hpp"
@@ -70,6 +72,22 @@ record::Sample sampleAt(const record::RecordedStream& ticks, const Columns& c, u
   return sample;
 }
 
+/// When models were silenced: the rest of such a run says nothing of why nothing is felt.
+void noteSilenced(const record::Recording& recording, record::RunNotes& notes) {
+  const record::RecordedStream* events = recording.stream("events");
+  const auto* kind = events != nullptr ? events->find("kind") : nullptr;
+  const auto* model = events != nullptr ? events->find("model") : nullptr;
+  const auto* t = events != nullptr ? events->find("t") : nullptr;
+  if (kind == nullptr || model == nullptr || t == nullptr) return;
+  for (uint64_t row = 0; row < events->rows(); ++row) {
+    if (events->number(row, *kind) != double{HAPTICD_SILENCED}) continue;
+    const double number = events->number(row, *model);
+    const bool named = number >= 0 && number < static_cast<double>(notes.models.size());
+    const std::string name = named ? notes.models[static_cast<size_t>(number)] : "a model";
+    notes.moments.emplace_back(events->number(row, *t), name + " is silenced");
+  }
+}
+
 /// Models and limits of the run, and whether its time was real; without them where its description cannot be read.
 record::RunNotes notesOf(const record::Recording& recording, uint32_t arm, bool& virtual_time) {
   record::RunNotes notes;
@@ -79,40 +97,79 @@ record::RunNotes notesOf(const record::Recording& recording, uint32_t arm, bool&
   virtual_time = about->facts.virtual_time;
   for (const scene::Model& model : about->scene.models) notes.models.push_back(model.name);
   if (arm < about->scene.devices.size()) notes.force_limit_n = about->scene.devices[arm].limits.force;
+  if (about->scene.devices.size() > 1 && arm < about->scene.devices.size()) notes.arm = about->scene.devices[arm].name;
+  noteSilenced(recording, notes);
   return notes;
+}
+
+/// The ticks have the depth of the deepest of all arms; that of one arm is in the contacts. Nothing traced: no depth.
+void takeOwnDepths(const record::Recording& recording, uint32_t arm, const record::Column& tick_column,
+                   const record::RecordedStream& ticks, const std::vector<uint64_t>& rows,
+                   std::vector<record::Sample>& samples) {
+  const record::RecordedStream* contacts = recording.stream("contacts");
+  if (contacts == nullptr) return;
+  const auto *tick = contacts->find("tick"), *probe = contacts->find("probe"), *flags = contacts->find("flags"),
+             *depth = contacts->find("depth"), *model = contacts->find("model");
+  for (const auto* column : {tick, probe, flags, depth, model})
+    if (column == nullptr) return;
+  uint64_t at = 0;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const double now = ticks.number(rows[i], tick_column);
+    samples[i].depth_m = std::nan(""), samples[i].model = -1;
+    while (at < contacts->rows() && contacts->number(at, *tick) < now) ++at;
+    for (; at < contacts->rows() && contacts->number(at, *tick) == now; ++at) {
+      const auto word = static_cast<uint32_t>(contacts->number(at, *flags));
+      const double deep = contacts->number(at, *depth);
+      if (contacts->number(at, *probe) != arm || (word & HSP_OUT_TRACED) == 0 || deep <= samples[i].depth_m) continue;
+      samples[i].depth_m = deep, samples[i].model = static_cast<int>(contacts->number(at, *model));
+    }
+  }
+}
+
+record::RunReport reportOf(const std::string& file, const std::vector<record::Sample>& samples) {
+  record::RunReport report;
+  report.scene = file;
+  report.ticks = samples.size();
+  report.seconds = samples.empty() ? 0 : samples.back().t - samples.front().t;
+  report.rate_hz = report.seconds > 0 ? static_cast<double>(samples.size() - 1) / report.seconds : 0;
+  return report;
 }
 
 int plot(const PlotArguments& options) {
   const std::string out = options.out.empty() ? options.file + ".svg" : options.out;
   if (const std::string wrong = wrongPicture(out); !wrong.empty()) return fail(kBadInput, wrong);
+  if (const std::string wrong = overwrites(out, {{options.file, "the recording"}}); !wrong.empty())
+    return fail(kBadInput, wrong);
   if (options.from && options.to && *options.from >= *options.to)
     return fail(kBadInput, "--from is not before --to, expected a time before it");
   auto recording = record::Recording::open(options.file);
   if (!recording) return fail(kBadInput, recording.error());
+  if (const std::string& damage = (*recording)->damage(); !damage.empty())
+    std::fprintf(stderr, "warning: %s: %s\n", options.file.c_str(), damage.c_str());
   if (!(*recording)->closed())
     std::fprintf(stderr, "note: the recording ends early because its writer was killed; drawing what was written\n");
   const record::RecordedStream* ticks = (*recording)->stream("ticks");
   const auto columns = ticks != nullptr ? columnsOf(*ticks, options.arm) : std::nullopt;
   if (!columns) return fail(kBadInput, options.file + ": has no ticks of arm " + std::to_string(options.arm));
   std::vector<record::Sample> samples;
+  std::vector<uint64_t> rows;
   double first = 0, last = 0;
   for (uint64_t row = 0; row < ticks->rows(); ++row) {
     const double t = ticks->number(row, *columns->t);
     (row == 0 ? first : last) = t;
     if (!std::isfinite(t) || (options.from && t < *options.from) || (options.to && t > *options.to)) continue;
     samples.push_back(sampleAt(*ticks, *columns, row));
+    rows.push_back(row);
   }
   if (samples.empty() && ticks->rows() > 0)
     return fail(kBadInput, fmt::format("{}: has no tick between --from and --to; the recording covers {:g} to {:g} s",
                                        options.file, first, last));
   if (!std::ofstream(out, std::ios::app))
     return fail(kBadInput, out + ": cannot be written, expected a file in a folder that you may write to");
-  record::RunReport report;
-  report.scene = options.file;
-  report.ticks = samples.size();
-  report.seconds = samples.empty() ? 0 : samples.back().t - samples.front().t;
-  report.rate_hz = report.seconds > 0 ? static_cast<double>(samples.size() - 1) / report.seconds : 0;
+  record::RunReport report = reportOf(options.file, samples);
   const record::RunNotes notes = notesOf(**recording, options.arm, report.virtual_time);
+  if (const record::Column* tick = ticks->find("tick"); tick != nullptr && !notes.arm.empty())
+    takeOwnDepths(**recording, options.arm, *tick, *ticks, rows, samples);
   if (auto drawn = record::drawRun(report, samples, notes, out); !drawn) return fail(kFailed, drawn.error());
   std::printf("%s: %zu ticks, %.2f s\n", out.c_str(), samples.size(), report.seconds);
   return kWorked;

@@ -69,9 +69,8 @@ std::vector<Recipe> recipesFor(const std::vector<host::ClassInfo>& classes, cons
     if (info.kind != host::Kind::kShape) {
       problems.push_back(
           options.file +
-          " is a device module, expected a shape plugin; a module is tried with its device file: hapticd "
-          "check arm.yaml, hapticd device info arm.yaml, hapticd device kinematics arm.yaml --joints "
-          "pose.csv");
+          " is a device module, expected a shape plugin; a module is examined with: hapticd device check " +
+          options.file);
       return {};
     }
     // A bare name would be looked for in the folders of the system's libraries.

@@ -99,7 +99,9 @@ int makeNew(const NewPluginArguments& options) {
     const fs::path file = target / renamed(entry.path().filename().string(), options.name);
     std::ofstream out(file, std::ios::binary);
     out << renamed(text, options.name) << std::flush;
-    if (!out) return fail(kFailed, file.string() + " is not writable");
+    if (!out)
+      return fail(kFailed,
+                  file.string() + ": cannot be written, expected a disk with room and a folder that you may write to");
     std::printf("%s\n", file.c_str());
   }
   tellNextSteps(target.string(), options.name);

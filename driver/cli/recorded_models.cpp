@@ -12,6 +12,7 @@
 #include "cli/command.hpp"
 #include "control/request.hpp"
 #include "control/server.hpp"
+#include "document/json_text.hpp"
 #include "record/recording.hpp"
 #include "session/about.hpp"
 #include "session/geometry_answer.hpp"
@@ -94,7 +95,7 @@ class RecordedModelsImpl final : public RecordedModels {
   /// As a daemon is asked, but for `"at"` of `geometry`: the time [s] of the recording that a body's shape is wanted
   /// of.
   std::string answer(const std::string& line, Descriptor& memory) {
-    Json json = Json::parse(line, nullptr, false);
+    Json json = document::parseJson(line);
     std::optional<double> at;
     if (json.is_object() && json.contains("at") && json["at"].is_number()) {
       at = json["at"].get<double>();

@@ -148,8 +148,11 @@ int replay(const ReplayArguments& options) {
   const SetupErrors once;
   auto again = servo::Replay::prepare(**recording, *run, logToTerminal);
   if (!again) return fail(kBadInput, options.file + ": " + again.error());
-  const servo::ReplayOutcome outcome = (*again)->run();
-  return options.json ? printJson(outcome) : print(outcome);
+  servo::ReplayOutcome outcome = (*again)->run();
+  const std::string& damage = (*recording)->damage();
+  if (!damage.empty()) outcome.note += (outcome.note.empty() ? "" : "; ") + damage;
+  const int code = options.json ? printJson(outcome) : print(outcome);
+  return code == kWorked && !damage.empty() ? kPartly : code;
 }
 
 }  // namespace
@@ -162,7 +165,9 @@ void addReplay(const Command& app, int& exit_code) {
   command.addFlag("--json", options->json, "print the outcome as JSON");
   command.footer(
       "Exit codes: 0 every bit is the same, 1 something differs, 2 the recording cannot be replayed, 3 every bit is "
-      "the same\nup to a tick in which models were added or removed; the rest cannot be replayed.\n\nExample:\n  "
+      "the same\nup to a tick in which models were added or removed, or up to where the file is damaged; the rest "
+      "cannot be "
+      "replayed.\n\nExample:\n  "
       "hapticd run config/scenes/teapot.yaml --for 10 --record run.h5\n  hapticd replay run.h5");
   command.callback([options, &exit_code] { exit_code = replay(*options); });
 }

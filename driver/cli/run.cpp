@@ -16,6 +16,7 @@
 #include "base/os.hpp"
 #include "cli/command.hpp"
 #include "cli/guarded_command.hpp"
+#include "cli/scene_advice.hpp"
 #include "cli/view_process.hpp"
 #include "diagnostics/enable_button.hpp"
 #include "document/node.hpp"
@@ -120,9 +121,17 @@ std::vector<record::Sample> samplesOf(const servo::Telemetry& telemetry) {
 }
 
 record::RunNotes notesOf(const servo::Runner& runner) {
+  constexpr size_t kMostEvents = 100'000;
   record::RunNotes notes;
   for (const scene::Model& model : runner.scene().models) notes.models.push_back(model.name);
   if (!runner.scene().devices.empty()) notes.force_limit_n = runner.scene().devices[0].limits.force;
+  uint64_t next = 0;
+  for (const hapticd_event& event : runner.telemetry().flight()->events(next, kMostEvents))
+    if (event.kind == HAPTICD_SILENCED)
+      notes.moments.emplace_back(event.t, (static_cast<size_t>(event.model) < notes.models.size()
+                                               ? notes.models[static_cast<size_t>(event.model)]
+                                               : std::string("a model")) +
+                                              " is silenced");
   return notes;
 }
 
@@ -318,7 +327,10 @@ int runScene(const RunArguments& options, scene::Scene& scene) {
   warnOfSettings(**runner, how.rate);
   const StopBySignal stop(**runner);
   if (!options.virtual_time) os::onSuspendSignal(onSuspend);
-  if (files) files->serve(**runner, options.device, catalog(), logOfRun);
+  const auto advise = [&runner](const scene::Scene& models, const std::vector<double>& stiffness) {
+    return adviceOnModels(**runner, models, stiffness);
+  };
+  if (files) files->serve(**runner, options.device, catalog(), advise, logOfRun);
   if (auto done = tickToTheEnd(**runner, files.get()); !done) return fail(kFailed, done.error());
   return conclude(options, **runner, left_out);
 }

@@ -158,7 +158,8 @@ Json toJson(const View& view) {
                       {"gain", m.now.gain},
                       {"feet", {{"nearest", m.feet.nearest}, {"held", m.feet.held}, {"degraded", m.feet.degraded}}},
                       {"status", m.now.status},
-                      {"silenced", m.silenced.empty() ? Json() : Json(m.silenced)}});
+                      {"silenced", m.silenced.empty() ? Json() : Json(m.silenced)},
+                      {"waits", m.now.waits != 0}});
   return {{"seconds", view.now.t},
           {"ticks", view.now.tick},
           {"rate_hz", view.rate},
@@ -217,7 +218,9 @@ std::string table(const View& view, size_t rows) {
     const std::string depth = m.traced ? fmt::format("{:.3f}", m.now.depth * 1e3) : "-";
     text += fmt::format("{:<28.28} {:<16.16} {:9.3f} {:>9} {:8.2f} {:8.2f} {:8.1f} {:5} {:>7}  {}\n", m.name, m.plugin,
                         m.now.force, depth, m.p50, m.p99, m.max, m.now.iterations, knownShare(m.feet),
-                        m.silenced.empty() ? host::statusText(m.now.status) : "SILENCED");
+                        !m.silenced.empty() ? "SILENCED"
+                        : m.now.waits != 0  ? "waits for the tip to leave it"
+                                            : host::statusText(m.now.status));
   }
   if (view.models.size() > rows) text += fmt::format("... and {} more\n", view.models.size() - rows);
   for (const ModelLine& m : view.models)
@@ -305,6 +308,18 @@ int stream(const TopArguments& options, const status::Page& page) {
   return endOfDaemon(options);
 }
 
+/// A process that was stopped leaves its page as it was, and looks alive. @param tick that the page had
+bool standsStill(const status::Page& page, uint64_t tick) {
+  constexpr Nanoseconds kLook = 10'000'000, kPatience = 500'000'000;
+  RealClock clock(0);
+  const Nanoseconds end = clock.now() + kPatience;
+  while (clock.now() < end) {
+    if (ended(page) || page.now.read().value_or(status::Now{}).tick != tick) return false;
+    clock.waitUntil(clock.now() + kLook);
+  }
+  return true;
+}
+
 int top(const TopArguments& options) {
   const std::string file = status::runtimeFolder(false) + "/" + options.name + ".status";
   auto opened = status::PageFile::open(file);
@@ -314,10 +329,14 @@ int top(const TopArguments& options) {
   const status::Page& page = std::as_const(**opened).page();
   if (!options.once) return options.json ? stream(options, page) : watch(options, page);
   View view = look(page);
-  view.held = view.now.t > 0 ? static_cast<double>(view.now.tick) / view.now.t : 0;
+  const bool still = standsStill(page, view.now.tick);
+  view.held = view.now.t > 0 && !still ? static_cast<double>(view.now.tick) / view.now.t : 0;
   sortModels(view.models, options.sort);
   std::fputs(options.json ? (toJson(view).dump() + "\n").c_str() : table(view, view.models.size()).c_str(), stdout);
-  return kWorked;
+  if (!still) return kWorked;
+  return fail(kFailed, "the daemon " + options.name +
+                           " stands still: no tick came while this looked, and the numbers are old\n  fix: let its "
+                           "process go on (kill -CONT PID), or end it (kill -9 PID)");
 }
 
 }  // namespace

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd trace`: the same servo core over a prescribed probe path, in virtual time, without a device.
 #include <algorithm>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/offline_tick.hpp"
@@ -71,11 +73,37 @@ Result<void> traceRows(const scene::Scene& scene, servo::World& world, const std
   return writer.close();
 }
 
+/// What a trace reads, each with what it is.
+std::vector<std::pair<std::string, const char*>> filesRead(const TraceArguments& options, const scene::Scene& scene) {
+  std::vector<std::pair<std::string, const char*>> files{{options.scene, "the scene"},
+                                                         {options.probe, "the probe path"}};
+  for (const scene::Device& device : scene.devices) files.emplace_back(device.file.string(), "a device file");
+  for (const scene::Model& model : scene.models)
+    for (const scene::Value& value : model.parameters)
+      if (value.kind == HSP_PATH) files.emplace_back(value.text, "a file of the scene's models");
+  return files;
+}
+
+/// A path in mm is far from everything, and a trace says so only by its depths.
+void warnOfFarRows(const std::string& file, const std::vector<PathRow>& rows) {
+  constexpr double kFar = 10;  // [m]
+  for (size_t i = 0; i < rows.size(); ++i) {
+    if (!rows[i].finite() || !(rows[i].position.norm() > kFar)) continue;
+    std::fprintf(stderr,
+                 "warning: %s: row %zu is %.4g m from the world's origin, where no arm reaches; expected metres\n",
+                 file.c_str(), i + 1, rows[i].position.norm());
+    return;
+  }
+}
+
 int trace(const TraceArguments& options) {
   auto scene = loadSceneOrReport(options.scene, "", false);
   if (!scene) return kBadInput;
+  if (const std::string wrong = overwrites(options.out, filesRead(options, *scene)); !wrong.empty())
+    return fail(kBadInput, wrong);
   auto rows = readProbePath(options.probe);
   if (!rows) return fail(kBadInput, rows.error());
+  warnOfFarRows(options.probe, *rows);
   auto models = chosenModels(*scene, options.models);
   if (!models) return fail(kBadInput, models.error());
   const GuardedCommand guarded;

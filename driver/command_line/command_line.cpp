@@ -34,8 +34,10 @@ Option Option::oneValueEach() const {
 Option Option::within(double low, double high) const {
   const auto refuse = [=](const std::string& text) {
     double value = 0;
-    const bool good = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
-    return good ? std::string() : fmt::format("Value {} not in range {} to {}", text, low, high);
+    if (!CLI::detail::lexical_cast(text, value))
+      return fmt::format("\"{}\" is not a number, expected one from {:g} to {:g}", text, low, high);
+    const bool good = value >= low && value <= high;
+    return good ? std::string() : fmt::format("Value {} not in range {:g} to {:g}", text, low, high);
   };
   return Option(option_->check(CLI::Validator(refuse, fmt::format("FLOAT in [{} - {}]", low, high))));
 }

@@ -15,6 +15,9 @@
 namespace hapticd::document {
 namespace {
 
+constexpr const char* kEmpty =
+    "the file is empty, expected YAML; a scene begins with \"hapticd: 1\", a device file with \"hapticd-device: 1\"";
+
 /// Why reading stops at once.
 struct Refused {
   YAML::Mark mark;
@@ -192,7 +195,7 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
     std::istringstream stream(text);
     YAML::Parser parser(stream);
     if (!parser.HandleNextDocument(builder)) {
-      report(problems, file, 1, 1, "", "the file is empty");
+      report(problems, file, 1, 1, "", kEmpty);
       return std::nullopt;
     }
     std::optional<Node> root = builder.take();

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <string_view>
 
 #include "base/passed_files.hpp"
 #include "base/regular_file.hpp"
@@ -48,6 +49,20 @@ bool normalise(Eigen::Quaterniond& q) {
   return true;
 }
 
+/// What a number that is too large was meant as, where that is in range: millimetres, degrees, milliseconds.
+static std::string inOtherUnits(double value, const Range& range) {
+  struct Slip {
+    const char *unit, *meant;
+    double factor;
+  };
+  static constexpr Slip kSlips[] = {{"m", "mm", 1e-3}, {"rad", "degrees", M_PI / 180}, {"s", "ms", 1e-3}};
+  for (const Slip& slip : kSlips)
+    if (const double meant = value * slip.factor;
+        std::string_view(range.unit) == slip.unit && meant >= range.min && meant <= range.max)
+      return "; " + numberText(value) + " " + slip.meant + " are " + numberText(meant) + " " + slip.unit;
+  return "";
+}
+
 std::optional<double> Reader::number(const Node& node, const std::string& key, const Range& range) {
   const std::optional<double> value = node.isScalar() && !node.quoted ? toNumber(node.scalar) : std::nullopt;
   if (!value) {
@@ -58,7 +73,8 @@ std::optional<double> Reader::number(const Node& node, const std::string& key, c
     problem(node, key, node.scalar + " is not finite, expected " + expectedOf(range));
   } else if (*value < range.min || *value > range.max) {
     const std::string unit = range.unit[0] != '\0' ? std::string(" ") + range.unit : "";
-    problem(node, key, node.scalar + unit + " is out of range, expected " + expectedOf(range));
+    problem(node, key,
+            node.scalar + unit + " is out of range, expected " + expectedOf(range) + inOtherUnits(*value, range));
   } else {
     return value;
   }
@@ -129,7 +145,7 @@ std::optional<std::filesystem::path> Reader::existingFile(const Node& node, cons
   } else {
     std::vector<std::string> neighbours;
     for (fs::directory_iterator entry(full.parent_path(), error), end; !error && entry != end; entry.increment(error))
-      neighbours.push_back(entry->path().filename().string());
+      if (entry->path().filename() != file_.filename()) neighbours.push_back(entry->path().filename().string());
     problem(node, key,
             "there is no file " + full.string() + ", expected the path of a file" +
                 (written.is_absolute() ? "" : ", relative to the file that names it") +
@@ -191,6 +207,8 @@ std::string belongsTo(const Table& table, const std::string& name) {
   for (const Key& key : table.keys)
     if (key.type == Type::kObject && key.table->find(name) != nullptr)
       return std::string("; ") + name + " belongs under " + key.name;
+  if (table.other != nullptr && table.other->find(name) != nullptr)
+    return "; " + name + " belongs in " + table.other_file;
   return table.find("parameters") != nullptr ? "; a parameter of the plugin or module belongs under parameters" : "";
 }
 

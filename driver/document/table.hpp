@@ -43,6 +43,8 @@ struct Key {
 
 struct Table {
   std::span<const Key> keys;
+  const Table* other = nullptr;  ///< of the file that a key may have been meant for
+  const char* other_file = "";   ///< "the device file"
 
   const Key* find(std::string_view name) const;
   std::vector<std::string> names() const;

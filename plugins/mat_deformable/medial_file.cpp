@@ -175,6 +175,7 @@ class Reader {
     return number;
   }
 
+  /// False where not even the number of points is known; else what is wrong with some hides nothing of the rest.
   bool readPoints(const Json& medial, const Path& at, medial::SkeletonGrid& grid) {
     const auto rows = medial.find("points");
     const bool good = rows != medial.end() && rows->is_array() && !rows->empty() && (*rows)[0].is_array() &&
@@ -189,7 +190,7 @@ class Reader {
       for (std::size_t j = 0; j < (*rows)[i].size() && !problems_.full(); ++j)
         grid.points.push_back(point((*rows)[i][j], below(below(at, i), j)));
     }
-    return !problems_.any();
+    return true;
   }
 
   Eigen::Vector3d point(const Json& json, const Path& at) {

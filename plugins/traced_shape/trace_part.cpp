@@ -51,6 +51,15 @@ std::vector<std::string> instancesOf(const brep::Model& part) {
   return lines;
 }
 
+/// "" or what the import could not keep: a solid without one of its faces is an open shell.
+std::string lostOf(const brep::Part& part) {
+  if (part.losses.empty()) return "";
+  const size_t more = part.losses.size() - 1;
+  return "the import lost " + part.losses.front().what +
+         (more > 0 ? " and " + std::to_string(more) + " more" : std::string()) +
+         ", so a solid may be felt as an open shell; hapticd part info lists all";
+}
+
 }  // namespace
 
 /// [main] See hsp_ext_names.
@@ -73,8 +82,11 @@ void TracedShape::loadPart(const std::string& bytes, const hsp_activation& activ
   brep::ModelOptions options;
   options.form = evaluation_ == 0 ? spline::Form::kTable : spline::Form::kNet;
   options.instance = instance_;
-  part_ = std::make_unique<brep::Model>(brep::readPart(std::as_bytes(std::span(bytes)), geometry_), options);
+  brep::Part part = brep::readPart(std::as_bytes(std::span(bytes)), geometry_);
+  const std::string lost = lostOf(part);
+  part_ = std::make_unique<brep::Model>(std::move(part), options);
   if (host() != nullptr && host()->log != nullptr) {
+    if (!lost.empty()) host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": " + lost).c_str());
     for (const std::string& warning : part_->warnings())
       host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": " + warning).c_str());
     if (const std::string odd = oddPlace(part_->bounds(), activation.pose); !odd.empty())

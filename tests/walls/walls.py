@@ -55,7 +55,7 @@ def flags_of(entry):
     for word in words[start:]:
         if skip or word in ("-c", entry["file"]):
             skip = False
-        elif word in ("-o", "-MF", "-MT", "-MD"):
+        elif word in ("-o", "-MF", "-MT", "-MD", "-include"):  # what is precompiled are headers of libraries
             skip = word != "-MD"
         else:
             out.append(word)

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "document/json_text.hpp"
 #include "document/meant.hpp"
 #include "document/suggestion.hpp"
 
@@ -45,7 +46,7 @@ struct Document::Data {
 };
 
 Document::Document(const std::string& json, std::string name) : data_(new Data{Json(), std::move(name), {}}) {
-  data_->json = Json::parse(json, nullptr, false);
+  data_->json = document::parseJson(json);
   if (data_->json.is_discarded()) throw std::invalid_argument(data_->name + ": cannot be read, expected a mapping");
 }
 
@@ -103,7 +104,7 @@ size_t Tree::count() const {
   return 0;
 }
 
-double Tree::number(double least, double most) const {
+double Tree::number(double least, double most, const char* unit) const {
   const double allowed = std::clamp(0.0, least, most);
   if (value_ == nullptr) return allowed;
   const Json& json = jsonOf(value_);
@@ -117,7 +118,8 @@ double Tree::number(double least, double most) const {
   }
   if (value >= least && value <= most) return value;
   const std::string range =
-      least == most ? shortText(least) : "a number from " + shortText(least) + " to " + shortText(most);
+      (least == most ? shortText(least) : "a number from " + shortText(least) + " to " + shortText(most)) +
+      (*unit != '\0' ? " " : "") + unit;
   const bool text = json.is_string() && std::isnan(value);
   fail(shown(json) + ", expected " + range + (text ? document::numberMeant(json.get_ref<const std::string&>()) : ""));
   return allowed;

@@ -17,7 +17,8 @@ class Tree {
   Tree at(const char* key) const;  ///< a key that must be there; without it everything read from there is allowed
   Tree item(size_t index) const;
   size_t count() const;                            ///< of a list
-  double number(double least, double most) const;  ///< a number, or text such as 0x1A
+  /// A number, or text such as 0x1A. @param unit for messages; "": it has none
+  double number(double least, double most, const char* unit = "") const;
   double whole(double least, double most) const;
   uint64_t bits(unsigned width) const;  ///< a whole number of up to 64 bits, exactly; negative: two's complement
   bool boolean() const;

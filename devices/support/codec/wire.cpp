@@ -98,7 +98,7 @@ StartStep readStep(const Tree& tree) {
   if (!tree.has("control") && !tree.has("send") && !tree.has("expect"))
     tree.fail("is empty, expected control, send or expect");
   if (tree.has("tries")) step.tries = static_cast<int>(tree.at("tries").whole(1, 1000));
-  if (tree.has("wait")) step.wait = tree.at("wait").number(0, 10);
+  if (tree.has("wait")) step.wait = tree.at("wait").number(0, 10, "s");
   if (tree.has("timeout")) step.timeout = tree.at("timeout").number(0.001, 10);
   return step;
 }
@@ -164,9 +164,9 @@ Framing readFraming(const Tree& tree) {
 /// Who speaks when.
 void readTimes(const Tree& tree, Wire& wire) {
   if (tree.has("exchange")) wire.exchange = choiceOf(tree.at("exchange"), kExchanges);
-  wire.rate = tree.at("rate").number(50, kMaxRate);
-  if (tree.has("keep_alive")) wire.keep_alive = tree.at("keep_alive").number(1e-4, 1);
-  if (tree.has("watchdog")) wire.watchdog = tree.at("watchdog").number(0, 10);
+  wire.rate = tree.at("rate").number(50, kMaxRate, "Hz");
+  if (tree.has("keep_alive")) wire.keep_alive = tree.at("keep_alive").number(1e-4, 1, "s");
+  if (tree.has("watchdog")) wire.watchdog = tree.at("watchdog").number(0, 10, "s (20 ms are 0.02 s)");
   if (wire.watchdog > 0 && wire.keep_alive > wire.watchdog / 2)
     tree.at(tree.has("keep_alive") ? "keep_alive" : "watchdog")
         .fail("keep_alive is more than half of the watchdog time, expected less: the motors would stutter");

@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 
@@ -33,9 +34,12 @@ void check(const ChainLink& link, size_t index) {
   for (const double value : {link.a, link.alpha, link.d, link.theta, link.min, link.max, link.mass})
     if (!std::isfinite(value))
       throw std::invalid_argument(who + "a number that is not finite, expected finite numbers");
-  if (link.min > link.max)
-    throw std::invalid_argument(who + "limits " + std::to_string(link.min) + " to " + std::to_string(link.max) +
-                                ", expected the smaller one first");
+  if (link.min > link.max) {
+    char text[120];
+    std::snprintf(text, sizeof text, "arm.limits[%zu]: %g to %g, expected the smaller one first", index, link.min,
+                  link.max);
+    throw std::invalid_argument(text);
+  }
   if (link.mass < 0) throw std::invalid_argument(who + "negative mass, expected 0 kg or more");
   if (!link.center.allFinite() || !link.inertia.allFinite())
     throw std::invalid_argument(who + "centre or inertia that is not finite, expected finite numbers");

@@ -71,6 +71,13 @@ std::string words() {
   return list;
 }
 
+/// What many programs write for a number that is none, and JSON does not have.
+std::string noJsonNumber(std::string_view line) {
+  for (const char* word : {"NaN", "nan", "Infinity", "inf"})
+    if (line.find(word) != std::string_view::npos) return std::string("; ") + word + " is no JSON number";
+  return "";
+}
+
 /// Takes values out of a request and keeps the first complaint.
 class Taker {
  public:
@@ -234,7 +241,8 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
     return Error{"the request is longer than " + std::to_string(kMaxRequestBytes) + " bytes"};
   Watch watch;
   const Json json = Json::parse(line.begin(), line.end(), std::ref(watch), false);
-  if (watch.deep || !json.is_object()) return Error{"expected a JSON object in one line, as {\"do\": \"status\"}"};
+  if (watch.deep || !json.is_object())
+    return Error{"expected a JSON object in one line, as {\"do\": \"status\"}" + noJsonNumber(line)};
   if (!watch.twice.empty())
     return Error{Json(watch.twice.substr(0, 64)).dump(-1, ' ', true, Json::error_handler_t::replace) +
                  " stands there twice, expected it once"};

@@ -37,7 +37,8 @@ Result<std::unique_ptr<Server>> Server::listen(const std::string& file, const st
   if (!socketAddress(file, address)) return cannot(file, "the path is too long for a socket");
   if (connectTo(file)) return cannot(file, "another daemon serves it\n  fix: hapticd run --name OTHER");
   struct stat old{};
-  if (lstat(file.c_str(), &old) == 0 && !S_ISSOCK(old.st_mode)) return cannot(file, "it is not a socket");
+  if (lstat(file.c_str(), &old) == 0 && !S_ISSOCK(old.st_mode))
+    return cannot(file, "a file that is not a socket has this name\n  fix: move it away, or hapticd run --name OTHER");
   unlink(file.c_str());
   const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   int wake[2] = {-1, -1};

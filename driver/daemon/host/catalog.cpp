@@ -120,7 +120,8 @@ const CatalogFile& Catalog::describeOnce(const fs::path& file) {
   if (const auto known = files_.find(file); known != files_.end()) return known->second;
   CatalogFile& entry = files_[file];
   entry.path = file;
-  // What is loaded is what will be used, whatever the file holds by now; its constructors have run already.
+  // A library that is loaded is described as it is, even if its file has changed since: it is the one that will be
+  // used, and its constructors have run already. Any other is described by a child process.
   const std::shared_ptr<Library> loaded = Library::loaded(file);
   if (!loaded) entry.stamp = stampOf(file);
   auto classes = loaded ? describe(file) : describe_(file);

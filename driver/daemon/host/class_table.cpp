@@ -28,6 +28,13 @@ std::string statusText(hsp_status status) {
   }
 }
 
+std::string statusName(hsp_status status) {
+  static const char* const kNames[] = {"HSP_OK",   "HSP_E_ARG",         "HSP_E_STATE",  "HSP_E_NOMEM",
+                                       "HSP_E_IO", "HSP_E_UNSUPPORTED", "HSP_E_NUMERIC"};
+  constexpr hsp_status kLast = HSP_E_NUMERIC;
+  return status <= 0 && status >= kLast ? kNames[-status] : "status " + std::to_string(status);
+}
+
 std::string reasonOf(hsp_status status, const Services& services) {
   const std::string said = services.lastError();
   return said.empty() ? statusText(status) + " (it logged no reason)" : said;

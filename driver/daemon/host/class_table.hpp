@@ -14,6 +14,9 @@ namespace hapticd::host {
 /// [any] Name of a status for messages.
 std::string statusText(hsp_status status);
 
+/// [any] "HSP_E_NUMERIC", as a module's author writes it.
+std::string statusName(hsp_status status);
+
 /// [main] The status of a failed call, and what the module said about it, as the tail of a message.
 std::string reasonOf(hsp_status status, const Services& services);
 

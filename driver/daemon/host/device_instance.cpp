@@ -2,7 +2,10 @@
 #include "host/device_instance.hpp"
 
 #include <cmath>
+#include <cstring>
+#include <utility>
 
+#include "host/call_trail.hpp"
 #include "host/class_table.hpp"
 #include "host/kinematics_check.hpp"
 
@@ -32,6 +35,14 @@ std::string wrongIn(const hdv_info& info, uint32_t kinematic_joints) {
   if (info.joint_count != kinematic_joints)
     return "reports " + std::to_string(info.joint_count) + " joints, but its kinematics have " +
            std::to_string(kinematic_joints);
+  constexpr uint32_t kButtons = 32;
+  if (info.buttons > kButtons)
+    return "reports " + std::to_string(info.buttons) + " buttons, expected at most " + std::to_string(kButtons) +
+           ", the bits of hdv_sample.buttons";
+  for (const auto& [text, name] :
+       {std::pair{info.serial, "serial"}, {info.firmware, "firmware"}, {info.product, "product"}})
+    if (std::memchr(text, 0, sizeof info.product) == nullptr)
+      return std::string("fills all 64 bytes of hdv_info.") + name + ", expected at most 63 and a 0 behind them";
   for (const double value : {info.rate_hz, info.max_force, info.continuous_force, info.max_stiffness, info.resolution_m,
                              info.damping, info.mass_kg})
     if (!std::isfinite(value) || value < 0)
@@ -56,6 +67,7 @@ DeviceInstance::DeviceInstance(std::shared_ptr<Library> library, const scene::De
 
 Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Device& device, Services::Log log) {
   const std::string who = "device '" + device.name + "': ";
+  tellCall("a constructor of its library");
   auto library = Library::open(device.library);
   if (!library) return Error{who + library.error()};
   auto entry = (*library)->devices();
@@ -70,16 +82,19 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
   ownCode(reinterpret_cast<const void*>(found->create), instance->owner_);
   const Calling calling(instance->owner_);
   instance->class_ = found;
+  tellCall("create");
   instance->device_ = found->create(found, instance->services_.abi());
   if (instance->device_ == nullptr)
     return Error{who + "module '" + device.module +
                  "' could not create an instance: " + reasonOf(HSP_E_NOMEM, instance->services_)};
+  tellCall("set");
   const auto set =
       setAll(device.parameters, found->param_count, instance->services_,
              [&](uint32_t index, const hsp_value* value) { return found->set(instance->device_, index, value); });
   if (!set) return Error{who + set.error()};
 
   instance->services_.forgetError();
+  tellCall("extension");
   instance->kinematics_ = extensionOf<hdv_ext_kinematics>(*found, instance->device_, HDV_EXT_KINEMATICS);
   instance->calibration_ = extensionOf<hdv_ext_calibration>(*found, instance->device_, HDV_EXT_CALIBRATION);
   instance->links_ = drawable(extensionOf<hdv_ext_links>(*found, instance->device_, HDV_EXT_LINKS));
@@ -93,7 +108,7 @@ Result<std::unique_ptr<DeviceInstance>> DeviceInstance::create(const scene::Devi
     return Error{who +
                  (said.empty() ? "module '" + device.module + "' has no kinematics (" HDV_EXT_KINEMATICS ")" : said)};
   }
-  if (const std::string wrong = wrongJacobian(*instance->kinematics_, instance->device_); !wrong.empty())
+  if (const std::string wrong = wrongKinematics(*instance->kinematics_, instance->device_); !wrong.empty())
     return Error{who + "module '" + device.module + "' " + wrong};
   return instance;
 }
@@ -112,11 +127,16 @@ Result<void> DeviceInstance::open() {
   info_ = {};
   info_.struct_size = sizeof info_;
   services_.forgetError();
+  tellCall("open");
   const hsp_status status = playback_ == nullptr ? class_->open(device_, &info_) : HSP_OK;
   if (playback_ != nullptr) info_ = playback_->info;
   if (status < 0) return Error{who + "cannot be opened: " + reasonOf(status, services_)};
   open_ = true;
-  if (const std::string wrong = wrongIn(info_, kinematics_->joint_count); !wrong.empty()) {
+  if (pace_ == nullptr && playback_ == nullptr) info_.capabilities &= ~uint32_t{HDV_C_PACING};  // claimed, not there
+  std::string wrong = wrongIn(info_, kinematics_->joint_count);
+  if (wrong.empty() && playback_ == nullptr) wrong = wrongBetweenStops(*kinematics_, device_, info_);
+  if (wrong.empty() && playback_ == nullptr) wrong = weightBeyondMotors(*kinematics_, device_, info_);
+  if (!wrong.empty()) {
     if (playback_ == nullptr) class_->close(device_);
     open_ = false;
     return Error{who + "its module " + wrong};

@@ -1,53 +1,37 @@
 // SPDX-License-Identifier: MIT
 #include "host/kinematics_check.hpp"
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <cmath>
 #include <cstdio>
 #include <optional>
 
+#include "host/kinematics_calls.hpp"
+#include "host/kinematics_places.hpp"
+
 namespace hapticd::host {
 namespace {
 
-using Joints = Eigen::Matrix<double, HDV_MAX_JOINTS, 1>;
 using Twist = Eigen::Matrix<double, 6, 1>;
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr int kPlaces = 12;
 constexpr double kStep = 1e-5;         ///< [rad or m] of a difference: its error is some 1e-10 of the arm's size
 constexpr double kWrong = 0.02;        ///< of the longest column: more than rounding and sloppy constants make
 constexpr double kSmooth = 1e-3;       ///< of it: two differences that differ by more say that the place is an edge
 constexpr double kLeastColumn = 1e-3;  ///< [m/rad] below it, no column tells anything
 
-struct Tip {
-  Eigen::Vector3d position{0, 0, 0};
-  Eigen::Quaterniond orientation{1, 0, 0, 0};
-};
-
-/// Joint positions spread over a radian, without one that is special: 0 and right angles are where arms are singular.
-Joints place(int index) {
-  Joints q;
-  for (int i = 0; i < HDV_MAX_JOINTS; ++i) q[i] = 0.9 * std::sin(1.7 * (index + 1) + 2.3 * i);
-  return q * (index % 3 == 0 ? 0.3 : 1.0);
-}
-
-std::optional<Tip> tipAt(const hdv_ext_kinematics& kinematics, const hdv_device* device, const Joints& q) {
+std::optional<Tip> tipAt(const KinematicsCalls& calls, const Joints& q) {
   Tip tip;
-  double turn[4] = {1, 0, 0, 0};
-  if (kinematics.forward(device, q.data(), tip.position.data(), turn) < 0) return std::nullopt;
-  tip.orientation = Eigen::Quaterniond(turn[0], turn[1], turn[2], turn[3]);
+  if (calls.forward(q, tip) < 0) return std::nullopt;
   if (!tip.position.allFinite() || !tip.orientation.coeffs().allFinite()) return std::nullopt;
   return tip;
 }
 
 /// Central difference of the tip's pose by one joint: linear velocity above, angular velocity below.
-std::optional<Twist> difference(const hdv_ext_kinematics& kinematics, const hdv_device* device, Joints q,
-                                Eigen::Index joint, double step) {
+std::optional<Twist> difference(const KinematicsCalls& calls, Joints q, Eigen::Index joint, double step) {
   q[joint] += step;
-  const auto after = tipAt(kinematics, device, q);
+  const auto after = tipAt(calls, q);
   q[joint] -= 2 * step;
-  const auto before = tipAt(kinematics, device, q);
+  const auto before = tipAt(calls, q);
   if (!after || !before) return std::nullopt;
   Eigen::Vector3d turned = (after->orientation * before->orientation.conjugate()).vec();
   if (after->orientation.dot(before->orientation) < 0) turned = -turned;
@@ -63,34 +47,29 @@ std::string said(const Eigen::Vector3d& v) {
 }
 
 std::string complaint(Eigen::Index joint, bool turns, const Twist& is, const Twist& given, const Joints& q,
-                      uint32_t n) {
-  std::string at;
-  for (uint32_t i = 0; i < n; ++i) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%s%.4g", i > 0 ? ", " : "", q[i]);
-    at += text;
-  }
+                      Eigen::Index n) {
   const auto rows = [turns](const Twist& twist) -> Eigen::Vector3d {
     return turns ? twist.tail<3>() : twist.head<3>();
   };
   return "has a Jacobian that is not the derivative of its forward kinematics, so a force would have a wrong direction "
          "or "
-         "size: with the joints at (" +
-         at + "), joint " + std::to_string(joint + 1) + (turns ? " turns the tip by " : " moves the tip by ") +
-         said(rows(is)) + (turns ? " rad" : " m") + " per rad (or m) of the joint, but column " +
-         std::to_string(joint + 1) + " of its Jacobian has " + said(rows(given)) +
+         "size: with the joints at " +
+         placeText(q, n) + ", joint " + std::to_string(joint + 1) +
+         (turns ? " turns the tip by " : " moves the tip by ") + said(rows(is)) + (turns ? " rad" : " m") +
+         " per rad (or m) of the joint, but column " + std::to_string(joint + 1) + " of its Jacobian has " +
+         said(rows(given)) +
          "; expected J[row * joint_count + joint], rows 0-2 linear, 3-5 angular velocity in the device frame";
 }
 
-std::string wrongAt(const hdv_ext_kinematics& kinematics, const hdv_device* device, const Joints& q) {
-  const uint32_t n = kinematics.joint_count;
-  Jacobian J = Jacobian::Zero(6, n);
-  if (!tipAt(kinematics, device, q) || kinematics.jacobian(device, q.data(), J.data()) < 0) return "";
+std::string wrongAt(const KinematicsCalls& calls, const Joints& q) {
+  const Eigen::Index n = calls.joints();
+  KinematicsCalls::JacobianRoom room(static_cast<size_t>(6 * n));
+  if (!tipAt(calls, q) || calls.jacobian(q, room) < 0) return "";
+  const Jacobian J = Eigen::Map<const Jacobian>(room.data(), 6, n);
   const bool turns = !J.bottomRows<3>().isZero(0);
   Jacobian is = J;
   for (Eigen::Index j = 0; j < is.cols(); ++j) {
-    const auto fine = difference(kinematics, device, q, j, kStep),
-               coarse = difference(kinematics, device, q, j, 2 * kStep);
+    const auto fine = difference(calls, q, j, kStep), coarse = difference(calls, q, j, 2 * kStep);
     if (!fine || !coarse || !((*fine - *coarse).norm() <= kSmooth * (kLeastColumn + fine->norm()))) return "";
     is.col(j) = *fine;
   }
@@ -109,8 +88,9 @@ std::string wrongAt(const hdv_ext_kinematics& kinematics, const hdv_device* devi
 
 std::string wrongJacobian(const hdv_ext_kinematics& kinematics, const hdv_device* device) {
   if (kinematics.joint_count == 0 || kinematics.joint_count > HDV_MAX_JOINTS) return "";  // open() tells that
+  const KinematicsCalls calls(kinematics, device);
   for (int i = 0; i < kPlaces; ++i)
-    if (std::string wrong = wrongAt(kinematics, device, place(i)); !wrong.empty()) return wrong;
+    if (std::string wrong = wrongAt(calls, anyPlace(i)); !wrong.empty()) return wrong;
   return "";
 }
 

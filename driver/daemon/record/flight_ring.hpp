@@ -59,7 +59,7 @@ class FlightRing {
   /// [main] The rows kept now as a recording file, oldest first. The servo goes on meanwhile.
   Result<void> dump(const std::string& file) const;
 
-  /// [any] The memory as it is: a whole recording. For a signal handler that can still write(2) it somewhere.
+  /// [any] The memory of the ring, which is a valid recording at any time. A signal handler can write(2) it to a file.
   const std::byte* image() const noexcept { return memory_; }
   size_t imageBytes() const noexcept { return bytes_; }
 

@@ -26,6 +26,23 @@ std::string slowText(const ModelReport& model, double period_us, uint64_t least_
                      model.name, typical * 1e-3, slow, period_us * 1e-3);
 }
 
+/// The model whose longest step alone kept the loop from its period, however few such steps there were.
+std::string heldUpText(const RunReport& report, double period_us) {
+  constexpr double kVirtual =
+      50;  // periods: on the wall clock of a busy machine a step is long for no fault of its own
+  if (!report.virtual_time && report.missed_ticks == 0) return "";
+  const ModelReport* slowest = nullptr;
+  for (const ModelReport& model : report.models)
+    if (slowest == nullptr || model.contact.stepUs().max() > slowest->contact.stepUs().max()) slowest = &model;
+  const double most = slowest != nullptr ? slowest->contact.stepUs().max() : 0;
+  if (most <= period_us * (report.virtual_time ? kVirtual : 1)) return "";
+  const std::string missed = fmt::format("{} ticks were missed, and ", report.missed_ticks);
+  return fmt::format(
+      "slow: {}{} took {:.2g} ms in its longest step; the period is {:.2g} ms: hapticd plugin check tells whether it "
+      "waits, or the machine had no time for it\n",
+      report.virtual_time ? "" : missed, slowest->name, most * 1e-3, period_us * 1e-3);
+}
+
 }  // namespace
 
 std::string paceText(const RunReport& report, double asked_hz) {
@@ -48,7 +65,7 @@ std::string paceText(const RunReport& report, double asked_hz) {
             "slow: {} of {} ticks took longer than the period of {:.2g} ms, and {} up to {:.2g} ms, though it computes "
             "little: hapticd plugin check tells whether it waits\n",
             late, all, period_us * 1e-3, model.name, most * 1e-3);
-  return text;
+  return text.empty() ? heldUpText(report, period_us) : text;
 }
 
 }  // namespace hapticd::record

@@ -37,7 +37,7 @@ Axis axisOf(const Quantity& q, const std::vector<Sample>& samples, bool counted)
     if (!std::isfinite(value) || (counted && !q.counts(sample))) continue;
     low = std::min(low, std::max(value, q.least)), high = std::max(high, value);
   }
-  if (!(high >= low)) low = 0, high = 1;
+  if (!(high >= low) || (low == 0 && high == 0)) low = 0, high = 1;  // nothing but zeros has no scale of its own
   return axisOver(fmt::format("[{}]", q.unit), q.logarithmic ? std::max(low, 0.1) : low, high, q.logarithmic);
 }
 
@@ -107,10 +107,12 @@ std::vector<Span> limitSpans(const std::vector<Sample>& samples) {
 }
 
 /// The beginning of each fault; of many those that come first. The end of a run is none.
-std::vector<Mark> faultMarks(const std::vector<Sample>& samples) {
+std::vector<Mark> faultMarks(const std::vector<Sample>& samples, const RunNotes& notes) {
   constexpr size_t kMost = 12;
   constexpr uint32_t kStopped = 8;
   std::vector<Mark> marks;
+  for (const auto& [t, what] : notes.moments)
+    if (t >= samples.front().t && t <= samples.back().t && marks.size() < kMost) marks.push_back({t, what});
   uint32_t now = 0;
   for (const Sample& s : samples) {
     if (s.fault != now && s.fault != 0 && s.fault != kStopped && marks.size() < kMost)
@@ -145,6 +147,13 @@ std::vector<Quantity> quantitiesOf(const RunReport& report, const std::vector<Sa
     all.push_back({kCoordinates[i], "mm", kPlace, [i](const Sample& s) { return s.position_m[i] * 1e3; }, always,
                    "% of the ticks"});
   return all;
+}
+
+/// A curve that rests on the foot of its panel looks like a tip that rests.
+std::string cutAtFoot(double low, const std::vector<Sample>& samples) {
+  const auto below = [low](const Sample& s) { return s.depth_m * 1e3 < low; };
+  if (std::none_of(samples.begin(), samples.end(), below)) return "";
+  return fmt::format("; {:g} mm and more are drawn at the foot", -low);
 }
 
 /// What is more in the panel of the forces than the force itself.
@@ -191,15 +200,19 @@ Result<void> drawRun(const RunReport& report, const std::vector<Sample>& samples
                      const std::string& file) {
   if (samples.empty()) return Error{file + ": nothing to draw: the run had no tick"};
   const double first = samples.front().t, last = std::max(samples.back().t, first + 1e-3);
-  Picture picture(titleOf(report, first, last), {kOver, kBeside});
+  const std::string arm = notes.arm.empty() ? "" : ", " + notes.arm;
+  Picture picture(titleOf(report, first, last) + arm, {kOver, kBeside});
   for (const Quantity& q : quantitiesOf(report, samples, notes.positions)) {
     Panel panel(q.title, {"time [s]", first, last}, axisOf(q, samples, false));
     panel.curves = {curveOf("", q.colour, samples, q.value)};
-    panel.moments = faultMarks(samples);
+    panel.moments = faultMarks(samples, notes);
     panel.height = kHeight;
     Panel beside = histogramOf(q, samples);
     if (q.colour == kDepth) {
-      panel.title += " (negative: distance from the nearest model)";
+      const bool any =
+          std::any_of(samples.begin(), samples.end(), [](const Sample& s) { return std::isfinite(s.depth_m); });
+      panel.title += any ? " (negative: distance from the nearest model" + cutAtFoot(panel.y.low, samples) + ")"
+                         : " (none: no model was near enough to be traced)";
       panel.spans = modelSpans(samples, notes);
     }
     if (q.colour == kForce) addAsked(panel, samples, notes);

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/result.hpp"
@@ -25,8 +26,10 @@ struct Sample {
 /// What stands in a picture by name.
 struct RunNotes {
   std::vector<std::string> models;
-  double force_limit_n = 0;  ///< limits.force of the arm; 0 or not finite: not drawn
-  bool positions = false;    ///< a row for each coordinate of the tip too
+  double force_limit_n = 0;                               ///< limits.force of the arm; 0 or not finite: not drawn
+  bool positions = false;                                 ///< a row for each coordinate of the tip too
+  std::vector<std::pair<double, std::string>> moments{};  ///< [s] with what happened then: "ring is silenced"
+  std::string arm{};                                      ///< whose samples these are, where there are several
 };
 
 /// Short words for a fault of a recording, "too fast"; from servo::Fault, whose numbers recordings keep.

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/regular_file.hpp"
+#include "document/json_text.hpp"
 #include "record/layout.hpp"
 
 namespace hapticd::record {
@@ -152,14 +153,29 @@ Result<void> Recording::readBlocks(std::span<const std::byte> bytes, uint64_t ad
       stream.first_ = stream.rows_ - kept;
       stream.rows_ = kept;
     } else {
+      if (stream.rows_ > space) noteDamage(stream, space, address, bytes);
       stream.rows_ = std::min(stream.rows_, space);
     }
   }
   return {};
 }
 
+/// A writer says how many rows there are after it has written them: where they are not there, they were there once.
+/// @param stopped where no more blocks could be read
+void Recording::noteDamage(const RecordedStream& stream, uint64_t space, uint64_t stopped,
+                           std::span<const std::byte> bytes) {
+  if (!damage_.empty()) return;  // the first stream has the ticks
+  const uint64_t size = bytes.size();
+  const auto block = at<BlockHeader>(bytes, stopped);
+  const bool cut = !block || block->magic == BlockHeader::kMagic;
+  damage_ = (cut ? "it ends at byte " + std::to_string(size) + ", in the middle of its rows"
+                 : "it is damaged at byte " + std::to_string(stopped)) +
+            ": " + std::to_string(stream.rows_ - space) + " of " + std::to_string(stream.rows_) + " rows of " +
+            stream.name_ + " are lost; copy the file again from where it was recorded";
+}
+
 Result<void> Recording::readColumns() {
-  const Json about = Json::parse(about_, nullptr, false);
+  const Json about = document::parseJson(about_);
   if (!about.is_object() || !about.contains("columns") || !about["columns"].is_object())
     return Error{"does not describe its columns: it is damaged"};
   for (RecordedStream& stream : streams_) {

@@ -53,16 +53,19 @@ class Recording {
   const std::string& aboutJson() const { return about_; }
   const std::vector<RecordedStream>& streams() const { return streams_; }
   const RecordedStream* stream(const std::string& name) const;
-  bool closed() const { return closed_; }       ///< its writer ended in order
+  bool closed() const { return closed_; }  ///< its writer ended in order
+  /// "" or how rows that it should have were lost after they were written: the file was cut, or changed.
+  const std::string& damage() const { return damage_; }
   bool blackBox() const { return black_box_; }  ///< the newest rows in a circle, not a whole run
 
  private:
   Recording() = default;
   Result<void> read(std::span<const std::byte> bytes);
   Result<void> readBlocks(std::span<const std::byte> bytes, uint64_t address);
+  void noteDamage(const RecordedStream& stream, uint64_t space, uint64_t stopped, std::span<const std::byte> bytes);
   Result<void> readColumns();
 
-  std::string about_;
+  std::string about_, damage_;
   std::vector<RecordedStream> streams_;
   bool closed_ = false, black_box_ = false;
   void* mapped_ = nullptr;

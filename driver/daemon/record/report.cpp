@@ -98,12 +98,24 @@ std::string lengthText(double length) {
   return length < 1e-3 ? fmt::format("{:.3g} um", length * 1e6) : fmt::format("{:.3g} mm", length * 1e3);
 }
 
+/// A depth in mm shows as a depth that no arm reaches.
+std::string deepText(const ModelReport& model) {
+  constexpr double kDeep = 0.5;  // [m]
+  const double deepest = model.contact.maxDepth();
+  if (!(deepest > kDeep)) return "";
+  return fmt::format(
+      "  warning   {} says a depth of {:.3g} m, deeper than an arm reaches: is its depth_m in m? a depth in mm would "
+      "be "
+      "{:.3g} m; hapticd plugin check tells\n",
+      model.name, deepest, deepest * 1e-3);
+}
+
 std::string modelText(const ModelReport& model, const RunReport& report) {
   const ContactStatistics& c = model.contact;
   std::string text = fmt::format("{} ({})\n", model.name, model.plugin);
   if (model.arms.empty()) text += contactText(c, report, "");
   for (const ArmContact& arm : model.arms) text += contactText(arm.contact, report, " by " + arm.device);
-  text += oddPushesText(model) + pullText(model);
+  text += oddPushesText(model) + pullText(model) + deepText(model);
   if (model.degraded_ticks > 0)
     text += fmt::format("  degraded  {} ticks, to level {} of 3, so that the tick's budget holds; residual up to {}\n",
                         model.degraded_ticks, model.coarsest, lengthText(model.residual_m));

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "document/json_text.hpp"
+
 namespace hapticd::record {
 
 namespace {
@@ -269,7 +271,7 @@ std::string sceneToJson(const scene::Scene& scene) {
 
 Result<scene::Scene> sceneFromJson(const std::string& json_text) {
   try {
-    const Json json = Json::parse(json_text);
+    const Json json = document::parseJsonOrThrow(json_text);
     scene::Scene scene;
     scene.file = json.at("file").get<std::string>();
     scene.servo = toServo(json.at("servo"));

@@ -138,7 +138,8 @@ constexpr Key kMotorKeys[] = {
 constexpr Table kMotor{kMotorKeys};
 
 constexpr Key kLimitKeys[] = {
-    real<&Limits::force>("force", {0, 1000, "N"}, "0", "Largest force on the hand; 0: the device's own maximum."),
+    real<&Limits::force>("force", {0, 1000, "N"}, nullptr,
+                         "Largest force on the hand, above 0; default: the device's own maximum."),
     real<&Limits::torque>("torque", {0, 1000, "N m"}, "0", "Largest torque on the hand; 0: the motors' limit alone."),
     real<&Limits::slew>("slew", {0, 1e6, "N/s"}, "2000", "Fastest growth of the force; 0: no limit."),
     real<&Limits::torque_slew>("torque_slew", {0, 1e6, "N m/s"}, "200", "Fastest growth of the torque; 0: no limit."),
@@ -219,9 +220,9 @@ constexpr Format kAllFormats[] = {
 
 constexpr Table kModelTable{kModelKeys};
 constexpr Table kClientsTable{kClientsKeys};
-constexpr Table kDeviceReferenceTable{kDeviceReferenceKeys};
-constexpr Table kSceneTable{kSceneKeys};
-constexpr Table kDeviceTable{kDeviceKeys};
+constexpr Table kDeviceReferenceTable{kDeviceReferenceKeys, &kDeviceTable, "the device file"};
+constexpr Table kSceneTable{kSceneKeys, &kDeviceTable, "the device file"};
+constexpr Table kDeviceTable{kDeviceKeys, &kSceneTable, "the scene file"};
 constexpr Table kDaemonTable{kDaemonKeys};
 constexpr std::span<const Format> kFormats{kAllFormats};
 

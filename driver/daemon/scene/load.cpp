@@ -89,6 +89,15 @@ std::optional<Device> deviceDraft(const std::filesystem::path& file, host::Catal
   return detail::loadDeviceFile({file, "", {}, nullptr}, catalog, known, nullptr, nullptr, nullptr);
 }
 
+std::optional<Scene> sceneDraft(const std::filesystem::path& file, host::Catalog& catalog) {
+  Problems known;
+  Reader in(file, known);
+  const auto root = parseFile(file, known);
+  const Format* format = root ? detail::formatOf(*root) : nullptr;
+  if (format == nullptr || format->table != &kSceneTable) return std::nullopt;
+  return detail::loadScene(*root, in, catalog, {.default_device = false, .device_file = {}});
+}
+
 LoadedDaemon loadDaemon(const std::filesystem::path& file) {
   LoadedDaemon loaded;
   Reader in(file, loaded.problems);

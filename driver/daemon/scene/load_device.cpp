@@ -68,6 +68,17 @@ HdArm readHd(const HdText& text, Reader& in) {
   return arm;
 }
 
+/// Who writes 0 means no force, and no limit would be the contrary.
+void refuseNoForce(const Node& root, Reader& in) {
+  const Node* limits = root.find("limits");
+  const Node* force = limits != nullptr && limits->isMap() ? limits->find("force") : nullptr;
+  if (force == nullptr || !force->isScalar() || document::toNumber(force->scalar) != 0.0) return;
+  in.problem(
+      *force, "limits.force",
+      "0 N is no limit that an arm can keep; expected above 0, such as 0.5 N to begin with. Leave it out for the "
+      "device's own maximum; to run without a force: models: []");
+}
+
 }  // namespace
 
 std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceReference& reference, host::Catalog& catalog,
@@ -81,6 +92,7 @@ std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceRefer
   device.name = !reference.name.empty() ? reference.name : !text.name.empty() ? text.name : in.file().stem().string();
   device.mount = reference.mount.value_or(text.mount);
   device.limits = text.limits;
+  refuseNoForce(root, in);
   device.admittance = reference.admittance ? reference.admittance : text.admittance;
   if (text.hd) device.hd = readHd(*text.hd, in);
   if (text.module.empty()) return std::nullopt;

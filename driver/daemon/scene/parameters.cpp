@@ -87,9 +87,11 @@ void ParameterReader::nothing(const Entry& entry, const std::string& key, uint32
 void ParameterReader::unknown(const Entry& entry, const std::string& key, const std::string& id) {
   std::vector<std::string> ids = info_.paramIds();
   if (ids.empty()) return in_->problem(entry.key, key, "unknown key: " + info_.name + " has no parameters");
+  // Within a group, only the names of this group fit: another one's would be as unknown there.
+  const std::string group = id.substr(0, id.find('.') == id.npos ? 0 : id.rfind('.'));
+  if (!group.empty()) std::erase_if(ids, [&](const std::string& one) { return one.rfind(group + ".", 0) != 0; });
   in_->problem(entry.key, key,
-               "unknown parameter of " + info_.name + ", expected one of " +
-                   document::listed(idsIn(info_, id.substr(0, id.find('.') == id.npos ? 0 : id.rfind('.'))), 24) +
+               "unknown parameter of " + info_.name + ", expected one of " + document::listed(idsIn(info_, group), 24) +
                    document::suggestion(id, ids));
 }
 
@@ -152,15 +154,28 @@ bool ParameterReader::readPath(const Node& node, const std::string& key, Value& 
   return file.has_value();
 }
 
+/// "m, rad, m, rad" of a row of four: one for each column. Otherwise the same for all.
+static std::vector<std::string> unitsOf(const host::ParamInfo& param) {
+  std::vector<std::string> units(1);
+  for (const char c : param.unit) {
+    if (c == ',')
+      units.emplace_back();
+    else if (c != ' ' || !units.back().empty())
+      units.back() += c;
+  }
+  return units.size() == param.columns ? units : std::vector<std::string>{param.unit};
+}
+
 bool ParameterReader::readArray(const Node& node, const std::string& key, const host::ParamInfo& param, Value& value) {
-  const Range range{param.min, param.max, param.unit.c_str()};
   const size_t before = in_->problems().size();
-  const auto add = [&](const Node& item, const std::string& path) {
+  const std::vector<std::string> units = unitsOf(param);
+  const auto add = [&](const Node& item, const std::string& path, size_t column) {
     if (in_->problems().size() - before >= kShownProblems) return;
-    if (const auto number = in_->number(item, path, range)) value.numbers.push_back(*number);
+    const Range of_column{param.min, param.max, units[column % units.size()].c_str()};
+    if (const auto number = in_->number(item, path, of_column)) value.numbers.push_back(*number);
   };
   if (node.isScalar()) {
-    add(node, key);
+    add(node, key, 0);
   } else if (node.isSequence()) {
     for (size_t i = 0; i < node.items.size(); ++i) {
       const Node& item = node.items[i];
@@ -169,9 +184,9 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
         in_->problem(item, path,
                      "a row of " + std::to_string(item.items.size()) + ", expected " + std::to_string(param.columns));
       else if (item.isSequence())
-        for (size_t j = 0; j < item.items.size(); ++j) add(item.items[j], path + "[" + std::to_string(j) + "]");
+        for (size_t j = 0; j < item.items.size(); ++j) add(item.items[j], path + "[" + std::to_string(j) + "]", j);
       else
-        add(item, path);
+        add(item, path, i);
     }
   } else {
     in_->problem(node, key, describe(node) + ", expected a list of " + countText(param));

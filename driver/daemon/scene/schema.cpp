@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "document/json_text.hpp"
 #include "hapticd/abi.h"
 #include "scene/format.hpp"
 #include "scene/load.hpp"
@@ -17,7 +18,7 @@ using Json = nlohmann::ordered_json;
 Json defaultOf(const std::string& yaml) {
   Problems none;
   const auto node = parseText(yaml, "default", none);
-  return node ? Json::parse(toJson(*node), nullptr, false) : Json();
+  return node ? document::parseJson(toJson(*node)) : Json();
 }
 
 void addBounds(Json& json, double min, double max) {
@@ -107,7 +108,7 @@ Json typeOf(const host::ParamInfo& param) {
       json["type"] = param.min_count <= 1 ? Json{"array", "number"} : Json("array");
       break;
     case HSP_DATA:
-      if (!param.choices.empty()) json = Json::parse(param.choices[0], nullptr, false);
+      if (!param.choices.empty()) json = document::parseJson(param.choices[0]);
       if (!json.is_object()) json = Json::object();
       break;
     default:

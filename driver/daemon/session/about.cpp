@@ -14,6 +14,7 @@
 #include <set>
 
 #include "base/regular_file.hpp"
+#include "document/json_text.hpp"
 #include "document/node.hpp"
 #include "record/scene_json.hpp"
 #include "session/event_finder.hpp"
@@ -186,14 +187,14 @@ record::About aboutRun(const scene::Scene& scene, const World& world, const std:
   json["streams"] = streamsJson(streams);
   json["events"] = Json::array();
   for (uint32_t kind = 0; kind < HAPTICD_EVENT_KINDS; ++kind) json["events"].push_back(nameOfEvent(kind));
-  json["columns"] = Json::parse(record::columnsJson(streams));
-  json["scene"] = Json::parse(record::sceneToJson(scene));
+  json["columns"] = document::parseJsonOrThrow(record::columnsJson(streams));
+  json["scene"] = document::parseJsonOrThrow(record::sceneToJson(scene));
   return {json.dump(-1, ' ', false, Json::error_handler_t::replace), textOf(scene.file)};
 }
 
 Result<RecordedRun> readAbout(const std::string& json_text) {
   try {
-    const Json json = Json::parse(json_text);
+    const Json json = document::parseJsonOrThrow(json_text);
     RecordedRun run;
     run.facts.rate = json.at("rate_hz");
     run.facts.period_ns = json.at("period_ns");

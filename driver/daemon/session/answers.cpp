@@ -27,6 +27,12 @@ const scene::Value* given(const scene::Model& model, uint32_t index) {
   return found != model.parameters.end() ? &*found : nullptr;
 }
 
+/// The table has the default of an array as text, "[0, 1, 0]", which is JSON; without one it is empty.
+Json defaultOf(const hsp_param& param) {
+  Json numbers = Json::parse(host::textOf(param.def_text), nullptr, false);
+  return numbers.is_array() ? numbers : Json::array();
+}
+
 /// A parameter as JSON has it: choices and switches by their names.
 Json valueJson(const scene::Model& model, const hsp_param& param, uint32_t index) {
   const scene::Value* value = given(model, index);
@@ -41,7 +47,7 @@ Json valueJson(const scene::Model& model, const hsp_param& param, uint32_t index
     case HSP_INT:
       return valueOf(model, param, index);
     case HSP_ARRAY:
-      return value != nullptr ? Json(value->numbers) : Json();
+      return value != nullptr ? Json(value->numbers) : defaultOf(param);
     default:
       return value != nullptr ? Json(value->text) : param.def_text != nullptr ? Json(param.def_text) : Json();
   }
@@ -171,7 +177,7 @@ std::string silencedWhy(const Session& session, uint32_t place) {
   return silenceReason(session.places[place].model.name, static_cast<Trouble>(now.trouble), now.failed_status);
 }
 
-std::string statusAnswer(const Session& session) {
+std::string statusAnswer(const Session& session, const std::string& name, const std::string& socket) {
   const status::Page& page = session.runner.telemetry().statusWriter()->page();
   const auto now = page.now.read().value_or(status::Now{});
   Json devices = Json::array();
@@ -190,6 +196,8 @@ std::string statusAnswer(const Session& session) {
       devices.back()["clients"] = pushersJson(session, static_cast<uint32_t>(i));
   }
   return lineOf({{"ok", true},
+                 {"name", name},
+                 {"socket", socket},
                  {"scene", session.scene_file},
                  {"seconds", now.t},
                  {"tick", now.tick},

@@ -33,8 +33,8 @@ std::string lineOf(const nlohmann::ordered_json& json);
 record::ClientReport reportOf(const ClientForces::Client& client, const Leads::Pusher& pusher,
                               const std::string& device);
 
-/// [main] Times, devices, and models that are not felt.
-std::string statusAnswer(const Session& session);
+/// [main] Times, devices, and models that are not felt. @param socket "": it has none
+std::string statusAnswer(const Session& session, const std::string& name, const std::string& socket);
 
 /// [main] Why a model is not felt for the rest of the run; "": it is.
 std::string silencedWhy(const Session& session, uint32_t place);

@@ -113,7 +113,8 @@ std::vector<record::StreamSpec> flightStreams(const scene::Scene& scene, const s
 
 class Flight {
  public:
-  /// [main] @param ring of the streams that flightStreams gave for these arms @param places models that there may be
+  /// [main] @param ring with the streams that flightStreams() gave for these arms
+  /// @param places how many models there may be at most
   Flight(std::unique_ptr<record::FlightRing> ring, const std::vector<std::unique_ptr<Arm>>& arms, size_t places);
 
   /// [rt] Before a tick: its time, and the faults that hold already.

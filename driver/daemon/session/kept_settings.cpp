@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "document/json_text.hpp"
 #include "record/scene_json.hpp"
 
 namespace hapticd::servo {
@@ -49,7 +50,8 @@ void compareDevices(Json a, Json b, std::set<std::string>& found) {
 }  // namespace
 
 std::vector<std::string> keptSettings(const scene::Scene& running, const scene::Scene& wanted) {
-  const Json a = Json::parse(record::sceneToJson(running)), b = Json::parse(record::sceneToJson(wanted));
+  const Json a = document::parseJsonOrThrow(record::sceneToJson(running)),
+             b = document::parseJsonOrThrow(record::sceneToJson(wanted));
   std::set<std::string> found;
   compare(a.at("servo"), b.at("servo"), "servo", found);
   compare(a.at("clients"), b.at("clients"), "clients", found);

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "document/suggestion.hpp"
 #include "host/file_stamp.hpp"
 #include "host/replaced_library.hpp"
 #include "session/foreign_files.hpp"
@@ -105,12 +106,20 @@ Result<std::string> RequestHandler::add(const control::Peer& peer, const Request
   std::vector<scene::Model> models;
   for (const scene::Model& model : scene->models)
     if (request.model.empty() || model.name == request.model) models.push_back(model);
-  if (models.empty()) return Error{request.file + ": has no model" + (request.model.empty() ? "" : " of that name")};
+  if (models.empty()) {
+    std::vector<std::string> names;
+    for (const scene::Model& model : scene->models) names.push_back(model.name);
+    return refuse("unknown", request.file + ": has no model" +
+                                 (request.model.empty() ? std::string()
+                                                        : " \"" + request.model.substr(0, 100) +
+                                                              "\", expected one of " + document::listed(names, 20)));
+  }
   for (const scene::Model& model : models)
     if (placeOf(model.name)) return refuse("busy", "a model named \"" + model.name + "\" exists already");
   if (auto done = adopt(models); !done) return Error{tellable(peer, done.error())};
   auto json = cameAnswer(models);
   tellReplaced(json, models, log_);
+  tellWarnings(peer, models, json);
   return lineOf(json);
 }
 
@@ -141,6 +150,8 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
     if (!shape) return Error{shape.error()};
     shapes.push_back(std::move(*shape));
   }
+  came_stiffness_.clear();
+  for (const auto& shape : shapes) came_stiffness_.push_back(shape->report().max_stiffness);
   for (size_t i = 0; i < models.size(); ++i) {
     const uint32_t place = empty[i];
     prepared_.push_back(std::make_unique<ModelState>(Core::stateOf(*shapes[i], models[i])));
@@ -158,13 +169,25 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
   return {};
 }
 
-/// With those that wait for a tip to leave them, as far as the servo has met them by now.
-nlohmann::ordered_json RequestHandler::cameAnswer(const std::vector<scene::Model>& models) {
-  constexpr double kMet = 0.25;  // [s] the search has met a new model within some 0.1 s, and then it is stepped
-  nlohmann::ordered_json json = {{"ok", true}, {"models", models.size()}}, waiting = nlohmann::ordered_json::array();
+/// What `hapticd check` says of the models that came, as `warnings` of the answer and in the log. Whoever passed no
+/// file along is not told of the daemon's own.
+void RequestHandler::tellWarnings(const control::Peer& peer, const std::vector<scene::Model>& models,
+                                  nlohmann::ordered_json& json) const {
+  if (!advise_ || (isForeign(peer) && !passed_)) return;
+  scene::Scene came;
+  came.models = models;
+  for (const std::string& text : advise_(came, came_stiffness_)) {
+    json["warnings"].push_back(tellable(peer, text));
+    log_(HSP_LOG_WARNING, "", text);
+  }
+}
+
+/// Which of these wait for a tip to leave them, as far as the servo has met them by now. @param met [s] until it has
+nlohmann::ordered_json RequestHandler::waitingOf(const std::vector<scene::Model>& models, double met) const {
+  nlohmann::ordered_json waiting = nlohmann::ordered_json::array();
   const auto now = [&] { return runner_.telemetry().statusWriter()->page().now.read().value_or(status::Now{}).t; };
   const double came = now();
-  waitUntil([&] { return now() > came + kMet || runner_.loop().finished(); });
+  waitUntil([&] { return now() > came + met || runner_.loop().finished(); });
   for (uint32_t i = 0; i < places_.size(); ++i) {
     const std::string& name = places_[i].model.name;
     const auto is = [&](const scene::Model& model) { return model.name == name; };
@@ -172,7 +195,13 @@ nlohmann::ordered_json RequestHandler::cameAnswer(const std::vector<scene::Model
     waiting.push_back(name);
     log_(HSP_LOG_WARNING, name, "a tip is in it: it is felt once the tip was outside");
   }
-  if (!waiting.empty()) json["waiting"] = waiting;
+  return waiting;
+}
+
+nlohmann::ordered_json RequestHandler::cameAnswer(const std::vector<scene::Model>& models) {
+  constexpr double kMet = 0.25;  // [s] the search has met a new model within some 0.1 s, and then it is stepped
+  nlohmann::ordered_json json = {{"ok", true}, {"models", models.size()}};
+  if (auto waiting = waitingOf(models, kMet); !waiting.empty()) json["waiting"] = std::move(waiting);
   return json;
 }
 
@@ -216,6 +245,7 @@ Result<std::string> RequestHandler::reload(const control::Peer& peer, const Requ
     if (auto done = release(place); !done) return Error{done.error()};
   auto json = cameAnswer(scene->models);
   tellReplaced(json, scene->models, log_);
+  tellWarnings(peer, scene->models, json);
   if (const auto kept = tellKept(*scene); !kept.empty()) json["kept"] = kept;
   return lineOf(json);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Touches one model again with the tips of a recording, so that a body which deforms has the shape that it had then.
-/// To be looked at: what the arms, the other models and orders did is not computed, as a replay does.
+/// The shape is for drawings alone: unlike a replay this computes neither the arms nor other models nor orders.
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -93,7 +93,7 @@ control::Reply RequestHandler::answer(const control::Peer& peer, const std::stri
 Result<std::string> RequestHandler::tell(const control::Peer& peer, const Request& request) {
   switch (request.kind) {
     case Request::Kind::kStatus:
-      return statusAnswer(session());
+      return statusAnswer(session(), name_, socket_);
     case Request::Kind::kList:
       return listAnswer(session());
     case Request::Kind::kSnapshot:
@@ -172,8 +172,9 @@ Result<std::string> RequestHandler::obeyForModels(const control::Peer& peer, con
     case Request::Kind::kReload:
       return reload(peer, request);
     case Request::Kind::kEnable:
+      return enable(request.model);
     case Request::Kind::kDisable:
-      done = able(request.model, request.kind == Request::Kind::kEnable);
+      done = able(request.model, false);
       break;
     case Request::Kind::kSet:
       done = set(request);
@@ -217,6 +218,17 @@ Result<void> RequestHandler::able(const std::string& model, bool enabled) {
   if (enabled) order.param = Order::kOnceFree;
   places_[*place].enabled = enabled;
   return give(order);
+}
+
+/// A model that waits for a tip to leave it is enabled, and nobody feels it: the answer says so.
+Result<std::string> RequestHandler::enable(const std::string& model) {
+  constexpr double kMet = 0.02;  // [s] it was traced all the time
+  if (auto done = able(model, true); !done) return Error{done.error()};
+  nlohmann::ordered_json json = {{"ok", true}};
+  const auto place = placeOf(model);
+  if (!place) return Error{place.error()};
+  if (auto waiting = waitingOf({places_[*place].model}, kMet); !waiting.empty()) json["waiting"] = std::move(waiting);
+  return lineOf(json);
 }
 
 /// What `get` and `list` answer from now on.

@@ -24,9 +24,17 @@ class RequestHandler {
  public:
   /// Loads a scene file with everything it names.
   using LoadScene = std::function<Result<scene::Scene>(const std::string& file)>;
+  /// What to warn of in the models of a scene. @param stiffness [N/m] that each of them claims
+  using Advise =
+      std::function<std::vector<std::string>(const scene::Scene& models, const std::vector<double>& stiffness)>;
 
   /// [main] @param dump_folder where black boxes are written
   RequestHandler(Runner& runner, LoadScene load, host::Services::Log log, std::string dump_folder);
+
+  /// [main] Before the first request: what `status` says of where the daemon is found.
+  void knownAs(const std::string& name, const std::string& socket) { name_ = name, socket_ = socket; }
+  /// [main] Before the first request; nothing: no warnings of models that come.
+  void adviseBy(Advise advise) { advise_ = std::move(advise); }
 
   /// [any] One thread at a time. A line of JSON for a line of JSON. @param files the descriptors that the line names
   control::Reply answer(const control::Peer& peer, const std::string& line, std::vector<Descriptor> files = {});
@@ -71,6 +79,7 @@ class RequestHandler {
                       SealedMemory::Writers writers);
   Result<void> unlead(const control::Peer& peer, const control::Request& request);
   Result<void> give(const Order& order);
+  Result<std::string> enable(const std::string& model);
   Result<void> able(const std::string& model, bool enabled);
   Result<void> set(const control::Request& request);
   Result<std::string> move(const control::Request& request);
@@ -83,7 +92,10 @@ class RequestHandler {
   Result<std::string> add(const control::Peer& peer, const control::Request& request);
   Result<void> refuseQuarantined(const std::vector<scene::Model>& models) const;
   Result<void> adopt(const std::vector<scene::Model>& models);
+  void tellWarnings(const control::Peer& peer, const std::vector<scene::Model>& models,
+                    nlohmann::ordered_json& json) const;
   nlohmann::ordered_json cameAnswer(const std::vector<scene::Model>& models);
+  nlohmann::ordered_json waitingOf(const std::vector<scene::Model>& models, double met) const;
   Result<void> remove(const std::string& model);
   Result<void> release(uint32_t place);
   Result<std::string> reload(const control::Peer& peer, const control::Request& request);
@@ -93,6 +105,9 @@ class RequestHandler {
 
   Runner& runner_;
   LoadScene load_;
+  Advise advise_;
+  std::string name_, socket_;
+  std::vector<double> came_stiffness_;  ///< [N/m] of the models that came last
   host::Services::Log log_;
   std::string dump_folder_, scene_file_;
   std::vector<ModelPlace> places_;

@@ -159,14 +159,18 @@ Result<std::unique_ptr<RunFiles>> RunFiles::open(const std::string& name, RunOpt
 }
 
 RunFiles::~RunFiles() {
+  const bool began = runner_ != nullptr || ended_;
   end();
   if (lock_ < 0) return;
+  // What the set-up made of a run that was refused: no run would ever end it.
+  if (!began)
+    for (const char* ending : {".blackbox.h5", ".status"}) unlink((folder_ + "/" + name_ + ending).c_str());
   unlink(lock_file_.c_str());
   close(lock_);
 }
 
 void RunFiles::serve(Runner& runner, const std::string& device_file, host::Catalog& catalog,
-                     const host::Services::Log& log) {
+                     RequestHandler::Advise advise, const host::Services::Log& log) {
   if (folder_.empty()) return;
   runner_ = &runner;
   // A fork would make every page of the servo's memory one that is copied at the next write: a page fault in a tick.
@@ -180,7 +184,9 @@ void RunFiles::serve(Runner& runner, const std::string& device_file, host::Catal
     return Error{text};
   };
   handler_ = std::make_unique<RequestHandler>(runner, load, log, stateFolder(folder_));
+  handler_->adviseBy(std::move(advise));
   const std::string socket = folder_ + "/" + name_ + ".sock";
+  handler_->knownAs(name_, socket);
   auto server = control::Server::listen(socket, kGroup);
   if (!server) {
     log::write(HSP_LOG_WARNING, "", server.error());
@@ -222,6 +228,7 @@ void RunFiles::end() {
   handler_.reset();
   runner_->endBlackBox();
   runner_ = nullptr;
+  ended_ = true;
 }
 
 }  // namespace hapticd::servo

@@ -23,7 +23,9 @@ class RunFiles {
 
   /// [main] Serves the socket. A failure is a warning: the run goes on.
   /// @param device_file replaces the devices of scenes that are loaded meanwhile  @param catalog finds their plugins
-  void serve(Runner& runner, const std::string& device_file, host::Catalog& catalog, const host::Services::Log& log);
+  /// @param advise warnings about models that come
+  void serve(Runner& runner, const std::string& device_file, host::Catalog& catalog, RequestHandler::Advise advise,
+             const host::Services::Log& log);
 
   /// [main] Called now and then: writes the black box once after each new fault.
   void look();
@@ -42,7 +44,7 @@ class RunFiles {
   Runner* runner_ = nullptr;
   std::unique_ptr<RequestHandler> handler_;
   std::unique_ptr<control::Server> server_;
-  bool dumped_ = false;
+  bool dumped_ = false, ended_ = false;
 };
 
 }  // namespace hapticd::servo

@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "errors.hpp"
@@ -31,6 +33,16 @@ long placeOf(const hapticd_column* columns, long count, const char* name) {
   return -1;
 }
 
+/// A program of the HDAPI never calls hapticd_connect.
+std::string forPrograms(std::string text) {
+  constexpr std::string_view kCall = "give hapticd_connect the name of a running one";
+  if (const size_t at = text.find(kCall); at != std::string::npos)
+    text.replace(
+        at, kCall.size(),
+        "start this program with hapticd client PROGRAM, which starts one too; $HAPTICD_NAME names a running one");
+  return text;
+}
+
 }  // namespace
 
 std::shared_ptr<Link> Link::open(const std::string& name, Facts& facts, std::string& why, int& number) {
@@ -40,7 +52,7 @@ std::shared_ptr<Link> Link::open(const std::string& name, Facts& facts, std::str
   std::unique_ptr<hapticd_client, Close> client(
       hapticd_connect(wanted != nullptr && *wanted != '\0' ? wanted : nullptr, &error));
   number = client ? 0 : errno != 0 ? errno : ECONNREFUSED;
-  if (!client) return why = error.text, nullptr;
+  if (!client) return why = forPrograms(error.text), nullptr;
   const int device = name.empty() ? 0 : hapticd_device(client.get(), name.c_str());
   if (device < 0 || hapticd_device_name(client.get(), device) == nullptr) {
     why = "the daemon has no device \"" + name + "\"; it has " + namesOf(client.get()) +

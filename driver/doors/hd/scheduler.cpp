@@ -9,10 +9,13 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <string>
 
 #include "errors.hpp"
+#include "facts.hpp"
 #include "pacer.hpp"
 #include "units.hpp"
 
@@ -47,6 +50,21 @@ unsigned listeningTime(bool real_time, double rate) {
     hintOnce("HAPTICD_LISTEN is not a number of microseconds, expected 0 to 200: it is ignored");
   }
   return real_time ? static_cast<unsigned>(std::min(kMost, kShare * kUsPerSecond / rate)) : 0;
+}
+
+/// HD_INVALID_VALUE says that a rate is wrong, and not which ones are right.
+void tellRates(double wanted, double daemon) {
+  constexpr int kShown = 6;
+  char text[256];
+  int at =
+      std::snprintf(text, sizeof text,
+                    "hdSetSchedulerRate(%.0f) is refused: callbacks run in ticks of the daemon, which has %.0f Hz\n"
+                    "  fix: one of %.0f",
+                    wanted, daemon, daemon);
+  for (int every = 2; every <= kShown && at > 0 && static_cast<size_t>(at) < sizeof text; ++every)
+    at += std::snprintf(text + at, sizeof text - static_cast<size_t>(at), ", %.0f", std::round(daemon / every));
+  hintOnce(
+      keptForever(std::string(text) + ", ... (the daemon's rate over a whole number), or servo.rate in the scene"));
 }
 
 }  // namespace
@@ -210,7 +228,9 @@ bool Scheduler::isScheduled(HDSchedulerHandle handle, bool wait) {
 }
 
 bool Scheduler::setRate(double rate) {
-  if (!(rate > 0) || rate > pacer_.rate()) return false;
+  const double daemon = pacer_.rate(), every = std::round(daemon / rate);
+  // Rates are whole numbers: 333 and 334 both mean every third tick of 1000.
+  if (!(rate > 0) || rate > daemon || std::abs(daemon / every - rate) >= 1) return tellRates(rate, daemon), false;
   wanted_rate_ = rate;
   return true;
 }

@@ -12,6 +12,8 @@
 #include <boost/asio/write.hpp>
 #include <vector>
 
+#include "document/json_text.hpp"
+
 namespace hapticd::view {
 
 namespace {
@@ -103,8 +105,7 @@ class DaemonImpl final : public Daemon {
   void answer() {
     size_t begin = 0;
     for (size_t end; (end = in_.find('\n', begin)) != std::string::npos; begin = end + 1) {
-      Json json = Json::parse(in_.begin() + static_cast<std::ptrdiff_t>(begin),
-                              in_.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
+      Json json = document::parseJson(std::string_view(in_).substr(begin, end - begin));
       if (!json.is_object()) json = refusal("the answer of the daemon cannot be read");
       if (pending_.empty()) continue;
       const Answered answered = std::move(pending_.front());

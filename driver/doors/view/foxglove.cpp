@@ -6,6 +6,7 @@
 #include <cstring>
 #include <map>
 
+#include "document/json_text.hpp"
 #include "export/ros_message.hpp"
 #include "transforms.hpp"
 
@@ -197,7 +198,7 @@ void Foxglove::sendScene() {
 }
 
 void Foxglove::onText(std::string_view text) {
-  const Json request = Json::parse(text, nullptr, false);
+  const Json request = document::parseJson(text);
   if (!request.is_object()) return;
   const std::string op = request.contains("op") && request["op"].is_string() ? request["op"] : "";
   const auto number = [](const Json& from, const char* key) {

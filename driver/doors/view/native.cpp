@@ -8,6 +8,7 @@
 #include <map>
 #include <string_view>
 
+#include "document/json_text.hpp"
 #include "lead.hpp"
 #include "mesh.hpp"
 #include "playback.hpp"
@@ -204,7 +205,7 @@ void Native::askBodies() {
 }
 
 void Native::onText(std::string_view text) {
-  Json request = Json::parse(text, nullptr, false);
+  Json request = document::parseJson(text);
   const bool good = request.is_object() && request.contains("do") && request["do"].is_string();
   const Json id = request.is_object() && request.contains("id") ? request["id"] : Json();
   if (!good) return answer(id, {{"ok", false}, {"error", "expected an object of JSON with \"do\" and \"id\""}});

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "document/json_text.hpp"
 #include "mesh.hpp"
 
 namespace hapticd::view {
@@ -52,7 +53,7 @@ Result<void> Stage::open() {
 
 void Stage::adopt(std::unique_ptr<RowSource> rows) {
   rows_ = std::move(rows);
-  about_ = Json::parse(rows_->aboutJson(), nullptr, false);
+  about_ = document::parseJson(rows_->aboutJson());
   if (!about_.is_object()) about_ = Json::object();
   meshes_.clear();
   live_.clear();

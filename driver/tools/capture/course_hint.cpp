@@ -110,13 +110,34 @@ std::string rate(const codec::Wire& wire, const DecodedReports& reports, double 
   return text;
 }
 
+/// The arm's own clock against wire.rate: one of the two is in other units.
+std::string clock(const codec::Wire& wire, const DecodedReports& reports) {
+  if (fieldOf(wire, Role::kTime) == nullptr || wire.exchange == codec::Exchange::kPoll || !(wire.rate > 0)) return "";
+  std::vector<double> between;
+  for (size_t i = 1; i < reports.size(); ++i)
+    if (reports[i]->state.clock > reports[i - 1]->state.clock)  // it begins anew
+      between.push_back(reports[i]->state.clock - reports[i - 1]->state.clock);
+  if (between.size() < kFewestReports) return "";
+  std::nth_element(between.begin(), between.begin() + static_cast<long>(between.size() / 2), between.end());
+  const double period = between[between.size() / 2], times = period * wire.rate;
+  constexpr double kFast = 0.67, kSlow = 1.34;
+  if (times > kFast && times < kSlow) return "";
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "the arm's clock grows by %.3g s from one report to the next (median), and wire.rate %g is one each "
+                "%.3g s; give rate: %.3g, or a scale of time that is %.3g times %s\n",
+                period, wire.rate, 1 / wire.rate, 1 / period, times > 1 ? times : 1 / times,
+                times > 1 ? "smaller" : "larger");
+  return text;
+}
+
 }  // namespace
 
 std::string courseHints(const codec::Wire& wire, const Decoded& decoded, double least_rate) {
   const DecodedReports reports = goodOnes(decoded);
   if (reports.size() < kFewestReports) return "";
   return flags(wire, reports) + starts(wire, reports) + counter(wire, decoded, reports) +
-         rate(wire, reports, least_rate);
+         rate(wire, reports, least_rate) + clock(wire, reports);
 }
 
 }  // namespace hapticd::capture

@@ -31,6 +31,23 @@ std::string idIsMissing(int id) {
          " in front of each, or leave wire.input id out\n";
 }
 
+/// They do begin with the id, which size does not count.
+std::string sizeCountsTheId(const codec::Wire& wire) {
+  return "each begins with " + hexByte(wire.input.id) +
+         ", the report id, and has one byte too few: size does not count "
+         "the id; give wire.input size: " +
+         std::to_string(wire.input.size - 1) + " (it is " + std::to_string(wire.input.size) + ")\n";
+}
+
+/// Nearly all bad reports have one byte less than expected, and begin with the id.
+bool idWasCounted(const codec::Wire& wire, const Decoded& decoded) {
+  if (wire.input.id < 0 || decoded.bad.size() < kRepeated || 2 * decoded.good() > decoded.reports.size()) return false;
+  const auto counted = std::count_if(decoded.bad.begin(), decoded.bad.end(), [&](const BadReport& bad) {
+    return bad.wrong == nullptr && bad.bytes.size() == wire.input.size && bad.bytes.front() == wire.input.id;
+  });
+  return 10 * counted >= 9 * static_cast<std::ptrdiff_t>(decoded.bad.size());
+}
+
 /// Every bad report is of one and the same wrong size.
 bool allOfOneSize(const Decoded& decoded) {
   return !decoded.bad.empty() && decoded.good() == 0 &&
@@ -172,6 +189,7 @@ std::string hexByte(int byte) {
 
 std::string layoutHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded) {
   if (wire.framing.used) return "";
+  if (capture.text && idWasCounted(wire, decoded)) return sizeCountsTheId(wire);
   if (decoded.good() == 0 && linesLackTheId(wire, capture)) return idIsMissing(wire.input.id);
   if (const std::string other = otherIdHint(wire, decoded); !other.empty()) return other;
   if (capture.text) return textHint(wire, capture, decoded);

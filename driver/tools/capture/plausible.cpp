@@ -68,6 +68,17 @@ std::string jumps(const Course& course, const codec::Wire& wire, const ArmFacts&
          " times: look at its byte order (endian), its first byte (at), and the sign and width of its type";
 }
 
+/// Positions that wrap have no known zero, but the way between the stops is known.
+std::string tooLongAWay(const Course& course, Stops stops) {
+  stops.placed = false;
+  if (!stops.given || course.at.empty() || !leavesStops(course.at, stops)) return "";
+  const double way = course.most - course.least, room = stops.high - stops.low;
+  return "moves over " + number(way) + " rad, and between its arm.limits are " + number(room) +
+         " rad: scale is at least " + number(way / room) +
+         " times too large: is it in rad (for degrees: scale_degrees), with the turns of the motor in one turn of the "
+         "joint?";
+}
+
 /// Joints that all moved, and none of them far: a scale that is too small has no other sign.
 std::string shortWays(const std::map<size_t, Course>& courses, const ArmFacts& arm) {
   constexpr double kShort = 0.4, kMoved = 0.01;  // of the way between the stops
@@ -106,7 +117,8 @@ std::string implausible(const codec::Wire& wire, const ArmFacts& arm, const Deco
     const double round = field.wraps ? std::ldexp(std::abs(field.scale), field.bits) : 0;
     for (const DecodedReport& report : decoded.reports)
       if (report.verdict == codec::Verdict::kGood) course.add(report.state.position[field.index], round);
-    const std::string wrong = field.wraps ? "" : oddCourse(wire, field, arm, course);
+    const std::string wrong =
+        field.wraps ? tooLongAWay(course, stopsOf(arm, field.index)) : oddCourse(wire, field, arm, course);
     if (!wrong.empty()) text += "joint " + std::to_string(field.index + 1) + ": " + wrong + "\n";
   }
   return text.empty() ? shortWays(courses, arm) : text;

@@ -2,6 +2,7 @@
 #include "capture/report_table.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "capture/resync.hpp"
 #include "codec/framer.hpp"
 
 namespace hapticd::capture {
@@ -80,13 +82,22 @@ class Reader {
     if (text) return report(bytes, transfer.time, index + 1);
     // Raw bytes without marks: one report after the other.
     const size_t size = wire_.input.bytes();
-    for (size_t at = 0; at < bytes.size(); at += size)
+    for (size_t at = 0; at < bytes.size(); at += size) {
+      at = skipOddBytes(wire_, bytes, at, [&](std::span<const uint8_t> odd) { oddBytes(odd, transfer.time, at); });
       report(bytes.subspan(at, std::min(size, bytes.size() - at)), transfer.time, at + size);
+    }
   }
 
   Decoded decoded;
 
  private:
+  /// A report that is too short, or bytes that are none: the rest of one at the begin.
+  void oddBytes(std::span<const uint8_t> bytes, double time, size_t at) {
+    if (bytes[0] == wire_.input.id && bytes.size() < 2 * wire_.input.bytes())
+      return report(bytes, time, at + bytes.size());
+    (decoded.reports.empty() && decoded.others == 0 ? decoded.head : decoded.lost) += bytes.size();
+  }
+
   void stream(const Transfer& transfer, bool text, size_t index) {
     const size_t packet = text ? transfer.bytes.size() : wire_.framing.packet;
     const std::span<const uint8_t> bytes(transfer.bytes);
@@ -274,6 +285,12 @@ Decoded decodeCapture(const codec::Wire& wire, const Capture& capture) {
   return std::move(decoded);
 }
 
+/// The fewest digits that read back as the same number.
+static std::string shortest(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
 std::string csvOf(const codec::Wire& wire, size_t joints, const Decoded& decoded) {
   const std::vector<Column> columns = columnsOf(wire.input, joints);
   std::string text = "report,time,verdict";
@@ -286,8 +303,8 @@ std::string csvOf(const codec::Wire& wire, size_t joints, const Decoded& decoded
     if (one.time >= 0) std::snprintf(number, sizeof number, "%.6f", one.time), text += number;
     text += std::string(",") + wordOf(one.verdict);
     for (const Column& column : columns) {
-      std::snprintf(number, sizeof number, ",%.9g", valueOf(one.state, column));
-      text += one.verdict == Verdict::kGood ? number : ",";
+      text += ',';
+      if (one.verdict == Verdict::kGood) text += shortest(valueOf(one.state, column));
     }
     text += one.wrong.empty() ? ",\n" : ",\"" + one.wrong + "\"\n";
   }

@@ -39,18 +39,30 @@ void Saturation::look(const codec::Wire& wire, bool to_arm, const std::vector<st
     if (field == nullptr || (field->wraps && std::isfinite(values[i]))) continue;
     const auto [least, most] = rangeOf(*field);
     const double half = std::abs(field->scale) / 2;  // what rounding takes away is no loss
-    if (values[i] >= least - half && values[i] <= most + half) continue;
-    const auto known =
-        std::find_if(columns_.begin(), columns_.end(), [&](const Column& column) { return column.name == columns[i]; });
-    if (known != columns_.end()) {
-      ++known->further;
+    const double motor =
+        to_arm && field->role == Role::kTorque && field->index < motors_.size() ? motors_[field->index] : 0;
+    char text[240];
+    if (values[i] >= least - half && values[i] <= most + half) {
+      if (!(motor > 0) || std::abs(values[i]) <= motor + half) continue;
+      std::snprintf(text, sizeof text,
+                    "line %d: %s: %g N m is above arm.max_torque of joint %d, %g: a run never asks for it", line,
+                    columns[i].c_str(), values[i], field->index + 1, motor);
+      keep(columns[i], text);
       continue;
     }
-    char text[240];
     std::snprintf(text, sizeof text, "line %d: %s: %g is beyond what its field can carry, %g to %g; sent as %g", line,
                   columns[i].c_str(), values[i], least, most, std::clamp(values[i], least, most));
-    columns_.push_back({columns[i], text});
+    keep(columns[i], text);
   }
+}
+
+void Saturation::keep(const std::string& column, const std::string& sentence) {
+  const auto known =
+      std::find_if(columns_.begin(), columns_.end(), [&](const Column& other) { return other.name == column; });
+  if (known == columns_.end())
+    columns_.push_back({column, sentence});
+  else
+    ++known->further;
 }
 
 std::vector<std::string> Saturation::told() const {

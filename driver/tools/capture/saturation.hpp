@@ -2,6 +2,7 @@
 /// Numbers that do not fit into the field that carries them.
 #pragma once
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "codec/wire.hpp"
@@ -11,6 +12,9 @@ namespace hapticd::capture {
 /// Numbers of many rows that are sent as other numbers, column by column.
 class Saturation {
  public:
+  /// @param motors [N m] greatest torques of the joints; empty: not known
+  explicit Saturation(std::vector<double> motors = {}) : motors_(std::move(motors)) {}
+
   /// [main] One row, as encodeRow() takes it. @param to_arm an order; otherwise as the arm would send it
   void look(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns, const double* values,
             int line);
@@ -24,6 +28,8 @@ class Saturation {
     std::string name, first;
     size_t further = 0;
   };
+  void keep(const std::string& column, const std::string& sentence);
+  std::vector<double> motors_;
   std::vector<Column> columns_;
 };
 

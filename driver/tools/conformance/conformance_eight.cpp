@@ -14,7 +14,7 @@ using Positions = std::vector<Vector3d>;  ///< of all probes in one step
 
 constexpr uint32_t kProbes = 8;
 /// [bytes] Behind a single record, which ends 8 bytes before what may be guarded: they are looked at after each step.
-constexpr size_t kBehindRecord = 8;
+constexpr size_t kBehind = 8;
 
 /// One step of the run.
 struct Together {
@@ -51,7 +51,7 @@ std::unique_ptr<Subject> guardedSubject(const Recipe& recipe, uint32_t probes, s
   Made made(recipe, probes);
   error = made.error;
   if (!error.empty()) return nullptr;
-  if (probes == 1) made.subject->widen(kBehindRecord);
+  if (probes == 1) made.subject->widen(kBehind);
   made.subject->reserve(probes);
   return std::move(made.subject);
 }

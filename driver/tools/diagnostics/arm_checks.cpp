@@ -93,7 +93,8 @@ std::vector<Finding> checkArm(const std::string& file, host::Catalog& catalog) {
   const auto found = controlsOfFile(file, catalog, problems);
   if (!found)
     return {{file, Verdict::kFail, problems.empty() ? "cannot be used" : problems.front().text(),
-             "the arm cannot be opened", "hapticd check " + file}};
+             "no run opens this arm",
+             "correct that; hapticd check " + file + " shows every problem of the file and its module"}};
   if (found->simulated) return {{found->arm, Verdict::kOk, "a simulated arm has no motors", "", ""}};
   std::vector<Finding> findings;
   for (const auto& one : {missing(*found), withoutRule(*found, file)})

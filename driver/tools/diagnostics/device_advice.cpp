@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "diagnostics/limit_advice.hpp"
+#include "diagnostics/motor_advice.hpp"
 #include "diagnostics/node_path.hpp"
 #include "diagnostics/safety_advice.hpp"
 #include "diagnostics/travel_advice.hpp"
@@ -68,7 +69,7 @@ void massesAtTheEnds(const Node& root, const std::string& file, document::Proble
       "is pushed up; expected one [x, y, z] for each link, in m from its far end, in its frame");
 }
 
-/// An arm cannot be held for its calibration where its stops do not let it be.
+/// Warns if the arm would be calibrated in a pose that lies beyond its stops: nobody can hold it there.
 void poseBeyondStops(const Node& root, const scene::Device& device, document::Problems& warnings) {
   const Node* pose = find(root, {"parameters", "calibration", "pose"});
   const scene::Value* limits = nullptr;
@@ -122,6 +123,7 @@ document::Problems adviseDevice(const std::filesystem::path& file, host::Catalog
     poseBeyondStops(*root, *loaded.device, warnings);
     adviseWire(*root, *loaded.device, (*arm)->kinematics().joint_count, warnings);
     adviseTravel(*root, *loaded.device, **arm, warnings);
+    adviseMotors(*root, *loaded.device, (*arm)->kinematics().joint_count, warnings);
   }
   document::sortByPlace(warnings);
   return warnings;

@@ -8,7 +8,9 @@
 
 #include "diagnostics/enable_button.hpp"
 #include "document/node.hpp"
+#include "host/call_trail.hpp"
 #include "host/device_instance.hpp"
+#include "host/kinematics_check.hpp"
 #include "scene/device_draft.hpp"
 
 namespace hapticd::diagnostics {
@@ -65,33 +67,81 @@ std::vector<std::string> linesOf(const std::string& text) {
   return lines;
 }
 
+/// As DeviceInstance speaks of what its module is, and not of what it was given.
+constexpr const char* kOfModule = "module '";
+
+/// An error of the module itself names nothing of the file: it stands where the file names the module.
+void placeAtModule(const std::string& error, const Node& root, const std::string& file, document::Problems& problems) {
+  const Node* module = root.find("module");
+  const Node& at = module != nullptr ? *module : root;
+  for (const std::string& line : linesOf(error)) document::report(problems, file, at.line, at.column, "module", line);
+}
+
 /// What a module says of its parameters, each where it stands in the file.
-void placeComplaints(const std::string& error, const Node& parameters, const std::string& file,
+void placeComplaints(const std::string& error, const Node& parameters, const Node& root, const std::string& file,
                      const document::Problems& known, document::Problems& problems) {
   for (const std::string& message : linesOf(error)) {
     size_t begin = 0;
     const std::string key = keyIn(message, parameters, begin);
     const Node* at = walk(&parameters, key);
     if (follows(key, known)) continue;
+    if (key.empty() && message.find(kOfModule) != std::string::npos) {
+      placeAtModule(message, root, file, problems);
+      continue;
+    }
     const std::string what = key.empty() ? message : message.substr(begin + key.size() + 2);
     document::report(problems, file, at->line, at->column, key.empty() ? "parameters" : "parameters." + key, what);
   }
 }
 
+/// What a child said that made the instance: "+", then a line for each doubt; "-", then the error.
+constexpr char kMade = '+', kNotMade = '-';
+
+std::string madeInChild(const scene::Device& device, host::Trail& trail) {
+  host::followCalls(&trail);
+  const auto made = host::DeviceInstance::create(device, nullptr);
+  if (!made) return kNotMade + made.error();
+  std::string said(1, kMade);
+  if (const std::string wrong = host::wrongInverse((*made)->kinematics(), (*made)->handle()); !wrong.empty())
+    said += wrong + "\n";
+  for (const std::string& doubt : host::doubtsAboutKinematics((*made)->kinematics(), (*made)->handle()))
+    said += doubt + "\n";
+  return said;
+}
+
 }  // namespace
 
-document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& catalog,
-                             const document::Problems& known) {
+ModuleTrial tryModule(const scene::Device& device) {
+  constexpr int kLimitMs = 10'000;
+  host::Trail trail;
+  const auto said = host::runInChild([&] { return madeInChild(device, trail); }, kLimitMs);
+  if (!said) {
+    const std::string call = trail.call();
+    return {"its module '" + device.module + "' " + said.error() + (call.empty() ? "" : ", in " + call + "()") +
+                "; correct it in " + device.library.filename().string() + "; hapticd device check tries every call",
+            {}};
+  }
+  if (said->front() == kNotMade) return {said->substr(1), {}};
+  return {"", linesOf(said->substr(1))};
+}
+
+document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& catalog, const document::Problems& known,
+                             document::Problems* warnings) {
   document::Problems problems;
   const auto draft = scene::deviceDraft(file, catalog);
   if (!draft) return problems;  // a scene, or its module is not known
-  const auto made = host::DeviceInstance::create(*draft, nullptr);
+  const ModuleTrial trial = tryModule(*draft);
   document::Problems unread;  // told by who loaded the file
   const auto root = document::parseFile(file, unread);
-  const Node* parameters = root ? root->find("parameters") : nullptr;
-  if (parameters == nullptr) return problems;
+  if (!root) return problems;
+  const Node* parameters = root->find("parameters");
   checkEnableButton(*root, file.string(), problems);
-  if (!made) placeComplaints(made.error(), *parameters, file.string(), known, problems);
+  if (parameters != nullptr && !trial.error.empty())
+    placeComplaints(trial.error, *parameters, *root, file.string(), known, problems);
+  else if (!trial.error.empty() && known.empty())
+    placeAtModule(trial.error, *root, file.string(), problems);
+  for (const std::string& doubt : trial.doubts)
+    if (warnings != nullptr) placeAtModule(doubt, *root, file.string(), *warnings);
   document::sortByPlace(problems);
   return problems;
 }

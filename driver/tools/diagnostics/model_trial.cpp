@@ -97,12 +97,17 @@ void reportEnd(const std::string& how, const host::Trail& trail, const scene::Sc
                        "; hapticd plugin check FILE.so looks for the cause");
 }
 
-std::string tryAll(const scene::Scene& scene, double max_force, host::Trail& trail) {
+std::string tryAll(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound, host::Trail& trail) {
   Remarks problems, warnings;
   host::Packer claims;
   for (size_t i = 0; i < scene.models.size(); ++i) {
     double stiffness = 0;
     bool idle = false;
+    if (i < unsound.size() && unsound[i]) {
+      claims.number(0.0);
+      claims.number(uint32_t{0});
+      continue;
+    }
     const auto log = [&](int level, const std::string&, const std::string& text) {
       if (level == HSP_LOG_WARNING) warnings.add(i, text);
     };
@@ -126,11 +131,11 @@ std::string tryAll(const scene::Scene& scene, double max_force, host::Trail& tra
 
 }  // namespace
 
-ModelTrial tryModels(const scene::Scene& scene, double max_force) {
+ModelTrial tryModels(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound) {
   ModelTrial trial;
   if (scene.models.empty()) return trial;
   host::Trail trail;
-  const auto told = host::runInChild([&] { return tryAll(scene, max_force, trail); }, kTrialLimitMs);
+  const auto told = host::runInChild([&] { return tryAll(scene, max_force, unsound, trail); }, kTrialLimitMs);
   if (!told) {
     reportEnd(told.error(), trail, scene, trial.problems);
     return trial;

@@ -17,6 +17,7 @@ struct ModelTrial {
 /// [main] Creates and activates every model in a child process, one after the other, and collects what the plugins
 /// object to. A crash or a hang becomes a problem too.
 /// @param max_force [N] that any arm of the run lets through to the hand (servo::maxForceOf); 0: unknown
-ModelTrial tryModels(const scene::Scene& scene, double max_force);
+/// @param unsound models that are left out, by number: what is known of them is wrong; their stiffness counts as 0
+ModelTrial tryModels(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound = {});
 
 }  // namespace hapticd::diagnostics

@@ -2,7 +2,7 @@
 #include "diagnostics/motor_reach.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -19,15 +19,18 @@ bool within(const Eigen::Matrix3Xd& jacobian, const std::vector<double>& torque,
 
 /// The farthest of the eight corners at which three motors give all they have and no other has to give more.
 double farthestCorner(const Eigen::Matrix3Xd& jacobian, const std::vector<double>& torque, const Eigen::Vector3i& of) {
-  Eigen::Matrix3d rows;
-  for (int i = 0; i < 3; ++i) rows.row(i) = jacobian.col(of[i]).transpose();
-  const Eigen::FullPivLU<Eigen::Matrix3d> solver(rows);
-  if (!solver.isInvertible()) return 0;
+  constexpr double kParallel = 1e-14;  // volume of the three columns, relative to their lengths
+  const Eigen::Vector3d a = jacobian.col(of[0]), b = jacobian.col(of[1]), c = jacobian.col(of[2]);
+  const Eigen::Vector3d across[] = {b.cross(c), c.cross(a), a.cross(b)};
+  const double volume = a.dot(across[0]);
+  if (!(std::abs(volume) > kParallel * a.norm() * b.norm() * c.norm())) return 0;
   double most = 0;
   for (int signs = 0; signs < 8; ++signs) {
-    Eigen::Vector3d all;
-    for (int i = 0; i < 3; ++i) all[i] = torque[static_cast<size_t>(of[i])] * ((signs >> i & 1) != 0 ? 1 : -1);
-    const Eigen::Vector3d x = solver.solve(all);
+    Eigen::Vector3d x(0, 0, 0);  // by Cramer's rule
+    for (int i = 0; i < 3; ++i) {
+      const double all = torque[static_cast<size_t>(of[i])] * ((signs >> i & 1) != 0 ? 1 : -1);
+      x += all / volume * across[i];
+    }
     if (x.norm() > most && within(jacobian, torque, x)) most = x.norm();
   }
   return most;

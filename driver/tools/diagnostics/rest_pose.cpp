@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "diagnostics/rest_pose.hpp"
 
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -70,11 +70,17 @@ Motion motionAt(const Links& links, const std::vector<double>& q) {
   }
   Motion motion;
   motion.tip = frame * links.tool;
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(3, std::max<Eigen::Index>(3, static_cast<Eigen::Index>(q.size())));
-  for (size_t i = 0; i < q.size(); ++i) J.col(static_cast<Eigen::Index>(i)) = axes[i].cross(motion.tip - points[i]);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> parts(J, Eigen::ComputeThinU);
-  motion.values = parts.singularValues().head<3>();
-  motion.directions = parts.matrixU();
+  // The eigenvalues of J J^T, in ascending order, are the squares of the singular values of J.
+  Matrix3d square = Matrix3d::Zero();
+  for (size_t i = 0; i < q.size(); ++i) {
+    const Vector3d column = axes[i].cross(motion.tip - points[i]);
+    for (int axis = 0; axis < 3; ++axis) square.col(axis) += column[axis] * column;
+  }
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> parts(square);
+  for (int i = 0; i < 3; ++i) {
+    motion.values[i] = std::sqrt(std::max(0.0, parts.eigenvalues()[2 - i]));
+    motion.directions.col(i) = parts.eigenvectors().col(2 - i);
+  }
   return motion;
 }
 

@@ -63,8 +63,8 @@ std::string tooShort(const Field& field, const Way& said, const Way& stops, bool
       times > 1.05 ? fmt::format("a scale that is {:.3g} times as large, ", times) : std::string());
 }
 
-/// [m] From corner to corner of the box of all places of the tip, each joint in three positions.
-double extentOf(const host::DeviceInstance& arm, const std::vector<Way>& ways) {
+/// The box of all places of the tip, each joint in three positions.
+Eigen::AlignedBox3d placesOf(const host::DeviceInstance& arm, const std::vector<Way>& ways) {
   Eigen::AlignedBox3d box;
   size_t count = 1;
   for (size_t i = 0; i < ways.size(); ++i) count *= 3;
@@ -77,7 +77,35 @@ double extentOf(const host::DeviceInstance& arm, const std::vector<Way>& ways) {
     if (arm.kinematics().forward(arm.handle(), q.data(), tip.data(), turn.data()) >= 0 && tip.allFinite())
       box.extend(tip);
   }
+  return box;
+}
+
+/// [m] From corner to corner of that box.
+double extentOf(const host::DeviceInstance& arm, const std::vector<Way>& ways) {
+  const Eigen::AlignedBox3d box = placesOf(arm, ways);
   return box.isEmpty() ? 0 : box.diagonal().norm();
+}
+
+/// A sphere that the arm cannot leave bounds nothing: millimetres were meant.
+void workspaceBeyondReach(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
+                          document::Problems& warnings) {
+  constexpr size_t kMostJoints = 6;  // 729 poses
+  constexpr double kTimes = 3;
+  const Node* given = find(root, {"limits", "workspace"});
+  const size_t joints = arm.kinematics().joint_count;
+  if (given == nullptr || device.limits.workspace <= 0 || joints > kMostJoints) return;
+  const std::vector<double> limits = limitsOf(device);
+  std::vector<Way> ways(joints, Way{-M_PI, M_PI});
+  for (size_t i = 0; i < joints && limits.size() == 2 * joints; ++i) ways[i] = {limits[2 * i], limits[2 * i + 1]};
+  const Eigen::AlignedBox3d places = placesOf(arm, ways);
+  if (places.isEmpty()) return;
+  const double reach = places.min().cwiseAbs().cwiseMax(places.max().cwiseAbs()).norm();
+  if (device.limits.workspace <= kTimes * reach) return;
+  document::report(
+      warnings, device.file.string(), given->line, given->column, "limits.workspace",
+      fmt::format("{:g} m about the origin, but the tip never is farther from it than {:.2g} m, so this "
+                  "bounds nothing; expected metres: {:g} mm are {:g} m",
+                  device.limits.workspace, reach, device.limits.workspace, device.limits.workspace / 1000));
 }
 
 /// Without stops in the file its workspace is all that tells how far the arm was meant to move.
@@ -109,6 +137,7 @@ void narrowWorkspace(const Node& root, const scene::Device& device, const host::
 
 void adviseTravel(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                   document::Problems& warnings) {
+  workspaceBeyondReach(root, device, arm, warnings);
   const size_t joints = arm.kinematics().joint_count;
   const auto wire = wireOf(device, joints);
   const Node* fields = find(root, {"parameters", "wire", "input", "fields"});

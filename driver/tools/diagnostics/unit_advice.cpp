@@ -70,6 +70,32 @@ void linkTooLong(const Node* lengths, const std::string& file, document::Problem
                                most, most, most / 1000));
 }
 
+/// A link that points the other way is turned, not shorter than nothing.
+void lengthBelowZero(const Node* lengths, const std::string& file, document::Problems& warnings) {
+  for (const double length : numbersIn(lengths))
+    if (length < 0)
+      return document::report(warnings, file, lengths->line, lengths->column, "parameters.arm.lengths",
+                              fmt::format("{:g} m is below 0; expected 0 or more: signs are those of the positions and "
+                                          "torques",
+                                          length));
+}
+
+/// A zero that is many turns away was given in degrees, or in counts.
+void offsetBeyondATurn(const Node* fields, const std::string& file, document::Problems& warnings) {
+  if (fields == nullptr || !fields->isSequence()) return;
+  for (size_t i = 0; i < fields->items.size(); ++i) {
+    const Node *is = fields->items[i].find("is"), *offset = fields->items[i].find("offset");
+    if (is == nullptr || is->scalar != "position" || offset == nullptr) continue;
+    const double value = document::toNumber(offset->scalar).value_or(0);
+    if (std::abs(value) <= 2 * M_PI) continue;
+    document::report(
+        warnings, file, offset->line, offset->column, fmt::format("parameters.wire.input.fields[{}].offset", i),
+        fmt::format("{:g} rad is more than a whole turn; expected rad (or m): for degrees, offset_degrees: "
+                    "{:g}",
+                    value, value));
+  }
+}
+
 void mountFarAway(const Node* position, const std::string& file, document::Problems& warnings) {
   constexpr double kFar = 5;  // m: farther than anybody reaches
   const double most = largest(numbersIn(position));
@@ -112,6 +138,8 @@ void adviseUnits(const Node& root, const std::string& file, document::Problems& 
   beyondATurn(find(root, {"parameters", "calibration", "pose"}), "parameters.calibration.pose", file, warnings);
   twistInDegrees(find(root, {"parameters", "arm", "dh"}), file, warnings);
   linkTooLong(find(root, {"parameters", "arm", "lengths"}), file, warnings);
+  lengthBelowZero(find(root, {"parameters", "arm", "lengths"}), file, warnings);
+  offsetBeyondATurn(find(root, {"parameters", "wire", "input", "fields"}), file, warnings);
   mountFarAway(find(root, {"mount", "position"}), file, warnings);
   quaternionTurnedRound(find(root, {"mount", "orientation"}), file, warnings);
 }

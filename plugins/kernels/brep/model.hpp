@@ -54,6 +54,20 @@ struct BodyTree {
   std::vector<RowBox> rows;       ///< by the number of the row; all but meshes
   std::vector<RowSlab> slabs;     ///< the same of meshes
 
+  /// [rt] Asks for the memory of a child of a node that will be looked at soon.
+  void fetchAhead(std::int32_t child, std::int32_t row) const noexcept {
+    const auto at = static_cast<std::size_t>(row);
+    if (child >= 0) {
+      __builtin_prefetch(&tree.node(child).lo);
+      __builtin_prefetch(&tree.node(child).child);
+    } else if (!rows.empty()) {
+      __builtin_prefetch(&rows[at].center);
+      __builtin_prefetch(&rows[at].outer);
+    } else {
+      __builtin_prefetch(&slabs[at]);
+    }
+  }
+
   template <class Shape>
   const std::vector<Shape>& shapes() const noexcept {
     if constexpr (std::is_same_v<Shape, RowSlab>)

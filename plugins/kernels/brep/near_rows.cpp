@@ -34,6 +34,7 @@ bool NearRows<Choice>::collect(const BodyTree& body, const Eigen::Vector3d& p, d
       const std::int32_t child = node.child[i];
       if (bound <= reach2 && child >= 0) {
         stack[static_cast<std::size_t>(depth++)] = child;
+        body.fetchAhead(child, 0);
         continue;
       }
       if (bound <= reach2) {

@@ -13,11 +13,11 @@ namespace hapticd::brep {
 /// What bounds the rows of elements, and how many are worth a look in one tick. A look at a spline leaf is dear.
 struct ElementLimits {
   using Shape = RowBox;
-  static constexpr int kMostFours = 8;        ///< of rows
-  static constexpr int kMostCandidates = 64;  ///< rows within reach, of which the nearest are taken
-  static constexpr int kMostNodes = 40;       ///< of the tree, looked at in one gathering
-  static constexpr int kFew = 12, kMany = 32;
-  static constexpr double kWorthIt = 2.5;  ///< ways of a tick, below which gathering costs more than it spares
+  static constexpr int kMostFours = 8;         ///< of rows
+  static constexpr int kMostCandidates = 128;  ///< rows within reach, of which the nearest are taken
+  static constexpr int kMostNodes = 32;        ///< of the tree, looked at in one gathering
+  static constexpr int kFew = 8, kMany = 20;
+  static constexpr double kWorthIt = 1.5;  ///< ways of a tick, below which gathering costs more than it spares
   static constexpr bool kLearns = true;    ///< a distance that was measured bounds a row closer than its shape
 };
 /// The same of triangles, where it is cheap.

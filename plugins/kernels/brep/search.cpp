@@ -227,7 +227,11 @@ void Search::searchTree(const BodyTree& body, std::uint32_t place, const Vector3
     ++best.nodes;
     const BoxNode& node = body.tree.node(entry.child);
     const int count = sortChildren(node, boxDistances(node, probe), run.within2(), children, run.others2);
-    for (int i = 0; i < count; ++i) stack[static_cast<std::size_t>(depth++)] = children[static_cast<std::size_t>(i)];
+    for (int i = 0; i < count; ++i) {
+      const Entry& child = children[static_cast<std::size_t>(i)];
+      stack[static_cast<std::size_t>(depth++)] = child;
+      body.fetchAhead(child.child, child.row);
+    }
   }
 }
 
@@ -260,6 +264,13 @@ void Search::searchPlaces(const Vector3d& p, Run& run) noexcept {
     const int count = sortChildren(node, boxDistances(node, probe), run.within2(), children, run.others2);
     for (int i = 0; i < count; ++i) stack[static_cast<std::size_t>(depth++)] = children[static_cast<std::size_t>(i)];
   }
+}
+
+void Search::searchWhole(const Vector3d& p, Run& run) noexcept {
+  if (model_.placements().size() == 1)
+    searchTree(model_.body(model_.placements()[0].body), 0, model_.placements()[0].toBody(p), run);
+  else
+    searchPlaces(p, run);
 }
 
 /// Searches with the limit, and without it where that leaves nothing: the last foot may be one that a gap between a
@@ -333,13 +344,10 @@ const Nearest& Search::nearest(const Vector3d& p, const SearchBudget& budget) no
   moveNear(p);
   begin(p, run);
   if (goesOn(p, run)) return last_;
-  if (!searchNear(p, run))
-    searchWithin(run, [&] {
-      if (model_.placements().size() == 1)
-        searchTree(model_.body(model_.placements()[0].body), 0, model_.placements()[0].toBody(p), run);
-      else
-        searchPlaces(p, run);
-    });
+  if (!searchNear(p, run)) {
+    searchWithin(run, [&] { searchWhole(p, run); });
+    whole_nodes_ = run.best.nodes;
+  }
   finish(run);
   last_ = run.best;
   last_p_ = p;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernels/brep/model.hpp"
+#include "kernels/brep/near_places.hpp"
 #include "kernels/brep/near_rows.hpp"
 
 namespace hapticd::brep {
@@ -99,8 +100,13 @@ class Search {
   template <class Near>
   bool gatherNear(Near& near, const Eigen::Vector3d& p, double way, double distance) noexcept;
   template <class Near>
+  void lookAtRows(Near& near, std::uint32_t place, const Eigen::Vector3d& p, Run& run) noexcept;
+  template <class Near>
+  void lookAtAll(Near& near, const Eigen::Vector3d& p, Run& run) noexcept;
+  template <class Near>
   bool lookAtNear(Near& near, const Eigen::Vector3d& p, Run& run) noexcept;
   void searchTree(const BodyTree& body, std::uint32_t place, const Eigen::Vector3d& p, Run& run) noexcept;
+  void searchWhole(const Eigen::Vector3d& p, Run& run) noexcept;
   void searchPlaces(const Eigen::Vector3d& p, Run& run) noexcept;
   template <class Whole>
   static void searchWithin(Run& run, const Whole& whole) noexcept;
@@ -116,9 +122,11 @@ class Search {
   const Model& model_;
   Nearest last_;
   Eigen::Vector3d last_p_{0, 0, 0};
-  NearElements near_;     ///< of a model that is one body, in its frame
-  NearTriangles nearby_;  ///< the same of one mesh
-  double reach_ = 0;      ///< [m] by which their rows reach beyond the nearest point
+  NearElements near_;       ///< of a model that is one body, in its frame
+  NearTriangles nearby_;    ///< the same of one mesh
+  NearPlaces near_places_;  ///< of several placements, in the frame of the model
+  int whole_nodes_ = 0;     ///< of the last search of the whole model
+  double reach_ = 0;        ///< [m] by which their rows reach beyond the nearest point
 };
 
 }  // namespace hapticd::brep

@@ -62,6 +62,16 @@ class RowBounds {
   double taken_ = 0;
 };
 
+/// The only placement of a model, in whose frame p is.
+template <class Near>
+bool gatherFrom(const Model& model, Near& near, const Vector3d& p, double reach) noexcept {
+  return near.gather(model.body(model.placements()[0].body), p, reach);
+}
+/// Several.
+bool gatherFrom(const Model& model, NearPlaces& near, const Vector3d& p, double reach) noexcept {
+  return near.gather(model, p, reach);
+}
+
 }  // namespace
 
 /// Gathers the rows about p again. What they left of the reach says how far to reach the next time.
@@ -72,7 +82,7 @@ bool Search::gatherNear(Near& near, const Vector3d& p, double way, double distan
     reach_ = reach_ > 0 ? 1.01 * reach_ : Limits::kWorthIt * way;
     return false;
   }
-  if (!near.gather(model_.body(model_.placements()[0].body), p, distance + reach_)) {
+  if (!gatherFrom(model_, near, p, distance + reach_)) {
     reach_ *= 0.5;
     return false;
   }
@@ -85,16 +95,17 @@ bool Search::gatherNear(Near& near, const Vector3d& p, double way, double distan
   return true;
 }
 
-/// Looks at the rows about the probe, at the nearest one first. False: something else may be nearer, or just as near.
+/// Looks at the rows of one placement about the probe, at the nearest one first.
 template <class Near>
-bool Search::lookAtNear(Near& near, const Vector3d& p, Run& run) noexcept {
-  const BodyTree& body = model_.body(model_.placements()[0].body);
+void Search::lookAtRows(Near& near, std::uint32_t place, const Vector3d& p, Run& run) noexcept {
+  const BodyTree& body = model_.body(model_.placements()[place].body);
+  const Element first = run.first_place == place ? run.first : Element();
   const auto lookAtRow = [&](int four, int lane, double bound) {
     const ElementRow row = near.row(four, lane);
     double known = std::numeric_limits<double>::infinity();
     for (std::uint32_t i = row.first; i < row.first + row.count; ++i)
       known =
-          std::min(known, body.elements[i] == run.first ? run.first_least2 : look(0, body.elements[i], p, bound, run));
+          std::min(known, body.elements[i] == first ? run.first_least2 : look(place, body.elements[i], p, bound, run));
     near.learn(four, lane, known);
   };
   RowBounds<Near> bounds(near, BoxProbe(body.tree, p));
@@ -112,6 +123,26 @@ bool Search::lookAtNear(Near& near, const Vector3d& p, Run& run) noexcept {
       }
   }
   run.others2 = std::min(run.others2, bounds.least());
+}
+
+template <class Near>
+void Search::lookAtAll(Near& near, const Vector3d& p, Run& run) noexcept {
+  lookAtRows(near, 0, p, run);
+}
+
+/// The placement of the last point first: the nearest one is most likely there.
+template <>
+void Search::lookAtAll(NearPlaces& near, const Vector3d& p, Run& run) noexcept {
+  for (const bool again : {false, true})
+    for (int i = 0; i < near.count(); ++i)
+      if (const std::uint32_t place = near[i].place; (place == last_.place) != again)
+        lookAtRows(near[i].elements, place, model_.placements()[place].toBody(p), run);
+}
+
+/// Looks at what is about the probe. False: something else may be nearer, or just as near.
+template <class Near>
+bool Search::lookAtNear(Near& near, const Vector3d& p, Run& run) noexcept {
+  lookAtAll(near, p, run);
   const double beyond = near.beyond(p);
   if (run.tied || run.restarts <= 0 || !(run.best.hit.d2 <= run.limit2)) return false;
   if (!(std::sqrt(run.best.hit.d2) * (1 + kRounding) < beyond)) return false;
@@ -131,12 +162,15 @@ bool Search::searchNear(Near& near, const Vector3d& p, double way, Run& run) noe
   return false;
 }
 
-/// A search of the rows about the probe alone, which gives what one of the whole body would give. False: it does not.
+/// A search of the rows about the probe alone, which gives what one of the whole model would give. False: it does not.
 bool Search::searchNear(const Vector3d& p_model, Run& run) noexcept {
-  if (!last_.found() || last_.exhausted || model_.placements().size() > 1) return false;
+  if (!last_.found() || last_.exhausted) return false;
+  const double way = (p_model - last_p_).norm();
+  if (model_.placements().size() > 1)
+    return whole_nodes_ >= NearPlaces::kDear && run.budget.elements > NearPlaces::kMostRows &&
+           searchNear(near_places_, p_model, way, run);
   const Placement& place = model_.placements()[0];
   const Vector3d p = place.toBody(p_model);
-  const double way = (p_model - last_p_).norm();
   if (model_.body(place.body).slabs.empty())
     return run.budget.elements > NearElements::kMostRows && searchNear(near_, p, way, run);
   return run.budget.elements > NearTriangles::kMostRows * BodyTree::kMeshRow && searchNear(nearby_, p, way, run);
@@ -148,9 +182,11 @@ void Search::moveNear(const Vector3d& p) noexcept {
     const double way = (p - last_p_).norm();
     near_.go(way);
     nearby_.go(way);
+    near_places_.go(way);
   } else {
     near_.forget();
     nearby_.forget();
+    near_places_.forget();
   }
 }
 

@@ -3,6 +3,7 @@
 /// other libraries in the same run.
 ///   bench_parts FILE.hpart...     without a file: parts made here, and bumpy balls of 100,000 and 1,000,000 triangles
 ///   bench_parts --balls           the balls alone
+///   bench_parts --four FILE.hpart an assembly of four of them
 ///   bench_parts FILE.hpart --occt FILE.step ...     the part beside Open CASCADE on the file that it was imported from
 #include <algorithm>
 #include <chrono>
@@ -229,6 +230,26 @@ void measureBeside(const Model& model, OcctPart& theirs, const char* what, const
               theirs_sum / ours_sum, farther, nearer);
 }
 
+Part readFile(const char* file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  const auto begin = Clock::now();
+  Part part = brep::readPart(std::as_bytes(std::span(bytes)), file);
+  std::printf("%s: %zu bytes, read in %.1f ms\n", file, bytes.size(), nanoseconds(Clock::now() - begin) * 1e-6);
+  return part;
+}
+
+/// Four of the part's last instance, turned and run into each other.
+Part fourOf(Part part) {
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  for (int k = 1; k < 4; ++k) {
+    brep::Instance instance = part.instances.back();
+    instance.pose = {c, -s, 0, 0.003 * k, s, c, 0, 0.001 * (k - 1), 0, 0, 1, 0.004 * k};
+    part.instances.push_back(instance);
+  }
+  return part;
+}
+
 void measure(Part part, const char* name, const char* source = nullptr) {
   const std::size_t faces = part.faces.size() + part.triangles.size();
   const auto begin = Clock::now();
@@ -238,8 +259,9 @@ void measure(Part part, const char* name, const char* source = nullptr) {
               faces, load, static_cast<double>(model.bytes()) / static_cast<double>(faces), model.leafCount(),
               model.pieceCount());
   constexpr int kTicks = 50000;
-  const auto slow = strokes(model, 1e-4, kTicks), middle = strokes(model, 3e-4, kTicks),
-             fast = strokes(model, 1e-3, kTicks);
+  const auto slowest = strokes(model, 5e-5, kTicks), slow = strokes(model, 1e-4, kTicks),
+             middle = strokes(model, 3e-4, kTicks), fast = strokes(model, 1e-3, kTicks);
+  measureWalks(model, "walk, 0.05 m/s", slowest);
   measureWalks(model, "walk, 0.1 m/s", slow);
   measureWalks(model, "walk, 0.3 m/s", middle);
   measureWalks(model, "walk, 1 m/s", fast);
@@ -278,13 +300,10 @@ int main(int count, char** files) {
     bench::measure(bench::bumpyBall(100000), "bumpy ball");
     bench::measure(bench::bumpyBall(1000000), "bumpy ball");
   }
-  for (int i = 1; i < count; ++i) {
-    std::ifstream in(files[i], std::ios::binary);
-    const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    const auto begin = bench::Clock::now();
-    brep::Part part = brep::readPart(std::as_bytes(std::span(bytes)), files[i]);
-    std::printf("%s: %zu bytes, read in %.1f ms\n", files[i], bytes.size(),
-                bench::nanoseconds(bench::Clock::now() - begin) * 1e-6);
+  const bool four = count == 3 && std::string(files[1]) == "--four";
+  for (int i = four ? 2 : 1; i < count; ++i) {
+    brep::Part part = bench::readFile(files[i]);
+    if (four) part = bench::fourOf(std::move(part));
     const bool beside = i + 2 < count && std::string(files[i + 1]) == "--occt";
     bench::measure(std::move(part), files[i], beside ? files[i + 2] : nullptr);
     if (beside) i += 2;

@@ -51,6 +51,103 @@ def foreign(folder, ask):
     check("a short STL is told its length", code != 0 and "1 triangles has 134 bytes, and this file has 133" in err, (code, out, err))
 
 
+def cube(at, size=0.04):
+    """The twelve triangles of a cube, as an STL has them."""
+    corner = [[at[k] + (size if i >> k & 1 else 0) for k in range(3)] for i in range(8)]
+    quads = ((0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5))
+    return [[corner[q[0]], corner[q[k]], corner[q[k + 1]]] for q in quads for k in (1, 2)]
+
+
+def stl(triangles):
+    body = b"".join(struct.pack("<12f2x", 0, 0, 0, *[v for p in t for v in p]) for t in triangles)
+    return struct.pack("<80sI", b"", len(triangles)) + body
+
+
+def meshes(folder, ask):
+    out_file = os.path.join(folder, "x.hpart")
+    for name, second, crosses in (("over.stl", (0.02, 0.02, 0.02), True), ("through.stl", (0.01, -0.005, 0.013), True),
+                                  ("apart.stl", (0.05, 0, 0), False), ("stacked.stl", (0, 0.04, 0), False),
+                                  ("inside.stl", None, False)):
+        more = cube(second) if second else cube((0.01, 0.01, 0.01), 0.02)
+        code, out, err = ask("import", write(folder, name, stl(cube((0, 0, 0)) + more)), "-o", out_file)
+        told = "shells pass through each other" in out
+        check(f"{name}: shells that cross are told, others not", code == 0 and told == crosses, (code, out, err))
+    code, out, err = ask("part", "info", out_file)
+    ask("import", write(folder, "a.stl", stl(cube((0, 0, 0), 40))), "-o", out_file, "--scale", "0.001")
+    code, out, err = ask("part", "info", out_file)
+    check("the unit is the scale that was given", "unit 0.001 m" in out, out)
+    ask("import", write(folder, "a.stl", stl(cube((0, 0, 0), 40))), "-o", out_file, "--fit", "0.05")
+    code, out, err = ask("part", "info", out_file)
+    check("or what it was made to fit", "unit whatever makes it fit into 0.05 m" in out, out)
+    code, out, err = ask("import", write(folder, "a.stl", stl(cube((0, 0, 0), 40))), "-o", out_file)
+    code, out, err = ask("part", "info", out_file)
+    check("a large part is given in m", "size: 40 x 40 x 40 m" in out, out)
+    code, out, err = ask("import", os.path.join(folder, "a.stl"), "-o", out_file, "--scale", "1e-9")
+    check("a part too small to be felt is warned of", "too small to be felt" in err, err)
+    code, out, err = ask("import", os.path.join(folder, "a.stl"), "-o", out_file, "--scale", "1mm")
+    check("a scale that is no number is told so", code == 2 and '"1mm" is not a number' in err, err)
+    code, out, err = ask("import", out_file, "-o", os.path.join(folder, "y.hpart"))
+    check("a part is no file to import", code == 2 and "is a part already" in err, err)
+
+
+def outputs(folder, ask):
+    """What would be written over what is read is refused, and the file stays as it was."""
+    recording, path, file = os.path.join(folder, "r.h5"), os.path.join(folder, "p.csv"), scene(folder)
+    code, out, err = ask("run", file, "--for", "0.5", "--virtual-time", "--record", recording)
+    check("a recording is made", code == 0, err)
+    write(folder, "p.csv", "t,x,y,z\n0,0,0.2,0\n0.001,0,30,0\n")
+    for words, kept, what in ((("plot", recording, "--out", recording), recording, "the recording itself"),
+                              (("trace", file, "--probe", path, "--out", file), file, "the scene itself"),
+                              (("trace", file, "--probe", path, "--out", path), path, "the probe path itself"),
+                              (("trace", file, "--probe", path, "--out", SPHERE), SPHERE, "a file of the scene's models itself")):
+        before = open(kept, "rb").read()
+        code, out, err = ask(*words)
+        check(f"{words[0]} does not write over {what}", code == 2 and what in err and open(kept, "rb").read() == before, (code, out, err))
+    code, out, err = ask("trace", file, "--probe", path, "--out", os.path.join(folder, "feet.csv"))
+    check("a path in mm is warned of", code == 0 and "row 2 is 30 m from the world's origin" in err, err)
+    whole = open(recording, "rb").read()
+    middle = len(whole) // 2
+    for name, bytes_of_it in (("cut.h5", whole[:middle]), ("hurt.h5", whole[:middle] + bytes(200_000) + whole[middle + 200_000:])):
+        code, out, err = ask("replay", write(folder, name, bytes_of_it))
+        check(f"{name}: a damaged recording is not the same to the last bit", code != 0 and ("lost" in err or "difference" in out), (code, out, err))
+        ask_plot = ask("plot", os.path.join(folder, name), "--out", os.path.join(folder, "x.svg"))
+        check(f"{name}: nor is it drawn without a word", name != "cut.h5" or "it ends at byte" in ask_plot[2] and "are lost" in ask_plot[2], ask_plot)
+
+
+def everything(folder, ask):
+    """All problems at once, whatever stage finds them."""
+    two = """hapticd: 1
+servo: {rate: fast}
+limits: {force: 3}
+hand: {kind: sine}
+models:
+  - {name: a, plugin: nurbs_rigid, parameters: {geometry: cube.stl}}
+  - {name: b, plugin: nurbs_rigid, parameters: {geometry: %s, stiffness: soft}}
+  - {name: c, plugin: nurbs_rigid, parameters: {geometry: %s, friction_static: 0.2, friction_dynamic: 0.5}}
+  - {name: d, plugin: nurbs_rigid, pose: {position: [50, 0, 0]}, parameters: {geometry: %s, stiffness: 0.8}}
+""" % (SPHERE, SPHERE, SPHERE)
+    write(folder, "cube.stl", STL)
+    code, out, err = ask("check", write(folder, "two.yaml", two))
+    for what in ("servo.rate", "limits belongs in the device file", "a mesh (STL), expected YAML", "stiffness: the text \"soft\"",
+                 "friction", "50 m from the world's origin", "0.8 N/m cannot be felt"):
+        check(f"in one check: {what}", what in out, out)
+    check("what kept checks from running is said", "some checks need these mended first" in err, err)
+    check("a name of another group is not proposed", "arm.kind" not in out, out)
+    code, out, err = ask("check", write(folder, "empty.yaml", ""))
+    check("an empty file is told what to begin with", 'a scene begins with "hapticd: 1"' in out, out)
+    for wrong, meant in ((("ctl", "stopp"), 'there is no subcommand "ctl stopp"'), (("device", "lst"), '(did you mean "list"?)'),
+                         (("plugin", "chek", "x.so"), '(did you mean "check"?)')):
+        code, out, err = ask(*wrong)
+        check(f"{' '.join(wrong)} is told", code == 2 and meant in err, err)
+    medial = "format: hapticd-model/2\nmedial:\n  points: [[[0, 0, 0], [0.1, 0]], [[0, 0, 0.1], [0.1, 0, 0.1]]]\n" \
+             "  radius: [[0.01, -0.012], [0.01]]\n  stiffness: soft\n  mass: -1\n  dampng: 1\n"
+    body = "hapticd: 1\nmodels:\n  - {name: m, plugin: mat_deformable, parameters: {geometry: m.yaml}}\n"
+    write(folder, "m.yaml", medial)
+    code, out, err = ask("check", write(folder, "body.yaml", body))
+    for what in ("dampng", "points[0][1]", "radius[0][1]", "radius[1]", "stiffness", "mass"):
+        check(f"of a model file too: {what}", what in out, out)
+
+
 def numbers(folder, ask):
     code, out, _ = ask("check", scene(folder, stiffness=0.8))
     check("a stiffness in N/mm is warned of", code == 0 and "0.8 N/m cannot be felt" in out and "1 N/mm is 1000 N/m" in out, out)
@@ -68,6 +165,9 @@ def words(folder, ask):
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     ask = program(HAPTICD, dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch))
     foreign(scratch, ask)
+    meshes(scratch, ask)
+    outputs(scratch, ask)
+    everything(scratch, ask)
     numbers(scratch, ask)
     words(scratch, ask)
 finish()

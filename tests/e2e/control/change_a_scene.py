@@ -62,10 +62,38 @@ def around_the_tip(client, ball):
         client.ask(do="disable", model="ball")
         hand.put([0.09, 0, 0])
         until(lambda: abs(client.state(ARM).position[0] - 0.09) < 0.002)
-        client.ask(do="enable", model="ball")
+        answer = client.ask(do="enable", model="ball")
+        check("enable names the model that waits, too", answer.get("waiting") == ["ball"], answer)
         first = client.streams["ticks"].written
         client.wait(first + 300, timeout=30)
         check("the same when it is enabled around the tip", largest(client, 200) == 0, largest(client, 200))
+
+
+def words_of_answers(client, folder):
+    status = client.ask(do="status")
+    check("status says where the daemon is found", status.get("name") == "changed" and status.get("socket") == os.path.join(folder, "changed.sock"), status)
+    answer = client.ask(do="add", file=write(folder, "far", [("far", 50)]))
+    warned = answer.get("warnings", [])
+    check("add warns of what check warns of", any("50 m from the world's origin" in text for text in warned), answer)
+    values = client.ask(do="get", model="far")["values"]
+    check("no parameter that has a default is null", isinstance(values.get("ripples", []), list) and [k for k, v in values.items() if v is None and k in ("center", "inertia", "velocity")] == [], values)
+    client.ask(do="remove", model="far")
+    try:
+        client.ask(do="add", file=os.path.join(folder, "ball.yaml"), model="bal")
+        told = ""
+    except hapticd.HapticdError as error:
+        told = str(error)
+    check("a model that the scene does not have is met with those that it has", 'no model "bal", expected one of ball' in told, told)
+
+
+def stopped(run, environment):
+    """A daemon that was stopped looks alive by its files."""
+    top = lambda: subprocess.run([HAPTICD, "top", "--name", "changed", "--once"], env=environment, capture_output=True, text=True, timeout=60)
+    run.send_signal(signal.SIGSTOP)
+    still = top()
+    run.send_signal(signal.SIGCONT)
+    check("top tells that it stands still", still.returncode == 1 and "stands still" in still.stderr, (still.returncode, still.stderr))
+    check("and that it goes on", until(lambda: top().returncode == 0), "")
 
 
 def permission(client, folder):
@@ -98,7 +126,9 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     with hapticd.connect("changed", folder=scratch) as client:
         around_the_tip(client, write(scratch, "ball", [("ball", 0.1)]))
         client.ask(do="remove", model="ball")
+        words_of_answers(client, scratch)
         permission(client, scratch)
+    stopped(run, environment)
     run.send_signal(signal.SIGTERM)
     check("the run ends in order", run.wait(timeout=30) == 0)
 finish()

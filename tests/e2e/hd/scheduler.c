@@ -159,9 +159,12 @@ static void rates(void) {
   check("the rate is the daemon's", rate == 1000);
   hdSetSchedulerRate(1000);
   check_error("the daemon's rate may be asked for", HD_SUCCESS);
-  hdSetSchedulerRate(300);
+  hdSetSchedulerRate(333);
+  check_error("a whole fraction of it too", HD_SUCCESS);
   hdGetIntegerv(HD_UPDATE_RATE, &rate);
   check("a lower rate is every so manyth tick", rate == 333);
+  hdSetSchedulerRate(700);
+  check_error("a rate between two of them is refused", HD_INVALID_VALUE);
   hdSetSchedulerRate(2000);
   check_error("a higher rate is refused", HD_INVALID_VALUE);
   hdSetSchedulerRate(0);

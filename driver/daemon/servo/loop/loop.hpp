@@ -42,7 +42,8 @@ class Loop {
   /// [rt] Runs until the ticks are done or a stop has ramped the forces down. Call once.
   void run() noexcept;
 
-  /// [any] One writer: what a person asks for; obeyed at the start of a tick, in order. False: too many wait.
+  /// [any] Hands over what a person asks for. Orders are obeyed in turn, at the start of a tick. Only one thread may
+  /// call this. False: the queue is full, and the order is lost.
   bool give(const Order& order) noexcept { return orders_.push(order); }
   /// [any] Orders obeyed or refused so far.
   uint64_t ordersDone() const noexcept { return orders_done_.load(std::memory_order_acquire); }

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 #include "mesh_import/mesh_edges.hpp"
@@ -30,6 +31,7 @@ class Repair {
     edges_ = meshEdges(corners_);  // flipped triangles number their edges anew
     countEdges();
     turnOutward();
+    report_.crossings = crossingsOf(points_, corners_, shell_, report_.shells);
     dropUnusedPoints();
   }
 
@@ -167,15 +169,26 @@ std::string counted(std::size_t count, const char* one, const char* many) {
   return std::to_string(count) + " " + (count == 1 ? one : many);
 }
 
+/// "0.01, 0, 0.02 m"
+std::string where(const Vector3d& p) {
+  std::string text;
+  for (int k = 0; k < 3; ++k) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%s%.4g", k > 0 ? ", " : "", p[k]);
+    text += number;
+  }
+  return text + " m";
+}
+
 }  // namespace
 
 brep::Part meshPart(const MeshFile& mesh, const MeshOptions& options, const std::string& file_name,
                     MeshReport& report) {
   Repair repair(mesh, options.scale, report);
   repair.run();
-  if (repair.corners_.empty()) throw std::invalid_argument(file_name + ": all triangles have zero area");
+  if (repair.corners_.empty()) throw std::invalid_argument("all triangles have zero area");
   brep::Part part;
-  part.source = {file_name, "", options.scale == 1 ? "m" : "scaled"};
+  part.source = {file_name, "", options.unit};
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : repair.points_) {
     part.points.push_back({p.x(), p.y(), p.z()});
@@ -220,6 +233,12 @@ std::vector<std::string> linesOf(const MeshReport& r) {
   say(r.non_manifold, "edge has more than two triangles", "edges have more than two triangles");
   say(r.unorientable, "edge has triangles with contradictory outward sides",
       "edges have triangles with contradictory outward sides");
+  if (const Crossings& c = r.crossings; c.pairs > 0)
+    lines.push_back(
+        counted(r.shells, "shell", "shells") + " pass through each other: " +
+        counted(c.pairs, "pair of triangles crosses", "pairs of triangles cross") + ", the first at " + where(c.first) +
+        "; the faces inside are felt as well: unite the bodies in the program that wrote the file (boolean union)");
+  if (!r.crossings.all_tried) lines.emplace_back("whether its shells pass through each other was not tried to the end");
   if (r.holes > 0)
     lines.push_back(counted(r.holes, "hole", "holes") + " with " + counted(r.free_edges, "free edge", "free edges"));
   return lines;

@@ -2,6 +2,7 @@
 /// Makes a part of a triangle mesh: repairs what can be repaired, and reports it.
 #pragma once
 #include "kernels/brep/part.hpp"
+#include "mesh_import/mesh_crossings.hpp"
 #include "mesh_import/mesh_file.hpp"
 
 namespace hapticd::importing {
@@ -9,6 +10,7 @@ namespace hapticd::importing {
 struct MeshOptions {
   double scale = 1;         ///< metres per unit of the file
   double smooth_angle = 0;  ///< [rad] normals are interpolated over edges that bend by less
+  std::string unit{"m"};    ///< what the file's numbers were taken for, as the part notes it
 };
 
 /// What was found in a mesh, and what was done about it.
@@ -24,6 +26,7 @@ struct MeshReport {
   bool closed = false;                    ///< it bounds a volume
   double volume = 0;                      ///< [m^3] if closed
   Eigen::Vector3d size{0, 0, 0};          ///< [m] of the box
+  Crossings crossings;                    ///< shells that pass through each other
 };
 
 /// [main] One body of triangles. `file_name` is noted in it. @throws std::invalid_argument if nothing is left of it.

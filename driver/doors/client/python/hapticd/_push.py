@@ -104,6 +104,8 @@ class ForceThread(Ending):
             if force is None:
                 self.unanswered += 1
                 continue
+            if not hasattr(force, "__len__"):
+                raise ValueError(f"the callback gave back {force!r}, expected 3 numbers (force in N, [x, y, z]) or 6 (and torque in N m)")
             if len(force) not in (3, 6):
                 raise ValueError(f"the callback gave back {len(force)} numbers, expected 3 (force in N) or 6 (and torque in N m)")
             self._lead.put(state.tick, force[:3], force[3:] if len(force) == 6 else (0.0, 0.0, 0.0), woke)

@@ -12,6 +12,8 @@
 #include "kernels/brep/part_file.hpp"
 #include "kernels/brep/search.hpp"
 #include "sample_solids.hpp"
+#include "sample_splines.hpp"
+#include "traced_shape/model_file.hpp"
 
 namespace hapticd::brep {
 namespace {
@@ -31,6 +33,30 @@ Part readShipped(const std::string& name) {
   return readPart(std::as_bytes(std::span(bytes)), name);
 }
 
+Part splines(const std::string& name) {
+  return samples::sheetOf(readModelFile(HAPTICD_SOURCE_DIR "/config/models/" + name).surfaces);
+}
+
+/// A mesh of 2 n^2 triangles over a square of 40 mm, with waves.
+Part wavyMesh(std::uint32_t n) {
+  Part part;
+  for (std::uint32_t i = 0; i <= n; ++i)
+    for (std::uint32_t j = 0; j <= n; ++j) {
+      const double x = 0.04 * i / n, y = 0.04 * j / n;
+      part.points.push_back({x, y, 0.002 * std::sin(300 * x) * std::cos(250 * y)});
+    }
+  for (std::uint32_t i = 0; i < n; ++i)
+    for (std::uint32_t j = 0; j < n; ++j) {
+      const std::uint32_t a = i * (n + 1) + j, b = a + n + 1;
+      Triangle lower, upper;
+      lower.corner = {a, b, b + 1};
+      upper.corner = {a, b + 1, a + 1};
+      part.triangles.insert(part.triangles.end(), {lower, upper});
+    }
+  samples::endBody(part, BodyKind::kMesh, 0);
+  return part;
+}
+
 /// Points that lie on the surface: none of them may be nearer than a foot that is told to be the nearest.
 class Witnesses {
  public:
@@ -40,6 +66,7 @@ class Witnesses {
       const Body& body = part.bodies[place.body];
       for (std::uint32_t f = 0; f < body.face_count; ++f) addFace(model, place, body.first_face + f);
       for (std::uint32_t e = 0; e < body.edge_count; ++e) addEdge(model, place, body.first_edge + e);
+      for (std::uint32_t p = 0; p < body.point_count; ++p) add(place, vec(part.points[body.first_point + p]));
     }
   }
 
@@ -166,6 +193,9 @@ TEST(CertifiedWalks, NoFootThatIsToldToBeTheNearestIsFarther) {
   parts.emplace_back("torus", samples::torus(20, 5));
   parts.emplace_back("sphere", samples::sphere(10));
   parts.emplace_back("plate of 30 holes", samples::plate(6, 5, 0.6, 1.6, 5));
+  parts.emplace_back("goblet of splines", splines("goblet.yaml"));
+  parts.emplace_back("torus of splines", splines("torus.yaml"));
+  parts.emplace_back("mesh", wavyMesh(40));
   const std::int64_t each = std::max<std::int64_t>(1, ticksOfAll() / static_cast<std::int64_t>(parts.size()));
   Tally all;
   unsigned seed = 19;

@@ -56,7 +56,7 @@ struct TestDevice : hapticd::Device {
         },
         [](const hdv_device*, const double position[3], double* q) noexcept HSP_RT -> hsp_status {
           q[0] = position[0], q[1] = position[1];
-          return HSP_OK;
+          return position[2] == 0 ? HSP_OK : HSP_E_NUMERIC;
         }};
     return std::strcmp(name, HDV_EXT_KINEMATICS) == 0 ? &kKinematics : nullptr;
   }

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+/// `hapticd device check FILE`: examines a device module, each part in a child process of its own.
+#include "device_check/device_check.hpp"
+
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/colour.hpp"
+#include "cli/command.hpp"
+#include "device_check/module_recipe.hpp"
+
+namespace hapticd::cli {
+namespace {
+
+using device_check::Outcome;
+using Passed = device_check::Verdict;
+
+struct ExamineArguments {
+  std::string file;
+  bool json = false;
+  double timeout = 10;
+};
+
+bool isModuleFile(const std::string& file) {
+  char magic[4] = {};
+  std::ifstream(file, std::ios::binary).read(magic, sizeof magic);
+  return std::string_view(magic, sizeof magic) ==
+         "\x7f"
+         "ELF";
+}
+
+/// The arm of a device file, or those of a module file.
+Result<std::vector<scene::Device>> devicesOf(const ExamineArguments& options) {
+  if (isModuleFile(options.file)) return device_check::devicesIn(options.file);
+  const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
+  printProblems(loaded.problems, stderr);
+  if (loaded.device) return std::vector<scene::Device>{*loaded.device};
+  return Error{options.file + " is no device file without problems, nor a module (FILE.so); see above"};
+}
+
+const char* wordFor(Passed verdict) {
+  switch (verdict) {
+    case Passed::kPassed:
+      return "ok";
+    case Passed::kWarned:
+      return "warn";
+    case Passed::kSkipped:
+      return "skip";
+    default:
+      return "FAIL";
+  }
+}
+
+void print(const Outcome& outcome) {
+  const Colour colour = outcome.verdict == Passed::kPassed   ? Colour::kGood
+                        : outcome.verdict == Passed::kFailed ? Colour::kBad
+                                                             : Colour::kWarning;
+  const std::string word = wordFor(outcome.verdict);
+  std::printf("%s%-*s %-24s %s\n", coloured(word, colour).c_str(), static_cast<int>(5 - word.size()), "", outcome.name,
+              outcome.what.c_str());
+  std::fflush(stdout);
+}
+
+/// All tests of one device, up to the first that crashes or hangs, or without which the others mean nothing.
+std::vector<Outcome> examine(const scene::Device& device, const ExamineArguments& options) {
+  std::vector<Outcome> outcomes;
+  for (const device_check::Test& test : device_check::tests()) {
+    outcomes.push_back(device_check::tryOne(test, device, static_cast<int>(options.timeout * 1000)));
+    const Outcome& last = outcomes.back();
+    if (!options.json) print(last);
+    const bool first = outcomes.size() <= 2;  // kinematics, open: nothing else can be tried without them
+    const bool unmade = first && last.verdict == Passed::kFailed && last.what.rfind("its inverse", 0) != 0;
+    if (last.ended || unmade || (first && last.verdict == Passed::kSkipped)) break;
+  }
+  return outcomes;
+}
+
+int sum(const std::vector<Outcome>& outcomes, const ExamineArguments& options, const std::string& module,
+        nlohmann::ordered_json& all) {
+  int failed = 0;
+  for (const Outcome& one : outcomes) {
+    failed += one.verdict == Passed::kFailed ? 1 : 0;
+    const char* result = one.verdict == Passed::kFailed ? "fail" : wordFor(one.verdict);
+    all["tests"].push_back({{"module", module}, {"name", one.name}, {"result", result}, {"what", one.what}});
+  }
+  const size_t left = device_check::tests().size() - outcomes.size();
+  if (!options.json)
+    std::printf("%zu tests, %d failed%s\n", outcomes.size(), failed,
+                left > 0 ? (", " + std::to_string(left) + " not run: first mend what stopped them").c_str() : "");
+  return failed;
+}
+
+int check(const ExamineArguments& options) {
+  const auto devices = devicesOf(options);
+  if (!devices) return fail(kBadInput, devices.error());
+  nlohmann::ordered_json all{{"file", options.file}, {"failed", 0}, {"tests", nlohmann::ordered_json::array()}};
+  int failed = 0;
+  for (const scene::Device& device : *devices) {
+    if (!options.json) std::printf("%s (%s)\n", device.module.c_str(), device.library.c_str());
+    failed += sum(examine(device, options), options, device.module, all);
+  }
+  all["failed"] = failed;
+  if (options.json)
+    std::printf("%s\n", all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace).c_str());
+  return failed == 0 ? kWorked : kFailed;
+}
+
+}  // namespace
+
+void addDeviceCheck(const Command& app, int& exit_code) {
+  auto options = std::make_shared<ExamineArguments>();
+  const Command command = app.subcommand("device").addSubcommand(
+      "check", "Examine a device module with motors off: kinematics, facts, samples, what read() costs.");
+  command.addOption("file", options->file, "device file (YAML), or a module (FILE.so) with its defaults")
+      .required()
+      .existingFile();
+  command.addFlag("--json", options->json, "print JSON");
+  command.addOption("--timeout", options->timeout, "longest time of one test [s]; a longer one counts as a hang")
+      .showDefault()
+      .within(0.1, 3600.0);
+  command.footer(
+      "Each test runs in a process of its own, so that a crash or a hang names the call in which it came. Opens the "
+      "arm if\nit is plugged in and reads it for half a second; every command says that the motors are off. Of an arm "
+      "that is not\nthere, the kinematics are tried. The exit code is 1 if a test fails.\n\n"
+      "Examples:\n  hapticd device check my-arm.yaml\n  hapticd device check build/my_arm.so --json");
+  command.callback([options, &exit_code] { exit_code = check(*options); });
+}
+
+}  // namespace hapticd::cli

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+/// What of a scene's models nobody can have meant: for `check`, and for who adds models to a running daemon.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "description/scene.hpp"
+#include "document/problem.hpp"
+#include "session/runner.hpp"
+
+namespace hapticd::cli {
+
+/// [main] A model so far away that no arm reaches it was meant in other units.
+document::Problems farModels(const scene::Scene& scene);
+
+/// [main] A stiffness in N/mm, as data sheets have it, is a thousandth of what was meant: nobody feels it.
+document::Problems softModels(const scene::Scene& scene);
+
+/// [any] What `check` would say of the models that come into a run. @param stiffness [N/m] that each of them claims
+std::vector<std::string> adviceOnModels(const servo::Runner& runner, const scene::Scene& models,
+                                        const std::vector<double>& stiffness);
+
+}  // namespace hapticd::cli

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: MIT
+# Headers of libraries that g++ parses once for many rooms, in the presets whose rooms are units. The other presets have
+# none of this: there a file that forgets an include does not compile.
+#   hapticd_headers              Eigen and the standard library, for code that ticks wait for
+#   hapticd_headers_no_deadline  nlohmann/json as well, for rooms with hapticd_no_deadline()
+# Flags of a room must be those of the headers, or g++ refuses them; a source with flags of its own says
+# SKIP_PRECOMPILE_HEADERS. A room links the libraries, since ccache reads the headers themselves.
+function(hapticd_precompile headers)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "HEADERS;LIBRARIES;ROOMS")
+  file(WRITE ${CMAKE_BINARY_DIR}/${headers}.cpp "// nothing: its target precompiles headers\n")
+  add_library(${headers} OBJECT ${CMAKE_BINARY_DIR}/${headers}.cpp)
+  target_link_libraries(${headers} PRIVATE hapticd_options ${arg_LIBRARIES})
+  target_precompile_headers(${headers} PRIVATE ${arg_HEADERS})
+  foreach(room IN LISTS arg_ROOMS)
+    if(TARGET ${room})
+      target_precompile_headers(${room} REUSE_FROM ${headers})
+      target_compile_options(${room} PRIVATE ${HAPTICD_PRECOMPILED_WARNINGS})
+    endif()
+  endforeach()
+endfunction()
+
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  find_package(nlohmann_json REQUIRED)
+  set(standard <algorithm> <array> <cmath> <cstdint> <cstring> <filesystem> <functional> <memory> <optional> <string> <vector>)
+  hapticd_precompile(hapticd_headers HEADERS <Eigen/Geometry> ${standard} LIBRARIES Eigen3::Eigen ROOMS
+    hapticd_arm hapticd_core hapticd_host hapticd_loop hapticd_passivity hapticd_safety hapticd_sim hapticd_telemetry
+    hapticd_velocity hapticd_kinematics hapticd_simulated simulated_objects hapticd_brep hapticd_contact hapticd_dynamics
+    hapticd_medial hapticd_importing hapticd_part hapticd_spline hapticd_trace hapticd_traced_shape mat_deformable_objects
+    nurbs_rigid_objects pendulum_objects push_button_objects)
+  hapticd_precompile(hapticd_headers_no_deadline HEADERS <Eigen/Geometry> <nlohmann/json.hpp> ${standard}
+    LIBRARIES Eigen3::Eigen nlohmann_json::nlohmann_json ROOMS
+    hapticd_capture hapticd_conformance hapticd_diagnostics hapticd_document hapticd_export
+    hapticd_mesh_import hapticd_record hapticd_scene hapticd_session hapticd_tune hapticd_view_parts
+    hapticd_world)
+  hapticd_no_deadline(hapticd_headers_no_deadline)
+endif()

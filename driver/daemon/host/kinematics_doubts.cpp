@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+/// What a run does not fault on, and yet no author of a module means.
+#include <cstdio>
+
+#include "host/class_table.hpp"
+#include "host/kinematics_calls.hpp"
+#include "host/kinematics_check.hpp"
+#include "host/kinematics_places.hpp"
+
+namespace hapticd::host {
+namespace {
+
+std::string metres(const Eigen::Vector3d& p) {
+  char text[80];
+  std::snprintf(text, sizeof text, "(%.4g, %.4g, %.4g) m", p.x(), p.y(), p.z());
+  return text;
+}
+
+/// inverse(forward(q)) leads to the same tip, though perhaps by other joints, and to none where no arm reaches.
+class InverseCheck {
+ public:
+  explicit InverseCheck(const KinematicsCalls& calls) : calls_(calls) {}
+
+  void look(const Joints& q, const Tip& tip) {
+    KinematicsCalls::JointRoom found(static_cast<size_t>(calls_.joints()));
+    const Joints elsewhere = 0.8 * q;  // a search that ends where it began finds nothing
+    std::copy_n(elsewhere.data(), calls_.joints(), found.data());
+    ++asked_;
+    const hsp_status status = calls_.inverse(tip.position, found);
+    if (found.overrun()) return keep("writes beyond the joint_count numbers of q");
+    if (status < 0) return ++refused_, status_ = status, void();
+    if (!found.finite())
+      return keep("gives joints that are no numbers for " + metres(tip.position) + ", and says HSP_OK");
+    Joints back = Joints::Zero();
+    std::copy_n(found.data(), calls_.joints(), back.data());
+    Tip again;
+    if (calls_.forward(back, again) < 0) return;
+    const double off = (again.position - tip.position).norm();
+    constexpr double kOff = 1e-3;  // [m] more than a search leaves that stopped early
+    if (!(off <= kOff))
+      keep("gives joints " + placeText(back, calls_.joints()) + " for " + metres(tip.position) +
+           ", where forward() puts the tip at " + metres(again.position));
+  }
+  void lookFarAway() {
+    const Eigen::Vector3d far(700, 500, 500);  // [m]
+    KinematicsCalls::JointRoom found(static_cast<size_t>(calls_.joints()));
+    if (calls_.inverse(far, found) < 0 || !found.finite()) return;
+    Joints back = Joints::Zero();
+    std::copy_n(found.data(), calls_.joints(), back.data());
+    Tip tip;
+    if (calls_.forward(back, tip) >= 0 && !((tip.position - far).norm() <= 1)) keep("says HSP_OK for " + metres(far));
+  }
+  std::string said() const {
+    if (!wrong_.empty())
+      return "its inverse() " + wrong_ + "; expected forward(inverse(p)) to be p, or HSP_E_NUMERIC out of reach";
+    if (asked_ == 0 || refused_ < asked_) return "";
+    return "its inverse() refuses every one of " + std::to_string(asked_) +
+           " tips that its own forward() gives, searched from joints nearby (" + statusName(status_) +
+           "); expected HSP_OK within the arm's limits";
+  }
+
+ private:
+  void keep(const std::string& wrong) {
+    if (wrong_.empty()) wrong_ = wrong;
+  }
+  const KinematicsCalls& calls_;
+  int asked_ = 0, refused_ = 0;
+  hsp_status status_ = HSP_OK;
+  std::string wrong_;
+};
+
+/// How much forward() turns the tip where the joints go from one place to the next, and whether J knows of it.
+bool turnsWithoutRows(const KinematicsCalls& calls, const Joints& q, const Tip& tip) {
+  KinematicsCalls::JacobianRoom J(static_cast<size_t>(6 * calls.joints()));
+  if (calls.jacobian(q, J) < 0) return false;
+  const double* rows = J.data() + 3 * calls.joints();
+  if (!std::all_of(rows, rows + 3 * calls.joints(), [](double value) { return value == 0; })) return false;
+  constexpr double kNudge = 1e-3, kTurns = 0.1;  // [rad or m], of a radian for a radian
+  for (Eigen::Index joint = 0; joint < calls.joints(); ++joint) {
+    Joints moved = q;
+    moved[joint] += kNudge;
+    Tip after;
+    if (calls.forward(moved, after) >= 0 && after.orientation.angularDistance(tip.orientation) > kTurns * kNudge)
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string wrongInverse(const hdv_ext_kinematics& kinematics, const hdv_device* device) {
+  const KinematicsCalls calls(kinematics, device);
+  InverseCheck inverse(calls);
+  bool any = false;
+  for (int i = 0; i < kPlaces; ++i) {
+    const Joints q = anyPlace(i);
+    Tip tip;
+    if (calls.forward(q, tip) < 0 || !tip.position.allFinite()) continue;
+    any = true;
+    inverse.look(q, tip);
+  }
+  if (any) inverse.lookFarAway();
+  return inverse.said();
+}
+
+std::vector<std::string> doubtsAboutKinematics(const hdv_ext_kinematics& kinematics, const hdv_device* device) {
+  constexpr double kFar = 5;  // [m] no hand leads an arm so far
+  const KinematicsCalls calls(kinematics, device);
+  double farthest = 0;
+  bool turns = true, any = false;
+  for (int i = 0; i < kPlaces; ++i) {
+    const Joints q = anyPlace(i);
+    Tip tip;
+    if (calls.forward(q, tip) < 0 || !tip.position.allFinite()) continue;
+    any = true;
+    farthest = std::max(farthest, tip.position.norm());
+    turns = turns && turnsWithoutRows(calls, q, tip);
+  }
+  std::vector<std::string> doubts;
+  if (any && turns)
+    doubts.push_back(
+        "its forward() turns the tip, but rows 3 to 5 of its Jacobian are 0 everywhere: no torque of a shape reaches "
+        "the motors; expected these rows, or an orientation that stays as it is");
+  if (farthest > kFar) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", farthest);
+    doubts.push_back("its forward() puts the tip " + std::string(text) +
+                     " m away, farther than a hand leads an arm; expected metres");
+  }
+  return doubts;
+}
+
+std::string weightBeyondMotors(const hdv_ext_kinematics& kinematics, const hdv_device* device, const hdv_info& info) {
+  const KinematicsCalls calls(kinematics, device);
+  Joints least = Joints::Constant(HUGE_VAL);
+  for (int i = 0; i < kPlaces; ++i) {
+    const Joints q = placeBetweenStops(i, info);
+    // Whichever way the arm is mounted: the lightest of six.
+    for (Eigen::Index joint = 0; joint < calls.joints(); ++joint) {
+      double lightest = HUGE_VAL;
+      for (int way = 0; way < 6; ++way) {
+        Eigen::Vector3d down = Eigen::Vector3d::Zero();
+        down[way / 2] = way % 2 == 0 ? 9.81 : -9.81;
+        KinematicsCalls::JointRoom torque(static_cast<size_t>(calls.joints()));
+        if (calls.gravity(q, down, torque) >= 0) lightest = std::min(lightest, std::abs(torque.data()[joint]));
+      }
+      least[joint] = std::min(least[joint], lightest);
+    }
+  }
+  for (uint32_t i = 0; i < info.joint_count; ++i)
+    if (info.max_torque[i] > 0 && least[i] < HUGE_VAL && least[i] > info.max_torque[i]) {
+      char text[240];
+      std::snprintf(
+          text, sizeof text,
+          "says by its gravity() that the arm's own weight asks joint %u for %.4g N m (or N) or more at every "
+          "place and in every mounting, and its motor gives %.4g; expected N m, kg and m",
+          i + 1, least[i], info.max_torque[i]);
+      return text;
+    }
+  return "";
+}
+
+}  // namespace hapticd::host

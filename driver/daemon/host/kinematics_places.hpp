@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+/// Joint positions at which the kinematics of any arm are tried.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "host/kinematics_calls.hpp"
+
+namespace hapticd::host {
+
+constexpr int kPlaces = 12;
+
+/// Spread over a radian, without one that is special: 0 and right angles are where arms are singular.
+inline Joints anyPlace(int index) {
+  Joints q;
+  for (int i = 0; i < HDV_MAX_JOINTS; ++i) q[i] = 0.9 * std::sin(1.7 * (index + 1) + 2.3 * i);
+  return q * (index % 3 == 0 ? 0.3 : 1.0);
+}
+
+/// The same spread over the way between the stops, as far as there are any.
+inline Joints placeBetweenStops(int index, const hdv_info& info) {
+  Joints q = anyPlace(index);
+  for (uint32_t i = 0; i < info.joint_count && i < HDV_MAX_JOINTS; ++i) {
+    const double low = info.position_min[i], high = info.position_max[i];
+    if (std::isfinite(low) && std::isfinite(high) && low < high)
+      q[i] = (low + high) / 2 + (high - low) / 2 * q[i];
+    else if (!(low == 0 && high == 0))  // a module that fills in no stops has none
+      q[i] = std::clamp(q[i], low, high);
+  }
+  return q;
+}
+
+}  // namespace hapticd::host

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+#include "document/json_text.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace hapticd::document {
+
+nlohmann::ordered_json parseJson(std::string_view text) {
+  return nlohmann::ordered_json::parse(text, nullptr, false);
+}
+
+nlohmann::ordered_json parseJsonOrThrow(std::string_view text) {
+  return nlohmann::ordered_json::parse(text);
+}
+
+}  // namespace hapticd::document

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include "capture/resync.hpp"
+
+#include <algorithm>
+
+namespace hapticd::capture {
+namespace {
+
+bool goodAt(const codec::Wire& wire, std::span<const uint8_t> bytes, size_t at) {
+  const size_t size = wire.input.bytes();
+  if (at + size > bytes.size() || bytes[at] != wire.input.id) return false;
+  codec::State state;
+  return codec::decode(wire.input, bytes.subspan(at, size), state) == codec::Verdict::kGood;
+}
+
+/// By chance a place has the id and a checksum of one byte: the report after it must begin as one, too.
+bool begins(const codec::Wire& wire, std::span<const uint8_t> bytes, size_t at) {
+  const size_t next = at + wire.input.bytes();
+  return goodAt(wire, bytes, at) && (next >= bytes.size() || bytes[next] == wire.input.id || goodAt(wire, bytes, next));
+}
+
+}  // namespace
+
+size_t skipOddBytes(const codec::Wire& wire, std::span<const uint8_t> bytes, size_t at,
+                    const std::function<void(std::span<const uint8_t>)>& odd) {
+  const std::vector<codec::Field>& fields = wire.input.fields;
+  const bool judged = wire.input.id >= 0 && std::any_of(fields.begin(), fields.end(), [](const codec::Field& field) {
+                        return field.role == codec::Role::kChecksum;
+                      });
+  const size_t size = wire.input.bytes();
+  if (!judged || goodAt(wire, bytes, at) || goodAt(wire, bytes, at + size)) return at;
+  constexpr size_t kReports = 8;  // so far it is looked for; then one report on, and again
+  for (size_t other = at + 1; other < std::min(at + kReports * size, bytes.size()); ++other) {
+    if (!begins(wire, bytes, other)) continue;
+    if ((other - at) % size == 0) return at;  // in step: bad reports, which are told as such
+    odd(bytes.subspan(at, other - at));
+    return other;
+  }
+  return at;
+}
+
+}  // namespace hapticd::capture

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#include "device_check/device_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "base/allocation_count.hpp"
+#include "conformance/allocation_place.hpp"
+#include "conformance/guarded_memory.hpp"
+#include "conformance/step_watch.hpp"
+#include "device_check/overrun_note.hpp"
+#include "device_check/reading.hpp"
+#include "device_check/sample_check.hpp"
+#include "host/call_trail.hpp"
+#include "host/kinematics_check.hpp"
+
+namespace hapticd::device_check {
+namespace {
+
+using Call = std::function<void()>;
+
+void justCall(const Call& call) {
+  call();
+}
+
+std::string nothingOdd(const Reading&) {
+  return "";
+}
+
+std::string kinematics(const scene::Device& device) {
+  const auto made = host::DeviceInstance::create(device, nullptr);
+  if (!made) return made.error();
+  const host::DeviceInstance& arm = **made;
+  if (std::string wrong = host::wrongInverse(arm.kinematics(), arm.handle()); !wrong.empty()) return wrong;
+  std::string doubts;
+  for (const std::string& doubt : host::doubtsAboutKinematics(arm.kinematics(), arm.handle()))
+    doubts += (doubts.empty() ? "warn: " : "; ") + doubt;
+  return doubts.empty() ? fmt::format("note: {} joints", arm.kinematics().joint_count) : doubts;
+}
+
+std::string opens(const scene::Device& device) {
+  const Opened opened = openArm(device);
+  if (opened.arm == nullptr) return opened.missing.empty() ? opened.why : "skip: " + opened.missing;
+  const hdv_info& info = opened.arm->info();
+  return fmt::format("note: \"{}\", {} joints, {:g} Hz", info.product, info.joint_count, info.rate_hz);
+}
+
+/// A number of hdv_info that no arm has was meant in other units.
+std::string unlikely(const hdv_info& info) {
+  const std::tuple<double, double, const char*, const char*> numbers[] = {
+      {info.rate_hz, 1e5, "rate_hz", "Hz"},
+      {info.max_force, 1e3, "max_force", "N"},
+      {info.continuous_force, 1e3, "continuous_force", "N"},
+      {info.max_stiffness, 1e6, "max_stiffness", "N/m"},
+      {info.resolution_m, 0.01, "resolution_m", "m"},
+      {info.mass_kg, 100, "mass_kg", "kg"},
+      {info.damping, 1e3, "damping", "N s/m"}};
+  for (const auto& [value, most, name, unit] : numbers)
+    if (value > most)
+      return fmt::format("hdv_info.{} is {:g} {}, more than any arm that a hand leads has ({:g} {}); expected SI units",
+                         name, value, unit, most, unit);
+  if (info.max_force > 0 && info.continuous_force > info.max_force)
+    return fmt::format("hdv_info.continuous_force of {:g} N is above max_force of {:g} N", info.continuous_force,
+                       info.max_force);
+  return "";
+}
+
+/// What open() claims and nothing stands behind: a scene that asks for it would run without it.
+std::string claims(const scene::Device& device) {
+  const Opened opened = openArm(device);
+  if (opened.arm == nullptr) return "skip: the arm was not opened";
+  const auto has = [&](const char* name) {
+    host::tellCall("extension");
+    return opened.arm->description().extension(opened.arm->handle(), name) != nullptr;
+  };
+  const uint32_t claimed = opened.claimed;
+  if ((claimed & HDV_C_PACING) != 0 && !has(HDV_EXT_PACE))
+    return "open() claims HDV_C_PACING, but there is no extension " HDV_EXT_PACE
+           ": a servo with pace: device would run by the clock; expected both or none";
+  if ((claimed & HDV_C_CALIBRATION) != 0 && !has(HDV_EXT_CALIBRATION))
+    return "warn: open() claims HDV_C_CALIBRATION, but there is no extension " HDV_EXT_CALIBRATION
+           ": hapticd device calibrate cannot calibrate it, and no force comes before samples carry HDV_S_CALIBRATED";
+  if (const std::string odd = unlikely(opened.arm->info()); !odd.empty()) return "warn: " + odd;
+  if (!has(HDV_EXT_CUT))
+    return "warn: there is no extension " HDV_EXT_CUT ": a servo thread that hangs cannot be cut by the watchdog";
+  return "";
+}
+
+std::string samples(const scene::Device& device) {
+  noteOverruns();
+  hdv_sample* sample = guardedSample();
+  if (sample == nullptr) return "skip: no memory for a guarded sample";
+  const conformance::GuardedMemory guarded;
+  const Opened opened = openArm(device);
+  if (opened.arm == nullptr) return "skip: the arm was not opened";
+  SampleCheck check(opened.arm->info());
+  const std::string wrong =
+      readFor(*opened.arm, *sample, [&](const Reading& one) { return check.look(one); }, &justCall);
+  return wrong.empty() ? check.sum() : wrong;
+}
+
+/// The calls of read() and write() that allocate; the first few are left out, as a thread takes what it keeps.
+std::string noAllocation(const scene::Device& device) {
+  constexpr uint64_t kFirst = 20;
+  const Opened opened = openArm(device);
+  if (opened.arm == nullptr) return "skip: the arm was not opened";
+  conformance::watchAllocations();
+  uint64_t calls = 0, allocating = 0;
+  hdv_sample sample{};
+  const std::string wrong = readFor(*opened.arm, sample, &nothingOdd, [&](const Call& call) {
+    const uint64_t before = allocationsOfThread();
+    {
+      const conformance::AllocationWatch watch;
+      call();
+    }
+    if (++calls > kFirst) allocating += allocationsOfThread() != before ? 1 : 0;
+  });
+  if (!wrong.empty() || allocating == 0) return wrong;
+  return fmt::format("read() or write() allocates memory, in {} of {} calls, first{}; expected room that start() made",
+                     allocating, calls, conformance::firstAllocationIn(device.library.string()));
+}
+
+std::string noSystemCalls(const scene::Device& device) {
+  const Opened opened = openArm(device);
+  if (opened.arm == nullptr) return "skip: the arm was not opened";
+  std::setvbuf(stdout, nullptr, _IONBF, 0);  // a print that waits in a buffer is found as well
+  if (!conformance::watchSystemCalls()) return "skip: this kernel does not tell of system calls";
+  hdv_sample sample{};
+  uint64_t calls = 0;
+  const std::string wrong = readFor(*opened.arm, sample, &nothingOdd, [&](const Call& call) {
+    const hsp_step none{};
+    ++calls;
+    const conformance::StepWatch watch(none);
+    call();
+  });
+  const conformance::SystemCalls seen = conformance::systemCalls();
+  if (!wrong.empty() || seen.steps == 0) return wrong;
+  const std::string name = conformance::systemCallName(seen.number);
+  const bool sleeps = name.find("nanosleep") != std::string::npos || name.find("poll") != std::string::npos;
+  return fmt::format(
+      "{}read() or write() {} in {} of {} calls ({}); expected a thread of the module's own for what "
+      "may wait, as io_thread.hpp of the template has it",
+      seen.prints || sleeps ? "" : "warn: ",
+      seen.prints ? "prints"
+      : sleeps    ? "sleeps"
+                  : "makes a system call",
+      seen.steps, calls, name);
+}
+
+std::string startsAgain(const scene::Device& device) {
+  const Opened opened = openArm(device);
+  if (opened.arm == nullptr) return "skip: the arm was not opened";
+  hdv_sample sample{};
+  for (int round = 0; round < 2; ++round)
+    if (const std::string wrong = readFor(*opened.arm, sample, &nothingOdd, &justCall); !wrong.empty())
+      return (round == 0 ? "" : "after stop(), the second time: ") + wrong;
+  return "";
+}
+
+}  // namespace
+
+const std::vector<Test>& tests() {
+  static const std::vector<Test> kTests = {{"kinematics", &kinematics},
+                                           {"open", &opens},
+                                           {"claims", &claims},
+                                           {"samples", &samples},
+                                           {"no-allocation-in-read", &noAllocation},
+                                           {"no-system-call-in-read", &noSystemCalls},
+                                           {"start-again", &startsAgain}};
+  return kTests;
+}
+
+Outcome tryOne(const Test& test, const scene::Device& device, int limit_ms) {
+  shareOverrun();
+  host::Trail trail;
+  const auto said = host::runInChild(
+      [&] {
+        host::followCalls(&trail);
+        return "=" + test.run(device);
+      },
+      limit_ms);
+  Outcome outcome{test.name, Verdict::kFailed, "", !said};
+  if (!said) {
+    const std::string call = trail.call();
+    outcome.what = "it " + said.error() + (call.empty() ? "" : ", in " + call + "()") + overrunWords();
+    return outcome;
+  }
+  outcome.what = said->substr(1);
+  const auto begins = [&](const char* word) { return outcome.what.rfind(word, 0) == 0; };
+  outcome.verdict = outcome.what.empty() || begins("note: ") ? Verdict::kPassed
+                    : begins("skip: ")                       ? Verdict::kSkipped
+                    : begins("warn: ")                       ? Verdict::kWarned
+                                                             : Verdict::kFailed;
+  if (outcome.verdict != Verdict::kFailed && !outcome.what.empty()) outcome.what.erase(0, 6);
+  return outcome;
+}
+
+}  // namespace hapticd::device_check

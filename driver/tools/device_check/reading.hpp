@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+/// An arm that is read for some time with its motors off.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "base/result.hpp"
+#include "host/device_instance.hpp"
+
+namespace hapticd::device_check {
+
+/// An arm that is open, or why it is not.
+struct Opened {
+  std::unique_ptr<host::DeviceInstance> arm;
+  std::string why;       ///< what is wrong with the module
+  std::string missing;   ///< why there is no arm to open
+  uint32_t claimed = 0;  ///< capabilities as the module gave them: the host takes away those that nothing stands behind
+};
+Opened openArm(const scene::Device& device);
+
+/// One call of read() and the command after it: motors off.
+struct Reading {
+  uint64_t now_ns = 0;
+  hsp_status read = HSP_OK, write = HSP_OK;
+  const hdv_sample* sample = nullptr;
+};
+
+/// [main] Starts the arm, reads it for two seconds of a simulated arm's time or half a second of a real one's, and
+/// stops it. Every command is HDV_OFF. @param look its first objection ends the reading
+/// @param around called in the place of each read() and write(), and must call what it is given
+std::string readFor(host::DeviceInstance& arm, hdv_sample& sample,
+                    const std::function<std::string(const Reading&)>& look,
+                    const std::function<void(const std::function<void()>&)>& around);
+
+}  // namespace hapticd::device_check

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+/// What samples owe the host.
+#pragma once
+#include <string>
+
+#include "device_check/reading.hpp"
+
+namespace hapticd::device_check {
+
+class SampleCheck {
+ public:
+  explicit SampleCheck(const hdv_info& info) : info_(info) {}
+  /// @return what is wrong with one; "": nothing
+  std::string look(const Reading& reading);
+  /// @return what is wrong with all of them: "warn: ..." for what no run faults on
+  std::string sum() const;
+
+ private:
+  std::string wrongNumbers(const hdv_sample& sample) const;
+  const hdv_info& info_;
+  uint64_t reads_ = 0, fresh_ = 0, last_ = 0, timeless_ = 0, ahead_ = 0, lost_ = 0;
+  uint32_t flags_ = 0, buttons_ = 0;
+  int beyond_ = -1;  ///< joint that was far beyond its stops
+  double beyond_at_ = 0;
+};
+
+}  // namespace hapticd::device_check

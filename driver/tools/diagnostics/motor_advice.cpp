@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/motor_advice.hpp"
+
+#include <fmt/format.h>
+
+#include "diagnostics/limit_advice.hpp"
+#include "diagnostics/node_path.hpp"
+
+namespace hapticd::diagnostics {
+
+using document::Node;
+
+void adviseMotors(const Node& root, const scene::Device& device, size_t joints, document::Problems& warnings) {
+  constexpr double kCold = 1e-3, kHot = 200;  // W in the winding: less warms nothing, more melts those of a hand's arm
+  const Node* list = find(root, {"limits", "motors"});
+  const std::vector<double> torque = motorsOf(device, joints);
+  if (list == nullptr || !list->isSequence() || torque.empty()) return;
+  for (size_t i = 0; i < device.limits.motors.size() && i < torque.size() && i < list->items.size(); ++i) {
+    const scene::Motor& motor = device.limits.motors[i];
+    if (!(motor.torque_constant > 0) || !(motor.ratio > 0)) continue;
+    const double current = torque[i] / (motor.torque_constant * motor.ratio);
+    const double heat = current * current * motor.resistance;
+    if (heat >= kCold && heat <= kHot) continue;
+    const Node *constant = list->items[i].find("torque_constant"),
+               *at = constant != nullptr ? constant : &list->items[i];
+    document::report(
+        warnings, device.file.string(), at->line, at->column, fmt::format("limits.motors[{}].torque_constant", i),
+        fmt::format(
+            "with ratio {:g} the {:g} N m of arm.max_torque are {:.3g} A and {:.3g} W in the winding, so its heat "
+            "is {}; expected N m/A ({:g} mN m/A are {:g} N m/A) and ratio: joint torque over motor torque",
+            motor.ratio, torque[i], current, heat, heat < kCold ? "never noticed" : "always too much",
+            motor.torque_constant, motor.torque_constant / 1000));
+  }
+}
+
+}  // namespace hapticd::diagnostics
