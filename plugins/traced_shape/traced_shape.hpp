@@ -118,6 +118,7 @@ class TracedShape : public Shape {
   /// What was found about a place, and how often that was told since.
   struct Search {
     Eigen::Vector3d at{0, 0, 0};
+    Eigen::Vector3d asked{0, 0, 0};  ///< where it was last asked for: a hand is near there the next time
     double radius = -1;
     int told = 0;
     trace::Found found;
