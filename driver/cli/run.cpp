@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -16,6 +15,7 @@
 #include "base/os.hpp"
 #include "cli/command.hpp"
 #include "cli/guarded_command.hpp"
+#include "cli/run_signals.hpp"
 #include "cli/scene_advice.hpp"
 #include "cli/view_process.hpp"
 #include "diagnostics/enable_button.hpp"
@@ -45,31 +45,6 @@ struct RunArguments {
 };
 
 const Nanoseconds program_start = monotonicNow();  ///< when the libraries were loaded
-
-std::atomic<servo::Runner*> running{nullptr};  ///< for the signal handler
-std::atomic<bool> told_to_stop{false};
-
-void stopRun(int) {
-  told_to_stop = true;
-  if (servo::Runner* runner = running.load()) runner->stop();
-}
-
-void onSuspend(int) {
-  if (servo::Runner* runner = running.load()) runner->suspend();
-}
-
-/// Ctrl-C and SIGTERM end this run as long as one lives; a second one, while the first ends it, finds no run any more.
-/// One that came while the run was set up ends it now.
-class StopBySignal {
- public:
-  explicit StopBySignal(servo::Runner& runner) {
-    running = &runner;
-    if (told_to_stop) runner.stop();
-  }
-  ~StopBySignal() { running = nullptr; }
-  StopBySignal(const StopBySignal&) = delete;
-  StopBySignal& operator=(const StopBySignal&) = delete;
-};
 
 /// A file that cannot be written must be known before the run, not after; a run that does not come leaves none.
 bool writable(const std::string& file) {
@@ -320,13 +295,13 @@ int runScene(const RunArguments& options, scene::Scene& scene) {
   const SetupErrors once;
   auto world = servo::Runner::buildWorld(scene, how, logOfRun);
   if (!world) return fail(kBadInput, world.error());
-  os::onStopSignal(stopRun);  // from here on there are files to leave
+  heedStopSignals();  // from here on there are files to leave
   auto runner = servo::Runner::prepare(scene, how, std::move(*world), logOfRun);
   if (!runner) return fail(kFailed, runner.error());
   once.tell();
   warnOfSettings(**runner, how.rate);
   const StopBySignal stop(**runner);
-  if (!options.virtual_time) os::onSuspendSignal(onSuspend);
+  if (!options.virtual_time) heedSuspendSignal();
   const auto advise = [&runner](const scene::Scene& models, const std::vector<double>& stiffness) {
     return adviceOnModels(**runner, models, stiffness);
   };

@@ -156,8 +156,8 @@ void TracedShape::popThrough(uint32_t probe) noexcept HSP_RT {
 
 /// A hand moves little between two searches: what was found two millimetres away leads to the same feet, and its
 /// distances less that way are bounds still. Only a valley that comes to be meanwhile is found later, as it is at
-/// 0.4 m/s anyway. Twenty of these at most, then it is searched again: 100 ms. Another hand that comes there, or one that
-/// jumps, has followed no foot on the way: for it is searched where it is.
+/// 0.4 m/s anyway. Twenty of these at most, then it is searched again: 100 ms. Another hand that comes there, or one
+/// that jumps, has followed no foot on the way: for it is searched where it is.
 const TracedShape::Search& TracedShape::searchAbout(const Eigen::Vector3d& p, double radius) const {
   constexpr double kSamePlace = 2e-3;  // [m]
   constexpr double kSameHand = 1e-3;   // [m] of way between two questions: 0.2 m/s
