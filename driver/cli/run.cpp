@@ -291,7 +291,6 @@ int runScene(const RunArguments& options, scene::Scene& scene) {
     if (auto shown = showPage(options, files.get(), scene); !shown) return fail(kFailed, shown.error());
   const std::vector<std::string> left_out = leaveOutQuarantined(scene, watch::stateFolder());
   for (const std::string& text : left_out) log::write(HSP_LOG_WARNING, "", text);
-  const GuardedCommand guarded(how.state_dir);  // in the set-up, and whenever the run itself does not watch
   const SetupErrors once;
   auto world = servo::Runner::buildWorld(scene, how, logOfRun);
   if (!world) return fail(kBadInput, world.error());
@@ -323,6 +322,8 @@ bool switchesAreThere(const scene::Scene& scene) {
 int run(const RunArguments& options) {
   if (auto opened = log::open(options.log); !opened) return fail(kBadInput, opened.error());
   if (const std::string wrong = wrongFiles(options); !wrong.empty()) return fail(kBadInput, wrong);
+  // In the set-up, whenever the run itself does not watch, and until all that a plugin could tear is freed.
+  const GuardedCommand guarded(watch::stateDir());
   auto scene = loadSceneOrReport(options.scene, options.device);
   if (!scene || !switchesAreThere(*scene)) return kBadInput;
   if (scene->devices.front().chosen_by_default)

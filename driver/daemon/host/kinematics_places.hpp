@@ -17,12 +17,15 @@ inline Joints anyPlace(int index) {
   return q * (index % 3 == 0 ? 0.3 : 1.0);
 }
 
+/// [rad or m] No arm moves farther: stops beyond are those of an arm that has none.
+inline constexpr double kFarthestStop = 1e3;
+
 /// The same spread over the way between the stops, as far as there are any.
 inline Joints placeBetweenStops(int index, const hdv_info& info) {
   Joints q = anyPlace(index);
   for (uint32_t i = 0; i < info.joint_count && i < HDV_MAX_JOINTS; ++i) {
     const double low = info.position_min[i], high = info.position_max[i];
-    if (std::isfinite(low) && std::isfinite(high) && low < high)
+    if (low < high && std::abs(low) <= kFarthestStop && std::abs(high) <= kFarthestStop)
       q[i] = (low + high) / 2 + (high - low) / 2 * q[i];
     else if (!(low == 0 && high == 0))  // a module that fills in no stops has none
       q[i] = std::clamp(q[i], low, high);

@@ -73,7 +73,7 @@ TEST(CommandLine, RefusesWhatBreaksARuleWithTheExitCodeOfBadUsage) {
       {{"draw", "a", "--colour", "green"}, "--colour: green not in {red,blue}"},
       {{"draw", "a", "--scale", "3"}, "--scale: Value 3 not in range 0.5 to 2"},
       {{"draw", "a", "--scale", "nan"}, "--scale: Value nan not in range 0.5 to 2"},
-      {{"draw", "a", "--scale", "much"}, "--scale: Value much not in range 0.5 to 2"},
+      {{"draw", "a", "--scale", "much"}, "--scale: \"much\" is not a number, expected one from 0.5 to 2"},
       {{"draw", "a", "--copies", "0"}, "--copies: Value 0 not in range 1 to 9"},
       {{"draw", "a", "--angle", "x"}, "--angle"},
       {{"draw", "a", "--corner", "1", "2"}, "--corner requires --angle"},

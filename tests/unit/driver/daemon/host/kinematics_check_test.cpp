@@ -82,5 +82,14 @@ TEST(WrongJacobian, JudgesNothingWhereForwardRefuses) {
   refuses = false;
 }
 
+TEST(WrongBetweenStops, TakesStopsThatNoArmReachesForNone) {
+  slip = kNone;
+  const hdv_ext_kinematics kinematics{sizeof(hdv_ext_kinematics), 3, &forward, &jacobian, nullptr, nullptr};
+  hdv_info info{};
+  info.joint_count = 3;
+  for (int i = 0; i < 3; ++i) info.position_min[i] = -1e300, info.position_max[i] = 1e300;
+  EXPECT_EQ(wrongBetweenStops(kinematics, nullptr, info), "");
+}
+
 }  // namespace
 }  // namespace hapticd::host
