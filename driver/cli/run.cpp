@@ -393,6 +393,7 @@ void addRun(const Command& app, int& exit_code) {
   command.callback([options, &exit_code] {
     options->log.level = log::levelOf(options->log_level);
     exit_code = run(*options);
+    watch::guardTheEnd(watch::stateDir());
   });
 }
 

@@ -41,6 +41,7 @@ class InverseCheck {
       keep("gives joints " + placeText(back, calls_.joints()) + " for " + metres(tip.position) +
            ", where forward() puts the tip at " + metres(again.position));
   }
+  bool refusedAll() const { return refused_ == asked_; }
   void lookFarAway() {
     const Eigen::Vector3d far(700, 500, 500);  // [m]
     KinematicsCalls::JointRoom found(static_cast<size_t>(calls_.joints()));
@@ -92,12 +93,16 @@ std::string wrongInverse(const hdv_ext_kinematics& kinematics, const hdv_device*
   const KinematicsCalls calls(kinematics, device);
   InverseCheck inverse(calls);
   bool any = false;
-  for (int i = 0; i < kPlaces; ++i) {
-    const Joints q = anyPlace(i);
-    Tip tip;
-    if (calls.forward(q, tip) < 0 || !tip.position.allFinite()) continue;
-    any = true;
-    inverse.look(q, tip);
+  // An arm may reach less far than a radian or a metre: its inverse() rightly refuses the wide places.
+  for (const double part : {1.0, 0.1}) {
+    if (!inverse.refusedAll()) break;
+    for (int i = 0; i < kPlaces; ++i) {
+      const Joints q = part * anyPlace(i);
+      Tip tip;
+      if (calls.forward(q, tip) < 0 || !tip.position.allFinite()) continue;
+      any = true;
+      inverse.look(q, tip);
+    }
   }
   if (any) inverse.lookFarAway();
   return inverse.said();

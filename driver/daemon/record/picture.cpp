@@ -153,7 +153,7 @@ std::vector<Quantity> quantitiesOf(const RunReport& report, const std::vector<Sa
 std::string cutAtFoot(double low, const std::vector<Sample>& samples) {
   const auto below = [low](const Sample& s) { return s.depth_m * 1e3 < low; };
   if (std::none_of(samples.begin(), samples.end(), below)) return "";
-  return fmt::format("; {:g} mm and more are drawn at the foot", -low);
+  return fmt::format("; {:g} mm and more: at the foot", -low);
 }
 
 /// What is more in the panel of the forces than the force itself.
@@ -211,7 +211,7 @@ Result<void> drawRun(const RunReport& report, const std::vector<Sample>& samples
     if (q.colour == kDepth) {
       const bool any =
           std::any_of(samples.begin(), samples.end(), [](const Sample& s) { return std::isfinite(s.depth_m); });
-      panel.title += any ? " (negative: distance from the nearest model" + cutAtFoot(panel.y.low, samples) + ")"
+      panel.title += any ? " (negative: distance" + cutAtFoot(panel.y.low, samples) + ")"
                          : " (none: no model was near enough to be traced)";
       panel.spans = modelSpans(samples, notes);
     }

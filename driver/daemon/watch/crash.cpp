@@ -18,6 +18,7 @@
 #include "base/fatal_signals_posix.hpp"
 #include "base/os.hpp"
 #include "base/owner_file.hpp"
+#include "watch/ended.hpp"
 #include "watch/process_end.hpp"
 #include "watch/quarantine.hpp"
 #include "watch/signal_words.hpp"
@@ -29,8 +30,9 @@ namespace {
 /// Everything the handler needs, prepared while there is still an allocator.
 struct Prepared {
   std::atomic<Watched*> servo{nullptr};
-  std::atomic<int> process{0};  ///< a fork of it is none of our business
-  char dir[kLongestPath] = "";  // "": nothing is written
+  std::atomic<int> process{0};       ///< a fork of it is none of our business
+  std::atomic<bool> leaving{false};  ///< the process ends in order: its exit is nobody's fault
+  char dir[kLongestPath] = "";       // "": nothing is written
   /// The C library's last words, where it keeps them: a length, and the text behind it.
   const char* const* last_words = nullptr;
 };
@@ -146,7 +148,7 @@ void onStop(int signal, siginfo_t* info, void* context) {
 
 /// A plugin or library that called exit(): static objects are still there, and other threads still run.
 void dieOfExit(const char* what) noexcept {
-  if (watchedHere() == nullptr) return;
+  if (prepared.leaving.load() || watchedHere() == nullptr) return;
   const Owner* culprit = calledHere();
   if (culprit == nullptr && !isWorker()) culprit = ownerOnStack(__builtin_frame_address(0));
   dieOf(what, culprit);
@@ -339,6 +341,18 @@ void forgetCrash() {
   os::onFatalSignals(nullptr);
   onPlainExit(nullptr);
   prepared.servo.store(nullptr);
+}
+
+void guardTheEnd(const std::filesystem::path& dir) {
+#ifndef HAPTICD_SANITIZED
+  static Ended& nothing = *new Ended;  // the handlers outlive every static object
+  prepared.leaving.store(true);
+  guardAgainstCrash(nothing, dir);
+  os::onStopSignals(nullptr);
+  onPlainExit(nullptr);
+#else
+  (void)dir;
+#endif
 }
 
 CrashGuard::CrashGuard(Watched& servo, const std::filesystem::path& dir)

@@ -18,6 +18,10 @@ void guardAgainstCrash(Watched& servo, const std::filesystem::path& dir);
 /// [main] The signals do what they did before; the servo may be destroyed.
 void forgetCrash();
 
+/// [main] From here to the end of the process, after the last command: memory that a plugin tore is found by whoever
+/// frees it, and that may be the last object of the program.
+void guardTheEnd(const std::filesystem::path& dir);
+
 /// Both in one, as long as it lives; they may nest. The sanitizers have handlers of their own, and keep them.
 class CrashGuard {
  public:

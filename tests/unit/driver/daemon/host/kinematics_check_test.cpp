@@ -82,13 +82,39 @@ TEST(WrongJacobian, JudgesNothingWhereForwardRefuses) {
   refuses = false;
 }
 
+hsp_status weightless(const hdv_device*, const double*, const double*, double* torque) noexcept HSP_RT {
+  for (int i = 0; i < 3; ++i) torque[i] = 0;
+  return HSP_OK;
+}
+
 TEST(WrongBetweenStops, TakesStopsThatNoArmReachesForNone) {
   slip = kNone;
-  const hdv_ext_kinematics kinematics{sizeof(hdv_ext_kinematics), 3, &forward, &jacobian, nullptr, nullptr};
+  const hdv_ext_kinematics kinematics{sizeof(hdv_ext_kinematics), 3, &forward, &jacobian, &weightless, nullptr};
   hdv_info info{};
   info.joint_count = 3;
   for (int i = 0; i < 3; ++i) info.position_min[i] = -1e300, info.position_max[i] = 1e300;
   EXPECT_EQ(wrongBetweenStops(kinematics, nullptr, info), "");
+}
+
+hsp_status gantry(const hdv_device*, const double* q, double position[3], double orientation[4]) noexcept HSP_RT {
+  for (int i = 0; i < 3; ++i) position[i] = q[i];
+  orientation[0] = 1, orientation[1] = orientation[2] = orientation[3] = 0;
+  return HSP_OK;
+}
+
+hsp_status inverseWithin15cm(const hdv_device*, const double position[3], double* q) noexcept HSP_RT {
+  for (int i = 0; i < 3; ++i)
+    if (!(std::abs(position[i]) <= 0.15)) return HSP_E_NUMERIC;
+  for (int i = 0; i < 3; ++i) q[i] = refuses ? -position[i] : position[i];
+  return HSP_OK;
+}
+
+TEST(WrongInverse, JudgesAnArmThatReachesLessThanAMetreWhereItReaches) {
+  const hdv_ext_kinematics small{sizeof(hdv_ext_kinematics), 3, &gantry, &jacobian, nullptr, &inverseWithin15cm};
+  EXPECT_EQ(wrongInverse(small, nullptr), "");
+  refuses = true;
+  EXPECT_NE(wrongInverse(small, nullptr), "");
+  refuses = false;
 }
 
 }  // namespace
