@@ -119,8 +119,8 @@ code, text = run("device", "check", os.path.join(MODULES, "slips_arm.so"))
 check("a module file is tried with its defaults", code == 0 and "7 tests, 0 failed" in text, (code, text))
 code, text = run("device", "check", os.path.join(PLUGINS, "nurbs_rigid.so"))
 check("a plugin of shapes is sent to plugin check", code == 2 and "hapticd plugin check" in text, (code, text))
-for name in ("simulated-premium15", "simulated-sarcos"):
-    file = f"{SOURCE}/config/devices/{name}.yaml"
+for name in ("config/devices/simulated-premium15", "config/devices/simulated-sarcos", "devices/template/arm"):
+    file = f"{SOURCE}/{name}.yaml"
     if os.path.exists(file):
         code, text = run("device", "check", file)
         check(f"{name} passes", code == 0, (code, text))
