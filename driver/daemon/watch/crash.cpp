@@ -84,6 +84,12 @@ bool allocatorAborted() noexcept {
                      [said](const char* word) { return std::strstr(said + sizeof(unsigned), word) != nullptr; });
 }
 
+bool isForeign(const Owner& owner) noexcept {
+  for (size_t i = 0; const Owner* foreign = foreignOwner(i); ++i)
+    if (foreign->module == owner.module) return true;
+  return false;
+}
+
 /// nullptr: nothing is watched, or this process is a fork of the one that is.
 Watched* watchedHere() noexcept {
   return prepared.process.load() == getpid() ? prepared.servo.load() : nullptr;
@@ -114,6 +120,8 @@ void onFatal(int signal, siginfo_t* info, void* context) {
   const Owner* culprit = culpritOf(signal, *info, context);
   const bool own = info->si_code > 0 || (info->si_code == SI_TKILL && info->si_pid == getpid());
   const bool torn = signal == SIGABRT && allocatorAborted();
+  // Code that ships frees what was torn before: what does not ship is the likelier cause.
+  if (torn && culprit != nullptr && foreignOwner(0) != nullptr && !isForeign(*culprit)) culprit = nullptr;
   die(words(signal).text(), culprit,
       culprit != nullptr || !own ? Suspicion::kNone
       : torn                     ? Suspicion::kTorn
