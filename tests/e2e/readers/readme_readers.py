@@ -39,7 +39,7 @@ def own_shape(folder):
     check("plugin list finds it", "floor" in run(HAPTICD, "plugin", "list", environment=environment)[1])
     code, said = run(HAPTICD, "plugin", "check", os.path.join(folder, "my-plugins/floor.so"), "--timeout", "60")
     check("plugin check passes it", code == 0, said)
-    scene = re.search(r"^    hapticd: 1\n    models:\n      - \{name: ground.*?\n", README, re.M)[0]
+    scene = re.search(r"^    hapticd: 1\n    hand:.*?\n    models:\n      - \{name: ground.*?\n", README, re.M)[0]
     file = os.path.join(folder, "floor.yaml")
     open(file, "w").write(re.sub(r"^    ", "", scene, flags=re.M))
     report = os.path.join(folder, "report.json")
