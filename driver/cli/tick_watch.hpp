@@ -5,6 +5,7 @@
 #include "base/thread_usage.hpp"
 #include "watch/crash.hpp"
 #include "watch/end_watch.hpp"
+#include "watch/ended.hpp"
 
 namespace hapticd::cli {
 
@@ -14,22 +15,13 @@ class TickWatch {
   TickWatch() { (void)watch_.start(); }
 
  private:
-  /// The ticks of a command, as EndWatch sees them.
-  class Ticks final : public watch::Watched {
+  /// The ticks of a command, as EndWatch sees them: no servo, and yet a tick may last.
+  class Ticks final : public watch::Ended {
    public:
     uint64_t ticks() const noexcept override { return OfflineTick::ended(); }
     Nanoseconds tickBegun() const noexcept override { return static_cast<Nanoseconds>(OfflineTick::current()); }
-    Nanoseconds nextTick() const noexcept override { return 0; }
     Nanoseconds cpuTime() const noexcept override { return static_cast<Nanoseconds>(os::cpuTime(clock_)); }
-    bool simulated() const noexcept override { return true; }
-    bool drives() const noexcept override { return false; }
-    void stop() noexcept override {}
-    Nanoseconds stopAsked() const noexcept override { return 0; }
-    void cut(double) noexcept override {}
-    bool cutLeft() const noexcept override { return true; }
     const Owner* inServo() const noexcept override { return calledBy(Worker::kMain); }
-    const void* blackBox() const noexcept override { return nullptr; }
-    size_t blackBoxBytes() const noexcept override { return 0; }
 
    private:
     os::CpuClock clock_ = os::cpuClockOfThread();

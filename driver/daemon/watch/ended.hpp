@@ -8,7 +8,7 @@
 
 namespace hapticd::watch {
 
-class Ended final : public Watched {
+class Ended : public Watched {
  public:
   uint64_t ticks() const noexcept override { return 0; }
   Nanoseconds tickBegun() const noexcept override { return 0; }
