@@ -149,11 +149,11 @@ std::vector<Quantity> quantitiesOf(const RunReport& report, const std::vector<Sa
   return all;
 }
 
-/// A curve that rests on the foot of its panel looks like a tip that rests.
-std::string cutAtFoot(double low, const std::vector<Sample>& samples) {
+/// What a negative depth means; a curve that rests on the foot of its panel would look like a tip that rests.
+std::string distanceNote(double low, const std::vector<Sample>& samples) {
   const auto below = [low](const Sample& s) { return s.depth_m * 1e3 < low; };
-  if (std::none_of(samples.begin(), samples.end(), below)) return "";
-  return fmt::format("; {:g} mm and more: at the foot", -low);
+  if (std::none_of(samples.begin(), samples.end(), below)) return " (negative: distance from the nearest model)";
+  return fmt::format(" (negative: distance; beyond {:g} mm drawn at the foot)", -low);
 }
 
 /// What is more in the panel of the forces than the force itself.
@@ -211,8 +211,7 @@ Result<void> drawRun(const RunReport& report, const std::vector<Sample>& samples
     if (q.colour == kDepth) {
       const bool any =
           std::any_of(samples.begin(), samples.end(), [](const Sample& s) { return std::isfinite(s.depth_m); });
-      panel.title += any ? " (negative: distance" + cutAtFoot(panel.y.low, samples) + ")"
-                         : " (none: no model was near enough to be traced)";
+      panel.title += any ? distanceNote(panel.y.low, samples) : " (none: no model was near enough to be traced)";
       panel.spans = modelSpans(samples, notes);
     }
     if (q.colour == kForce) addAsked(panel, samples, notes);

@@ -321,7 +321,7 @@ TEST_F(Report, MarksWhatHappenedAndWhoseItIs) {
   notes.arm = "left";
   ASSERT_TRUE(drawRun(sample(), samples, notes, file("run.svg")));
   std::string svg = read(file("run.svg"));
-  for (const char* words : {"ring is silenced", ", left<", "mm and more: at the foot"})
+  for (const char* words : {"ring is silenced", ", left<", "mm drawn at the foot"})
     EXPECT_NE(svg.find(words), std::string::npos) << words;
   EXPECT_EQ(svg.find("beyond the picture"), std::string::npos);
   for (Sample& sample : samples) sample.depth_m = std::nan(""), sample.model = -1;
