@@ -18,6 +18,7 @@
 #include "diagnostics/model_trial.hpp"
 #include "diagnostics/slow_arm.hpp"
 #include "diagnostics/unit_advice.hpp"
+#include "diagnostics/velocity_advice.hpp"
 #include "document/node.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
@@ -48,7 +49,10 @@ int printSchema(const std::string& format) {
 /// The scene with the arm that `run` takes where it names none.
 scene::Scene withArm(scene::Scene scene) {
   if (const auto file = host::shippedFile(scene::kDefaultDevice); scene.devices.empty() && file)
-    if (auto loaded = scene::loadDevice(*file, catalog()); loaded.device) scene.devices.push_back(*loaded.device);
+    if (auto loaded = scene::loadDevice(*file, catalog()); loaded.device) {
+      scene.devices.push_back(*loaded.device);
+      scene.devices.back().chosen_by_default = true;
+    }
   return scene;
 }
 
@@ -156,10 +160,10 @@ void tryTheRest(const CheckArguments& options, Verdict& verdict) {
 }
 
 /// What is in order, and yet cannot be meant, or cannot be stable.
-void addWarnings(const scene::Scene& full, const std::vector<double>& stiffness, const CheckArguments& options,
-                 Verdict& verdict) {
-  document::Problems more = unstable(full, stiffness);
-  for (const auto& found_by : {&farModels, &softModels, &idleBounds, &quarantinedModels, &slowArms})
+void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckArguments& options, Verdict& verdict) {
+  document::Problems more = unstable(full, trial.stiffness);
+  for (const document::Problem& one : lateVelocity(full, trial.needs_velocity)) more.push_back(one);
+  for (const auto& found_by : {&farModels, &softModels, &idleBounds, &quarantinedModels, &slowArms, &wideScales})
     for (const document::Problem& one : found_by(full)) more.push_back(one);
   document::Problems unread;
   if (const auto root = document::parseFile(verdict.file, unread)) adviseZeros(*root, verdict.file, more);
@@ -188,6 +192,13 @@ document::Problems badModules(const scene::Scene& scene) {
   return problems;
 }
 
+/// What `run` would refuse once it opens the arms.
+void addRefusals(const scene::Scene& full, bool needs_velocity, Verdict& verdict) {
+  for (const document::Problems& problems :
+       {refusedArms(full, needs_velocity), refusedVelocity(full, needs_velocity, verdict.warnings)})
+    verdict.problems.insert(verdict.problems.end(), problems.begin(), problems.end());
+}
+
 Verdict checkOne(const std::string& file, const CheckArguments& options) {
   std::optional<scene::Scene> scene;
   Verdict verdict{file, scene::checkFile(file, catalog(), &scene), {}};
@@ -207,8 +218,7 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   ModelTrial trial;
   if (scene && !options.files_only) trial = tryModels(*scene, servo::maxForceOf(withArm(*scene)));
   found.insert(found.end(), trial.problems.begin(), trial.problems.end());
-  if (scene && !options.files_only)
-    for (const document::Problem& hand : unreachableHands(withArm(*scene))) found.push_back(hand);
+  if (scene && !options.files_only) addRefusals(withArm(*scene), trial.needs_velocity, verdict);
   if (!scene && !found.empty()) tryTheRest(options, verdict);
   if (!scene) {
     const document::Problems more = tryDevice(file, catalog(), found, &verdict.warnings);
@@ -219,7 +229,7 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   verdict.whole = verdict.whole && found.empty();
   if (!scene && found.empty())
     for (const document::Problem& one : adviseDevice(file, catalog())) verdict.warnings.push_back(one);
-  if (scene) addWarnings(withArm(*scene), trial.stiffness, options, verdict);
+  if (scene) addWarnings(withArm(*scene), trial, options, verdict);
   return verdict;
 }
 
@@ -289,7 +299,9 @@ void addCheck(const Command& app, int& exit_code) {
       "Each problem is one line: file:line:column: key: what is wrong, and what was expected.\nThe exit code is 2 if "
       "there is a problem. If a scene has none, its models are set up once, because only\na plugin can check some "
       "files, such as geometry. A warning names each setting that cannot be stable on\nthe device, with the bound and "
-      "the nearest stable setting. Warnings do not affect the exit code.\n\nExample:\n  hapticd check "
+      "the nearest stable setting. On simulated arms the hand then goes its way once\nin virtual time: warnings tell "
+      "of a hand that meets no model, of forces that nobody feels or that the limits\ncut, and of buttons that do not "
+      "click. Warnings do not affect the exit code.\n\nExample:\n  hapticd check "
       "config/scenes/teapot.yaml config/devices/simulated-premium15.yaml\n  hapticd check config/scenes/sphere.yaml "
       "--device my-arm.yaml\n  hapticd check --schema scene > "
       "scene.schema.json");

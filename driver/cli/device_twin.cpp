@@ -27,7 +27,7 @@ int judge(const std::string& file, const std::string& out) {
                              ", then write the twin anew");
   scene::Scene alone;
   alone.devices.push_back(*twin.device);
-  problems = diagnostics::unreachableHands(alone);
+  problems = diagnostics::refusedArms(alone, false);
   printProblems(problems, stderr);
   if (problems.empty()) return kWorked;
   return fail(kFailed, out + " is written, but its hand cannot begin\n  fix: mount of " + file +

@@ -110,9 +110,12 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
                                                 std::unique_ptr<World> world, const host::Services::Log& log) {
   std::unique_ptr<Runner> runner(new Runner(scene, options));
   runner->world_ = std::move(world);
-  if (auto opened = runner->openArms(log); !opened)
+  if (auto opened = runner->openArms(log); !opened) {
+    const bool real = std::any_of(scene.devices.begin(), scene.devices.end(),
+                                  [](const scene::Device& device) { return device.module != "simulated"; });
     return Error{opened.error() +
-                 (options.virtual_time ? "\n  note: --virtual-time allows simulated devices only" : "")};
+                 (options.virtual_time && real ? "\n  note: --virtual-time allows simulated devices only" : "")};
+  }
   if (options.virtual_time && !runner->onlySimulated())
     return Error{
         "--virtual-time runs faster than any clock, and the scene names real hardware; expected simulated devices "

@@ -9,11 +9,16 @@
 #include <vector>
 
 #include "diagnostics/arm_reach.hpp"
+#include "diagnostics/hand_script.hpp"
+#include "diagnostics/key_place.hpp"
 #include "diagnostics/limit_advice.hpp"
+#include "diagnostics/walk_advice.hpp"
 #include "host/child.hpp"
 #include "host/device_instance.hpp"
 #include "host/wire.hpp"
+#include "servo/arm/arm.hpp"
 #include "servo/loop/lockstep.hpp"
+#include "world/arm_force.hpp"
 #include "world/world.hpp"
 
 namespace hapticd::diagnostics {
@@ -64,8 +69,9 @@ std::optional<Hand> handOf(const scene::Scene& scene, uint32_t index) {
   return hand;
 }
 
-/// Model, place of the tip and depth, packed: how they travel from the child.
-void packInside(uint32_t models, const servo::Core& core, const std::vector<servo::Probe>& tips, host::Packer& found) {
+/// Model, place of the tip and depth, packed: how they travel from the child. @return how many
+uint32_t packInside(uint32_t models, const servo::Core& core, const std::vector<servo::Probe>& tips,
+                    host::Packer& found) {
   uint32_t count = 0;
   host::Packer list;
   for (uint32_t model = 0; model < models; ++model)
@@ -79,31 +85,60 @@ void packInside(uint32_t models, const servo::Core& core, const std::vector<serv
     }
   found.number(count);
   found.text(list.take());
+  return count;
 }
 
-/// Arm, model, distance and reach of each arm that no model is near enough to, packed.
-void packFar(const scene::Scene& scene, const servo::World& world, servo::Core& core, const std::vector<Hand>& hands,
-             host::Packer& found) {
+/// Arm, model, distance and reach of each arm that no model is near enough to, packed. @return how many
+uint32_t packFar(const scene::Scene& scene, const servo::World& world, servo::Core& core,
+                 const std::vector<Hand>& hands, host::Packer& found) {
   constexpr double kRoom = 1.1, kLittle = 0.05;  // the poses that were tried are not all; [m]
+  uint32_t count = 0;
+  host::Packer list;
   for (uint32_t i = 0; i < hands.size(); ++i) {
     const auto nearest = nearestModel(scene, world, core, hands[i].probe.position, i);
     if (!nearest || nearest->away <= kRoom * hands[i].reach + kLittle) continue;
-    found.number(hands[i].device);
-    found.number(static_cast<uint32_t>(nearest->index));
-    for (int axis = 0; axis < 3; ++axis) found.number(hands[i].probe.position[axis]);
-    found.number(nearest->away);
-    found.number(hands[i].reach);
+    ++count;
+    list.number(hands[i].device);
+    list.number(static_cast<uint32_t>(nearest->index));
+    for (int axis = 0; axis < 3; ++axis) list.number(hands[i].probe.position[axis]);
+    list.number(nearest->away);
+    list.number(hands[i].reach);
+  }
+  found.number(count);
+  found.text(list.take());
+  return count;
+}
+
+void packProblems(const document::Problems& problems, host::Packer& found) {
+  for (const document::Problem& one : problems) {
+    for (const std::string* text : {&one.place.file, &one.key, &one.what}) found.text(*text);
+    found.number(static_cast<uint32_t>(one.place.line));
+    found.number(static_cast<uint32_t>(one.place.column));
   }
 }
 
-std::string tryTips(const scene::Scene& scene) {
+document::Problems readProblems(host::Unpacker& in) {
+  document::Problems problems;
+  for (;;) {
+    document::Problem one;
+    for (std::string* text : {&one.place.file, &one.key, &one.what}) *text = in.text();
+    one.place.line = static_cast<int>(in.count());
+    one.place.column = static_cast<int>(in.count());
+    if (!in.good()) return problems;
+    problems.push_back(std::move(one));
+  }
+}
+
+std::string tryTips(const scene::Scene& scene, bool may_walk) {
   std::vector<Hand> hands;
   std::vector<servo::Probe> tips;
   for (uint32_t device = 0; device < scene.devices.size(); ++device)
     if (const auto hand = handOf(scene, device)) hands.push_back(*hand), tips.push_back(hand->probe);
   host::Packer found;
   if (tips.empty()) return found.take();
-  const servo::WorldOptions options{.rate = scene.servo.rate, .probe_count = static_cast<uint32_t>(tips.size())};
+  const servo::WorldOptions options{.rate = scene.servo.rate,
+                                    .probe_count = static_cast<uint32_t>(tips.size()),
+                                    .max_force = servo::maxForceOf(scene)};
   auto world = servo::World::build(scene, options, [](int, const std::string&, const std::string&) {});
   if (!world) return found.take();
   servo::Core& core = (*world)->core();
@@ -111,8 +146,11 @@ std::string tryTips(const scene::Scene& scene) {
   core.publish(0, tips);
   lockstep.before(0);
   core.tick(0, 0, tips);
-  packInside(static_cast<uint32_t>(scene.models.size()), core, tips, found);
-  packFar(scene, **world, core, hands, found);
+  const uint32_t inside = packInside(static_cast<uint32_t>(scene.models.size()), core, tips, found);
+  const uint32_t far = packFar(scene, **world, core, hands, found);
+  // A hand that begins in the wrong place, or wants what no hand does, is told first: the rest follows from it.
+  if (inside + far == 0 && may_walk && tips.size() == scene.devices.size())
+    packProblems(adviseWalk(scene, **world), found);
   return found.take();
 }
 
@@ -124,16 +162,28 @@ document::Place placeOfHand(const scene::Device& device) {
   return device.place;
 }
 
-/// "=", or why the arm cannot begin where its hand does.
-std::string tryStart(const scene::Scene& scene, const scene::Device& device) {
-  auto arm = host::DeviceInstance::create(device, nullptr);
-  hdv_start how{};
-  how.struct_size = sizeof how;
-  how.rate_hz = scene.servo.rate;
-  if (!arm) return "=";  // told by who reads the device file
-  if (const auto opened = (*arm)->open(); !opened) return opened.error();
-  const auto started = (*arm)->start(how);
+/// "=", or why `run` would refuse the arm: the same calls.
+std::string tryStart(const scene::Scene& scene, const scene::Device& device, bool needs_velocity) {
+  scene::Servo servo = scene.servo;
+  servo.velocity = {};  // judged for itself, at its own place
+  auto arm = servo::Arm::open(device, servo, {servo.rate, needs_velocity, nullptr, scene.clients}, nullptr);
+  if (!arm) return arm.error();
+  const auto started = (*arm)->start(0, servo.gravity);
+  (*arm)->stop();
   return started ? "=" : started.error();
+}
+
+/// "device 'name': limits.enable.button is 3, ..." begins with a key of the device file; the rest is about its hand.
+void tellRefused(const scene::Device& device, const std::string& told, document::Problems& problems) {
+  const std::string before = "device '" + device.name + "': ";
+  if (told.rfind(before, 0) == 0) {
+    const size_t end = std::min(told.find_first_of(": ", before.size()), told.size());
+    const std::string key = told.substr(before.size(), end - before.size());
+    if (const auto place = placeOfKey(device.file, key))
+      return document::report(problems, *place, key,
+                              told.substr(std::min(told.find_first_not_of(": ", end), told.size())));
+  }
+  document::report(problems, placeOfHand(device), "hand", told);
 }
 
 void tellInside(const scene::Scene& scene, const std::string& list, uint32_t count, document::Problems& warnings) {
@@ -149,11 +199,13 @@ void tellInside(const scene::Scene& scene, const std::string& list, uint32_t cou
   }
 }
 
-void tellFar(const scene::Scene& scene, host::Unpacker& in, document::Problems& warnings) {
-  for (uint32_t device = in.count(); in.good() && device < scene.devices.size(); device = in.count()) {
+void tellFar(const scene::Scene& scene, const std::string& list, uint32_t count, document::Problems& warnings) {
+  host::Unpacker in(list);
+  for (; count > 0; --count) {
+    const uint32_t device = in.count();
     const uint32_t model = in.count();
     const double x = in.real(), y = in.real(), z = in.real(), away = in.real(), reach = in.real();
-    if (!in.good() || model >= scene.models.size()) break;
+    if (!in.good() || device >= scene.devices.size() || model >= scene.models.size()) break;
     document::report(warnings, scene.models[model].place, fmt::format("models[{}].pose.position", model),
                      fmt::format("{} is the model nearest to {}, and {:.3g} m away from its tip, which is at [{:.3g}, "
                                  "{:.3g}, {:.3g}] and reaches {:.3g} m from there: no model can be felt; expected them "
@@ -164,12 +216,12 @@ void tellFar(const scene::Scene& scene, host::Unpacker& in, document::Problems& 
 
 }  // namespace
 
-document::Problems unreachableHands(const scene::Scene& scene) {
+document::Problems refusedArms(const scene::Scene& scene, bool needs_velocity) {
   document::Problems problems;
   for (const scene::Device& device : scene.devices) {
     if (device.module != "simulated") continue;
-    const auto told = host::runInChild([&] { return tryStart(scene, device); }, kHandLimitMs);
-    if (told && *told != "=") document::report(problems, placeOfHand(device), "hand", *told);
+    const auto told = host::runInChild([&] { return tryStart(scene, device, needs_velocity); }, kHandLimitMs);
+    if (told && *told != "=") tellRefused(device, *told, problems);
   }
   return problems;
 }
@@ -177,13 +229,16 @@ document::Problems unreachableHands(const scene::Scene& scene) {
 document::Problems adviseHands(const scene::Scene& scene) {
   document::Problems warnings;
   if (scene.models.empty() || scene.models.size() > kMostModels || scene.devices.empty()) return warnings;
-  const auto told = host::runInChild([&] { return tryTips(scene); }, kHandLimitMs);
+  warnings = hastyHands(scene);
+  const bool may_walk = warnings.empty();
+  const auto told = host::runInChild([&] { return tryTips(scene, may_walk); }, kHandLimitMs);
   if (!told) return warnings;  // a model that crashes is told by who tried it alone
   host::Unpacker in(*told);
-  const uint32_t count = in.count();
-  const std::string list = in.text();
-  tellInside(scene, list, count, warnings);
-  tellFar(scene, in, warnings);
+  const uint32_t inside = in.count();
+  tellInside(scene, in.text(), inside, warnings);
+  const uint32_t far = in.count();
+  tellFar(scene, in.text(), far, warnings);
+  for (document::Problem& one : readProblems(in)) warnings.push_back(std::move(one));
   return warnings;
 }
 

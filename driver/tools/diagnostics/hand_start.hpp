@@ -9,13 +9,14 @@ namespace hapticd::diagnostics {
 
 /// [main] Warns of each model that the tip of an arm is in at the first tick, with the depth, and of each arm that can
 /// reach none of the models. Simulated hands stand where their script begins, other arms in the pose of their
-/// calibration. The models are set up in a child process.
+/// calibration. Where nothing of that is wrong and all arms are simulated, their hands walk through the scene: see
+/// walk_advice.hpp. The models are set up in a child process.
 /// @param scene with the devices that a run would take
 document::Problems adviseHands(const scene::Scene& scene);
 
-/// [main] A problem for each simulated arm that cannot reach where its hand begins, in the module's words: `run` would
-/// refuse it. The arms are started in a child process.
-/// @param scene with the devices that a run would take
-document::Problems unreachableHands(const scene::Scene& scene);
+/// [main] A problem for each simulated arm that `run` would refuse, in its words: one that cannot reach where its hand
+/// begins, an enable button that it has not. The arms are started in a child process.
+/// @param scene with the devices that a run would take  @param needs_velocity some model reads the velocity of a probe
+document::Problems refusedArms(const scene::Scene& scene, bool needs_velocity);
 
 }  // namespace hapticd::diagnostics

@@ -102,9 +102,10 @@ std::string tryAll(const scene::Scene& scene, double max_force, const std::vecto
   host::Packer claims;
   for (size_t i = 0; i < scene.models.size(); ++i) {
     double stiffness = 0;
-    bool idle = false;
+    bool idle = false, reads_velocity = false;
     if (i < unsound.size() && unsound[i]) {
       claims.number(0.0);
+      claims.number(uint32_t{0});
       claims.number(uint32_t{0});
       continue;
     }
@@ -117,6 +118,7 @@ std::string tryAll(const scene::Scene& scene, double max_force, const std::vecto
     } else if (trail.mark(static_cast<uint32_t>(i), "activate");
                const auto activated = (*shape)->activate(activationOf(scene, scene.models[i], max_force))) {
       stiffness = (*shape)->report().max_stiffness;
+      reads_velocity = ((*shape)->report().flags & HSP_R_VELOCITY) != 0;
       const bool may_move = ((*shape)->description().flags & HSP_C_MOVES) != 0;
       idle = may_move && ((*shape)->report().flags & HSP_R_MOVES) == 0;
       trail.mark(static_cast<uint32_t>(i), "deactivate() or destroy");
@@ -125,6 +127,7 @@ std::string tryAll(const scene::Scene& scene, double max_force, const std::vecto
     }
     claims.number(stiffness);
     claims.number(uint32_t{idle ? 1u : 0u});
+    claims.number(uint32_t{reads_velocity ? 1u : 0u});
   }
   return problems.take() + warnings.take() + claims.take();
 }
@@ -146,6 +149,7 @@ ModelTrial tryModels(const scene::Scene& scene, double max_force, const std::vec
   for (size_t i = 0; i < scene.models.size() && in.good(); ++i) {
     trial.stiffness.push_back(in.real());
     if (in.count() != 0) adviseMotion(scene.models[i], i, trial.warnings);
+    trial.needs_velocity = in.count() != 0 || trial.needs_velocity;
   }
   return trial;
 }

@@ -12,6 +12,7 @@ namespace hapticd::diagnostics {
 struct ModelTrial {
   document::Problems problems, warnings;
   std::vector<double> stiffness;  ///< [N/m] that each model claims, in scene order
+  bool needs_velocity = false;    ///< some model reads the velocity of a probe
 };
 
 /// [main] Creates and activates every model in a child process, one after the other, and collects what the plugins

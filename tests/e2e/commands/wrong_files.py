@@ -49,6 +49,30 @@ arm, sphere = os.path.join(FOLDER, "9999j-torque-in-newton-millimetres.yaml"), o
 done = subprocess.run([HAPTICD, "check", sphere, "--device", arm], capture_output=True, text=True, timeout=120)
 check("a scene on another arm has that arm's warnings", done.returncode == 0 and "one raw unit is 0.02 N m" in done.stdout, done.stdout + done.stderr)
 
+# What the hand meets on its way is as it was meant in the scenes that ship.
+walked = ("comes no nearer", "cannot be felt", "cuts the force", "never clicks", "does not move", "hands do not", "half a turn", "lags by", "walk")
+ships = os.path.dirname(sphere)
+for scene in sorted(glob.glob(os.path.join(ships, "*.yaml")) + glob.glob(os.path.join(ships, "*", "*.yaml"))):
+    done = subprocess.run([HAPTICD, "check", scene], capture_output=True, text=True, timeout=120)
+    wrong = [line for line in done.stdout.splitlines() if any(words in line for words in walked)]
+    check(f"the hand of {os.path.relpath(scene, ships)} meets what it shall", done.returncode == 0 and not wrong, done.stdout + done.stderr)
+
+with tempfile.TemporaryDirectory() as folder:  # of arms, check refuses what run refuses, in the same words
+    shipped = open(os.path.join(ships, "..", "devices", "simulated-premium15.yaml")).read()
+    arm, scene = os.path.join(folder, "arm.yaml"), os.path.join(folder, "scene.yaml")
+    geometry = os.path.abspath(os.path.join(ships, "..", "models", "sphere.yaml"))
+    with open(scene, "w") as out:
+        out.write(f"hapticd: 1\ndevice: arm.yaml\nhand: {{radius: 0.046}}\nmodels:\n  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {geometry}}}}}\n")
+    for key, block in (("limits.enable.button", "limits: {enable: {button: 0}}"), ("admittance", "admittance: {mass: 1, damping: 10}"),
+                       ("hd.joints[0][0]", "hd: {joints: [[5, 1, 0], [1, 1, 0], [2, 1, 0]]}"), ("hd.buttons[0]", "hd: {buttons: [3]}")):
+        with open(arm, "w") as out:
+            out.write(shipped.replace("limits: {force: 8.5}\n", "") + block + "\n")
+        ran = subprocess.run([HAPTICD, "run", scene, "--virtual-time", "--for", "0.1"], capture_output=True, text=True, timeout=120)
+        told = subprocess.run([HAPTICD, "check", scene], capture_output=True, text=True, timeout=120)
+        place = re.search(r"^" + re.escape(os.path.realpath(arm)) + r":(\d+):\d+: " + re.escape(key) + ": (.*)$", told.stdout, re.M)
+        check(f"check refuses {key} as run does", ran.returncode != 0 and told.returncode == 2 and place and int(place[1]) == 1 + shipped.count("\n") - 1
+              and place[2] in ran.stderr and "--virtual-time allows" not in ran.stderr, told.stdout + ran.stderr)
+
 for name in ("part.dae", "part.glb"):
     done = subprocess.run([HAPTICD, "import", name, "-o", "part.hpart"], capture_output=True, text=True, timeout=120)
     check(f"import of {name} says which way leads here", done.returncode == 2 and "hapticd import PART.stl -o PART.hpart" in done.stderr, done.stderr)
@@ -61,7 +85,8 @@ with tempfile.TemporaryDirectory() as folder:
                               ("0.1", "pose: {position: [0, -5, 0]}, ", "its nearest point is 4.9 m from the world's origin")):
         subprocess.run([HAPTICD, "import", mesh, "--scale", scale, "-o", part], capture_output=True, check=True, timeout=120)
         with open(scene, "w") as out:
-            out.write(f"hapticd: 1\nmodels:\n  - {{name: egg, plugin: nurbs_rigid, {pose}parameters: {{geometry: egg.hpart}}}}\n")
+            out.write("hapticd: 1\nhand: {script: press, center: [0.02, 0.02, -0.09], radius: 0.001, rise: 0.004}\n"
+                      f"models:\n  - {{name: egg, plugin: nurbs_rigid, {pose}parameters: {{geometry: egg.hpart}}}}\n")
         done = subprocess.run([HAPTICD, "check", scene], capture_output=True, text=True, timeout=120)
         check(f"check of a part: {told or 'no warning'}", done.returncode == 0 and (told in done.stdout if told else "warning" not in done.stdout), done.stdout)
     def imported(*options):

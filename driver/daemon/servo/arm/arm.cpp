@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "servo/arm/velocity_use.hpp"
 #include "servo/safety/held_command.hpp"
+#include "servo/velocity/estimator_delay.hpp"
 
 namespace hapticd::servo {
 
@@ -20,14 +21,6 @@ using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HD
 
 constexpr double kAssumedMass =
     0.05;  ///< [kg] of a light arm: the damping that the passivity controller may add stays small
-
-/// [s] How far a velocity estimate lags at most, for a margin.
-double delayOf(const scene::Velocity& velocity, double rate) {
-  if (velocity.estimator == "butterworth")
-    return 0.5 / rate + 1 / (std::numbers::sqrt2 * std::numbers::pi * velocity.parameter);
-  if (velocity.estimator == "kalman") return 4 / rate;
-  return velocity.parameter / (2 * rate);
-}
 
 /// A simulated arm hurts nobody, and a recording keeps the forces that were felt.
 bool pushesInFull(const hdv_info& info, const ArmOptions& options) {
@@ -96,7 +89,7 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
   if (options.found_pressed) arm->limiter_.enableByFoundPressed();
   arm->watchSamples(described.limits);
   const double mass = arm->info().mass_kg > 0 ? arm->info().mass_kg : kAssumedMass;
-  arm->limiter_.expectMotion(delayOf(servo.velocity, options.rate), mass);
+  arm->limiter_.expectMotion(estimatorDelay(servo.velocity, options.rate), mass);
   if (described.admittance) {
     if (const std::string no = Admittance::refusal(arm->info()); !no.empty())
       return Error{"device '" + described.name + "': " + no};
@@ -114,8 +107,7 @@ Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const sce
     return Error{"device '" + described.name + "': limits.enable.button is " + std::to_string(*button) +
                  ", but the device has " + std::to_string(arm->info().buttons) +
                  " buttons; forces could never be enabled; expected a button of the device, counted from 0"};
-  if (options.needs_velocity || arm->clients_.possible() || described.limits.velocity.value_or(0) > 0 ||
-      described.limits.power > 0) {
+  if (usesVelocity(described, options.clients, options.needs_velocity)) {
     auto estimator = makeEstimator(servo.velocity, options.rate, arm->info().resolution_m);
     if (!estimator) return Error{estimator.error()};
     arm->velocity_.emplace(*estimator);

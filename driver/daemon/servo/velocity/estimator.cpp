@@ -2,6 +2,7 @@
 #include "servo/velocity/estimator.hpp"
 
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 
@@ -9,8 +10,9 @@ namespace hapticd::velocity {
 namespace {
 
 [[noreturn]] void refuse(std::string_view name, double parameter, const std::string& expected) {
-  throw std::invalid_argument("velocity estimator " + std::string(name) + " " + std::to_string(parameter) +
-                              ": expected " + expected);
+  char number[32];
+  std::snprintf(number, sizeof number, "%g", parameter);
+  throw std::invalid_argument("velocity estimator " + std::string(name) + " " + number + ": expected " + expected);
 }
 
 int samples(std::string_view name, double parameter, int least, int most) {

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/hand_script.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "document/csv.hpp"
+#include "document/reader.hpp"
+#include "host/device_instance.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+using Kind = HandScript::Kind;
+
+constexpr double kFastestHand = 2;   ///< [m/s] of a hand that strokes, presses or taps
+constexpr double kRiseRatio = 0.31;  ///< of a stroke's rise to its rate, as in the module
+constexpr size_t kMaxPathBytes = size_t{1} << 30;
+
+/// A number as given, or the module's default for it.
+double numberOf(const scene::Device& device, const hdv_class& module, const char* id) {
+  if (const scene::Value* value = givenIn(device.parameters, id)) return value->number;
+  for (uint32_t i = 0; i < module.param_count; ++i) {
+    const hsp_param& param = *HSP_AT(const hsp_param, module.params, module.params[0].struct_size, i);
+    if (std::string_view(param.id) == id) return param.def;
+  }
+  return 0;
+}
+
+void readPath(const scene::Device& device, HandScript& hand) {
+  const scene::Value* path = givenIn(device.parameters, "hand.path");
+  document::Problems told_by_who_opens;
+  if (path == nullptr) return;
+  const auto table =
+      document::readCsv(path->text, kMaxPathBytes, {{"t,x,y,z", "t,x,y,z,qw,qx,qy,qz"}, true, true}, told_by_who_opens);
+  if (!table || table->rows() == 0) return;
+  hand.path_end = table->row(table->rows() - 1)[0];
+  for (size_t i = 1; i < table->rows(); ++i) {
+    const double *from = table->row(i - 1), *to = table->row(i);
+    const double way = std::hypot(to[1] - from[1], to[2] - from[2], to[3] - from[3]), speed = way / (to[0] - from[0]);
+    if (speed <= hand.path_speed * (1 + 1e-9)) continue;  // of equal ones the first
+    hand.path_speed = speed;
+    hand.path_fastest_at = from[0];
+  }
+}
+
+/// In which words a script's speed comes about, and what to change.
+std::string wayOf(const HandScript& hand) {
+  switch (hand.kind) {
+    case Kind::kStroke:
+      return fmt::format("{:.4g} rad to either side at {:.4g} m, {:.4g} times a second", hand.sweep, hand.radius,
+                         hand.rate);
+    case Kind::kCircle:
+      return fmt::format("round at {:.4g} m, {:.4g} times a second", hand.radius, hand.rate);
+    case Kind::kPath:
+      return fmt::format("from t = {:.4g} s", hand.path_fastest_at);
+    default:
+      return fmt::format("{:.4g} m in, {:.4g} times a second", hand.rise, hand.rate);
+  }
+}
+
+void judgeSpeed(const scene::Scene& scene, const scene::Device& device, const HandScript& hand,
+                document::Problems& warnings) {
+  const double speed = hand.speed();
+  if (speed <= kFastestHand * 1.001) return;
+  const bool follows = hand.kind == Kind::kPath;
+  const HandKey key = follows ? keyOfHand(scene, device, {"hand.path"})
+                              : keyOfHand(scene, device, {"hand.rate", "hand.rise", "hand.sweep", "hand.radius"});
+  document::report(warnings, key.place, key.id,
+                   fmt::format("the hand of {} moves at up to {:.3g} m/s ({}), and hands do not; expected at most {:g} "
+                               "m/s: {}",
+                               device.name, speed, wayOf(hand), kFastestHand,
+                               follows ? "times in s, places in m" : "hand.rate in Hz, lengths in m, angles in rad"));
+}
+
+/// True: it was meant in degrees, which tells enough of the speed too.
+bool judgeSweep(const scene::Device& device, const HandScript& hand, document::Problems& warnings) {
+  const scene::Value* sweep = givenIn(device.parameters, "hand.sweep");
+  if (hand.kind != Kind::kStroke || sweep == nullptr || hand.sweep <= std::numbers::pi * 1.001) return false;
+  const std::string meant = hand.sweep <= 360 ? fmt::format(" ({:.4g} degrees are {:.4g} rad)", hand.sweep,
+                                                            hand.sweep * std::numbers::pi / 180)
+                                              : "";
+  document::report(warnings, sweep->place, "hand.sweep",
+                   fmt::format("{:.4g} rad to either side is more than half a turn, so the hand of {} goes all round "
+                               "what it strokes; expected at most {:.4g} rad{}",
+                               hand.sweep, device.name, std::numbers::pi, meant));
+  return true;
+}
+
+}  // namespace
+
+const scene::Value* givenIn(const std::vector<scene::Value>& values, const char* id) {
+  const auto found =
+      std::find_if(values.begin(), values.end(), [id](const scene::Value& value) { return value.id == id; });
+  return found != values.end() ? &*found : nullptr;
+}
+
+HandKey keyOfHand(const scene::Scene& scene, const scene::Device& device, std::initializer_list<const char*> ids) {
+  const bool named = !device.chosen_by_default;
+  for (const bool in_scene : {true, false})
+    for (const char* id : ids)
+      if (const scene::Value* value = givenIn(device.parameters, id);
+          value != nullptr && (!in_scene || value->place.file == scene.file.string()))
+        return {named || in_scene ? value->place : document::Place{scene.file.string(), 1, 1}, id};
+  return {named ? device.place : document::Place{scene.file.string(), 1, 1}, "hand"};
+}
+
+double HandScript::speed() const {
+  const double turn = 2 * std::numbers::pi * rate;
+  switch (kind) {
+    case Kind::kStroke:
+      return turn * std::hypot(radius * sweep, kRiseRatio * rise);
+    case Kind::kCircle:
+      return turn * radius;
+    case Kind::kPress:
+      return turn * rise / 2;
+    case Kind::kTap:
+      return turn * rise;
+    case Kind::kPath:
+      return path_speed;
+    default:
+      return 0;
+  }
+}
+
+double HandScript::once() const {
+  constexpr double kRest = 1;  // [s] of a hand that holds still
+  if (kind == Kind::kPath) return path_end;
+  const bool repeats =
+      rate > 0 && (kind == Kind::kStroke || kind == Kind::kCircle || kind == Kind::kPress || kind == Kind::kTap);
+  return lead_in + (repeats ? 1 / rate : kRest);
+}
+
+std::optional<HandScript> handScriptOf(const scene::Device& device) {
+  if (device.module != "simulated") return std::nullopt;
+  const auto instance = host::DeviceInstance::create(device, nullptr);
+  if (!instance) return std::nullopt;
+  const hdv_class& module = (*instance)->description();
+  const auto number = [&](const char* id) { return numberOf(device, module, id); };
+  HandScript hand;
+  hand.kind = static_cast<Kind>(number("hand.script"));
+  hand.radius = number("hand.radius"), hand.sweep = number("hand.sweep");
+  hand.rise = number("hand.rise"), hand.rate = number("hand.rate"), hand.lead_in = number("hand.lead_in");
+  if (const scene::Value* center = givenIn(device.parameters, "hand.center"); center && center->numbers.size() == 3)
+    hand.center = Eigen::Map<const Eigen::Vector3d>(center->numbers.data());
+  if (hand.kind == Kind::kPath) readPath(device, hand);
+  return hand;
+}
+
+document::Problems hastyHands(const scene::Scene& scene) {
+  document::Problems warnings;
+  for (const scene::Device& device : scene.devices)
+    if (const auto hand = handScriptOf(device); hand && !judgeSweep(device, *hand, warnings))
+      judgeSpeed(scene, device, *hand, warnings);
+  return warnings;
+}
+
+}  // namespace hapticd::diagnostics

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/walk_advice.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <string>
+
+#include "diagnostics/detent_advice.hpp"
+#include "diagnostics/hand_script.hpp"
+#include "diagnostics/hand_walk.hpp"
+#include "diagnostics/key_place.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+constexpr double kContactSeconds = 0.02;  ///< a shorter one says little
+
+/// The middle of its way is within the model, or a box about it: the way is too wide, and not elsewhere.
+bool goesRound(const scene::Device& device, const HandScript& hand, const scene::Model& model,
+               const host::ShapeInstance& shape) {
+  Eigen::AlignedBox3d box;
+  if (!shape.bounds(box.min().data(), box.max().data())) return false;
+  const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
+  return box.contains(Eigen::Vector3d(model.pose.orientation.conjugate() * (center - model.pose.position)));
+}
+
+void tellAway(const scene::Scene& scene, uint32_t index, const HandScript& hand, const WalkedArm& seen,
+              const servo::World& world, document::Problems& warnings) {
+  const scene::Device& device = scene.devices[index];
+  const scene::Model& nearest = scene.models[seen.nearest];
+  const std::string what = fmt::format(
+      "the hand of {} comes no nearer than {:.3g} mm to any model ({} is the nearest): "
+      "it feels nothing; expected ",
+      device.name, seen.away * 1e3, nearest.name);
+  if (hand.kind == HandScript::Kind::kPath) {
+    const HandKey key = keyOfHand(scene, device, {"hand.path"});
+    return document::report(warnings, key.place, key.id, what + "a path through a model, in m of the device frame");
+  }
+  if (goesRound(device, hand, nearest, *world.shapes()[seen.nearest])) {
+    const HandKey key = keyOfHand(scene, device, {"hand.radius", "hand.rise", "hand.script"});
+    return document::report(
+        warnings, key.place, key.id,
+        what +
+            fmt::format("a hand.radius that is less by more than that ({:.4g} m now; it is no diameter)", hand.radius));
+  }
+  const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
+  const std::string at = fmt::format(
+      "the hand about a model: its middle (hand.center) is at [{:.3g}, {:.3g}, {:.3g}] in "
+      "the world, and {} at [{:.3g}, {:.3g}, {:.3g}]; move the arm (mount.position), "
+      "hand.center or the model (pose.position)",
+      center.x(), center.y(), center.z(), nearest.name, nearest.pose.position.x(), nearest.pose.position.y(),
+      nearest.pose.position.z());
+  const std::string in_list = fmt::format("devices[{}].mount.position", index);
+  for (const std::string& id : {std::string("device.mount.position"), in_list})
+    if (const auto place = placeOfKey(scene.file, id)) return document::report(warnings, *place, id, what + at);
+  document::report(warnings, nearest.place, fmt::format("models[{}].pose.position", seen.nearest), what + at);
+}
+
+/// A model that is touched, and pushes so little that nobody feels it.
+void tellUnfelt(const scene::Model& model, size_t index, const WalkedModel& seen, document::Problems& warnings) {
+  document::Place place = model.place;
+  std::string key = fmt::format("models[{}]", index), mend = "expected more stiffness";
+  for (const char* id : {"depth_scale", "exponent", "stiffness"})
+    if (const scene::Value* value = givenIn(model.parameters, id)) {
+      place = value->place;
+      key += std::string(".parameters.") + id;
+      if (id != std::string_view("stiffness")) mend = "expected depth_scale in m (1 mm is 0.001), or more stiffness";
+      break;
+    }
+  document::report(
+      warnings, place, key,
+      fmt::format("{} cannot be felt: the hand is up to {:.3g} mm deep in it, and the most it gives is {:.2g} "
+                  "N; {}",
+                  model.name, seen.depth * 1e3, seen.force, mend));
+}
+
+/// The limit that cuts most often.
+size_t strictest(const WalkedArm& seen) {
+  return static_cast<size_t>(std::max_element(seen.limits.begin(), seen.limits.end()) - seen.limits.begin());
+}
+
+void tellCut(const scene::Scene& scene, const scene::Device& device, const HandScript& hand, const WalkedArm& seen,
+             const servo::Limiter& limiter, document::Problems& warnings) {
+  constexpr double kDeep = 5e-3;  // [m] beyond it the hand is what asks for too much
+  const scene::Model& model = scene.models[seen.deepest];
+  const scene::Value* stiffness = givenIn(model.parameters, "stiffness");
+  HandKey key = hand.presses() ? keyOfHand(scene, device, {"hand.rise", "hand.radius", "hand.script"})
+                               : keyOfHand(scene, device, {"hand.radius", "hand.path", "hand.script"});
+  if (seen.depth < kDeep && stiffness != nullptr)
+    key = {stiffness->place, fmt::format("models[{}].parameters.stiffness", seen.deepest)};
+  const std::string most = limiter.maxForce() > 0 ? fmt::format(", and {:.3g} N are allowed", limiter.maxForce()) : "";
+  document::report(
+      warnings, key.place, key.id,
+      fmt::format(
+          "the hand of {} is up to {:.3g} mm deep in {} and asks for up to {:.3g} N{}: limits.{} cuts the force in "
+          "{:.0f} % of the ticks with one; expected a hand that presses less (hand.radius, hand.rise in m) or "
+          "less stiffness",
+          device.name, seen.depth * 1e3, model.name, seen.asked, most,
+          servo::nameOf(static_cast<servo::Limit>(strictest(seen))),
+          100 * static_cast<double>(seen.cut) / static_cast<double>(seen.contact)));
+}
+
+void judgeArm(const scene::Scene& scene, uint32_t index, const Walk& walk, const servo::World& world,
+              document::Problems& warnings) {
+  constexpr double kOften = 0.05;  // of the ticks with a force
+  const WalkedArm& seen = walk.arms[index];
+  const auto hand = handScriptOf(scene.devices[index]);
+  if (!hand || !hand->goes()) return;
+  if (!seen.touched) {
+    if (walk.whole && std::isfinite(seen.away)) tellAway(scene, index, *hand, seen, world, warnings);
+    return;
+  }
+  const auto ticks = [](uint64_t count) { return static_cast<double>(count); };
+  if (ticks(seen.cut) * walk.period > kContactSeconds && ticks(seen.cut) > kOften * ticks(seen.contact))
+    tellCut(scene, scene.devices[index], *hand, seen, walk.limiters[index], warnings);
+}
+
+void judgeModel(const scene::Scene& scene, size_t index, const Walk& walk, const servo::World& world,
+                document::Problems& warnings) {
+  constexpr double kUnfelt = 0.03;  // [N] less than an arm rubs with
+  const WalkedModel& seen = walk.models[index];
+  if (static_cast<double>(seen.touched) * walk.period < kContactSeconds) return;
+  if (tellNoClick(scene.models[index], index, *world.shapes()[index], seen, walk.whole, warnings)) return;
+  if (walk.whole && seen.force > 0 && seen.force < kUnfelt) tellUnfelt(scene.models[index], index, seen, warnings);
+}
+
+}  // namespace
+
+document::Problems adviseWalk(const scene::Scene& scene, servo::World& world) {
+  document::Problems warnings;
+  const auto walk = walkHands(scene, world);
+  if (!walk) return warnings;
+  for (size_t i = 0; i < scene.models.size(); ++i) judgeModel(scene, i, *walk, world, warnings);
+  for (uint32_t i = 0; i < scene.devices.size(); ++i) judgeArm(scene, i, *walk, world, warnings);
+  return warnings;
+}
+
+}  // namespace hapticd::diagnostics
