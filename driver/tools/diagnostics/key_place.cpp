@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/key_place.hpp"
+
+#include <cstdlib>
+
+#include "document/node.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+/// What "name[3]" names of a mapping.
+const document::Node* step(const document::Node& from, const std::string& part) {
+  const size_t bracket = part.find('[');
+  const document::Node* at = from.isMap() ? from.find(part.substr(0, bracket)) : nullptr;
+  for (size_t open = bracket; at != nullptr && open != std::string::npos; open = part.find('[', open + 1)) {
+    const size_t index = std::strtoul(part.c_str() + open + 1, nullptr, 10);
+    at = at->isSequence() && index < at->items.size() ? &at->items[index] : nullptr;
+  }
+  return at;
+}
+
+}  // namespace
+
+std::optional<document::Place> placeOfKey(const std::filesystem::path& file, const std::string& key) {
+  document::Problems unread;
+  const auto root = document::parseFile(file, unread);
+  if (!root) return std::nullopt;
+  const document::Node* at = &*root;
+  for (size_t begin = 0; at != nullptr && begin <= key.size();) {
+    const size_t end = std::min(key.find('.', begin), key.size());
+    at = step(*at, key.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  if (at == nullptr) return std::nullopt;
+  return document::Place{file.string(), at->line, at->column};
+}
+
+}  // namespace hapticd::diagnostics
