@@ -19,6 +19,8 @@
 #include "diagnostics/slow_arm.hpp"
 #include "diagnostics/unit_advice.hpp"
 #include "diagnostics/velocity_advice.hpp"
+#include "diagnostics/unusual_settings.hpp"
+#include "diagnostics/unusual_values.hpp"
 #include "document/node.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
@@ -80,8 +82,10 @@ document::Problems unstable(const scene::Scene& scene, const std::vector<double>
       if (!arm || !(*arm)->open()) continue;
       info = (*arm)->info();
     }
-    const document::Problems found = tune::unstableSettings(scene, device, info, stiffness);
-    warnings.insert(warnings.end(), found.begin(), found.end());
+    for (const document::Problems& found :
+         {tune::unstableSettings(scene, device, info, stiffness), stiffTogether(scene, device, info, stiffness),
+          lightAdmittance(scene, device, info)})
+      warnings.insert(warnings.end(), found.begin(), found.end());
     const bool described = std::any_of(device.parameters.begin(), device.parameters.end(),
                                        [](const scene::Value& value) { return value.id == "wire"; });
     if (described && info.max_stiffness <= 0 &&
@@ -157,6 +161,8 @@ void tryTheRest(const CheckArguments& options, Verdict& verdict) {
   for (const auto& found_by : {&farModels, &softModels})
     for (const document::Problem& one : found_by(*draft))
       if (!isOfThese(one.key, unsound)) verdict.warnings.push_back(one);
+  for (const document::Problem& one : unusualValues(*draft, trial.boxes, catalog()))
+    if (!isOfThese(one.key, unsound)) verdict.warnings.push_back(one);
 }
 
 /// What is in order, and yet cannot be meant, or cannot be stable.
@@ -174,6 +180,20 @@ void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckA
     for (const scene::Device& device : full.devices)
       for (const document::Problem& one : adviseDevice(device.file, catalog())) more.push_back(one);
   verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());
+}
+
+/// What no stage objects to and nobody can mean; a value is told of once, as others know more of it.
+void addUnusual(const scene::Scene& scene, const ModelBoxes& boxes, Verdict& verdict) {
+  document::Problems more = unusualValues(scene, boxes, catalog());
+  for (const document::Problem& one : unusualSettings(scene)) more.push_back(one);
+  const size_t before = verdict.warnings.size();
+  for (const document::Problem& one : more)
+    if (std::none_of(verdict.warnings.begin(), verdict.warnings.begin() + static_cast<std::ptrdiff_t>(before),
+                     [&one](const document::Problem& told) {
+                       return told.key == one.key && told.place.line == one.place.line &&
+                              told.place.column == one.place.column && !told.key.ends_with(".pose");
+                     }))
+      verdict.warnings.push_back(one);
 }
 
 /// The modules of a scene's arms: what runs would refuse, or crash in, is told before any of them is loaded here.
@@ -230,6 +250,7 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   if (!scene && found.empty())
     for (const document::Problem& one : adviseDevice(file, catalog())) verdict.warnings.push_back(one);
   if (scene) addWarnings(withArm(*scene), trial, options, verdict);
+  if (scene) addUnusual(withArm(*scene), trial.boxes, verdict);
   return verdict;
 }
 

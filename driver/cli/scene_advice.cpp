@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "cli/command.hpp"
+#include "diagnostics/unusual_values.hpp"
 #include "document/reader.hpp"
 #include "tune/stability.hpp"
 
@@ -41,6 +43,7 @@ std::vector<std::string> adviceOnModels(const servo::Runner& runner, const scene
   add(tune::fastPaths(models));
   scene::Scene scene = models;
   scene.servo = runner.scene().servo;
+  add(diagnostics::unusualValues(scene, {}, catalog()));
   for (size_t i = 0; i < runner.arms().size(); ++i)
     add(tune::unstableSettings(scene, runner.scene().devices[i], runner.arms()[i]->info(), stiffness));
   std::vector<std::string> texts;

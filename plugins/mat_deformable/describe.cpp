@@ -120,6 +120,7 @@ void MatDeformable::describe(const MedialFile& file, double tick) const {
   say(description.warning ? HSP_LOG_WARNING : HSP_LOG_INFO, description.text);
   if (!(body_->greatestRadius() > 0)) say(HSP_LOG_WARNING, geometry_ + ": all radii are 0: nothing will be felt");
   describeMaterial(file, tick);
+  for (const std::string& odd : file.odd) say(HSP_LOG_WARNING, "geometry: " + odd);
   // What stands in the scene for a file that has none: nobody would feel that it is left aside.
   for (const auto& [id, given] : {std::pair("stiffness", stiffness_), std::pair("mass", mass_)})
     if (!geometry_.ends_with(".ma") && given != usual(id))

@@ -10,6 +10,7 @@
 
 #include "kernels/medial/layer.hpp"
 #include "ma_file.hpp"
+#include "medial_advice.hpp"
 #include "traced_shape/document.hpp"
 #include "traced_shape/model_file.hpp"
 
@@ -293,6 +294,7 @@ MedialFile parseMedialFile(const std::string& text, const std::string& name, con
     Problems problems(name, text);
     Reader(problems, material).read(root, file);
     problems.throwIfAny();
+    file.odd = adviseMedial(file, root["medial"], text, name);
   }
   const auto some = [](const std::vector<double>& values) {
     return std::any_of(values.begin(), values.end(), [](double x) { return x > 0; });

@@ -3,6 +3,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "kernels/medial/mesh_body.hpp"
 
@@ -16,6 +17,7 @@ struct MedialFile {
   std::optional<medial::MeshBodyData> mesh;
   int revision = 1;                    ///< of the format: hapticd-model/1 or /2
   bool swings = false, damps = false;  ///< some point has mass, some has damping
+  std::vector<std::string> odd;        ///< what can hardly be meant: adviseMedial()
 };
 
 /// Material of all vertices where the file has none. The file may damp ten times as much at most, or 5 N s/m: the host

@@ -99,8 +99,7 @@ bool Problems::full() const {
   return found_.size() >= kMostProblems;
 }
 
-void Problems::throwIfAny() const {
-  if (found_.empty()) return;
+document::Problems Problems::placed() const {
   document::Problems all, unread;
   const auto root = document::parseText(text_, file_, unread);  // JSON that YAML does not read: no positions
   for (const Problem& problem : found_) {
@@ -111,7 +110,18 @@ void Problems::throwIfAny() const {
     }
     all.push_back({place, nameOf(problem.path), problem.what});
   }
-  throwAll(all);
+  return all;
+}
+
+std::vector<std::string> Problems::texts() const {
+  std::vector<std::string> all;
+  if (found_.empty()) return all;
+  for (const document::Problem& problem : placed()) all.push_back(problem.text());
+  return all;
+}
+
+void Problems::throwIfAny() const {
+  if (!found_.empty()) throwAll(placed());
 }
 
 std::string readModelText(const std::string& path) {

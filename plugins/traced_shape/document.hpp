@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "document/problem.hpp"
+
 namespace hapticd {
 
 /// A step from a value to one inside it: a key or an index.
@@ -22,10 +24,13 @@ class Problems {
   void add(const Path& path, const std::string& what);
   bool any() const { return !found_.empty(); }
   bool full() const;
+  /// [main] Each as `file:line:column: key: what`.
+  std::vector<std::string> texts() const;
   /// [main] @throws ModelFileError if there are any.
   void throwIfAny() const;
 
  private:
+  std::vector<document::Problem> placed() const;
   struct Problem {
     Path path;
     std::string what;

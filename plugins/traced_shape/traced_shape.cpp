@@ -8,6 +8,7 @@
 
 #include "document.hpp"
 #include "kernels/brep/part_file.hpp"
+#include "model_advice.hpp"
 #include "model_file.hpp"
 #include "part_mesh.hpp"
 
@@ -36,6 +37,9 @@ void TracedShape::load(const hsp_activation& activation, hsp_report& report) {
   if (host() != nullptr && host()->log != nullptr)
     for (const std::string& warning : model_->warnings())
       host()->log(host(), HSP_LOG_WARNING, (geometry_ + ": " + warning).c_str());
+  if (host() != nullptr && host()->log != nullptr)
+    for (const std::string& odd : adviseModel(file, *model_, text, geometry_))
+      host()->log(host(), HSP_LOG_WARNING, ("geometry: " + odd).c_str());
   const uint32_t probes = std::max(activation.max_probes, 1u);
   tracers_.clear();
   tracers_.reserve(probes);

@@ -97,9 +97,25 @@ void reportEnd(const std::string& how, const host::Trail& trail, const scene::Sc
                        "; hapticd plugin check FILE.so looks for the cause");
 }
 
+/// Where a model is, in its own frame; an empty box: its plugin does not say.
+void packBox(const host::ShapeInstance* shape, host::Packer& out) {
+  Eigen::AlignedBox3d box;
+  if (shape != nullptr && !shape->bounds(box.min().data(), box.max().data())) box.setEmpty();
+  for (const Eigen::Vector3d& corner : {Eigen::Vector3d(box.min()), Eigen::Vector3d(box.max())})
+    for (const double x : corner) out.number(x);
+}
+
+std::optional<Eigen::AlignedBox3d> readBox(host::Unpacker& in) {
+  Eigen::AlignedBox3d box;
+  for (double& x : box.min()) x = in.real();
+  for (double& x : box.max()) x = in.real();
+  if (!in.good() || box.isEmpty()) return std::nullopt;
+  return box;
+}
+
 std::string tryAll(const scene::Scene& scene, double max_force, const std::vector<bool>& unsound, host::Trail& trail) {
   Remarks problems, warnings;
-  host::Packer claims;
+  host::Packer claims, boxes;
   for (size_t i = 0; i < scene.models.size(); ++i) {
     double stiffness = 0;
     bool idle = false, reads_velocity = false;
@@ -107,13 +123,16 @@ std::string tryAll(const scene::Scene& scene, double max_force, const std::vecto
       claims.number(0.0);
       claims.number(uint32_t{0});
       claims.number(uint32_t{0});
+      packBox(nullptr, boxes);
       continue;
     }
     const auto log = [&](int level, const std::string&, const std::string& text) {
       if (level == HSP_LOG_WARNING) warnings.add(i, text);
     };
     trail.mark(static_cast<uint32_t>(i), "create() or set");
-    if (auto shape = host::ShapeInstance::create(scene.models[i], log); !shape) {
+    const host::ShapeInstance* active = nullptr;
+    auto shape = host::ShapeInstance::create(scene.models[i], log);
+    if (!shape) {
       problems.add(i, shape.error());
     } else if (trail.mark(static_cast<uint32_t>(i), "activate");
                const auto activated = (*shape)->activate(activationOf(scene, scene.models[i], max_force))) {
@@ -121,15 +140,18 @@ std::string tryAll(const scene::Scene& scene, double max_force, const std::vecto
       reads_velocity = ((*shape)->report().flags & HSP_R_VELOCITY) != 0;
       const bool may_move = ((*shape)->description().flags & HSP_C_MOVES) != 0;
       idle = may_move && ((*shape)->report().flags & HSP_R_MOVES) == 0;
-      trail.mark(static_cast<uint32_t>(i), "deactivate() or destroy");
+      trail.mark(static_cast<uint32_t>(i), "bounds");
+      active = shape->get();
     } else {
       problems.add(i, activated.error());
     }
     claims.number(stiffness);
     claims.number(uint32_t{idle ? 1u : 0u});
     claims.number(uint32_t{reads_velocity ? 1u : 0u});
+    packBox(active, boxes);
+    if (active != nullptr) trail.mark(static_cast<uint32_t>(i), "deactivate() or destroy");
   }
-  return problems.take() + warnings.take() + claims.take();
+  return problems.take() + warnings.take() + claims.take() + boxes.take();
 }
 
 }  // namespace
@@ -151,6 +173,7 @@ ModelTrial tryModels(const scene::Scene& scene, double max_force, const std::vec
     if (in.count() != 0) adviseMotion(scene.models[i], i, trial.warnings);
     trial.needs_velocity = in.count() != 0 || trial.needs_velocity;
   }
+  for (size_t i = 0; i < scene.models.size() && in.good(); ++i) trial.boxes.push_back(readBox(in));
   return trial;
 }
 

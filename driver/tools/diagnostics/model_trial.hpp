@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 /// Trying a scene's models: what only a plugin can judge, such as the content of a geometry file.
 #pragma once
+#include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "description/scene.hpp"
@@ -8,11 +10,15 @@
 
 namespace hapticd::diagnostics {
 
+/// The box around each model in its own frame, in scene order; nothing where its plugin says of none.
+using ModelBoxes = std::vector<std::optional<Eigen::AlignedBox3d>>;
+
 /// What plugins say of a scene's models.
 struct ModelTrial {
   document::Problems problems, warnings;
   std::vector<double> stiffness;  ///< [N/m] that each model claims, in scene order
   bool needs_velocity = false;    ///< some model reads the velocity of a probe
+  ModelBoxes boxes;
 };
 
 /// [main] Creates and activates every model in a child process, one after the other, and collects what the plugins

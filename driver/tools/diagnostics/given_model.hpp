@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+/// A model as its file gives it, with what its plugin says of its parameters: for who judges whether that was meant.
+#pragma once
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "description/class_info.hpp"
+#include "description/scene.hpp"
+#include "document/problem.hpp"
+
+namespace hapticd::diagnostics {
+
+class GivenModel {
+ public:
+  /// @param box around the model in its own frame; nothing: unknown  @param info of its plugin; both must stay
+  GivenModel(const scene::Scene& scene, size_t index, const std::optional<Eigen::AlignedBox3d>& box,
+             const host::ClassInfo& info, document::Problems& warnings)
+      : scene_(scene), index_(index), box_(box), info_(info), warnings_(warnings), first_(warnings.size()) {}
+
+  const scene::Model& model() const { return scene_.models[index_]; }
+  const scene::Servo& servo() const { return scene_.servo; }
+  const host::ClassInfo& plugin() const { return info_; }
+  const std::optional<Eigen::AlignedBox3d>& box() const { return box_; }
+  double size() const { return box_ ? box_->diagonal().norm() : 0; }  ///< [m] 0: unknown
+
+  /// What the file gives; nullptr: it does not.
+  const scene::Value* find(std::string_view id) const;
+  /// What the file gives, or else the plugin's default; 0: it has no such parameter.
+  double number(std::string_view id) const;
+  Eigen::Vector3d vector(std::string_view id) const;  ///< zero unless it has three numbers
+  /// The word of a choice, "" if the plugin has no such parameter.
+  std::string choice(std::string_view id) const;
+
+  /// Warns at the first of these parameters that the file gives, or at the model under the name of the first; once.
+  void warn(std::initializer_list<std::string_view> ids, const std::string& what) const;
+
+ private:
+  const scene::Scene& scene_;
+  size_t index_;
+  const std::optional<Eigen::AlignedBox3d>& box_;
+  const host::ClassInfo& info_;
+  document::Problems& warnings_;
+  size_t first_;  ///< warning of this model
+};
+
+}  // namespace hapticd::diagnostics

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+/// Bodies that move by themselves: where their weight takes them, and whether it can be theirs.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "diagnostics/given_model.hpp"
+#include "diagnostics/unusual_values.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kWeightless = 1e-3;  ///< [m/s^2] of gravity
+
+Vector3d inModel(const GivenModel& given, const Vector3d& in_world) {
+  return given.model().pose.orientation.conjugate() * in_world;
+}
+
+/// Its weight along what it can do: nothing holds it, or a spring that gives way too far.
+void judgeHold(const GivenModel& given) {
+  constexpr double kSizes = 2, kUnknownSize = 0.25;  // of what it may hang below its place; [m]
+  const std::string joint = given.choice("joint");
+  Vector3d pull = inModel(given, given.servo().gravity);
+  const Vector3d axis = given.vector("axis");
+  if (joint == "slider" && axis.norm() > 0) pull = pull.dot(axis) / axis.squaredNorm() * axis;
+  if (joint == "hinge" || given.number("gravity") == 0 || pull.norm() < kWeightless) return;
+  const double weight = given.number("mass") * pull.norm(), tether = given.number("tether");
+  if (!(tether > 0))
+    return given.warn({"mass", "motion"},
+                      given.model().name +
+                          " has weight, and nothing holds it: it falls out of reach at once; expected "
+                          "tether, a hinge, or gravity: false");
+  const double size = given.box() ? given.size() : kUnknownSize;
+  if (const double sag = weight / tether; sag > kSizes * size)
+    given.warn({"tether", "mass"}, fmt::format("{:g} N/m under a weight of {:.4g} N: {} hangs {:.3g} m below its pose; "
+                                               "expected a stiffer tether, mass in kg, or gravity: false",
+                                               tether, weight, given.model().name, sag));
+}
+
+/// The mass of a body is among its surfaces.
+void judgeCenter(const GivenModel& given) {
+  constexpr double kOutside = 0.5;  // of the size
+  const scene::Value* center = given.find("center");
+  if (center == nullptr || center->numbers.size() != 3 || !given.box()) return;
+  if (const double away = given.box()->exteriorDistance(Vector3d(center->numbers.data()));
+      away > kOutside * given.size())
+    given.warn({"center"},
+               fmt::format("of mass lies {:.3g} m outside of the surfaces, which are {:.3g} m large; expected "
+                           "m in the model's frame, or [] for the middle of their volume",
+                           away, given.size()));
+}
+
+/// No part of a body is farther from its centre than the body is large. @param reach [m] of it
+void judgeInertia(const GivenModel& given, double most, double reach) {
+  constexpr double kTimes = 2;
+  const double radius = std::sqrt(std::max(most, 0.0) / given.number("mass"));
+  if (!given.box() || radius <= kTimes * reach) return;
+  given.warn({"inertia"}, fmt::format("{:g} kg m^2 with {:g} kg is that of a body whose mass is {:.3g} m away from the "
+                                      "axis, and it is {:.3g} m large; expected kg m^2 (1 kg mm^2 is 1e-6)",
+                                      most, given.number("mass"), radius, given.size()));
+}
+
+void judgeDynamic(const GivenModel& given) {
+  judgeHold(given);
+  judgeCenter(given);
+  const scene::Value* inertia = given.find("inertia");
+  if (inertia != nullptr && !inertia->numbers.empty())
+    judgeInertia(given, *std::max_element(inertia->numbers.begin(), inertia->numbers.end()), given.size());
+}
+
+double farthestCorner(const Eigen::AlignedBox3d& box, const Vector3d& from) {
+  return ((from - box.center()).cwiseAbs() + box.sizes() / 2).norm();
+}
+
+void judgePendulum(const GivenModel& given) {
+  constexpr double kAcross = 0.02, kOutside = 0.5;  // of gravity across the axis; of the size
+  const Vector3d gravity = inModel(given, given.servo().gravity), axis = given.vector("axis").stableNormalized();
+  if (gravity.norm() < kWeightless || axis.norm() < 0.5) return;
+  const Vector3d across = gravity - gravity.dot(axis) * axis, pivot = given.vector("pivot");
+  if (across.norm() < kAcross * gravity.norm())
+    return given.warn({"axis"}, "is along gravity, so no weight turns " + given.model().name +
+                                    " back; expected one across it, as [0, 0, 1]");
+  if (!given.box()) return;
+  if (given.number("inertia") > 0)
+    judgeInertia(given, given.number("inertia"), std::max(given.number("length"), farthestCorner(*given.box(), pivot)));
+  const Vector3d center = pivot + given.number("length") * across.normalized();
+  if (const double away = given.box()->exteriorDistance(center); away > kOutside * given.size())
+    given.warn(
+        {"pivot", "length"},
+        fmt::format("the centre of mass is drawn {:.3g} m (length) below the pivot, and there it is {:.3g} m away "
+                    "from the surfaces; expected a pivot above them (their middle is at [{:.3g}, {:.3g}, {:.3g}])",
+                    given.number("length"), away, given.box()->center().x(), given.box()->center().y(),
+                    given.box()->center().z()));
+}
+
+}  // namespace
+
+void judgeBody(const GivenModel& given) {
+  if (given.choice("motion") == "dynamic" && given.plugin().indexOf("tether") >= 0) judgeDynamic(given);
+  if (given.plugin().id == "org.hapticd.shape.pendulum") judgePendulum(given);
+}
+
+}  // namespace hapticd::diagnostics

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/unusual_settings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "diagnostics/key_place.hpp"
+#include "diagnostics/unusual_values.hpp"
+#include "tune/stability.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Where the scene says it, or the scene.
+document::Place placeIn(const scene::Scene& scene, const std::string& key) {
+  return placeOfKey(scene.file, key).value_or(document::Place{scene.file.string(), 1, 1});
+}
+
+void judgeGravity(const scene::Scene& scene, document::Problems& warnings) {
+  constexpr double kEarth = 9.81, kStrong = 3, kLow = 0.5;  // [m/s^2]; of the Earth's; cosine to straight down
+  const Vector3d& g = scene.servo.gravity;
+  const auto tell = [&](const std::string& what) {
+    document::report(warnings, placeIn(scene, "servo.gravity"), "servo.gravity",
+                     fmt::format("[{:g}, {:g}, {:g}] {}; expected [0, -9.81, 0] m/s^2, or [0, 0, 0] for none", g.x(),
+                                 g.y(), g.z(), what));
+  };
+  if (g.norm() > kStrong * kEarth) tell(fmt::format("is {:.3g} times the Earth's", g.norm() / kEarth));
+  if (g.y() > kLow * g.norm()) return tell("points up, as +y is up in the world: bodies fall upwards");
+  if (g.norm() > 0 && -g.y() < kLow * g.norm()) tell("pulls aside, as +y is up in the world");
+}
+
+void judgeServo(const scene::Scene& scene, document::Problems& warnings) {
+  constexpr double kWidest = 2, kLeast = 2;  // [m] beyond the reach of arms; [us] of a tick, less than any shape needs
+  const scene::Servo& servo = scene.servo;
+  if (servo.activation_radius > kWidest)
+    document::report(warnings, placeIn(scene, "servo.activation_radius"), "servo.activation_radius",
+                     fmt::format("{0:g} m: all is traced, wherever the hand is; expected metres: {0:g} mm are {1:g} m",
+                                 servo.activation_radius, servo.activation_radius / 1000));
+  if (servo.budget_us > 0 && servo.budget_us < kLeast)
+    document::report(warnings, placeIn(scene, "servo.budget_us"), "servo.budget_us",
+                     fmt::format("{0:g} us: no shape answers within that; expected microseconds: {0:g} ms are {1:g}",
+                                 servo.budget_us, servo.budget_us * 1000));
+}
+
+/// What a scene says of the hand that leads a simulated arm: two that are led apart meet no more than two people do.
+std::string handOf(const scene::Device& device) {
+  std::string text;
+  for (const scene::Value& value : device.parameters) {
+    if (value.id.rfind("hand.", 0) != 0) continue;
+    text += value.id + fmt::format(" {} {}", value.number, value.text);
+    for (const double x : value.numbers) text += fmt::format(" {}", x);
+  }
+  return text;
+}
+
+bool inOnePlace(const scene::Device& a, const scene::Device& b) {
+  constexpr double kNear = 1e-3;  // [m], [rad]
+  return a.file == b.file && handOf(a) == handOf(b) && (a.mount.position - b.mount.position).norm() < kNear &&
+         a.mount.orientation.angularDistance(b.mount.orientation) < kNear;
+}
+
+void judgeArms(const scene::Scene& scene, document::Problems& warnings) {
+  for (size_t i = 1; i < scene.devices.size(); ++i)
+    for (size_t first = 0; first < i; ++first) {
+      if (!inOnePlace(scene.devices[first], scene.devices[i])) continue;
+      const std::string key = fmt::format("devices[{}]", i);
+      const auto mount = placeOfKey(scene.file, key + ".mount");
+      document::report(
+          warnings, mount ? *mount : placeIn(scene, key), key + ".mount",
+          fmt::format("{} stands where {} stands; expected a mount of its own: {{position: [x, y, z]}} in m",
+                      scene.devices[i].name, scene.devices[first].name));
+      break;
+    }
+}
+
+}  // namespace
+
+document::Problems unusualSettings(const scene::Scene& scene) {
+  document::Problems warnings;
+  judgeGravity(scene, warnings);
+  judgeServo(scene, warnings);
+  judgeArms(scene, warnings);
+  return warnings;
+}
+
+document::Problems stiffTogether(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
+                                 const std::vector<double>& stiffness) {
+  document::Problems warnings;
+  for (const std::vector<size_t>& group : modelsInOnePlace(scene)) {
+    scene::Scene together = scene;
+    together.models = {scene.models[group[0]]};
+    scene::Model& model = together.models[0];
+    std::vector<double> sum(1);
+    for (const size_t i : group) sum[0] += i < stiffness.size() ? stiffness[i] : 0;
+    model.name += fmt::format(" with {} in its place", group.size() == 2 ? scene.models[group[1]].name
+                                                                         : fmt::format("{} models", group.size() - 1));
+    for (document::Problem& one : tune::unstableSettings(together, device, info, sum)) {
+      if (one.key.rfind("models[0]", 0) != 0) continue;  // told without them
+      one.key.replace(0, 9, fmt::format("models[{}]", group[0]));
+      warnings.push_back(std::move(one));
+    }
+  }
+  return warnings;
+}
+
+document::Problems lightAdmittance(const scene::Scene& scene, const scene::Device& device, const hdv_info& info) {
+  constexpr double kLightest = 0.1;  // of the felt mass: what an arm can be made to seem is not much lighter than it is
+  document::Problems warnings;
+  if (!device.admittance || info.mass_kg <= 0 || device.admittance->mass >= kLightest * info.mass_kg) return warnings;
+  document::Place place = device.place.file.empty() ? document::Place{device.file.string()} : device.place;
+  std::string key = "admittance.mass";
+  const std::string in_scene = "device.admittance.mass";
+  for (size_t i = 0; i <= scene.devices.size(); ++i) {
+    const std::string there = i == 0 ? in_scene : fmt::format("devices[{}].admittance.mass", i - 1);
+    if (i > 0 && &scene.devices[i - 1] != &device) continue;
+    if (const auto found = placeOfKey(scene.file, there)) place = *found, key = there;
+  }
+  if (key == "admittance.mass")
+    if (const auto found = placeOfKey(device.file, key)) place = *found;
+  document::report(warnings, place, key,
+                   fmt::format("{:g} kg is {:.3g} times less than the {:.3g} kg of {}, which cannot follow so light a "
+                               "mass; expected kg; nearest: {:.2g} kg",
+                               device.admittance->mass, info.mass_kg / device.admittance->mass, info.mass_kg,
+                               device.name, kLightest * info.mass_kg));
+  return warnings;
+}
+
+}  // namespace hapticd::diagnostics

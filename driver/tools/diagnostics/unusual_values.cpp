@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "diagnostics/unusual_values.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "diagnostics/given_model.hpp"
+
+namespace hapticd::diagnostics {
+namespace {
+
+const scene::Value* valueOf(const scene::Model& model, const char* id) {
+  for (const scene::Value& value : model.parameters)
+    if (value.id == id) return &value;
+  return nullptr;
+}
+
+/// What two models have in common that lie in one place: their file, its part that is shown, the side that is felt, and
+/// the pose to the micrometre.
+std::string placeText(const scene::Model& model) {
+  constexpr double kSame = 1e-6;
+  const scene::Value* geometry = valueOf(model, "geometry");
+  if (geometry == nullptr || model.kinematic) return "";
+  std::string text = model.plugin + "\n" + geometry->text;
+  if (const scene::Value* instance = valueOf(model, "instance")) text += "\n" + instance->text;
+  if (const scene::Value* sides = valueOf(model, "sides")) text += fmt::format("\nsides {}", sides->number);
+  const Eigen::Quaterniond& q = model.pose.orientation;
+  const double sign = q.w() < 0 ? -1 : 1;
+  for (const double x : {model.pose.position.x(), model.pose.position.y(), model.pose.position.z(), sign * q.w(),
+                         sign * q.x(), sign * q.y(), sign * q.z()})
+    text += fmt::format("\n{:.0f}", x / kSame + 0.0);
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::vector<size_t>> modelsInOnePlace(const scene::Scene& scene) {
+  std::map<std::string, std::vector<size_t>> by_place;
+  for (size_t i = 0; i < scene.models.size(); ++i)
+    if (const std::string text = placeText(scene.models[i]); !text.empty()) by_place[text].push_back(i);
+  std::vector<std::vector<size_t>> groups;
+  for (auto& [text, models] : by_place)
+    if (models.size() > 1) groups.push_back(std::move(models));
+  return groups;
+}
+
+document::Problems tellModelsInOnePlace(const scene::Scene& scene) {
+  document::Problems warnings;
+  for (const std::vector<size_t>& group : modelsInOnePlace(scene))
+    for (size_t i = 1; i < group.size(); ++i) {
+      const scene::Model &first = scene.models[group[0]], &model = scene.models[group[i]];
+      document::report(
+          warnings, model.place, fmt::format("models[{}].pose", group[i]),
+          fmt::format("{} lies in {} (line {}): the same geometry in the same place, so a hand feels the sum "
+                      "of both; expected another pose",
+                      model.name, first.name, first.place.line));
+    }
+  return warnings;
+}
+
+document::Problems unusualValues(const scene::Scene& scene, const ModelBoxes& boxes, host::Catalog& catalog) {
+  document::Problems warnings = tellModelsInOnePlace(scene);
+  const std::optional<Eigen::AlignedBox3d> unknown;
+  for (size_t i = 0; i < scene.models.size(); ++i) {
+    const auto plugin = catalog.shape(scene.models[i].plugin);
+    if (!plugin) continue;
+    const GivenModel given(scene, i, i < boxes.size() ? boxes[i] : unknown, **plugin, warnings);
+    judgeQuantities(given);
+    judgeBody(given);
+  }
+  return warnings;
+}
+
+}  // namespace hapticd::diagnostics

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "medial_advice.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstdio>
+
+#include "traced_shape/document.hpp"
+
+namespace hapticd {
+namespace {
+
+using Json = nlohmann::json;
+
+template <class... T>
+std::string written(const char* format, T... values) {
+  char text[320];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+Path medialAt(const char* key) {
+  return {{"medial", 0}, {key, 0}};
+}
+
+Eigen::AlignedBox3d boxOf(const MedialFile& file) {
+  Eigen::AlignedBox3d box;
+  const auto add = [&box](const Eigen::Vector3d& center, double radius) {
+    const Eigen::Vector3d around = Eigen::Vector3d::Constant(radius);
+    box.extend(Eigen::AlignedBox3d(center - around, center + around));
+  };
+  if (file.mesh)
+    for (const medial::Sphere& sphere : file.mesh->mesh.vertices) add(sphere.center, sphere.radius);
+  if (file.grid)
+    for (std::size_t i = 0; i < file.grid->grid.points.size(); ++i)
+      add(file.grid->grid.points[i], file.grid->grid.radius[i]);
+  return box;
+}
+
+/// The largest number of a value, or of a list of lists.
+double largest(const Json& value) {
+  if (value.is_number()) return value.get<double>();
+  double most = 0;
+  if (value.is_array())
+    for (const Json& item : value) most = std::max(most, largest(item));
+  return most;
+}
+
+void adviseMass(const MedialFile& file, const Eigen::AlignedBox3d& box, Problems& odd) {
+  constexpr double kDensest = 25'000, kEasy = 3;  // [kg/m^3] more than any metal; [kg]
+  const std::vector<double>& mass = file.grid ? file.grid->mass : file.mesh->mass;
+  const std::size_t points = file.grid ? file.grid->grid.points.size() : file.mesh->mesh.vertices.size();
+  double all = 0;
+  for (const double one : mass) all += one;
+  if (mass.size() == 1) all *= static_cast<double>(points);
+  const double volume = box.volume();
+  if (all > kEasy && all > kDensest * volume)
+    odd.add(medialAt("mass"),
+            written("%.3g kg in all, of each point its own, in a body %.3g m large; expected kg: %.3g g are %.3g kg",
+                    all, box.diagonal().norm(), largest(mass), largest(mass) / 1000));
+}
+
+void adviseStiffness(const MedialFile& file, const Json& medial, Problems& odd) {
+  constexpr double kUnfelt = 5;  // [N/m] 10 mm of it give 0.05 N, less than most arms rub
+  const std::vector<double>& stiffness = file.grid ? file.grid->stiffness : file.mesh->stiffness;
+  const double most = stiffness.empty() ? 0 : *std::max_element(stiffness.begin(), stiffness.end());
+  if (!(most < kUnfelt)) return;
+  const bool young = medial.contains("young");
+  odd.add(
+      medialAt(young ? "young" : "stiffness"),
+      young
+          ? written("%.4g Pa is felt as %.3g N/m, which cannot be felt: 1 mm gives %.3g N; expected Pa (1 kPa is 1000 "
+                    "Pa, soft tissue has 2e3 to 1e5 Pa)",
+                    largest(medial["young"]), most, most * 1e-3)
+          : written("%.4g N/m cannot be felt: 1 mm gives %.3g N; expected N/m (1 N/mm is 1000 N/m)", most,
+                    most * 1e-3));
+}
+
+}  // namespace
+
+std::vector<std::string> adviseMedial(const MedialFile& file, const Json& medial, const std::string& text,
+                                      const std::string& name) {
+  Problems odd(name, text);
+  const Eigen::AlignedBox3d box = boxOf(file);
+  const double size = box.diagonal().norm();
+  for (const char* key : {"thickness", "shear_reach"})
+    if (medial.contains(key) && largest(medial[key]) > size)
+      odd.add(medialAt(key),
+              written("%.4g m is more than the body, which is %.3g m large; expected metres: %.4g mm are "
+                      "%.4g m",
+                      largest(medial[key]), size, largest(medial[key]), largest(medial[key]) / 1000));
+  adviseMass(file, box, odd);
+  adviseStiffness(file, medial, odd);
+  return odd.texts();
+}
+
+}  // namespace hapticd

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+#include "model_advice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "document.hpp"
+#include "kernels/trace/side_curve.hpp"
+
+namespace hapticd {
+namespace {
+
+using Eigen::Vector3d;
+using spline::SurfaceData;
+
+template <class... T>
+std::string written(const char* format, T... values) {
+  char text[320];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+Path surfaceAt(std::size_t surface, const char* key = nullptr) {
+  Path path{{"surfaces", 0}, {"", surface}};
+  if (key != nullptr) path.push_back({key, 0});
+  return path;
+}
+
+void adviseSize(const trace::Model& model, Problems& odd) {
+  constexpr double kHuge = 5, kTiny = 1e-3;  // [m]
+  const double size = model.bounds().diagonal().norm();
+  if (size > kHuge || size < kTiny)
+    odd.add({{"surfaces", 0}},
+            written("the model is %.3g m large, expected metres and what a hand can feel: %.3g mm are %.3g m", size,
+                    size, size / 1000));
+}
+
+/// All control points lie in one place or on one line.
+bool hasNoArea(const SurfaceData& surface) {
+  constexpr double kFlat = 1e-9;
+  const Vector3d& first = surface.points.front();
+  Vector3d far = Vector3d::Zero();
+  for (const Vector3d& point : surface.points)
+    if ((point - first).norm() > far.norm()) far = point - first;
+  return std::all_of(surface.points.begin(), surface.points.end(), [&](const Vector3d& point) {
+    return (point - first).cross(far).norm() <= kFlat * far.squaredNorm();
+  });
+}
+
+void adviseNames(const ModelFile& file, Problems& odd) {
+  std::map<std::string, std::size_t> first;
+  for (std::size_t i = 0; i < file.surfaces.size(); ++i) {
+    const std::string& name = file.surfaces[i].name;
+    const auto [known, is_new] = first.emplace(name, i);
+    if (!name.empty() && !is_new)
+      odd.add(surfaceAt(i, "name"),
+              written("\"%.100s\" is the name of surfaces[%zu] too; expected each name once: edges "
+                      "and messages go by it",
+                      name.c_str(), known->second));
+  }
+}
+
+/// A weight that leaves nothing of its neighbours in the net.
+void adviseWeights(const SurfaceData& surface, std::size_t index, Problems& odd) {
+  constexpr double kTimes = 1000;
+  const auto rows = static_cast<std::size_t>(surface.count(0)), columns = static_cast<std::size_t>(surface.count(1));
+  const auto judge = [&](std::size_t a, std::size_t b) {
+    const std::size_t heavy = surface.weights[a] > surface.weights[b] ? a : b, light = a + b - heavy;
+    if (surface.weights[heavy] <= kTimes * surface.weights[light]) return false;
+    Path at = surfaceAt(index, "weights");
+    at.push_back({"", heavy});
+    odd.add(at,
+            written("%.4g is %.3g times the weight beside it (%.4g): the surface is drawn into that point; expected "
+                    "weights of about 1",
+                    surface.weights[heavy], surface.weights[heavy] / surface.weights[light], surface.weights[light]));
+    return true;
+  };
+  for (std::size_t i = 0; i < rows; ++i)
+    for (std::size_t j = 0; j < columns; ++j) {
+      const std::size_t at = i * columns + j;
+      if ((j + 1 < columns && judge(at, at + 1)) || (i + 1 < rows && judge(at, at + columns))) return;
+    }
+}
+
+/// Two sides that end in one corner and hardly part from there: the other corner of one was meant to be that of the
+/// other. Surfaces that are apart on purpose, such as a lid above its pot, share no corner.
+class Gaps {
+ public:
+  Gaps(const trace::Model& model, const ModelFile& file, Problems& odd) : model_(model), file_(file), odd_(odd) {
+    for (int patch = 0; patch < model.patchCount(); ++patch)
+      for (int side = 0; side < trace::kSides; ++side)
+        if (model.patch(patch).sides[static_cast<std::size_t>(side)].kind == trace::SideKind::kFree) {
+          for (const int end : {0, 1}) free_at_[cornerOf({patch, side}, end)].push_back({{patch, side}, end});
+          free_.push_back({patch, side});
+        }
+  }
+
+  void tell() {
+    constexpr std::size_t kMost = 64;  // sides at one corner, and free sides of which all pairs are compared, by eight
+    for (const auto& [corner, ends] : free_at_)
+      for (std::size_t i = 0; i < std::min(ends.size(), kMost); ++i)
+        for (std::size_t j = i + 1; j < std::min(ends.size(), kMost); ++j) judge(ends[i], ends[j]);
+    if (free_.size() > 8 * kMost) return;
+    for (int patch = 0; patch < model_.patchCount(); ++patch) judgeAlone(patch);
+  }
+
+ private:
+  static constexpr double kNear = 0.1;  ///< of the shorter side
+  struct SideOf {
+    int patch, side;
+  };
+  struct End {
+    SideOf of;
+    int end;
+  };
+
+  int cornerOf(const SideOf& of, int end) const {
+    const int corner = trace::Patch::endsOf(of.side)[static_cast<std::size_t>(end)];
+    return model_.patch(of.patch).corners[static_cast<std::size_t>(corner)];
+  }
+  Vector3d at(const SideOf& of, int end, double share) const {
+    return trace::pointOnSide(model_.patch(of.patch), of.side, end == 0 ? share : 1 - share);
+  }
+
+  void judge(const End& a, const End& b) {
+    if (a.of.patch == b.of.patch || cornerOf(a.of, 1 - a.end) == cornerOf(b.of, 1 - b.end)) return;
+    const auto length = [this](const End& one) { return (at(one.of, one.end, 1) - at(one.of, one.end, 0)).norm(); };
+    const double near = kNear * std::min(length(a), length(b));
+    const double gap = (at(a.of, a.end, 1) - at(b.of, b.end, 1)).norm();
+    if (gap > near || (at(a.of, a.end, 0.5) - at(b.of, b.end, 0.5)).norm() > near) return;
+    const int source = model_.patch(a.of.patch).source, other = model_.patch(b.of.patch).source;
+    if (source == other || !told_.insert(std::max(source, other)).second) return;
+    odd_.add(
+        surfaceAt(static_cast<std::size_t>(std::max(source, other))),
+        written("%.80s is open toward %.80s: from one corner of theirs, two sides part to %.3g mm at the other end; "
+                "expected one corner there (a coordinate mistyped?)",
+                nameOf(std::max(source, other)).c_str(), nameOf(std::min(source, other)).c_str(), 1e3 * gap));
+  }
+
+  /// The patch of another surface whose free side runs beside this one; -1: none does.
+  int besideOf(const SideOf& one) const {
+    const double near = kNear * (at(one, 0, 1) - at(one, 0, 0)).norm();
+    for (const SideOf& other : free_) {
+      if (model_.patch(other.patch).source == model_.patch(one.patch).source) continue;
+      for (const int end : {0, 1})
+        if ((at(one, 0, 0) - at(other, end, 0)).norm() <= near && (at(one, 0, 1) - at(other, end, 1)).norm() <= near)
+          return other.patch;
+    }
+    return -1;
+  }
+
+  /// A face that joins nothing, with other surfaces round it: all of it is beside its place. Two sheets in parallel
+  /// have one neighbour alone.
+  void judgeAlone(int patch) {
+    constexpr std::size_t kRound = 3;
+    std::set<int> beside;
+    for (int side = 0; side < trace::kSides; ++side) {
+      const bool open = model_.patch(patch).sides[static_cast<std::size_t>(side)].kind == trace::SideKind::kFree;
+      const int other = open ? besideOf({patch, side}) : -1;
+      if (other < 0) return;
+      beside.insert(other);
+    }
+    if (beside.size() < kRound) return;
+    const int source = model_.patch(patch).source;
+    odd_.add(surfaceAt(static_cast<std::size_t>(source)),
+             written("%.80s joins none of the %zu surfaces round it, though all its sides run beside theirs; expected "
+                     "common corners (a coordinate mistyped?)",
+                     nameOf(source).c_str(), beside.size()));
+  }
+
+  std::string nameOf(int source) const {
+    const std::string& name = file_.surfaces[static_cast<std::size_t>(source)].name;
+    return name.empty() ? "surface " + std::to_string(source) : "'" + name + "'";
+  }
+
+  const trace::Model& model_;
+  const ModelFile& file_;
+  Problems& odd_;
+  std::vector<SideOf> free_;
+  std::set<int> told_;                       ///< surfaces
+  std::map<int, std::vector<End>> free_at_;  ///< sides that end at a corner
+};
+
+}  // namespace
+
+std::vector<std::string> adviseModel(const ModelFile& file, const trace::Model& model, const std::string& text,
+                                     const std::string& name) {
+  Problems odd(name, text);
+  adviseSize(model, odd);
+  for (std::size_t i = 0; i < file.surfaces.size() && !odd.full(); ++i) {
+    if (hasNoArea(file.surfaces[i]))
+      odd.add(surfaceAt(i, "points"), "lie in one place or on one line, so the surface has no area and is not felt");
+    if (!file.surfaces[i].weights.empty()) adviseWeights(file.surfaces[i], i, odd);
+  }
+  adviseNames(file, odd);
+  Gaps(model, file, odd).tell();
+  return odd.texts();
+}
+
+}  // namespace hapticd

@@ -1,0 +1,233 @@
+#!/usr/bin/env python3
+"""Values that formats and plugins allow and nobody means are told at their place; what ships and what is usual is not.
+
+Usage: unusual_values.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
+"""
+import glob
+import json
+import os
+import sys
+import tempfile
+
+HAPTICD, SOURCE = (os.path.abspath(one) for one in sys.argv[1:3])
+sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
+from e2e import check, finish, program
+
+SPHERE, BOX = (os.path.join(SOURCE, "config", "models", name) for name in ("sphere.yaml", "box.yaml"))
+ARM = os.path.join(SOURCE, "config", "devices", "simulated-premium15.yaml")
+SARCOS = os.path.join(SOURCE, "config", "devices", "simulated-sarcos.yaml")
+
+
+def model(parameters, plugin="nurbs_rigid", geometry=SPHERE, name="ball"):
+    return f"  - name: {name}\n    plugin: {plugin}\n    parameters: {{geometry: {geometry}, {parameters}}}\n"
+
+
+def scene(*models, top=f"device: {ARM}\n"):
+    return f"hapticd: 1\n{top}models:\n" + "".join(models)
+
+
+def body(parameters, **how):
+    return scene(model("motion: dynamic, " + parameters, **how))
+
+
+def pendulum(parameters):
+    return scene(model(parameters, "pendulum"))
+
+
+P = "models[0].parameters."
+MASS = "mass: 0.5, "
+BUTTON = "axis: [0, 0, -1], detent: "
+# Before the place stands a bar: what is told there, and a word of it.
+SCENES = [
+    ("a friction of no material", scene(model("friction_static: |5, friction_dynamic: 1")), P + "friction_static", "rubber"),
+    ("likewise of a sliding tip", scene(model("friction_static: 5, friction_dynamic: |5")), P + "friction_dynamic", "rubber"),
+    ("friction that ends as it slides", scene(model("friction_static: |0.4")), P + "friction_static", "friction_dynamic is not given"),
+    ("a shell that nothing holds", scene(model("sides: both, pop_through: |0.001")), P + "pop_through", "cannot be felt"),
+    ("one model in another", scene(model("stiffness: 800"), model("stiffness: 700", name="two").replace("  - n", "  - |n")),
+     "models[1].pose", "ball (line 4)"),
+    ("the stiffness of all in one place", scene(*(model("stiffness: 3000", name=f"w{i}") for i in range(6))).replace("- name: w0", "- |name: w0"),
+     "models[0]", "w0 with 5 models in its place pushes with up to 1.8e+04 N/m"),
+    ("grams", body("mass: |500, tether: 20000"), P + "mass", "500 g are 0.5 kg"),
+    ("a body that hangs far away", body("mass: 5, tether: |20"), P + "tether", "hangs 2.45 m below its pose"),
+    ("a body that falls", body("mass: |0.5"), P + "mass", "nothing holds it"),
+    ("a slider that falls", body(f"{MASS}joint: slider, axis: [0, 1, 0]").replace("mass: ", "mass: |"), P + "mass", "nothing holds it"),
+    ("millimetres a second", body(MASS + "velocity: |[500, 0, 0], tether: 20, gravity: false"), P + "velocity", "500 mm/s are 0.5 m/s"),
+    ("degrees a second", body(MASS + "spin: |[360, 0, 0], tether: 20, gravity: false"), P + "spin", "360 degrees/s are 6.283 rad/s"),
+    ("a hinge in mm", body(MASS + "joint: hinge, pivot: |[50, 0, 0]", geometry=BOX), P + "pivot", "50 mm are 0.05 m"),
+    ("a centre in mm", body(MASS + "tether: 200, center: |[0, 30, 0]", geometry=BOX), P + "center", "30 mm are 0.03 m"),
+    ("a centre in another frame", body("mass: 1, gravity: false, tether: 50, center: |[0, 0, 0.3]", geometry=BOX), P + "center",
+     "0.25 m outside of the surfaces"),
+    ("an inertia in kg mm^2", body(MASS + "tether: 200, inertia: |[8, 8, 8]", geometry=BOX), P + "inertia", "1 kg mm^2 is 1e-6"),
+    ("degrees", pendulum("pivot: [0, 0.25, 0], angle: |45"), P + "angle", "45 degrees are 0.7854 rad"),
+    ("an axis along gravity", pendulum("pivot: [0, 0.25, 0], axis: |[0, 1, 0]"), P + "axis", "along gravity"),
+    ("a pivot in mm", pendulum("pivot: |[0, 250, 0], length: 250"), P + "pivot", "250 mm are 0.25 m"),
+    ("its mass in g", pendulum("pivot: [0, 0.25, 0], mass: |500"), P + "mass", "500 g are 0.5 kg"),
+    ("a pivot below its body", pendulum("pivot: |[0, -0.25, 0], length: 0.25"), P + "pivot", "expected a pivot above them"),
+    ("a travel in mm", scene(model(BUTTON + "|[[0, 0], [3, 4], [4, 2], [5, 3]]", "push_button", BOX)), P + "detent", "5 mm are 0.005 m"),
+    ("a force in mN", scene(model(BUTTON + "|[[0, 0], [0.003, 400], [0.004, 200], [0.005, 300]]", "push_button", BOX)), P + "detent",
+     "400 mN are 0.4 N"),
+    ("a stop in N/mm", scene(model("axis: [0, 0, -1], end_stiffness: |3", "push_button", BOX)), P + "end_stiffness", "1 N/mm is 1000 N/m"),
+    ("a wave in mm", scene(model("texture: {amplitude: 0.0001, wavelength: |0.5}")), P + "texture.wavelength", "0.5 mm are 0.0005 m"),
+    ("gravity up", scene(model("stiffness: 800"), top="servo: {gravity: |[0, 9.81, 0]}\n"), "servo.gravity", "points up"),
+    ("gravity along z", scene(model("stiffness: 800"), top="servo: {gravity: |[0, 0, -9.81]}\n"), "servo.gravity", "+y is up"),
+    ("gravity in cm", scene(model("stiffness: 800"), top="servo: {gravity: |[0, -981, 0]}\n"), "servo.gravity", "100 times the Earth's"),
+    ("a radius in mm", scene(model("stiffness: 800"), top="servo: {activation_radius: |100}\n"), "servo.activation_radius", "100 mm are 0.1 m"),
+    ("a budget in ms", scene(model("stiffness: 800"), top="servo: {budget_us: |0.1}\n"), "servo.budget_us", "0.1 ms are 100"),
+    ("two arms in one place", scene(model("stiffness: 800"), top=f"devices:\n  - {{file: {ARM}, name: left}}\n  - |{{file: {ARM}, name: right}}\n"),
+     "devices[1].mount", "right stands where left stands"),
+    ("a mass that no arm follows", scene(model("stiffness: 800"), top="servo: {rate: 1500}\ndevices:\n"
+     f"  - {{file: {SARCOS}, admittance: {{mass: |0.003, damping: 0}}, hand: {{script: hold}}}}\n"),
+     "devices[0].admittance.mass", "cannot follow so light a mass"),
+]
+
+
+def faces(half=0.05):
+    """A cube: its six faces, a list of lines each."""
+    corners = {"right": "+-- +-+ ++- +++", "left": "--- -+- --+ -++", "top": "-+- ++- -++ +++", "bottom": "--- --+ +-- +-+",
+               "front": "--+ -++ +-+ +++", "back": "--- +-- -+- ++-"}
+    return {name: [f"  - name: {name}", "    degree: [1, 1]", "    knots: [[0, 0, 1, 1], [0, 0, 1, 1]]", "    points:",
+                   *(f"      - [{', '.join(f'{s}{half}' for s in p)}]".replace("+", "") for p in points.split())]
+            for name, points in corners.items()}
+
+
+def cube(change=lambda all: None, half=0.05):
+    """A model file of a cube. The lines of its faces may be changed."""
+    all_of_them = faces(half)
+    change(all_of_them)
+    return "format: hapticd-model/1\nsurfaces:\n" + "".join("\n".join(lines) + "\n" for lines in all_of_them.values())
+
+
+def mistyped(lines):  # a corner of the front face
+    lines["front"][-1] = "      - [0.055, 0.05, 0.05]"
+    lines["front"][0] = "  - |name: front"
+
+
+def shifted(lines):  # the whole front face
+    lines["front"][4:] = [line.replace("0.05]", "0.055]") for line in lines["front"][4:]]
+    lines["front"][0] = "  - |name: front"
+
+
+def second_right(lines):
+    lines["left"][0] = "  - name: |right"
+
+
+def flat(lines):
+    lines["front"][3:] = ["    points: |[[0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]]"]
+
+
+def folded(lines):
+    lines["front"].append("    weights: [1, 1, |800000, 1]")
+
+
+SOFT = "format: hapticd-model/2\nmedial:\n  points: [[[-0.04, 0, 0], [0, 0, 0], [0.04, 0, 0]]]\n  radius: [[0.02, 0.02, 0.02]]\n"
+MODELS = [
+    ("a cube in mm", "nurbs_rigid", cube(half=50).replace("  - name: right", "  |- name: right"), "173 mm are 0.173 m"),
+    ("a cube in cm", "nurbs_rigid", cube(half=5).replace("  - name: right", "  |- name: right"), "17.3 m large"),
+    ("a face without area", "nurbs_rigid", cube(flat), "no area"),
+    ("a name given twice", "nurbs_rigid", cube(second_right), '"right" is the name of surfaces[0]'),
+    ("a corner mistyped", "nurbs_rigid", cube(mistyped), "5 mm at the other end"),
+    ("a face beside its place", "nurbs_rigid", cube(shifted), "joins none of the 4 surfaces"),
+    ("a weight of 800000", "nurbs_rigid", cube(folded), "8e+05 times the weight beside it"),
+    ("a soft body in g", "mat_deformable", SOFT + "  stiffness: 300\n  damping: 2\n  mass: |10\n", "10 g are 0.01 kg"),
+    ("a reach in mm", "mat_deformable", SOFT + "  stiffness: 300\n  shear_reach: |3\n", "3 mm are 0.003 m"),
+    ("a layer in mm", "mat_deformable", SOFT + "  young: 20000\n  poisson: 0.3\n  thickness: |20\n", "20 mm are 0.02 m"),
+    ("a modulus in MPa", "mat_deformable", SOFT + "  young: |0.05\n  poisson: 0.3\n  thickness: 0.01\n", "cannot be felt"),
+    ("a modulus in kPa", "mat_deformable", SOFT + "  young: |50\n  poisson: 0.3\n  thickness: 0.01\n", "cannot be felt"),
+    ("a stiffness in N/mm", "mat_deformable", SOFT + "  stiffness: |0.3\n", "1 N/mm is 1000 N/m"),
+]
+SOFT_PARAMETERS = [("friction_static: |5, friction_dynamic: 1", "friction_static", "rubber"), ("crease: |1", "crease", "1 mm are 0.001 m"),
+                   ("shear_distance: |1", "shear_distance", "1 mm are 0.001 m")]
+
+# What is usual, though near to what is not.
+RIGHT = {
+    "weightless.yaml": scene(model("stiffness: 800"), top="servo: {gravity: [0, 0, 0]}\n"),
+    "on-the-moon.yaml": scene(model("stiffness: 800"), top="servo: {gravity: [0, -1.62, 0]}\n"),
+    "rubber.yaml": scene(model("friction_static: 1.2, friction_dynamic: 0.9")),
+    "only-sliding-said.yaml": scene(model("friction_static: 0.4, friction_dynamic: 0")),
+    "inside-and-outside.yaml": scene(model("sides: front"), model("sides: back, stiffness: 500", name="in")).replace("sphere", "cylinder"),
+    "beside.yaml": scene(model("stiffness: 800"), model("stiffness: 800", name="two") + "    pose: {position: [0.2, 0, 0]}\n"),
+    "door.yaml": body(MASS + "joint: hinge, axis: [0, 1, 0], pivot: [-0.05, 0, 0]", geometry=BOX),
+    "drawer.yaml": body("mass: 2, joint: slider, axis: [0, 0, 1], drag: 4", geometry=BOX),
+    "heavy-knob.yaml": body("mass: 2.5, joint: hinge, axis: [0, 0, 1]", geometry="knob.yaml"),
+    "on-a-spring.yaml": body("mass: 0.5, tether: 100, velocity: [0.3, 0, 0], spin: [3, 0, 0]"),
+    "two-people.yaml": scene(model("stiffness: 800"), top="devices:\n" + "".join(
+        f"  - {{file: {ARM}, name: {name}, hand: {{script: {script}}}}}\n" for name, script in (("left", "hold"), ("right", "stroke")))),
+    "flail.yaml": pendulum("pivot: [0, 1, 0], length: 1, angle: 3.1, rate: 2, damping: 0.01"),
+    "rod.yaml": pendulum("pivot: [0, 0.25, 0], length: 0.2, inertia: 0.02, mass: 0.4"),
+}
+
+
+def write(folder, name, text):
+    """Writes it without its bar. Returns the file and where the bar stood."""
+    file = os.path.join(folder, name)
+    before = text.split("|")[0]
+    with open(file, "w", encoding="utf-8") as out:
+        out.write(text.replace("|", ""))
+    return file, before.count("\n") + 1, len(before) - before.rfind("\n")
+
+
+def checked(files, folder):
+    """Warnings of each file."""
+    code, out, err = program(HAPTICD, own_state(folder))("check", "--json", *files)
+    told = json.loads(out)["files"]
+    check("nothing is refused", code == 0, (texts(problem for one in told for problem in one["problems"]), err))
+    return {one["file"]: one["warnings"] for one in told}
+
+
+def own_state(folder):
+    return {**os.environ, "STATE_DIRECTORY": folder}
+
+
+def texts(warnings):
+    return [f"{one['file']}:{one['line']}:{one['column']}: {one['key']}: {one['what']}" for one in warnings]
+
+
+def scenes(folder):
+    placed = [(*write(folder, f"scene{i}.yaml", text), name, key, word) for i, (name, text, key, word) in enumerate(SCENES)]
+    told = checked([one[0] for one in placed], folder)
+    for file, line, column, name, key, word in placed:
+        hits = [one for one in told[file] if one["key"] == key and word in one["what"]]
+        check(f"{name}: told at its place", any((one["line"], one["column"]) == (line, column) for one in hits),
+              (line, column, texts(told[file])))
+        once = len(hits) == 1 or key == "models[0]"  # what is not stable is told for each reason
+        check(f"{name}: told once", once, texts(hits))
+
+
+def models(folder):
+    placed = []
+    for i, (name, plugin, text, word) in enumerate(MODELS):
+        file, line, column = write(folder, f"model{i}.yaml", text)
+        user, *_ = write(folder, f"of{i}.yaml", scene(model("", plugin, geometry=file)))
+        placed.append((user, f"{file}:{line}:{column}: ", name, word))
+    soft, *_ = write(folder, "soft.yaml", SOFT + "  stiffness: 300\n")
+    for i, (parameters, key, word) in enumerate(SOFT_PARAMETERS):
+        user, line, column = write(folder, f"soft{i}.yaml", scene(model(parameters, "mat_deformable", geometry=soft)))
+        placed.append((user, f"{user}:{line}:{column}: {P}{key}: ", f"{key} of a soft body", word))
+    told = checked([one[0] for one in placed], folder)
+    for user, place, name, word in placed:
+        check(f"{name}: told at its place", any(place in text and word in text for text in texts(told[user])), (place, texts(told[user])))
+        check(f"{name}: no more than that", sum(word in text for text in texts(told[user])) == 1, texts(told[user]))
+
+
+def right(folder):
+    write(folder, "knob.yaml", cube(half=0.01))
+    own = [write(folder, name, text)[0] for name, text in RIGHT.items()]
+    write(folder, "whole.yaml", cube())
+    own.append(write(folder, "cube.yaml", scene(model("", geometry="whole.yaml")))[0])
+    shipped = sorted(glob.glob(os.path.join(SOURCE, "config", "scenes", "**", "*.yaml"), recursive=True))
+    shipped += [os.path.join(SOURCE, "plugins", "template", "scene.yaml")]
+    check("there are scenes that ship", len(shipped) > 20, shipped)
+    for file, warnings in checked(own + shipped, folder).items():
+        odd = [one for one in warnings if "starts inside" not in one["what"]] if file in own else warnings
+        check(f"{os.path.relpath(file, SOURCE if file in shipped else folder)}: nothing is odd", not odd, texts(odd))
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        scenes(folder)
+        models(folder)
+        right(folder)
+    finish()
+
+
+main()
