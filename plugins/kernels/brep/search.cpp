@@ -146,11 +146,11 @@ double Search::evaluate(Element element, const Vector3d& p, Look& look, Hit& hit
 
 /// False if a leaf cannot hold the nearest point: no foot lies on it.
 bool Search::mayHold(Element element, const Vector3d& p, Look& look) const noexcept {
-  const LeafBow& bow = model_.leaf(element.index()).bow;
-  const Vector3d q = bow.local(p);
-  look.sight = feetSeenFrom(bow, q);
+  const Leaf& leaf = model_.leaf(element.index());
+  const Vector3d q = leaf.bow.local(p);
+  look.sight = feetSeenFrom(leaf.bow, q);
   if (look.sight.feet == FeetOfLeaf::kNowhere) return false;
-  look.uv = footNear(bow, q);
+  look.uv = footNear(leaf.bow, leaf.middle(), q);
   return true;
 }
 
