@@ -164,6 +164,7 @@ struct BoxTree::Builder {
 
 void BoxTree::build(std::span<const AlignedBox3d> boxes, int row) {
   nodes_.clear();
+  own_nodes_ = 0;
   row_count_ = 0;
   order_.resize(boxes.size());
   bounds_.setEmpty();
@@ -177,7 +178,26 @@ void BoxTree::build(std::span<const AlignedBox3d> boxes, int row) {
   margin_ = static_cast<float>(bounds_.diagonal().norm() * std::ldexp(1.0, -21));
   Builder builder{*this, boxes, static_cast<std::size_t>(std::clamp(row, 1, kMaxRow))};
   builder.build(builder.rangeOf(0, boxes.size()), 0);
-  nodes_.shrink_to_fit();
+  own_nodes_ = nodes_.size();
+}
+
+std::int32_t BoxTree::graft(std::span<const AlignedBox3d> boxes, std::span<const RowPlace> rows) {
+  std::vector<std::uint32_t> order = std::move(order_);
+  const std::int32_t row_count = row_count_;
+  order_.resize(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) order_[i] = static_cast<std::uint32_t>(i);
+  Builder builder{*this, boxes, 1};
+  const std::int32_t root = builder.build(builder.rangeOf(0, boxes.size()), 0);
+  for (std::size_t n = static_cast<std::size_t>(root); n < nodes_.size(); ++n)
+    for (std::size_t i = 0; i < 4; ++i)
+      if (const std::int32_t child = nodes_[n].child[i]; child < 0) {
+        const RowPlace& at = rows[order_[rowOf(child).first]];
+        nodes_[n].child[i] = at.child;
+        nodes_[n].row[i] = at.row;
+      }
+  order_ = std::move(order);
+  row_count_ = row_count;
+  return root;
 }
 
 }  // namespace hapticd::brep

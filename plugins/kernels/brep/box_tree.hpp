@@ -40,11 +40,23 @@ class BoxTree {
   /// place i. All boxes must be finite and not empty.
   void build(std::span<const Eigen::AlignedBox3d> boxes, int row);
 
+  /// A row of one element as the nodes tell it.
+  struct RowPlace {
+    std::int32_t child, row;
+  };
+  /// [main] A second tree over some of the elements, with the boxes given: for those who search these alone. Its nodes
+  /// stand behind those of the first, and its rows are those of the first. Returns its root.
+  std::int32_t graft(std::span<const Eigen::AlignedBox3d> boxes, std::span<const RowPlace> rows);
+
   const std::vector<std::uint32_t>& order() const noexcept { return order_; }
-  /// [main] Frees order().
-  void forgetOrder() noexcept { order_ = {}; }
+  /// [main] Frees order() and all that building left over.
+  void forgetOrder() {
+    order_ = {};
+    nodes_.shrink_to_fit();
+  }
   bool empty() const noexcept { return nodes_.empty(); }
-  std::size_t nodeCount() const noexcept { return nodes_.size(); }
+  /// [any] Without those that were grafted.
+  std::size_t nodeCount() const noexcept { return own_nodes_; }
   const BoxNode& node(std::int32_t index) const noexcept { return nodes_[static_cast<std::size_t>(index)]; }
   /// [any] The middle of all boxes; the nodes hold coordinates relative to it.
   const Eigen::Vector3d& origin() const noexcept { return origin_; }
@@ -54,6 +66,9 @@ class BoxTree {
   std::int32_t rowCount() const noexcept { return row_count_; }
   std::size_t bytes() const noexcept { return nodes_.size() * sizeof(BoxNode) + order_.size() * sizeof order_[0]; }
 
+  static std::int32_t codeOf(const ElementRow& row) noexcept {
+    return ~static_cast<std::int32_t>(8 * row.first + row.count - 1);
+  }
   static ElementRow rowOf(std::int32_t child) noexcept {
     const auto code = static_cast<std::uint32_t>(~child);
     return {code / 8, code % 8 + 1};
@@ -68,6 +83,7 @@ class BoxTree {
   Eigen::AlignedBox3d bounds_;
   float margin_ = 0;
   std::int32_t row_count_ = 0;
+  std::size_t own_nodes_ = 0;
 };
 
 /// A probe as the nodes of one tree see it.

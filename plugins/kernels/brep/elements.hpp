@@ -73,11 +73,13 @@ struct EdgeShape {
 /// A piece of a face without a closed-form foot, so flat that Newton goes straight to the foot on it.
 struct Leaf {
   Eigen::Array2d lo, hi;  ///< of (u, v)
-  double bend_front = 0;  ///< [1/m] the piece curves toward its outward normal by at most this; 0: not at all
-  double bend_back = 0;   ///< likewise toward the other side
+  float bend_front = 0;   ///< [1/m] the piece curves toward its outward normal by at most this; 0: not at all
+  float bend_back = 0;    ///< likewise toward the other side
   std::uint32_t face = 0;
   std::uint32_t borders = 0;  ///< bit 2 axis + (0: lo, 1: hi): the surface ends there, or its loops' box
   LeafBow bow;
+
+  Eigen::Array2d middle() const noexcept { return 0.5 * (lo + hi); }
 };
 
 /// A piece of an edge that is an ellipse or a spline.

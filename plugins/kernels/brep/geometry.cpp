@@ -52,19 +52,6 @@ void revolve(const Surface& s, double u, const CurvePoint& c, SurfacePoint& out)
   out.Svv = rotated(c.C2);
 }
 
-template <class Curve>
-spline::CurveData curveData(const Part& part, const Curve& curve, std::size_t dimension) {
-  spline::CurveData data;
-  data.degree = static_cast<int>(curve.degree);
-  const double* at = part.reals.data() + curve.data;
-  data.knots.assign(at, at + curve.count + curve.degree + 1);
-  at += data.knots.size();
-  for (std::uint32_t i = 0; i < curve.count; ++i, at += dimension)
-    data.points.emplace_back(at[0], at[1], dimension == 3 ? at[2] : 0.0);
-  if ((curve.flags & kRational) != 0) data.weights.assign(at, at + curve.count);
-  return data;
-}
-
 }  // namespace
 
 spline::SurfaceData splineOf(const Part& part, const Surface& surface) {
@@ -83,7 +70,14 @@ spline::SurfaceData splineOf(const Part& part, const Surface& surface) {
 }
 
 spline::CurveData splineOf(const Part& part, const Curve3& curve) {
-  return curveData(part, curve, 3);
+  spline::CurveData data;
+  data.degree = static_cast<int>(curve.degree);
+  const double* at = part.reals.data() + curve.data;
+  data.knots.assign(at, at + curve.count + curve.degree + 1);
+  at += data.knots.size();
+  for (std::uint32_t i = 0; i < curve.count; ++i, at += 3) data.points.emplace_back(at[0], at[1], at[2]);
+  if ((curve.flags & kRational) != 0) data.weights.assign(at, at + curve.count);
+  return data;
 }
 
 Geometry::Geometry(const Part& part, spline::Form form) : part_(part) {
@@ -95,12 +89,12 @@ Geometry::Geometry(const Part& part, spline::Form form) : part_(part) {
   for (const Curve3& c : part.curves3) {
     const bool is_spline = c.kind == CurveKind::kSpline;
     curve_slot_.push_back(is_spline ? static_cast<std::int32_t>(spline_curves_.size()) : -1);
-    if (is_spline) spline_curves_.emplace_back(curveData(part, c, 3));
+    if (is_spline) spline_curves_.emplace_back(splineOf(part, c));
   }
   for (const Curve2& c : part.curves2) {
     const bool is_spline = c.kind == CurveKind::kSpline;
     plane_slot_.push_back(is_spline ? static_cast<std::int32_t>(plane_splines_.size()) : -1);
-    if (is_spline) plane_splines_.emplace_back(curveData(part, c, 2));
+    if (is_spline) plane_splines_.emplace_back(part, c);
   }
 }
 
@@ -176,9 +170,8 @@ void Geometry::curve(std::uint32_t index, double t, CurvePoint& out) const noexc
 PlanePoint Geometry::planeCurve(std::uint32_t index, double t) const noexcept {
   const Curve2& c = part_.curves2[index];
   if (c.kind == CurveKind::kSpline) {
-    CurvePoint at;
-    plane_splines_[static_cast<std::size_t>(plane_slot_[index])].evaluate1(t, at);
-    return {at.C.head<2>(), at.C1.head<2>()};
+    const PlaneSplinePoint at = plane_splines_[static_cast<std::size_t>(plane_slot_[index])].at(part_.reals, c, t);
+    return {{at.c[0], at.c[1]}, {at.c1[0], at.c1[1]}};
   }
   const Vector2d x = vec(c.x);
   if (c.kind == CurveKind::kLine) return {vec(c.o) + t * x, x};
@@ -187,9 +180,9 @@ PlanePoint Geometry::planeCurve(std::uint32_t index, double t) const noexcept {
   return {vec(c.o) + ct * x + st * y, ct * y - st * x};
 }
 
-std::span<const double> Geometry::planeKnots(std::uint32_t index) const noexcept {
+std::vector<double> Geometry::planeKnots(std::uint32_t index) const {
   if (plane_slot_[index] < 0) return {};
-  return plane_splines_[static_cast<std::size_t>(plane_slot_[index])].breaks();
+  return breaksOf(part_, part_.curves2[index]);
 }
 
 Vector3d Geometry::normal(const Face& face, const Vector2d& uv) const noexcept {
@@ -214,8 +207,7 @@ std::size_t Geometry::bytes() const noexcept {
   std::size_t sum = (surface_slot_.size() + curve_slot_.size() + plane_slot_.size()) * sizeof(std::int32_t);
   for (const auto& s : spline_surfaces_) sum += sizeof s + s.bytes();
   for (const auto& c : spline_curves_) sum += sizeof c + c.bytes();
-  for (const auto& c : plane_splines_) sum += sizeof c + c.bytes();
-  return sum;
+  return sum + plane_splines_.size() * sizeof(PlaneSpline);
 }
 
 }  // namespace hapticd::brep

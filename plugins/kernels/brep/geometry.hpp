@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "kernels/brep/part.hpp"
+#include "kernels/brep/plane_spline.hpp"
 #include "kernels/spline/curve.hpp"
 #include "kernels/spline/surface.hpp"
 
@@ -51,8 +52,8 @@ class Geometry {
   const spline::Curve& splineCurve(std::uint32_t index) const noexcept {
     return spline_curves_[static_cast<std::size_t>(curve_slot_[index])];
   }
-  /// [any] The distinct knots of a curve in a parameter plane; empty if it is no spline.
-  std::span<const double> planeKnots(std::uint32_t index) const noexcept;
+  /// [main] The distinct knots of a curve in a parameter plane; empty if it is no spline.
+  std::vector<double> planeKnots(std::uint32_t index) const;
   const Part& part() const noexcept { return part_; }
   std::size_t bytes() const noexcept;
 
@@ -61,7 +62,8 @@ class Geometry {
 
   const Part& part_;
   std::vector<spline::Surface> spline_surfaces_;
-  std::vector<spline::Curve> spline_curves_, plane_splines_;
+  std::vector<spline::Curve> spline_curves_;
+  std::vector<PlaneSpline> plane_splines_;
   std::vector<std::int32_t> surface_slot_, curve_slot_, plane_slot_;
 };
 

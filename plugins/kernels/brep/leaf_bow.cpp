@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace hapticd::brep {
 namespace {
@@ -62,16 +63,36 @@ bool turnToPrincipal(LeafBow& bow, const SurfacePoint& E) {
   return bow.frame.allFinite() && bow.along[0].allFinite() && bow.along[1].allFinite();
 }
 
+/// A term as it is measured.
+struct MeasuredTerm {
+  double low = 0, high = 0;
+  Vector3d middle{0, 0, 0}, off{0, 0, 0};
+
+  LeafBow::Term rounded() const {
+    constexpr float kUp = std::numeric_limits<float>::infinity();
+    LeafBow::Term term;
+    term.low = std::nextafter(static_cast<float>(low), -kUp);
+    term.high = std::nextafter(static_cast<float>(high), kUp);
+    term.middle = middle.cast<float>();
+    const Vector3d room = off + (middle - term.middle.cast<double>()).cwiseAbs();
+    for (int i = 0; i < 3; ++i) term.off[i] = std::nextafter(static_cast<float>(room[i]), kUp);
+    return term;
+  }
+};
+struct MeasuredBow {
+  MeasuredTerm slope[2], bend[2], twist;
+};
+
 /// Widens a term by what one sample says.
-void extendTerm(LeafBow::Term& term, double value, const Vector3d& vector) {
+void extendTerm(MeasuredTerm& term, double value, const Vector3d& vector) {
   term.low = std::min(term.low, value);
   term.high = std::max(term.high, value);
   term.off = term.off.cwiseMax((vector - term.middle).cwiseAbs());
 }
 
-void extendBow(LeafBow& bow, const LeafSample& s) {
+void extendBow(MeasuredBow& bow, const double (&focus)[2], const LeafSample& s) {
   for (int i = 0; i < 2; ++i) {
-    const Vector3d from = s.S - bow.focus[i] * Vector3d::UnitZ();
+    const Vector3d from = s.S - focus[i] * Vector3d::UnitZ();
     extendTerm(bow.slope[i], from.dot(s.first[i]), s.first[i]);
     extendTerm(bow.bend[i], s.first[i].squaredNorm() + from.dot(s.second[i]), s.second[i]);
   }
@@ -79,27 +100,37 @@ void extendBow(LeafBow& bow, const LeafSample& s) {
 }
 
 /// The middle of a leaf: all terms begin with it.
-void beginBow(LeafBow& bow, const LeafSample& s, double size) {
+MeasuredBow beginBow(LeafBow& bow, const LeafSample& s, double size) {
   constexpr double kStraight = 1e-4;  // of the leaf's size times its curvature: the centre would be rounding
+  MeasuredBow measured;
   for (int i = 0; i < 2; ++i) {
     const double curvature = s.second[i].z();
+    bow.bent[i] = curvature;
     bow.focus[i] = std::abs(curvature) * size > kStraight ? 1 / curvature : 0;
-    bow.slope[i].middle = s.first[i];
-    bow.bend[i].middle = s.second[i];
-    bow.bend[i].low = LeafBow::kEndless;
-    bow.bend[i].high = -LeafBow::kEndless;
+    measured.slope[i].middle = s.first[i];
+    measured.bend[i].middle = s.second[i];
+    measured.bend[i].low = LeafBow::kEndless;
+    measured.bend[i].high = -LeafBow::kEndless;
   }
-  bow.twist.middle = s.second[2];
+  measured.twist.middle = s.second[2];
+  return measured;
 }
 
-/// Room for what lies between the samples.
-void widenBow(LeafBow& bow) {
-  for (LeafBow::Term* term : {&bow.slope[0], &bow.slope[1], &bow.bend[0], &bow.bend[1], &bow.twist}) {
-    const double more = (kBowBetween - 1) * (term->high - term->low);
-    term->low -= more;
-    term->high += more;
-    term->off *= kBowBetween;
+/// What is kept of a term, with room for what lies between the samples.
+LeafBow::Term widened(MeasuredTerm term) {
+  const double more = (kBowBetween - 1) * (term.high - term.low);
+  term.low -= more;
+  term.high += more;
+  term.off *= kBowBetween;
+  return term.rounded();
+}
+
+void keepTerms(const MeasuredBow& measured, LeafBow& bow) {
+  for (int i = 0; i < 2; ++i) {
+    bow.slope[i] = widened(measured.slope[i]);
+    bow.bend[i] = widened(measured.bend[i]);
   }
+  bow.twist = widened(measured.twist);
 }
 
 /// What holds a leaf: a box in its frame, and cylinders about the centres of curvature of the direction along which it
@@ -108,7 +139,7 @@ class LeafHull {
  public:
   /// @param corner [m] of the leaf, in the frame of the bow
   LeafHull(const LeafBow& bow, const Vector3d& corner) : bow_(bow) {
-    const auto depth = [&](int i) { return std::abs(bow.bend[i].middle.z()) * corner[i] * corner[i]; };
+    const auto depth = [&](int i) { return std::abs(bow.bent[i]) * corner[i] * corner[i]; };
     bent_ = depth(1) > depth(0) ? 1 : 0;
     turn_.row(0) = Vector3d::Unit(bent_);
     turn_.row(1) = Vector3d::Unit(1 - bent_);
@@ -178,10 +209,10 @@ bool goesOnSmoothly(const Geometry& geometry, std::uint32_t surface, const Array
 
 /// The expression of a term, seen from where `from` is o - p.
 void rangeOfTerm(const LeafBow::Term& term, const Vector3d& from, double& low, double& high) noexcept {
-  const double known = from.dot(term.middle), off = from.cwiseAbs().dot(term.off);
+  const double known = from.dot(term.middle.cast<double>()), off = from.cwiseAbs().dot(term.off.cast<double>());
   const double rounding = kBowRounding * (std::abs(known) + off);
-  low = term.low + known - off - rounding;
-  high = term.high + known + off + rounding;
+  low = static_cast<double>(term.low) + known - off - rounding;
+  high = static_cast<double>(term.high) + known + off + rounding;
 }
 
 }  // namespace
@@ -191,11 +222,11 @@ LeafBow leafBowOf(const Geometry& geometry, std::uint32_t surface, const Array2d
   LeafBow bow;
   if (geometry.part().surfaces[surface].kind == SurfaceKind::kOffset) return bow;
   SurfacePoint E;
-  bow.middle = 0.5 * (lo + hi);
-  geometry.surface(surface, bow.middle[0], bow.middle[1], E);
+  const Array2d middle = 0.5 * (lo + hi);
+  geometry.surface(surface, middle[0], middle[1], E);
   if (!turnToPrincipal(bow, E)) return bow;
   const double size = (hi - lo).matrix().cwiseProduct(Eigen::Vector2d(E.Su.norm(), E.Sv.norm())).norm();
-  beginBow(bow, leafSample(bow, E), size);
+  MeasuredBow measured = beginBow(bow, leafSample(bow, E), size);
   geometry.surface(surface, lo[0], lo[1], E);
   LeafHull about(bow, bow.local(E.S));
   const Array2d step = (hi - lo) / kBowIntervals;
@@ -205,14 +236,14 @@ LeafBow leafBowOf(const Geometry& geometry, std::uint32_t surface, const Array2d
     for (int j = 0; j <= kBowIntervals; ++j) {
       const Array2d uv = (lo + Array2d(i, j) * step).min(end);
       geometry.surface(surface, uv[0], uv[1], E);
-      extendBow(bow, leafSample(bow, E));
+      extendBow(measured, bow.focus, leafSample(bow, E));
       about.extend(bow.local(E.S));
       const Vector3d bent = step[0] * step[0] * (bow.frame * E.Suu).cwiseAbs() +
                             2 * step[0] * step[1] * (bow.frame * E.Suv).cwiseAbs() +
                             step[1] * step[1] * (bow.frame * E.Svv).cwiseAbs();
       sag = sag.cwiseMax(kSagBetween / 8 * bent);
     }
-  widenBow(bow);
+  keepTerms(measured, bow);
   hull = about.with(sag);
   bow.smooth = goesOnSmoothly(geometry, surface, lo, hi, ends);
   return bow;
@@ -236,11 +267,11 @@ LeafSight feetSeenFrom(const LeafBow& bow, const Vector3d& q) noexcept {
   return {FeetOfLeaf::kOne, mean - std::sqrt(half * half + twist * twist)};
 }
 
-Array2d footNear(const LeafBow& bow, const Vector3d& q) noexcept {
+Array2d footNear(const LeafBow& bow, const Array2d& middle, const Vector3d& q) noexcept {
   constexpr double kLeastBend = 0.2;  // below it the quadratic model leads too far
-  Array2d uv = bow.middle;
+  Array2d uv = middle;
   for (int i = 0; i < 2; ++i) {
-    const double bend = 1 - q[2] * bow.bend[i].middle[2];
+    const double bend = 1 - q[2] * bow.bent[i];
     uv += q[i] / (bend > kLeastBend ? bend : 1) * bow.along[i];
   }
   return uv;

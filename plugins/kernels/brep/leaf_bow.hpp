@@ -17,15 +17,16 @@ namespace hapticd::brep {
 /// change over the leaf where o is the centre of curvature, and (o - p) S_i and (o - p) S_ij, known in the middle.
 struct LeafBow {
   /// Range of an expression `about` o and vectors that (o - p) is multiplied with: `middle` within `off` by component.
+  /// In single precision, whose rounding is in the range: a part has many leaves.
   struct Term {
-    double low = 0, high = 0;
-    Eigen::Vector3d middle{0, 0, 0}, off{0, 0, 0};
+    float low = 0, high = 0;
+    Eigen::Vector3f middle{0, 0, 0}, off{0, 0, 0};
   };
 
   Eigen::Vector3d center{0, 0, 0};                      ///< [m] S in the middle of the parameters
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: directions 1 and 2, and the normal; unit
-  Eigen::Array2d middle{0, 0};                          ///< (u, v)
-  Eigen::Array2d along[2];                              ///< [1/m]
+  Eigen::Array2d along[2]{{0, 0}, {0, 0}};              ///< [1/m]
+  double bent[2]{0, 0};                                 ///< [1/m] curvature along them in the middle
   double focus[2]{kUnknown, kUnknown};  ///< [m] o of direction i, on the normal; not a number: nothing is known
   Term slope[2];                        ///< (S - o) S_i
   Term bend[2];                         ///< S_i S_i + (S - o) S_ii
@@ -60,7 +61,7 @@ struct LeafSight {
 /// [rt] What a probe sees of the leaf. @param q [m] the probe in the frame of the leaf
 LeafSight feetSeenFrom(const LeafBow& bow, const Eigen::Vector3d& q) noexcept;
 
-/// [rt] (u, v) near the foot; may lie outside the leaf.
-Eigen::Array2d footNear(const LeafBow& bow, const Eigen::Vector3d& q) noexcept;
+/// [rt] (u, v) near the foot; may lie outside the leaf. @param middle (u, v) in the middle of the leaf
+Eigen::Array2d footNear(const LeafBow& bow, const Eigen::Array2d& middle, const Eigen::Vector3d& q) noexcept;
 
 }  // namespace hapticd::brep

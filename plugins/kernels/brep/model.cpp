@@ -33,7 +33,7 @@ class ModelBuilder {
     smoothNormals(part_, model_.smooth_corner_, model_.smooth_normals_);
     shapeFacesAndEdges();
     model_.bodies_.resize(part_.bodies.size());
-    model_.face_trees_.resize(part_.faces.size());
+    model_.face_roots_.assign(part_.faces.size(), BodyTree::kNoRoot);
     for (std::uint32_t b = 0; b < part_.bodies.size(); ++b) plantTree(b);
     placeBodies();
     warn();
@@ -132,21 +132,20 @@ class ModelBuilder {
     if (body.kind == BodyKind::kMesh) return plantMesh(body, made);
     for (std::uint32_t i = 0; i < body.face_count; ++i) addFace(body.first_face + i);
     for (std::uint32_t i = 0; i < body.edge_count; ++i) addEdge(body.first_edge + i);
-    arrange(made, boxes_, elements_, turned_);
-    plantFaceTrees(body);
+    arrange(made);
+    plantFaceTrees(body, made);
+    made.tree.forgetOrder();
   }
 
   /// The rows of a tree with one element in each.
-  static void arrange(BodyTree& body, std::span<const AlignedBox3d> boxes, std::span<const Element> elements,
-                      std::span<const TurnedBox> turned) {
-    body.tree.build(boxes, 1);
-    body.elements.reserve(elements.size());
-    for (const std::uint32_t i : body.tree.order()) body.elements.push_back(elements[i]);
-    body.rows.resize(elements.size());
+  void arrange(BodyTree& body) const {
+    body.tree.build(boxes_, 1);
+    body.elements.reserve(elements_.size());
+    for (const std::uint32_t i : body.tree.order()) body.elements.push_back(elements_[i]);
+    body.rows.resize(elements_.size());
     forEachRow(body, [&](std::size_t number, const ElementRow& row) {
-      body.rows[number] = rowBox(turned[body.tree.order()[row.first]], body.tree);
+      body.rows[number] = rowBox(turned_[body.tree.order()[row.first]], body.tree);
     });
-    body.tree.forgetOrder();
   }
 
   /// use(number of the row, row)
@@ -180,23 +179,32 @@ class ModelBuilder {
     }
   }
 
+  /// Where the tree of a body says of each element, in the order in which they were added, that it is.
+  std::vector<BoxTree::RowPlace> rowPlaces(const BodyTree& body) const {
+    std::vector<BoxTree::RowPlace> places(elements_.size());
+    forEachRow(body, [&](std::size_t number, const ElementRow& row) {
+      places[body.tree.order()[row.first]] = {BoxTree::codeOf(row), static_cast<std::int32_t>(number)};
+    });
+    return places;
+  }
+
   /// A contact that holds a face asks for the nearest point of this one alone.
-  void plantFaceTrees(const Body& body) {
-    std::vector<std::vector<std::uint32_t>> places(body.face_count);
+  void plantFaceTrees(const Body& body, BodyTree& made) {
+    std::vector<std::vector<std::uint32_t>> of_faces(body.face_count);
     for (std::uint32_t i = 0; i < elements_.size(); ++i)
       forEachFaceOf(elements_[i], [&](std::uint32_t face) {
         if (face - body.first_face >= body.face_count) return;
-        std::vector<std::uint32_t>& of_face = places[face - body.first_face];
+        std::vector<std::uint32_t>& of_face = of_faces[face - body.first_face];
         if (of_face.empty() || of_face.back() != i) of_face.push_back(i);  // a seam has two coedges on one face
       });
+    const std::vector<BoxTree::RowPlace> places = rowPlaces(made);
     std::vector<AlignedBox3d> boxes;
-    std::vector<Element> elements;
-    std::vector<TurnedBox> turned;
+    std::vector<BoxTree::RowPlace> rows;
     for (std::uint32_t f = 0; f < body.face_count; ++f) {
-      boxes.clear(), elements.clear(), turned.clear();
-      for (const std::uint32_t i : places[f])
-        boxes.push_back(boxes_[i]), elements.push_back(elements_[i]), turned.push_back(turned_[i]);
-      arrange(model_.face_trees_[body.first_face + f], boxes, elements, turned);
+      if (of_faces[f].empty()) continue;
+      boxes.clear(), rows.clear();
+      for (const std::uint32_t i : of_faces[f]) boxes.push_back(boxes_[i]), rows.push_back(places[i]);
+      model_.face_roots_[body.first_face + f] = made.tree.graft(boxes, rows);
     }
   }
 
@@ -279,11 +287,11 @@ std::size_t Model::bytes() const noexcept {
   add(faces_), add(edges_), add(leaves_), add(pieces_), add(vertex_normals_), add(point_normals_);
   add(smooth_corner_), add(smooth_normals_), add(placements_);
   for (const FaceShape& face : faces_) sum += face.trim.bytes();
-  for (const std::vector<BodyTree>* trees : {&bodies_, &face_trees_})
-    for (const BodyTree& tree : *trees) {
-      sum += sizeof tree + tree.tree.bytes();
-      add(tree.elements), add(tree.rows), add(tree.slabs);
-    }
+  add(face_roots_);
+  for (const BodyTree& tree : bodies_) {
+    sum += sizeof tree + tree.tree.bytes();
+    add(tree.elements), add(tree.rows), add(tree.slabs);
+  }
   return sum + placement_tree_.bytes();
 }
 

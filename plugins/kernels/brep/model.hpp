@@ -45,8 +45,9 @@ struct CornerNormal {
   bool open = false;                ///< a free edge ends there
 };
 
-/// The elements of one body, or of one face.
+/// The elements of one body.
 struct BodyTree {
+  static constexpr std::int32_t kNoRoot = -1;  ///< of a face without elements
   static constexpr int kMeshRow = 2;  ///< triangles in one row: a look at a disc is cheaper than one at a triangle
 
   BoxTree tree;
@@ -111,8 +112,8 @@ class Model {
 
   const std::vector<Placement>& placements() const noexcept { return placements_; }
   const BodyTree& body(std::uint32_t index) const noexcept { return bodies_[index]; }
-  /// [any] The elements of one face: itself or its leaves, and its edges. Empty for triangles of meshes.
-  const BodyTree& ofFace(std::uint32_t index) const noexcept { return face_trees_[index]; }
+  /// [any] Where in the tree of its body that of one face begins: of itself or its leaves, and its edges.
+  std::int32_t rootOfFace(std::uint32_t index) const noexcept { return face_roots_[index]; }
   /// [any] Boxes of the placements in the model's frame; only if there are several.
   const BoxTree& placementTree() const noexcept { return placement_tree_; }
   /// [any] Faces and triangles over all placements.
@@ -141,7 +142,7 @@ class Model {
   std::vector<std::uint32_t> smooth_corner_;
   std::vector<Eigen::Vector3f> smooth_normals_;
   std::vector<BodyTree> bodies_;
-  std::vector<BodyTree> face_trees_;  ///< by face
+  std::vector<std::int32_t> face_roots_;  ///< by face
   std::vector<Placement> placements_;
   BoxTree placement_tree_;
   Eigen::AlignedBox3d bounds_;

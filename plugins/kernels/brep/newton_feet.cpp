@@ -130,7 +130,7 @@ double take(const LeafTask& task, const FaceShape& face, const LeafState& s, con
 /// Whether the probe is nearer to its foot than the leaf's centres of curvature on its side.
 bool isWithinFocus(const Leaf& leaf, const FaceShape& face, const LeafState& s, double offset) noexcept {
   const double side = -face.outward * s.r.dot(s.E.Su.cross(s.E.Sv));
-  return (std::sqrt(s.f) + offset) * (side > 0 ? leaf.bend_front : leaf.bend_back) < 1;
+  return (std::sqrt(s.f) + offset) * static_cast<double>(side > 0 ? leaf.bend_front : leaf.bend_back) < 1;
 }
 
 /// Lower bound of the squared distance to a leaf that a probe sees to have one foot: it bends up by `least_bend` at

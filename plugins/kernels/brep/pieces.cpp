@@ -21,6 +21,7 @@ using spline::CurvePoint;
 using spline::SurfacePoint;
 
 constexpr double kMostTurn = 0.44;  ///< [rad] of the normals of a leaf, 25 degrees; of the tangents of a curve's piece
+constexpr int kMostHalvings = 2;    ///< of a leaf that bends unevenly
 
 /// Principal curvatures at a point, toward Su x Sv positive; false where the tangents vanish.
 bool curvatures(const SurfacePoint& E, double& least, double& most) {
@@ -58,7 +59,7 @@ class FaceCutter {
   void cutSpline() {
     const spline::SurfaceData data = splineOf(geometry_.part(), surface_);
     trace::BoxTree pieces;
-    pieces.add(data, 0);
+    pieces.add(data, 0, 1 - std::cos(kMostTurn));
     const Array2d lo(data.domain(0)[0], data.domain(1)[0]), hi(data.domain(0)[1], data.domain(1)[1]);
     for (int i = 0; i < pieces.leafCount(); ++i) {
       const trace::Leaf& piece = pieces.leaf(i);
@@ -121,7 +122,8 @@ class FaceCutter {
   }
 
   /// `domain_lo`, `domain_hi`: where the surface ends.
-  void add(Array2d lo, Array2d hi, const Array2d& domain_lo, const Array2d& domain_hi, const AlignedBox3d& box) {
+  void add(Array2d lo, Array2d hi, const Array2d& domain_lo, const Array2d& domain_hi, const AlignedBox3d& box,
+           int halvings = 0) {
     const Array2d first = vec(face_.lo).array().max(domain_lo), last = vec(face_.hi).array().min(domain_hi);
     lo = lo.max(first);
     hi = hi.min(last);
@@ -139,7 +141,29 @@ class FaceCutter {
     made.box = box;
     made.turned.box = box;
     leaf.bow = leafBowOf(geometry_, face_.surface, leaf.lo, leaf.hi, leaf.borders, made.turned);
+    if (const int axis = halvings < kMostHalvings ? roughAxis(leaf) : -1; axis >= 0) {
+      Array2d end = hi, begin = lo;
+      end[axis] = begin[axis] = 0.5 * (lo[axis] + hi[axis]);
+      add(lo, end, domain_lo, domain_hi, box, halvings + 1);
+      add(begin, hi, domain_lo, domain_hi, box, halvings + 1);
+      return;
+    }
     leaves_.push_back(made);
+  }
+
+  /// The axis along which a leaf bends so unevenly that little is known of it near its centres of curvature; -1: none.
+  static int roughAxis(const Leaf& leaf) {
+    constexpr double kRough = 0.2;  // of half the squared distance's second derivative on the surface, which is 1
+    int axis = -1;
+    double worst = kRough;
+    for (int i = 0; i < 2; ++i) {
+      const double spread = static_cast<double>(leaf.bow.bend[i].high) - leaf.bow.bend[i].low;
+      if (!(leaf.bow.focus[i] != 0 && spread > worst)) continue;
+      worst = spread;
+      const Array2d run = leaf.bow.along[i].abs() / (leaf.hi - leaf.lo);
+      axis = run[0] > run[1] ? 0 : 1;
+    }
+    return axis;
   }
 
   void measureBend(Leaf& leaf) const {
@@ -155,8 +179,8 @@ class FaceCutter {
         front = std::max(front, shape_.outward > 0 ? most : -least);
         back = std::max(back, shape_.outward > 0 ? -least : most);
       }
-    leaf.bend_front = kBetweenSamples * front;
-    leaf.bend_back = kBetweenSamples * back;
+    leaf.bend_front = static_cast<float>(kBetweenSamples * front);
+    leaf.bend_back = static_cast<float>(kBetweenSamples * back);
   }
 
   const Geometry& geometry_;

@@ -146,11 +146,11 @@ double Search::evaluate(Element element, const Vector3d& p, Look& look, Hit& hit
 
 /// False if a leaf cannot hold the nearest point: no foot lies on it.
 bool Search::mayHold(Element element, const Vector3d& p, Look& look) const noexcept {
-  const LeafBow& bow = model_.leaf(element.index()).bow;
-  const Vector3d q = bow.local(p);
-  look.sight = feetSeenFrom(bow, q);
+  const Leaf& leaf = model_.leaf(element.index());
+  const Vector3d q = leaf.bow.local(p);
+  look.sight = feetSeenFrom(leaf.bow, q);
   if (look.sight.feet == FeetOfLeaf::kNowhere) return false;
-  look.uv = footNear(bow, q);
+  look.uv = footNear(leaf.bow, leaf.middle(), q);
   return true;
 }
 
@@ -196,15 +196,16 @@ double Search::look(std::uint32_t place, Element element, const Vector3d& p, dou
   return leastOf(d2, look);
 }
 
-void Search::searchTree(const BodyTree& body, std::uint32_t place, const Vector3d& p, Run& run) noexcept {
-  if (body.tree.empty()) return;
+void Search::searchTree(const BodyTree& body, std::int32_t root, std::uint32_t place, const Vector3d& p,
+                        Run& run) noexcept {
+  if (body.tree.empty() || root == BodyTree::kNoRoot) return;
   Nearest& best = run.best;
   const Element first = run.first_place == place ? run.first : Element();  // has been looked at already
   const BoxProbe probe(body.tree, p);
   std::array<Entry, BoxTree::kMaxStack> stack;
   std::array<Entry, 4> children;
   int depth = 0;
-  stack[static_cast<std::size_t>(depth++)] = {0, 0, 0};
+  stack[static_cast<std::size_t>(depth++)] = {0, root, 0};
   while (depth > 0) {
     const Entry entry = stack[static_cast<std::size_t>(--depth)];
     auto bound = static_cast<double>(entry.bound);
@@ -255,7 +256,7 @@ void Search::searchPlaces(const Vector3d& p, Run& run) noexcept {
       for (std::uint32_t i = row.first; i < row.first + row.count; ++i) {
         const std::uint32_t place = tree.order()[i];
         const Placement& at = model_.placements()[place];
-        searchTree(model_.body(at.body), place, at.toBody(p), run);
+        searchTree(model_.body(at.body), 0, place, at.toBody(p), run);
       }
       continue;
     }
@@ -268,7 +269,7 @@ void Search::searchPlaces(const Vector3d& p, Run& run) noexcept {
 
 void Search::searchWhole(const Vector3d& p, Run& run) noexcept {
   if (model_.placements().size() == 1)
-    searchTree(model_.body(model_.placements()[0].body), 0, model_.placements()[0].toBody(p), run);
+    searchTree(model_.body(model_.placements()[0].body), 0, 0, model_.placements()[0].toBody(p), run);
   else
     searchPlaces(p, run);
 }
@@ -370,8 +371,9 @@ Nearest Search::nearestOf(std::uint32_t place, std::uint32_t face, const Vector3
       run.best.place = place;
     }
   }
-  const BodyTree& tree = face == kNone ? model_.body(model_.placements()[place].body) : model_.ofFace(face);
-  searchWithin(run, [&] { searchTree(tree, place, p_body, run); });
+  const BodyTree& body = model_.body(model_.placements()[place].body);
+  const std::int32_t root = face == kNone ? 0 : model_.rootOfFace(face);
+  searchWithin(run, [&] { searchTree(body, root, place, p_body, run); });
   finish(run);
   return run.best;
 }

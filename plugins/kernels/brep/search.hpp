@@ -105,7 +105,8 @@ class Search {
   void lookAtAll(Near& near, const Eigen::Vector3d& p, Run& run) noexcept;
   template <class Near>
   bool lookAtNear(Near& near, const Eigen::Vector3d& p, Run& run) noexcept;
-  void searchTree(const BodyTree& body, std::uint32_t place, const Eigen::Vector3d& p, Run& run) noexcept;
+  void searchTree(const BodyTree& body, std::int32_t root, std::uint32_t place, const Eigen::Vector3d& p,
+                  Run& run) noexcept;
   void searchWhole(const Eigen::Vector3d& p, Run& run) noexcept;
   void searchPlaces(const Eigen::Vector3d& p, Run& run) noexcept;
   template <class Whole>

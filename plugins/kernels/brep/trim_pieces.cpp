@@ -133,9 +133,20 @@ class Cutter {
     found.push_back(b);
   }
 
+  /// Whether few points of the face lie between a piece and its chord, seen along u and along v. Where the piece is
+  /// short that may not be measured against it: by the turns of a curve, and where it runs along u or v but for
+  /// rounding, each half of a piece would be as far from its chord as the whole.
+  bool isNear(const Vector2d& off, const Vector2d& way) const {
+    constexpr double kNear = 0.05, kNarrow = 1e-4;  // of the piece, of the face
+    for (int axis = 0; axis < 2; ++axis) {
+      const bool narrow = off[axis] <= kNarrow * range_[axis] || std::abs(way[1 - axis]) <= kNarrow * range_[1 - axis];
+      if (!narrow && off[axis] > kNear * std::abs(way[axis])) return false;
+    }
+    return true;
+  }
+
   /// Adds a monotone piece, in parts whose chords stay near it.
   void addMonotone(const Coedge& c, double t0, double t1, const Vector2d& a, const Vector2d& b, int depth) {
-    constexpr double kNear = 0.02;
     constexpr int kDeepest = 12;
     TrimPiece piece{a, b, 0, 0, c.pcurve, TrimPiece::Kind::kOther, t0, t1};
     const Vector2d off = offChord(c, t0, t1, a, b);
@@ -143,7 +154,7 @@ class Cutter {
     piece.off_v = std::nextafter(static_cast<float>(off[1]), 1e30F);
     if (isRound(part_.curves2[c.pcurve])) {
       piece.kind = TrimPiece::Kind::kCircle;
-    } else if (depth < kDeepest && (off.array() > kNear * (b - a).cwiseAbs().array()).any()) {
+    } else if (depth < kDeepest && !isNear(off, b - a)) {
       const double middle = 0.5 * (t0 + t1);
       const Vector2d there = at(c, middle);
       addMonotone(c, t0, middle, a, there, depth + 1);

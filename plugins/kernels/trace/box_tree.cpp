@@ -109,13 +109,13 @@ double turnOfNormal(const Piece& piece, const Vector3d& normal) {
   return kMore * widest + kLeast;
 }
 
-constexpr double kFlat = 0.03;   // 1 - cos 14 deg: Newton from the middle of such a piece goes straight to the foot
 constexpr int kMaxHalvings = 7;  // of one Bezier piece: at most 128 leaves
 
-void addLeaves(const Piece& piece, int patch, int halvings, std::vector<Leaf>& leaves) {
+void addLeaves(const Piece& piece, int patch, double flat, int halvings, std::vector<Leaf>& leaves) {
   const double turn_u = turn(piece, 0), turn_v = turn(piece, 1);
-  if (halvings < kMaxHalvings && std::max(turn_u, turn_v) > kFlat) {
-    for (const Piece& half : halves(piece, turn_u >= turn_v ? 0 : 1)) addLeaves(half, patch, halvings + 1, leaves);
+  if (halvings < kMaxHalvings && std::max(turn_u, turn_v) > flat) {
+    for (const Piece& half : halves(piece, turn_u >= turn_v ? 0 : 1))
+      addLeaves(half, patch, flat, halvings + 1, leaves);
     return;
   }
   Leaf leaf;
@@ -148,8 +148,9 @@ bool Leaf::mayFace(const Vector3d& p) const noexcept {
          std::abs(r.dot(normal)) >= std::cos(angle) * distance;
 }
 
-void BoxTree::add(const spline::SurfaceData& patch, int index) {
-  for (const spline::SurfaceData& bezier : spline::bezierPieces(patch)) addLeaves(pieceOf(bezier), index, 0, leaves_);
+void BoxTree::add(const spline::SurfaceData& patch, int index, double flat) {
+  for (const spline::SurfaceData& bezier : spline::bezierPieces(patch))
+    addLeaves(pieceOf(bezier), index, flat, 0, leaves_);
 }
 
 /// Leaves come patch by patch.

@@ -34,8 +34,10 @@ struct LeafHit {
 
 class BoxTree {
  public:
-  /// [main] Cuts a patch into leaves and keeps them.
-  void add(const spline::SurfaceData& patch, int index);
+  static constexpr double kFlat = 0.03;  ///< 1 - cos 14 deg: Newton goes straight from the middle to the foot
+  /// [main] Cuts a patch into leaves and keeps them. @param flat 1 - cos of the angle by which the tangents of a leaf
+  /// may lean from their mean
+  void add(const spline::SurfaceData& patch, int index, double flat = kFlat);
   /// [main] Arranges the leaves; call once, after the last add().
   void build();
   /// [sim] What a search has to look at, nearest box first: the leaves that may be at most `margin` [m] farther from p

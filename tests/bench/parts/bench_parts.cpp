@@ -4,6 +4,7 @@
 ///   bench_parts FILE.hpart...     without a file: parts made here, and bumpy balls of 100,000 and 1,000,000 triangles
 ///   bench_parts --balls           the balls alone
 ///   bench_parts --four FILE.hpart an assembly of four of them
+///   bench_parts --edges FILE.hpart...     how far the force turns over smooth edges
 ///   bench_parts FILE.hpart --occt FILE.step ...     the part beside Open CASCADE on the file that it was imported from
 #include <algorithm>
 #include <chrono>
@@ -14,6 +15,7 @@
 #include <numeric>
 #include <random>
 
+#include "edge_steps.hpp"
 #include "kernels/brep/part_file.hpp"
 #include "kernels/brep/tracer.hpp"
 #include "occt.hpp"
@@ -299,6 +301,10 @@ int main(int count, char** files) {
     bench::measure(brep::samples::plate(100, 100, 1, 3, 2), "plate with 10,000 holes");
     bench::measure(bench::bumpyBall(100000), "bumpy ball");
     bench::measure(bench::bumpyBall(1000000), "bumpy ball");
+  }
+  if (count > 2 && std::string(files[1]) == "--edges") {
+    for (int i = 2; i < count; ++i) bench::measureEdgeSteps(brep::Model(bench::readFile(files[i])));
+    return 0;
   }
   const bool four = count == 3 && std::string(files[1]) == "--four";
   for (int i = four ? 2 : 1; i < count; ++i) {

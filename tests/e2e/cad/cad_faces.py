@@ -21,6 +21,24 @@ folder = tempfile.mkdtemp(prefix="hapticd-faces-")
 GIVEN = ["box.step", "cylinder.step", "sphere.step", "cone.step", "torus.step", "three_quarters.step", "bracket.step", "spline_hole.step"]
 
 
+def in_plate_with_hole(x, y, z):
+    """The solid of spline_hole.step: 40 mm square, 5 mm thick, a round hole of 10 mm."""
+    return max(abs(x), abs(y)) < 20 and 0 < z < 5 and x * x + y * y > 25
+
+
+# Where Open CASCADE's classifier errs, the solid has a formula. spline_hole.step: five of 100,000 points, inside the plate
+# with y within 7 um of -5, beside the plane that touches the hole at the ends of its spline.
+FORMULAS = {"spline_hole.step": in_plate_with_hole}
+
+
+def unexplained_sides(name, told):
+    """How many sides that differ from Open CASCADE's are not shown to be its error."""
+    formula = FORMULAS.get(name)
+    if formula is None:
+        return told["side_wrong"]
+    return told["side_wrong"] - sum(formula(x, y, z) == bool(inside) for x, y, z, inside in told["side_points"])
+
+
 def compare(file, most):
     part = os.path.join(folder, os.path.basename(file).replace(".", "_") + ".hpart")
     code, out, err = run("import", file, "-o", part, "--json")
@@ -33,10 +51,11 @@ def compare(file, most):
         return
     told = json.loads(done.stdout)
     good = told["trim_wrong"] == 0 and told["farther_mm"] <= max(most, tolerance) and told["proved"] >= 0.98 * told["feet"]
-    good = good and told["side_wrong"] <= told["sides"] / 1e4  # theirs may err: a plate with a hole of 5 mm, y near -5
+    unexplained = unexplained_sides(name, told)
+    good = good and unexplained <= told["sides"] / 1e5
     check(f"{name}: {told['trim_wrong']} of {told['trims']} trims wrong ({told['beside']} beside an edge, {told['unmatched']} faces have other "
           f"parameters), {told['feet']} feet {told['farther_mm']} mm farther than theirs at most, {told['nearer_mm']} mm nearer, "
-          f"{told['side_wrong']} of {told['sides']} sides wrong", good, told)
+          f"{told['side_wrong']} of {told['sides']} sides differ, {unexplained} of them not by an error of theirs", good, told)
 
 
 subprocess.run([MAKE_PARTS, folder], check=True, timeout=300)

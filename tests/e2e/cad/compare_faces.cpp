@@ -77,6 +77,7 @@ struct Tally {
   long trims = 0, trim_wrong = 0, beside = 0, unmatched = 0, feet = 0, proved = 0, no_answer = 0;
   long sides = 0, side_wrong = 0;  ///< of the only solid, farther from it than its tolerance
   double farther = 0, nearer = 0;  ///< [mm] largest difference of ours to theirs, each way
+  std::string side_points;         ///< JSON [x, y, z (mm), inside by ours] of the first wrong ones
 };
 
 class Comparison {
@@ -170,8 +171,12 @@ class Comparison {
       ++tally_.sides;
       const bool wrong = (foot.depth > 0) != (judge.State() == TopAbs_IN);
       tally_.side_wrong += wrong;
-      if (wrong && tally_.side_wrong < 5)
-        std::fprintf(stderr, "side of %.9g %.9g %.9g: %.3g mm from it\n", q.x(), q.y(), q.z(), foot.distance / kMetres);
+      constexpr long kMostNamed = 100;
+      if (!wrong || tally_.side_wrong > kMostNamed) continue;
+      char text[160];
+      std::snprintf(text, sizeof text, "%s[%.17g, %.17g, %.17g, %d]", tally_.side_wrong > 1 ? ", " : "", q.x(), q.y(),
+                    q.z(), foot.depth > 0 ? 1 : 0);
+      tally_.side_points += text;
     }
   }
 
@@ -225,8 +230,9 @@ int main(int count, char** arguments) {
   const Tally t = Comparison(readShape(arguments[1]), model).run(std::atol(arguments[3]));
   std::printf(
       "{\"trims\": %ld, \"trim_wrong\": %ld, \"beside\": %ld, \"unmatched\": %ld, \"feet\": %ld, \"proved\": %ld, "
-      "\"no_answer\": %ld, \"sides\": %ld, \"side_wrong\": %ld, \"farther_mm\": %.3g, \"nearer_mm\": %.3g}\n",
-      t.trims, t.trim_wrong, t.beside, t.unmatched, t.feet, t.proved, t.no_answer, t.sides, t.side_wrong, t.farther,
-      t.nearer);
+      "\"no_answer\": %ld, \"sides\": %ld, \"side_wrong\": %ld, \"side_points\": [%s], \"farther_mm\": %.3g, "
+      "\"nearer_mm\": %.3g}\n",
+      t.trims, t.trim_wrong, t.beside, t.unmatched, t.feet, t.proved, t.no_answer, t.sides, t.side_wrong,
+      t.side_points.c_str(), t.farther, t.nearer);
   return 0;
 }

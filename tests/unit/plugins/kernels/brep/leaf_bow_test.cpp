@@ -87,7 +87,7 @@ void lookFromAfar(const Model& model, Leaf leaf, const Vector3d& p, const LeafSi
                   LeafTally& tally) {
   leaf.borders = 0;
   for (const double share : {0.5, 0.9, 0.99, 1.0, 1.01}) {
-    LeafStart start{footNear(leaf.bow, leaf.bow.local(p)), sight, false};
+    LeafStart start{footNear(leaf.bow, leaf.middle(), leaf.bow.local(p)), sight, false};
     start.limit2 = share * grid.least();
     Hit hit;
     const std::uint32_t surface = model.part().faces[leaf.face].surface;
@@ -111,7 +111,7 @@ void lookAtLeaf(const Model& model, const Leaf& leaf, const Vector3d& p, LeafGri
     case FeetOfLeaf::kOne: {
       ++tally.one;
       Hit hit;
-      const bool arrived = footFrom(model, leaf, footNear(leaf.bow, q), p, hit);
+      const bool arrived = footFrom(model, leaf, footNear(leaf.bow, leaf.middle(), q), p, hit);
       EXPECT_TRUE(!arrived || hit.d2 <= grid.least() * (1 + 1e-9) + 1e-18) << p.transpose();
       lookFromAfar(model, leaf, p, sight, grid, tally);
       break;

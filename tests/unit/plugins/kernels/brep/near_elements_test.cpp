@@ -72,7 +72,11 @@ NearTally walkBesideWhole(Part part, const std::string& file, int most_rows) {
     const Nearest& found = near.nearest(p, enough);
     const Nearest& truth = all.nearest(p, whole);
     ++tally.ticks;
-    if (!found.proved || !truth.proved) continue;
+    if (!found.proved || !truth.proved) {  // they may have different feet, and would go on from these
+      near.reset();
+      all.reset();
+      continue;
+    }
     ++tally.proved;
     tally.near_nodes += found.nodes;
     tally.whole_nodes += truth.nodes;

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+/// Loops of splines: what they hold, and how many pieces they fall into.
+#include "kernels/brep/trim.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <random>
+
+#include "sample_splines.hpp"
+
+namespace hapticd::brep {
+namespace {
+
+/// A pcurve of one span from t = 0 to 1.
+Curve2 bezier2(Part& part, const std::vector<Vector2>& points) {
+  Curve2 curve;
+  curve.kind = CurveKind::kSpline;
+  curve.degree = static_cast<std::uint32_t>(points.size()) - 1;
+  curve.count = static_cast<std::uint32_t>(points.size());
+  curve.data = samples::addReals(part, std::vector<double>(points.size(), 0.0));
+  samples::addReals(part, std::vector<double>(points.size(), 1.0));
+  for (const Vector2& p : points) samples::addReals(part, {p[0], p[1]});
+  return curve;
+}
+
+/// A plane face from (0, 0) to `hi`, whose sides are these pcurves.
+Part faceOf(Part part, const std::vector<Curve2>& sides, Vector2 hi) {
+  Surface plane;
+  plane.x = {samples::kMm, 0, 0};
+  plane.y = {0, samples::kMm, 0};
+  samples::addFace(part, plane, 0, {0, 0}, hi);
+  samples::addLoop(part);
+  for (const Curve2& side : sides) {
+    const std::uint32_t vertex = samples::addVertex(part, {});
+    samples::addCoedge(part, samples::addEdge(part, {}, 0, 1, vertex, vertex), side, 0);
+  }
+  samples::endBody(part, BodyKind::kSheet, 0);
+  return part;
+}
+
+/// Random points of the face, every other one within 1e-7 of the curve: on the right side of it by the formula.
+void expectInside(const Trim& trim, Vector2 hi, const std::function<double(double u, double v)>& above) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int i = 0; i < 20000; ++i) {
+    const double u = share(random) * hi[0], height = above(u, 0);
+    const double v = i % 2 == 0 ? share(random) * hi[1] : height + (share(random) - 0.5) * 2e-7;
+    if (std::abs(v - height) < 1e-14 || v < 0) continue;
+    ASSERT_EQ(trim.inside(u, v), v < height) << u << ' ' << v << ", the curve is at " << height;
+  }
+}
+
+/// Where it turns, a curve is as far from its chord as its piece is high: halving that goes on for ever.
+TEST(TrimPieces, AreFewAboutTheTurnOfACurve) {
+  Part part;
+  const Curve2 top = bezier2(part, {{1, 1}, {0.5, 1.4}, {0, 1}});
+  const std::vector<Curve2> sides{samples::line2({0, 0}, {1, 0}), samples::line2({1, 0}, {0, 1}), top,
+                                  samples::line2({0, 1}, {0, -1})};
+  const Part face = faceOf(std::move(part), sides, {1, 1.2});
+  const Geometry geometry(face, spline::Form::kTable);
+  const Trim trim(geometry, face.faces[0]);
+  expectInside(trim, {1, 1.2}, [](double u, double) { return 1 + 0.8 * u * (1 - u); });
+  EXPECT_LT(trim.bytes(), 6000u);
+}
+
+/// Exporters write lines as splines whose points are off by rounding: each half of such a piece is as far from its
+/// chord as the whole is wide.
+TEST(TrimPieces, AreFewAlongASideThatIsStraightButForRounding) {
+  constexpr double kOff = 4e-12;
+  Part part;
+  const Curve2 right = bezier2(part, {{1, 0}, {1 + kOff, 0.3}, {1 - kOff, 0.6}, {1 + kOff, 0.8}, {1, 1}});
+  const Curve2 top = bezier2(part, {{1, 1}, {0.6, 1 + kOff}, {0.3, 1 - kOff}, {0, 1}});
+  const std::vector<Curve2> sides{samples::line2({0, 0}, {1, 0}), right, top, samples::line2({0, 1}, {0, -1})};
+  const Part face = faceOf(std::move(part), sides, {1, 1});
+  const Geometry geometry(face, spline::Form::kTable);
+  const Trim trim(geometry, face.faces[0]);
+  EXPECT_LT(trim.bytes(), 3000u);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> share(-0.1, 1.1);
+  for (int i = 0; i < 20000; ++i) {
+    const double u = share(random), v = share(random);
+    ASSERT_EQ(trim.inside(u, v), u > 0 && u < 1 && v > 0 && v < 1) << u << ' ' << v;
+  }
+}
+
+}  // namespace
+}  // namespace hapticd::brep
