@@ -3,8 +3,9 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <mutex>
+#include <string>
+#include <unordered_map>
 
 namespace hapticd {
 
@@ -33,11 +34,11 @@ Code* libraryAt(const void* address) noexcept {
 
 const Owner* ownerOf(const std::string& module, const std::string& name, bool device) {
   static std::mutex mutex;
-  static std::deque<Owner>& known = *new std::deque<Owner>;  // never destroyed: handlers may read it at the very end
+  // Never destroyed: handlers may read an owner at the very end. The keys are their module, name and kind.
+  static auto& known = *new std::unordered_map<std::string, Owner>;
   const std::lock_guard lock(mutex);
-  for (const Owner& owner : known)
-    if (owner.module == module && owner.name == name && owner.device == device) return &owner;
-  return &known.emplace_back(Owner{module, name, device});
+  const std::string key = module + '\0' + name + '\0' + (device ? 'd' : 's');
+  return &known.try_emplace(key, Owner{module, name, device}).first->second;
 }
 
 Working::Working(Worker worker) noexcept : worker_(worker) {

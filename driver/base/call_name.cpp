@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "base/call_name.hpp"
 
+#include <mutex>
+#include <unordered_map>
+
 namespace hapticd {
 
 namespace {
@@ -16,10 +19,13 @@ std::atomic<const Known*> newest{nullptr};
 }  // namespace
 
 void keepPlace(const Owner* owner, const std::string& place) {
-  if (placeOf(owner) == place) return;
-  auto* known = new Known{owner, place, newest.load()};
-  while (!newest.compare_exchange_weak(known->next, known)) {
-  }
+  static std::mutex mutex;
+  static auto& last = *new std::unordered_map<const Owner*, const Known*>;  // to walk the list for each takes n^2 steps
+  const std::lock_guard lock(mutex);
+  const Known*& known = last[owner];
+  if ((known != nullptr ? known->place : "") == place) return;
+  known = new Known{owner, place, newest.load()};
+  newest.store(known);
 }
 
 const char* placeOf(const Owner* owner) noexcept {

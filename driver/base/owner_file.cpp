@@ -2,6 +2,8 @@
 #include "base/owner_file.hpp"
 
 #include <atomic>
+#include <mutex>
+#include <unordered_map>
 
 namespace hapticd {
 
@@ -26,10 +28,13 @@ bool isRepeated(const FileOfOwner* entry) noexcept {
 }  // namespace
 
 void keepFile(const Owner* owner, const std::string& identity, bool foreign) {
-  if (fileOf(owner) == identity) return;
-  auto* kept = new FileOfOwner{owner, identity, foreign, newest_file.load()};
-  while (!newest_file.compare_exchange_weak(kept->next, kept)) {
-  }
+  static std::mutex mutex;
+  static auto& last = *new std::unordered_map<const Owner*, const FileOfOwner*>;  // to walk the list takes n^2 steps
+  const std::lock_guard lock(mutex);
+  const FileOfOwner*& kept = last[owner];
+  if ((kept != nullptr ? kept->identity : "") == identity) return;
+  kept = new FileOfOwner{owner, identity, foreign, newest_file.load()};
+  newest_file.store(kept);
 }
 
 const char* fileOf(const Owner* owner) noexcept {

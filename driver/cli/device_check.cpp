@@ -57,12 +57,12 @@ const char* wordFor(Passed verdict) {
 }
 
 void print(const Outcome& outcome) {
-  const Colour colour = outcome.verdict == Passed::kPassed   ? Colour::kGood
-                        : outcome.verdict == Passed::kFailed ? Colour::kBad
-                                                             : Colour::kWarning;
-  const std::string word = wordFor(outcome.verdict);
+  const Colour colour = outcome.found.verdict == Passed::kPassed   ? Colour::kGood
+                        : outcome.found.verdict == Passed::kFailed ? Colour::kBad
+                                                                   : Colour::kWarning;
+  const std::string word = wordFor(outcome.found.verdict);
   std::printf("%s%-*s %-24s %s\n", coloured(word, colour).c_str(), static_cast<int>(5 - word.size()), "", outcome.name,
-              outcome.what.c_str());
+              outcome.found.what.c_str());
   std::fflush(stdout);
 }
 
@@ -71,11 +71,8 @@ std::vector<Outcome> examine(const scene::Device& device, const ExamineArguments
   std::vector<Outcome> outcomes;
   for (const device_check::Test& test : device_check::tests()) {
     outcomes.push_back(device_check::tryOne(test, device, static_cast<int>(options.timeout * 1000)));
-    const Outcome& last = outcomes.back();
-    if (!options.json) print(last);
-    const bool first = outcomes.size() <= 2;  // kinematics, open: nothing else can be tried without them
-    const bool unmade = first && last.verdict == Passed::kFailed && last.what.rfind("its inverse", 0) != 0;
-    if (last.ended || unmade || (first && last.verdict == Passed::kSkipped)) break;
+    if (!options.json) print(outcomes.back());
+    if (outcomes.back().found.ends) break;
   }
   return outcomes;
 }
@@ -84,9 +81,9 @@ int sum(const std::vector<Outcome>& outcomes, const ExamineArguments& options, c
         nlohmann::ordered_json& all) {
   int failed = 0;
   for (const Outcome& one : outcomes) {
-    failed += one.verdict == Passed::kFailed ? 1 : 0;
-    const char* result = one.verdict == Passed::kFailed ? "fail" : wordFor(one.verdict);
-    all["tests"].push_back({{"module", module}, {"name", one.name}, {"result", result}, {"what", one.what}});
+    failed += one.found.verdict == Passed::kFailed ? 1 : 0;
+    const char* result = one.found.verdict == Passed::kFailed ? "fail" : wordFor(one.found.verdict);
+    all["tests"].push_back({{"module", module}, {"name", one.name}, {"result", result}, {"what", one.found.what}});
   }
   const size_t left = device_check::tests().size() - outcomes.size();
   if (!options.json)

@@ -1,8 +1,10 @@
 """What the scripts share that meet the program as a user does."""
+import os
 import subprocess
 import sys
 import time
 
+LONG = "HAPTICD_LONG" in os.environ  # tests/run long: all of a sweep, not the part that stands for it
 failures = 0
 
 

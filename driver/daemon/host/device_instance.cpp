@@ -130,7 +130,8 @@ Result<void> DeviceInstance::open() {
   tellCall("open");
   const hsp_status status = playback_ == nullptr ? class_->open(device_, &info_) : HSP_OK;
   if (playback_ != nullptr) info_ = playback_->info;
-  if (status < 0) return Error{who + "cannot be opened: " + reasonOf(status, services_)};
+  absent_ = status < 0;
+  if (absent_) return Error{who + "cannot be opened: " + reasonOf(status, services_)};
   open_ = true;
   if (pace_ == nullptr && playback_ == nullptr) info_.capabilities &= ~uint32_t{HDV_C_PACING};  // claimed, not there
   std::string wrong = wrongIn(info_, kinematics_->joint_count);

@@ -37,6 +37,7 @@ class DeviceInstance {
   void playBack(const Playback* playback) { playback_ = playback; }
 
   Result<void> open();                       ///< [main] finds the hardware
+  bool absent() const { return absent_; }    ///< the module found no hardware that it could open, in the last open()
   Result<void> start(const hdv_start& how);  ///< [main]
   void stop();                               ///< [main] motors off
 
@@ -124,7 +125,7 @@ class DeviceInstance {
   const hdv_ext_trouble* trouble_ = nullptr;
   const hdv_ext_silence* silence_ = nullptr;
   const Playback* playback_ = nullptr;
-  bool open_ = false, started_ = false;
+  bool open_ = false, started_ = false, absent_ = false;
 };
 
 }  // namespace hapticd::host

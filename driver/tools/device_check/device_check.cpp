@@ -29,22 +29,26 @@ std::string nothingOdd(const Reading&) {
   return "";
 }
 
-std::string kinematics(const scene::Device& device) {
+/// What has no kinematics cannot be opened; a wrong inverse() spoils nothing else.
+Finding kinematics(const scene::Device& device) {
   const auto made = host::DeviceInstance::create(device, nullptr);
-  if (!made) return made.error();
+  if (!made) return Finding::failed(made.error()).andEnds();
   const host::DeviceInstance& arm = **made;
-  if (std::string wrong = host::wrongInverse(arm.kinematics(), arm.handle()); !wrong.empty()) return wrong;
+  if (std::string wrong = host::wrongInverse(arm.kinematics(), arm.handle()); !wrong.empty())
+    return Finding::failed(wrong);
   std::string doubts;
   for (const std::string& doubt : host::doubtsAboutKinematics(arm.kinematics(), arm.handle()))
-    doubts += (doubts.empty() ? "warn: " : "; ") + doubt;
-  return doubts.empty() ? fmt::format("note: {} joints", arm.kinematics().joint_count) : doubts;
+    doubts += (doubts.empty() ? "" : "; ") + doubt;
+  if (!doubts.empty()) return Finding::warned(doubts);
+  return Finding::passed(fmt::format("{} joints", arm.kinematics().joint_count));
 }
 
-std::string opens(const scene::Device& device) {
+Finding opens(const scene::Device& device) {
   const Opened opened = openArm(device);
-  if (opened.arm == nullptr) return opened.missing.empty() ? opened.why : "skip: " + opened.missing;
+  if (opened.arm == nullptr)
+    return (opened.absent ? Finding::skipped(opened.why) : Finding::failed(opened.why)).andEnds();
   const hdv_info& info = opened.arm->info();
-  return fmt::format("note: \"{}\", {} joints, {:g} Hz", info.product, info.joint_count, info.rate_hz);
+  return Finding::passed(fmt::format("\"{}\", {} joints, {:g} Hz", info.product, info.joint_count, info.rate_hz));
 }
 
 /// A number of hdv_info that no arm has was meant in other units.
@@ -68,44 +72,46 @@ std::string unlikely(const hdv_info& info) {
 }
 
 /// What open() claims and nothing stands behind: a scene that asks for it would run without it.
-std::string claims(const scene::Device& device) {
+Finding claims(const scene::Device& device) {
   const Opened opened = openArm(device);
-  if (opened.arm == nullptr) return "skip: the arm was not opened";
+  if (opened.arm == nullptr) return Finding::skipped("the arm was not opened");
   const auto has = [&](const char* name) {
     host::tellCall("extension");
     return opened.arm->description().extension(opened.arm->handle(), name) != nullptr;
   };
   const uint32_t claimed = opened.claimed;
   if ((claimed & HDV_C_PACING) != 0 && !has(HDV_EXT_PACE))
-    return "open() claims HDV_C_PACING, but there is no extension " HDV_EXT_PACE
-           ": a servo with pace: device would run by the clock; expected both or none";
+    return Finding::failed("open() claims HDV_C_PACING, but there is no extension " HDV_EXT_PACE
+                           ": a servo with pace: device would run by the clock; expected both or none");
   if ((claimed & HDV_C_CALIBRATION) != 0 && !has(HDV_EXT_CALIBRATION))
-    return "warn: open() claims HDV_C_CALIBRATION, but there is no extension " HDV_EXT_CALIBRATION
-           ": hapticd device calibrate cannot calibrate it, and no force comes before samples carry HDV_S_CALIBRATED";
-  if (const std::string odd = unlikely(opened.arm->info()); !odd.empty()) return "warn: " + odd;
+    return Finding::warned("open() claims HDV_C_CALIBRATION, but there is no extension " HDV_EXT_CALIBRATION
+                           ": hapticd device calibrate cannot calibrate it, and no force comes before samples carry "
+                           "HDV_S_CALIBRATED");
+  if (const std::string odd = unlikely(opened.arm->info()); !odd.empty()) return Finding::warned(odd);
   if (!has(HDV_EXT_CUT))
-    return "warn: there is no extension " HDV_EXT_CUT ": a servo thread that hangs cannot be cut by the watchdog";
-  return "";
+    return Finding::warned("there is no extension " HDV_EXT_CUT
+                           ": a servo thread that hangs cannot be cut by the watchdog");
+  return Finding::passed();
 }
 
-std::string samples(const scene::Device& device) {
+Finding samples(const scene::Device& device) {
   noteOverruns();
   hdv_sample* sample = guardedSample();
-  if (sample == nullptr) return "skip: no memory for a guarded sample";
+  if (sample == nullptr) return Finding::skipped("no memory for a guarded sample");
   const conformance::GuardedMemory guarded;
   const Opened opened = openArm(device);
-  if (opened.arm == nullptr) return "skip: the arm was not opened";
+  if (opened.arm == nullptr) return Finding::skipped("the arm was not opened");
   SampleCheck check(opened.arm->info());
   const std::string wrong =
       readFor(*opened.arm, *sample, [&](const Reading& one) { return check.look(one); }, &justCall);
-  return wrong.empty() ? check.sum() : wrong;
+  return wrong.empty() ? check.sum() : Finding::failed(wrong);
 }
 
 /// The calls of read() and write() that allocate; the first few are left out, as a thread takes what it keeps.
-std::string noAllocation(const scene::Device& device) {
+Finding noAllocation(const scene::Device& device) {
   constexpr uint64_t kFirst = 20;
   const Opened opened = openArm(device);
-  if (opened.arm == nullptr) return "skip: the arm was not opened";
+  if (opened.arm == nullptr) return Finding::skipped("the arm was not opened");
   conformance::watchAllocations();
   uint64_t calls = 0, allocating = 0;
   hdv_sample sample{};
@@ -117,16 +123,17 @@ std::string noAllocation(const scene::Device& device) {
     }
     if (++calls > kFirst) allocating += allocationsOfThread() != before ? 1 : 0;
   });
-  if (!wrong.empty() || allocating == 0) return wrong;
-  return fmt::format("read() or write() allocates memory, in {} of {} calls, first{}; expected room that start() made",
-                     allocating, calls, conformance::firstAllocationIn(device.library.string()));
+  if (!wrong.empty() || allocating == 0) return Finding::of(wrong);
+  return Finding::failed(
+      fmt::format("read() or write() allocates memory, in {} of {} calls, first{}; expected room that start() made",
+                  allocating, calls, conformance::firstAllocationIn(device.library.string())));
 }
 
-std::string noSystemCalls(const scene::Device& device) {
+Finding noSystemCalls(const scene::Device& device) {
   const Opened opened = openArm(device);
-  if (opened.arm == nullptr) return "skip: the arm was not opened";
+  if (opened.arm == nullptr) return Finding::skipped("the arm was not opened");
   std::setvbuf(stdout, nullptr, _IONBF, 0);  // a print that waits in a buffer is found as well
-  if (!conformance::watchSystemCalls()) return "skip: this kernel does not tell of system calls";
+  if (!conformance::watchSystemCalls()) return Finding::skipped("this kernel does not tell of system calls");
   hdv_sample sample{};
   uint64_t calls = 0;
   const std::string wrong = readFor(*opened.arm, sample, &nothingOdd, [&](const Call& call) {
@@ -136,27 +143,27 @@ std::string noSystemCalls(const scene::Device& device) {
     call();
   });
   const conformance::SystemCalls seen = conformance::systemCalls();
-  if (!wrong.empty() || seen.steps == 0) return wrong;
+  if (!wrong.empty() || seen.steps == 0) return Finding::of(wrong);
   const std::string name = conformance::systemCallName(seen.number);
   const bool sleeps = name.find("nanosleep") != std::string::npos || name.find("poll") != std::string::npos;
-  return fmt::format(
-      "{}read() or write() {} in {} of {} calls ({}); expected a thread of the module's own for what "
+  const std::string told = fmt::format(
+      "read() or write() {} in {} of {} calls ({}); expected a thread of the module's own for what "
       "may wait, as io_thread.hpp of the template has it",
-      seen.prints || sleeps ? "" : "warn: ",
       seen.prints ? "prints"
       : sleeps    ? "sleeps"
                   : "makes a system call",
       seen.steps, calls, name);
+  return seen.prints || sleeps ? Finding::failed(told) : Finding::warned(told);
 }
 
-std::string startsAgain(const scene::Device& device) {
+Finding startsAgain(const scene::Device& device) {
   const Opened opened = openArm(device);
-  if (opened.arm == nullptr) return "skip: the arm was not opened";
+  if (opened.arm == nullptr) return Finding::skipped("the arm was not opened");
   hdv_sample sample{};
   for (int round = 0; round < 2; ++round)
     if (const std::string wrong = readFor(*opened.arm, sample, &nothingOdd, &justCall); !wrong.empty())
-      return (round == 0 ? "" : "after stop(), the second time: ") + wrong;
-  return "";
+      return Finding::failed((round == 0 ? "" : "after stop(), the second time: ") + wrong);
+  return Finding::passed();
 }
 
 }  // namespace
@@ -178,23 +185,14 @@ Outcome tryOne(const Test& test, const scene::Device& device, int limit_ms) {
   const auto said = host::runInChild(
       [&] {
         host::followCalls(&trail);
-        return "=" + test.run(device);
+        return toBytes(test.run(device));
       },
       limit_ms);
-  Outcome outcome{test.name, Verdict::kFailed, "", !said};
-  if (!said) {
-    const std::string call = trail.call();
-    outcome.what = "it " + said.error() + (call.empty() ? "" : ", in " + call + "()") + overrunWords();
-    return outcome;
-  }
-  outcome.what = said->substr(1);
-  const auto begins = [&](const char* word) { return outcome.what.rfind(word, 0) == 0; };
-  outcome.verdict = outcome.what.empty() || begins("note: ") ? Verdict::kPassed
-                    : begins("skip: ")                       ? Verdict::kSkipped
-                    : begins("warn: ")                       ? Verdict::kWarned
-                                                             : Verdict::kFailed;
-  if (outcome.verdict != Verdict::kFailed && !outcome.what.empty()) outcome.what.erase(0, 6);
-  return outcome;
+  if (said)
+    if (const auto finding = findingFrom(*said)) return {test.name, *finding};
+  const std::string call = trail.call(), how = said ? "answered what is no finding" : said.error();
+  return {test.name,
+          Finding::failed("it " + how + (call.empty() ? "" : ", in " + call + "()") + overrunWords()).andEnds()};
 }
 
 }  // namespace hapticd::device_check

@@ -22,12 +22,11 @@ static uint32_t claimsOf(const host::DeviceInstance& arm) {
 
 Opened openArm(const scene::Device& device) {
   auto made = host::DeviceInstance::create(device, nullptr);
-  if (!made) return {nullptr, made.error(), "", 0};
+  if (!made) return {nullptr, made.error(), false, 0};
   const uint32_t claimed = claimsOf(**made);
   const auto opened = (*made)->open();
-  if (opened) return {std::move(*made), "", "", claimed};
-  const bool absent = opened.error().find(": cannot be opened: ") != std::string::npos;
-  return absent ? Opened{nullptr, "", opened.error(), 0} : Opened{nullptr, opened.error(), "", 0};
+  if (opened) return {std::move(*made), "", false, claimed};
+  return {nullptr, opened.error(), (*made)->absent(), 0};
 }
 
 std::string readFor(host::DeviceInstance& arm, hdv_sample& sample,

@@ -13,8 +13,8 @@ namespace hapticd::device_check {
 /// An arm that is open, or why it is not.
 struct Opened {
   std::unique_ptr<host::DeviceInstance> arm;
-  std::string why;       ///< what is wrong with the module
-  std::string missing;   ///< why there is no arm to open
+  std::string why;
+  bool absent = false;   ///< there is no arm to open: no fault of the module
   uint32_t claimed = 0;  ///< capabilities as the module gave them: the host takes away those that nothing stands behind
 };
 Opened openArm(const scene::Device& device);

@@ -51,33 +51,35 @@ std::string SampleCheck::look(const Reading& reading) {
   return "";
 }
 
-std::string SampleCheck::sum() const {
+Finding SampleCheck::sum() const {
   char text[240];
   if (lost_ > 0)
-    return "warn: " + std::to_string(lost_) + " of " + std::to_string(reads_) + " samples carry HDV_S_LOST";
+    return Finding::warned(std::to_string(lost_) + " of " + std::to_string(reads_) + " samples carry HDV_S_LOST");
   if (fresh_ <= 1)
-    return "hdv_sample.sequence does not grow: " + std::to_string(reads_) +
-           " reads gave the same number, and a run takes the force away after 50 ms; expected one more for each new "
-           "sample";
+    return Finding::failed(
+        "hdv_sample.sequence does not grow: " + std::to_string(reads_) +
+        " reads gave the same number, and a run takes the force away after 50 ms; expected one more for each new "
+        "sample");
   if (timeless_ == reads_)
-    return "warn: hdv_sample.time_ns is never set; expected when it was measured, as now_ns counts";
+    return Finding::warned("hdv_sample.time_ns is never set; expected when it was measured, as now_ns counts");
   if (ahead_ > 0)
-    return "warn: hdv_sample.time_ns is more than 0.1 s ahead of now_ns; expected when the sample was measured, as "
-           "now_ns counts";
+    return Finding::warned(
+        "hdv_sample.time_ns is more than 0.1 s ahead of now_ns; expected when the sample was measured, as "
+        "now_ns counts");
   if (beyond_ >= 0) {
     std::snprintf(text, sizeof text,
-                  "warn: position[%d] is %.4g, of a joint that open() says goes from %.4g to %.4g; expected rad (or m)",
+                  "position[%d] is %.4g, of a joint that open() says goes from %.4g to %.4g; expected rad (or m)",
                   beyond_, beyond_at_, info_.position_min[beyond_], info_.position_max[beyond_]);
-    return text;
+    return Finding::warned(text);
   }
   if (info_.buttons < 32 && (buttons_ >> info_.buttons) != 0)
-    return "warn: a button beyond the " + std::to_string(info_.buttons) + " of hdv_info.buttons is down";
+    return Finding::warned("a button beyond the " + std::to_string(info_.buttons) + " of hdv_info.buttons is down");
   for (const auto& [claim, flag, name] :
        {std::tuple{HDV_C_VELOCITY, HDV_S_VELOCITY, "VELOCITY"}, {HDV_C_TORQUE, HDV_S_TORQUE, "TORQUE"}})
     if ((info_.capabilities & claim) != 0 && (flags_ & flag) == 0)
-      return std::string("open() claims HDV_C_") + name + ", but no sample carries HDV_S_" + name +
-             "; expected both or none";
-  return "note: " + std::to_string(reads_) + " reads, " + std::to_string(fresh_) + " new samples";
+      return Finding::failed(std::string("open() claims HDV_C_") + name + ", but no sample carries HDV_S_" + name +
+                             "; expected both or none");
+  return Finding::passed(std::to_string(reads_) + " reads, " + std::to_string(fresh_) + " new samples");
 }
 
 }  // namespace hapticd::device_check

@@ -3,6 +3,7 @@
 #pragma once
 #include <string>
 
+#include "device_check/finding.hpp"
 #include "device_check/reading.hpp"
 
 namespace hapticd::device_check {
@@ -12,8 +13,8 @@ class SampleCheck {
   explicit SampleCheck(const hdv_info& info) : info_(info) {}
   /// @return what is wrong with one; "": nothing
   std::string look(const Reading& reading);
-  /// @return what is wrong with all of them: "warn: ..." for what no run faults on
-  std::string sum() const;
+  /// Of all of them: fails by what a run faults on, and warns of the rest.
+  Finding sum() const;
 
  private:
   std::string wrongNumbers(const hdv_sample& sample) const;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/brep/descent.hpp"
 #include "kernels/brep/feet.hpp"
 #include "kernels/brep/newton_feet.hpp"
 #include "kernels/brep/triangle_foot.hpp"
@@ -48,39 +49,6 @@ double limitOf(const Vector3d& p, const Hit& known) noexcept {
 
 bool isAt(const Nearest& found, Element element, std::uint32_t place) noexcept {
   return found.hit.element == element && found.place == place;
-}
-
-/// Sorts the four children of a node by their bounds, farthest first. Returns how many are within `limit`; `beyond`
-/// falls to the least bound of the others.
-template <class Entry>
-int sortChildren(const BoxNode& node, const Float4& bounds, double limit, std::array<Entry, 4>& children,
-                 double& beyond) noexcept {
-  int count = 0;
-  for (int i = 0; i < 4; ++i) {
-    const float bound = bounds[i];
-    if (!(static_cast<double>(bound) <= limit)) {
-      beyond = std::min(beyond, static_cast<double>(bound));
-      continue;
-    }
-    if (!(bound < std::numeric_limits<float>::infinity())) continue;  // an empty place
-    int at = count++;
-    for (; at > 0 && children[static_cast<std::size_t>(at - 1)].bound < bound; --at)
-      children[static_cast<std::size_t>(at)] = children[static_cast<std::size_t>(at - 1)];
-    children[static_cast<std::size_t>(at)] = {bound, node.child[static_cast<std::size_t>(i)],
-                                              node.row[static_cast<std::size_t>(i)]};
-  }
-  return count;
-}
-
-/// Whether the box of a row is farther than `limit`; then `beyond` falls to its bound. Else `bound` grows to it.
-inline bool rowIsFarther(const BodyTree& body, std::int32_t row, const BoxProbe& probe, double limit, double& bound,
-                         double& beyond) noexcept {
-  const auto at = static_cast<std::size_t>(row);
-  const float row_bound = body.slabs.empty() ? rowDistance(body.rows[at], probe) : rowDistance(body.slabs[at], probe);
-  bound = std::max(bound, static_cast<double>(row_bound));
-  if (!(bound > limit)) return false;
-  beyond = std::min(beyond, bound);
-  return true;
 }
 
 }  // namespace
@@ -202,12 +170,12 @@ void Search::searchTree(const BodyTree& body, std::int32_t root, std::uint32_t p
   Nearest& best = run.best;
   const Element first = run.first_place == place ? run.first : Element();  // has been looked at already
   const BoxProbe probe(body.tree, p);
-  std::array<Entry, BoxTree::kMaxStack> stack;
-  std::array<Entry, 4> children;
+  std::array<DescentEntry, BoxTree::kMaxStack> stack;
+  std::array<DescentEntry, 4> children;
   int depth = 0;
   stack[static_cast<std::size_t>(depth++)] = {0, root, 0};
   while (depth > 0) {
-    const Entry entry = stack[static_cast<std::size_t>(--depth)];
+    const DescentEntry entry = stack[static_cast<std::size_t>(--depth)];
     auto bound = static_cast<double>(entry.bound);
     if (bound > run.within2()) {
       run.others2 = std::min(run.others2, bound);
@@ -229,7 +197,7 @@ void Search::searchTree(const BodyTree& body, std::int32_t root, std::uint32_t p
     const BoxNode& node = body.tree.node(entry.child);
     const int count = sortChildren(node, boxDistances(node, probe), run.within2(), children, run.others2);
     for (int i = 0; i < count; ++i) {
-      const Entry& child = children[static_cast<std::size_t>(i)];
+      const DescentEntry& child = children[static_cast<std::size_t>(i)];
       stack[static_cast<std::size_t>(depth++)] = child;
       body.fetchAhead(child.child, child.row);
     }
@@ -240,12 +208,12 @@ void Search::searchTree(const BodyTree& body, std::int32_t root, std::uint32_t p
 void Search::searchPlaces(const Vector3d& p, Run& run) noexcept {
   const BoxTree& tree = model_.placementTree();
   const BoxProbe probe(tree, p);
-  std::array<Entry, BoxTree::kMaxStack> stack;
-  std::array<Entry, 4> children;
+  std::array<DescentEntry, BoxTree::kMaxStack> stack;
+  std::array<DescentEntry, 4> children;
   int depth = 0;
   stack[static_cast<std::size_t>(depth++)] = {0, 0, 0};
   while (depth > 0) {
-    const Entry entry = stack[static_cast<std::size_t>(--depth)];
+    const DescentEntry entry = stack[static_cast<std::size_t>(--depth)];
     const auto bound = static_cast<double>(entry.bound);
     if (bound > run.within2()) {
       run.others2 = std::min(run.others2, bound);
@@ -382,13 +350,13 @@ int Search::around(const Vector3d& p, std::uint32_t* places, int cap) const noex
   const BoxTree& tree = model_.placementTree();
   if (tree.empty()) return 0;
   const BoxProbe probe(tree, p);
-  std::array<Entry, BoxTree::kMaxStack> stack;
-  std::array<Entry, 4> children;
+  std::array<DescentEntry, BoxTree::kMaxStack> stack;
+  std::array<DescentEntry, 4> children;
   double beyond = kInfinity;
   int depth = 0, found = 0;
   stack[static_cast<std::size_t>(depth++)] = {0, 0, 0};
   while (depth > 0 && found < cap) {
-    const Entry entry = stack[static_cast<std::size_t>(--depth)];
+    const DescentEntry entry = stack[static_cast<std::size_t>(--depth)];
     if (entry.child < 0) {
       const ElementRow row = BoxTree::rowOf(entry.child);
       for (std::uint32_t i = row.first; i < row.first + row.count && found < cap; ++i)

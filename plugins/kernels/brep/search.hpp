@@ -59,10 +59,6 @@ class Search {
   /// Of a distance: so little beyond the best one, a box or another foot is not counted as farther.
   static constexpr double kRounding = 1e-12;
 
-  struct Entry {
-    float bound;
-    std::int32_t child, row;
-  };
   /// One search under way.
   struct Run {
     Nearest best;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Traces extreme surfaces and probe paths with `hapticd trace`, and prints what came of each. The cases of a folder
-/// are traced where they are, and in 12 rigid motions, and the same in sessions that are recorded and replayed. Exit
-/// code 1 if any case is not ok.
+/// are traced where they are, and in 3 rigid motions (12 under HAPTICD_LONG), and the same in sessions that are
+/// recorded and replayed. Exit code 1 if any case is not ok.
 ///   extremes HAPTICD [--random TICKS] [--sessions MOTIONS] [FOLDER...]
 /// Without a folder: tests/cases/extremes, closed forms, walks. --sessions: rigid motions of each case in sessions.
 #include <fmt/format.h>
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "extreme_case.hpp"
+#include "support/sweep.hpp"
 
 namespace {
 
@@ -26,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr double kRecovery = 0.005;  // [s] after a true bifurcation
 constexpr int kMostEvaluations = 12;
 constexpr int kDefaultRandomTicks = 50'000;
-constexpr int kMotions = 12;
+const int kMotions = hapticd::support::kLong ? 12 : 3;
 
 fs::path hapticd_program;
 int session_motions = 1;  // of each case, in sessions; a test has less time than a report

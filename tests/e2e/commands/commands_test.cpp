@@ -104,23 +104,25 @@ TEST_F(Commands, SchemasAreJsonWithThePluginsParameters) {
   EXPECT_TRUE(has(run("check --schema daemon").text, "plugin_path"));
 }
 
-TEST_F(Commands, TenThousandModelsAreReadInOneGo) {
+constexpr int kModels = 2000;  // run_as_a_user tries 10,000
+
+TEST_F(Commands, ThousandsOfModelsAreReadInOneGo) {
   std::string text = "hapticd: 1\nmodels:\n";
-  for (int i = 0; i < 10000; ++i)
+  for (int i = 0; i < kModels; ++i)
     text += "  - {name: m" + std::to_string(i) + ", plugin: test_shape, parameters: {radius: 0.05}}\n";
   EXPECT_EQ(run("check -q " + put("many.yaml", text)).exit_code, 0);
   const Outcome refused = run("check " + put("wrong.yaml", text + "  - {name: m0, plugin: test_shape}\n"));
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_TRUE(
-      has(refused.text, "wrong.yaml:10003:12: models[10000].name: \"m0\" is the name of another model (line 3)"));
+      has(refused.text, "wrong.yaml:2003:12: models[2000].name: \"m0\" is the name of another model (line 3)"));
 }
 
-TEST_F(Commands, TenThousandModelsOfAnUnknownPluginGiveShortMessages) {
+TEST_F(Commands, ThousandsOfModelsOfAnUnknownPluginGiveShortMessages) {
   std::string text = "hapticd: 1\nmodels:\n";
-  for (int i = 0; i < 10000; ++i) text += "  - {name: m" + std::to_string(i) + ", plugin: nothing}\n";
+  for (int i = 0; i < kModels; ++i) text += "  - {name: m" + std::to_string(i) + ", plugin: nothing}\n";
   const Outcome outcome = run("check " + put("unknown.yaml", text));
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_LT(outcome.text.size(), 3'000'000u);
+  EXPECT_LT(outcome.text.size(), 600'000u);
   EXPECT_TRUE(has(outcome.text, "(see line 3)"));
 }
 

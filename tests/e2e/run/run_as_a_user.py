@@ -12,7 +12,7 @@ import tempfile
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
-from e2e import check, finish
+from e2e import LONG, check, finish
 
 HAPTICD, SOURCE = sys.argv[1], sys.argv[2]
 SCENES = os.path.join(SOURCE, "config", "scenes")
@@ -79,10 +79,11 @@ def main():
         model = os.path.join(SOURCE, "config", "models", "sphere.yaml")
         with open(scene, "w") as out:
             out.write("hapticd: 1\nmodels:\n")
-            for i in range(10000):
+            models = 10000 if LONG else 2000
+            for i in range(models):
                 out.write(f"  - {{name: m{i}, plugin: nurbs_rigid, pose: {{position: [{i % 100}, {i // 100}, 0]}}, parameters: {{geometry: {model}}}}}\n")
         done = subprocess.run([HAPTICD, "run", scene, "--for", "0.2", "--virtual-time"], capture_output=True, text=True, timeout=120)
-        check("a scene of 10,000 models runs, or says why not", done.returncode in (0, 2) and (done.returncode == 0 or done.stderr), (done.returncode, done.stderr[-300:]))
+        check(f"a scene of {models} models runs, or says why not", done.returncode in (0, 2) and (done.returncode == 0 or done.stderr), (done.returncode, done.stderr[-300:]))
     finish()
 
 

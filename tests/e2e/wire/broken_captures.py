@@ -3,16 +3,14 @@
 
 Usage: broken_captures.py HAPTICD       exit 1 when one is off
 """
-import csv
-import io
 import math
 import os
-import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 from e2e import check, finish
+from wire import fed, table_of
 
 HAPTICD = sys.argv[1]
 SCALE = 4.0e-5
@@ -58,14 +56,12 @@ def arm(**changed):
     return path
 
 
-def run(*arguments, given=None):
-    done = subprocess.run([HAPTICD, *arguments], input=given, capture_output=True, timeout=120)
-    return done.returncode, done.stdout, done.stderr.decode()
+run = fed(HAPTICD)
 
 
 def decode(capture, **changed):
     code, out, err = run("device", "decode", arm(**changed), "-", *(["--raw"] if isinstance(capture, bytes) else []), given=capture if isinstance(capture, bytes) else capture.encode())
-    return code, list(csv.DictReader(io.StringIO(out.decode()))), err
+    return code, table_of(out), err
 
 
 COUNT = 400

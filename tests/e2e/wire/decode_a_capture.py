@@ -4,9 +4,7 @@
 Usage: decode_a_capture.py HAPTICD SOURCE_DIR VME_BOARD MODULE_DIR       exit 1 when one is off
 """
 import binascii
-import csv
 import functools
-import io
 import json
 import math
 import operator
@@ -20,6 +18,7 @@ import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 from e2e import check, finish
+from wire import fed, table_of
 
 HAPTICD, SOURCE, BOARD, MODULES = sys.argv[1:5]
 
@@ -76,13 +75,7 @@ def modbus(data):
     return crc
 
 
-def run(*arguments, given=b""):
-    done = subprocess.run([HAPTICD, "device", *arguments], input=given, capture_output=True, timeout=120)
-    return done.returncode, done.stdout, done.stderr.decode()
-
-
-def rows(out):
-    return list(csv.DictReader(io.StringIO(out.decode())))
+run = fed(HAPTICD, "device")
 
 
 with tempfile.TemporaryDirectory() as folder:
@@ -95,14 +88,14 @@ with tempfile.TemporaryDirectory() as folder:
     capture = b"".join(report(*one) for one in truth)
     code, out, err = run("decode", arm, given=capture)
     check("a raw capture is decoded", code == 0 and "40 reports, 40 good" in err, err)
-    told = rows(out)
+    told = table_of(out)
     exact = all(abs(float(r["position1"]) - q1 * 1e-6) < 1e-12 and abs(float(r["position2"]) - q2 * 1e-6) < 1e-12 and float(r["position3"]) == q3 and
                 int(r["buttons"]) == b and int(r["sequence"]) == i % 16 for r, (i, q1, q2, q3, b) in zip(told, truth))
     check("to the numbers that were written", len(told) == 40 and exact, told[:3])
 
     text = "\n".join("E: %012.6f 18 %s" % (i * 1e-3, report(*truth[i]).hex(" ")) for i in range(5))
     code, out, err = run("decode", arm, given=("D: 0\nN: an arm\n" + text + "\n").encode())
-    check("hid-recorder's text is decoded", code == 0 and len(rows(out)) == 5 and rows(out)[3]["time"] == "0.003000", (err, out[:300]))
+    check("hid-recorder's text is decoded", code == 0 and len(table_of(out)) == 5 and table_of(out)[3]["time"] == "0.003000", (err, out[:300]))
 
     broken = bytearray(capture)
     broken[18 * 7 + 3] ^= 0x10
@@ -197,7 +190,7 @@ with tempfile.TemporaryDirectory() as folder:
 
     code, out, err = run("encode", arm, "--from-arm", given=b"position1,position2,position3,buttons\n0.5,-0.25,1.5,3\n0.1,0.2,0.3,0\n")
     code2, out2, err2 = run("decode", arm, given=out)
-    told = rows(out2)
+    told = table_of(out2)
     check("what is encoded is decoded", code == 0 and code2 == 0 and [float(told[0][f"position{i}"]) for i in (1, 2, 3)] == [0.5, -0.25, 1.5] and
           told[0]["buttons"] == "3", (err, err2, out2))
 
@@ -224,12 +217,12 @@ with tempfile.TemporaryDirectory() as folder:
         poses = os.path.join(folder, "poses.csv")
         open(poses, "w").write(",".join(f"q{i + 1}" for i in range(joints)) + "\n" + ",".join(["0.3"] * joints) + "\n")
         code, out, err = run("kinematics", arm, "--joints", poses)
-        held = [float(value) for name, value in (rows(out) or [{}])[0].items() if name.startswith("gravity")]
+        held = [float(value) for name, value in (table_of(out) or [{}])[0].items() if name.startswith("gravity")]
         check(f"and no weight that nobody gave is carried by a {kind}", code == 0 and len(held) == joints and not any(held), (held, err))
         joints = 6 if kind == "chain" else 3
         code, out, err = run("encode", arm, "--from-arm", given=(",".join(["0.1"] * joints) + "\n").encode())
         code, out, err = run("decode", arm, given=out)
-        check(f"and whose reports of a {kind} can be tried", code == 0 and abs(float(rows(out)[0]["position1"]) - 0.1) < 1e-3, (out, err))
+        check(f"and whose reports of a {kind} can be tried", code == 0 and abs(float(table_of(out)[0]["position1"]) - 0.1) < 1e-3, (out, err))
     # A report id and a checksum over it, by zlib's and binascii's own code.
     for method, bytes_, sum_of in (("crc32", 4, binascii.crc32), ("crc16-ccitt-false", 2, lambda b: binascii.crc_hqx(b, 0xFFFF)), ("sum8", 1, lambda b: sum(b) % 256)):
         numbered = os.path.join(folder, f"numbered-{method}.yaml")
@@ -269,7 +262,7 @@ with tempfile.TemporaryDirectory() as folder:
         open(pose, "w").write("q1,q2,q3\n" + joints + "\n")
         code, out, err = run("twin", arm, "-o", twin)
         check(f"{os.path.basename(arm)} has a twin", code == 0 and b"--device" in out, err)
-        tips = [[float(row[axis]) for axis in "xyz"] for row in (rows(run("kinematics", file, "--joints", pose)[1])[0] for file in (arm, twin))]
+        tips = [[float(row[axis]) for axis in "xyz"] for row in (table_of(run("kinematics", file, "--joints", pose)[1])[0] for file in (arm, twin))]
         check("with the same kinematics", max(abs(a - b) for a, b in zip(*tips)) < 1e-9, tips)
         code, out, err = run("twin", arm, "-o", twin)
         check("which is not overwritten", code == 2 and "exists already" in err, err)
@@ -338,7 +331,7 @@ with tempfile.TemporaryDirectory() as folder:
         text = open(capture).read()
         check("record writes both directions", code == 0 and "\n@" in text and "\n> @" in text, (err, text[:300]))
         code, out, err = run("decode", arm, capture)
-        told = [r for r in rows(out) if r["verdict"] == "good"]
+        told = [r for r in table_of(out) if r["verdict"] == "good"]
         check("which decode reads, with times", len(told) > 20 and float(told[-1]["time"]) > 0.3, (err, len(told)))
     finally:
         board.terminate()

@@ -3,16 +3,14 @@
 
 Usage: told_by_decode.py HAPTICD       exit 1 when one is off
 """
-import csv
-import io
 import math
 import os
-import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "support"))
 from e2e import check, finish
+from wire import fed, modbus, table_of
 
 HAPTICD = sys.argv[1]
 SCALE = 4.0e-5
@@ -66,15 +64,6 @@ SERIAL = HEAD.replace("MODULE", "bulk") + """    framing: {start: 0x7e, end: 0x7
 COUNT = 400
 
 
-def modbus(data):
-    crc = 0xFFFF
-    for byte in data:
-        crc ^= byte
-        for _ in range(8):
-            crc = crc >> 1 ^ (0xA001 if crc & 1 else 0)
-    return crc.to_bytes(2, "little")
-
-
 def joint(value):
     return (round(value / SCALE) % 65536).to_bytes(2, "little")
 
@@ -99,9 +88,7 @@ def text(reports, period=0.001, head=b"\x01"):
     return "\n".join("E: %012.6f %d %s" % (i * period, len(head + r), (head + r).hex(" ")) for i, r in enumerate(reports)).encode() + b"\n"
 
 
-def run(*arguments, given=b""):
-    done = subprocess.run([HAPTICD, "device", *arguments], input=given, capture_output=True, timeout=120)
-    return done.returncode, done.stdout, done.stderr.decode()
+run = fed(HAPTICD, "device")
 
 
 with tempfile.TemporaryDirectory() as folder:
@@ -113,7 +100,7 @@ with tempfile.TemporaryDirectory() as folder:
             description = description.replace(*change)
         open(arm, "w").write(description)
         code, out, err = run("decode", arm, given=capture)
-        return code, err, list(csv.DictReader(io.StringIO(out.decode())))
+        return code, err, table_of(out)
 
     good = [hid(i) for i in range(COUNT)]
     capture = text(good)

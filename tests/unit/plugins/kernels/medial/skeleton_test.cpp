@@ -7,6 +7,7 @@
 #include <random>
 
 #include "bodies.hpp"
+#include "support/sweep.hpp"
 
 namespace hapticd::medial {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 using test::Sheet;
 
-constexpr int kQueries = 3000;
+const int kQueries = support::kLong ? 3000 : 1000;
 constexpr double kRadius = .01;
 
 /// Points within 12 mm of the skeleton.

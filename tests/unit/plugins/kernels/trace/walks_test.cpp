@@ -4,6 +4,7 @@
 
 #include "kernels/trace/tracer.hpp"
 #include "shapes.hpp"
+#include "support/sweep.hpp"
 
 namespace hapticd::trace {
 namespace {
@@ -99,7 +100,7 @@ TEST(Walks, EveryModelIsFoundAgainWithinFiveMillisecondsInTwelveEvaluations) {
       for (bool unite : {false, true}) {
         TraceOptions options;
         options.unite = unite;
-        const WalkResult result = walk(model, speed, 0.005, options, 4000);
+        const WalkResult result = walk(model, speed, 0.005, options, support::kLong ? 4000 : 1000);
         EXPECT_LE(result.longest, kSearchTicks) << name << ' ' << speed << ' ' << unite;
         EXPECT_LE(result.most_evaluations, 12) << name;
       }
@@ -157,7 +158,8 @@ TEST(Walks, AFootIsMissedOnlyWhereTheNearestOneJumps) {
   Vector3d last_good = hand.at(), last = hand.at();
   int missed = 0;
   bool bad = false;
-  for (int tick = 0; tick < 4000; ++tick) {
+  const int ticks = support::kLong ? 4000 : 1500;
+  for (int tick = 0; tick < ticks; ++tick) {
     model.search(hand.at(), 0.15, found);
     if (tick % kSearchTicks == 0) offer(found, tracer);
     const Foot foot = tracer.step(hand.at(), options);
@@ -179,7 +181,7 @@ TEST(Walks, AFootIsMissedOnlyWhereTheNearestOneJumps) {
 TEST(Walks, PartsThatRunIntoEachOtherNeverKick) {
   const Model model = solid("teapot");
   for (double speed : {0.5, 1.0}) {
-    const WalkResult result = walk(model, speed, 0.003, {}, 12000);
+    const WalkResult result = walk(model, speed, 0.003, {}, support::kLong ? 12000 : 4000);
     EXPECT_LT(result.most_push, 0.008) << speed;  // where feet change sides; was 0.08
   }
 }
@@ -190,7 +192,7 @@ TEST(Walks, DirectTracingKeepsToItsEvaluations) {
   options.method = Method::kDirect;
   for (int steps : {1, 4}) {
     options.iterations = steps;
-    const WalkResult result = walk(model, 1, 0.003, options, 4000);
+    const WalkResult result = walk(model, 1, 0.003, options, support::kLong ? 4000 : 1500);
     EXPECT_LE(result.most_evaluations, 12) << steps;
     EXPECT_LE(result.longest, 2 * kSearchTicks) << steps;
   }

@@ -288,42 +288,6 @@ TEST(Claim, OfAShapeThatSpinsInPlaceExplainsNextToNothing) {
               1e-6);
 }
 
-hsp_contact contact(double force, double depth) {
-  hsp_contact c{};
-  c.flags = HSP_OUT_TRACED | (depth > 0 ? HSP_OUT_CONTACT : 0);
-  c.force[1] = force;
-  c.point[1] = 0;
-  c.normal[1] = 1;
-  c.depth_m = depth;
-  return c;
-}
-
-TEST(PullsIn, IsSaidOfAForceAwayFromTheFootInsideAndTowardItOutside) {
-  const Vector3d inside(0, -1e-3, 0), outside(0, 1e-3, 0);
-  EXPECT_TRUE(pullsIn(contact(-1, 1e-3), inside));
-  EXPECT_FALSE(pullsIn(contact(1, 1e-3), inside));
-  EXPECT_FALSE(pullsIn(contact(0, 1e-3), inside));
-  EXPECT_TRUE(pullsIn(contact(-1, -1e-3), outside));
-  EXPECT_FALSE(pullsIn(contact(1, -1e-3), outside));
-}
-
-TEST(PullsIn, IsNotSaidOfRoundingNorOfWhatIsNotTraced) {
-  const Vector3d inside(0, -1e-3, 0);
-  hsp_contact aside = contact(0, 1e-3);
-  aside.force[0] = 5;
-  aside.force[1] = -0.049;  // a hundredth of it
-  EXPECT_FALSE(pullsIn(aside, inside));
-  aside.force[1] = -0.06;
-  EXPECT_TRUE(pullsIn(aside, inside));
-  EXPECT_FALSE(pullsIn(contact(-0.0099, 1e-3), inside)) << "too small to be felt";
-  EXPECT_TRUE(pullsIn(contact(-0.011, 1e-3), inside));
-  EXPECT_FALSE(pullsIn(contact(-1, 0.9e-6), {0, -0.9e-6, 0})) << "too near for a direction";
-  EXPECT_TRUE(pullsIn(contact(-1, 1.1e-6), {0, -1.1e-6, 0}));
-  hsp_contact untraced = contact(-1, 1e-3);
-  untraced.flags = 0;
-  EXPECT_FALSE(pullsIn(untraced, inside));
-}
-
 TEST(Claim, AClickIsNoMotionThatExplainsTheNext) {
   Rested clicks;
   clicks.next(at({0, 0, 0}, {0, Claim::kStep, 0}));
@@ -384,18 +348,6 @@ TEST(Claim, OfAShapeThatMovesItselfAndRestsExplainsNothing) {
   step.force = {0, 1000, 0};
   step.p_model = {1e-3, 0, 0};  // says its pose, though neither the probe nor the origin moved
   EXPECT_NEAR(away.judge(step, bounds, kTick, held).y(), Claim::kStep, 1e-12);
-}
-
-TEST(PullsIn, IsNotSaidAtItsBoundsAndTakesAFootAtNoDepthForOneOutside) {
-  const Vector3d inside(0, -1e-3, 0), outside(0, 1e-3, 0);
-  EXPECT_FALSE(pullsIn(contact(-0.01, 1e-3), inside));
-  EXPECT_FALSE(pullsIn(contact(-1, 1e-6), {0, -1e-6, 0}));
-  hsp_contact slanted = contact(-0.01, 1);
-  slanted.force[0] = std::sqrt(1 - 1e-4);
-  ASSERT_EQ(std::sqrt(slanted.force[0] * slanted.force[0] + 1e-4), 1);
-  EXPECT_FALSE(pullsIn(slanted, {0, -1, 0}));
-  EXPECT_FALSE(pullsIn(contact(1, 0), outside));
-  EXPECT_TRUE(pullsIn(contact(-1, 0), outside));
 }
 
 }  // namespace

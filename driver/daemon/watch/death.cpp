@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "watch/death.hpp"
+
+#include <fcntl.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <iterator>
+
+#include "base/call_name.hpp"
+#include "base/os.hpp"
+#include "base/owner_file.hpp"
+#include "watch/process_end.hpp"
+#include "watch/quarantine.hpp"
+
+namespace hapticd::watch {
+
+namespace {
+
+std::atomic<int> dying{0};  ///< the thread that ends the process
+
+/// Of that thread alone. The reason and the culprit are fixed at the first step: what the later ones find is a process
+/// that is falling apart.
+struct Death {
+  std::atomic<size_t> step{0};  ///< the next of kSteps
+  const char* dir = "";         ///< die()
+  bool motors_off = false;
+  const Owner* culprit = nullptr;
+  bool called = false;         ///< it was, by the thread that ends the process
+  const char* call = nullptr;  ///< its function; nullptr: a step
+  Suspicion suspicion = Suspicion::kNone;
+  int not_remembered = 0;  ///< errno
+  Line reason, black_box;  ///< its file, once it is written
+};
+Death death;
+
+void saveBlackBox(const Watched& servo, const char* file) noexcept {
+  const int fd = open(file, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0640);
+  if (fd < 0) return;
+  const auto* bytes = static_cast<const char*>(servo.blackBox());
+  for (size_t done = 0; done < servo.blackBoxBytes();) {
+    const ssize_t written = write(fd, bytes + done, servo.blackBoxBytes() - done);
+    if (written <= 0) break;
+    done += static_cast<size_t>(written);
+  }
+  close(fd);
+}
+
+void cutMotors(Watched& servo) noexcept {
+  if (!servo.drives()) return;
+  cutAndAwait(servo);
+  death.motors_off = true;
+}
+
+void writeBlackBox(Watched& servo) noexcept {
+  if (death.dir[0] == '\0' || servo.blackBox() == nullptr) return;
+  Line file;
+  file.add(death.dir).add("/black-box-");
+  file.addName(death.culprit != nullptr ? death.culprit->module.c_str() : "hapticd").add(".flight");
+  saveBlackBox(servo, file.text());
+  death.black_box = file;
+}
+
+/// Who ended the process: the culprit, or where memory was torn all that do not ship with us; nullptr: there are no
+/// more.
+const Owner* leftOut(size_t number) noexcept {
+  if (death.suspicion == Suspicion::kTorn) return foreignOwner(number);
+  return number == 0 ? death.culprit : nullptr;
+}
+
+/// A device module cannot be left out of the next start: it is named, and no more.
+bool mayBeLeftOut() noexcept {
+  const Owner* first = leftOut(0);
+  return first != nullptr && !first->device && death.dir[0] != '\0';
+}
+
+void remember(Watched&) noexcept {
+  if (!mayBeLeftOut()) return;
+  errno = 0;
+  const int fd =
+      open(Line().add(death.dir).add("/").add(kQuarantineFile).text(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0640);
+  bool written = fd >= 0;
+  for (size_t i = 0; const Owner* owner = leftOut(i); ++i) {
+    Line line;
+    const char* file = fileOf(owner);
+    line.add(owner->module.c_str())
+        .add("\t")
+        .add(death.reason.text())
+        .add(*file != '\0' ? "\t" : "")
+        .add(file)
+        .add("\n");
+    written = written && line.write(fd);
+  }
+  written = written && fsync(fd) == 0;
+  if (!written) death.not_remembered = errno != 0 ? errno : ENOSPC;
+  if (fd >= 0) close(fd);
+}
+
+void tellCulprit(Line& line) noexcept {
+  line.add("\nerror: ");
+  const Owner* culprit = death.culprit;
+  const char* place = culprit != nullptr ? placeOf(culprit) : "";
+  if (*place != '\0') line.add(place).add(": ");
+  if (culprit != nullptr)
+    addOwner(line, *culprit);
+  else
+    line.add("the daemon itself");
+  line.add(" was ended by ").add(death.reason.text());
+  if (death.called) addCall(line.add(","), *culprit, death.call);
+  if (death.suspicion == Suspicion::kTorn) line.add(": memory was overwritten, or freed twice");
+  line.add("\n  ");
+}
+
+/// "plugin 'torus' of model 'ring', plugin ...": what does not ship with hapticd. False: there is nothing.
+bool addForeign(Line& line) noexcept {
+  size_t count = 0;
+  for (; const Owner* owner = foreignOwner(count); ++count) addOwner(line.add(count > 0 ? ", " : ""), *owner);
+  return count > 0;
+}
+
+/// What is tried before the daemon itself is reported.
+void tellForeign(Line& line) noexcept {
+  if (death.suspicion == Suspicion::kNone || foreignOwner(0) == nullptr) return;
+  addForeign(line.add("what does not ship with hapticd is the likeliest cause: "));
+  line.add("\n  ");
+}
+
+void tellCure(Line& line, bool drives) noexcept {
+  if (mayBeLeftOut() && death.not_remembered == 0) {
+    line.add(
+            "the next start leaves its models out\n  fix: look at the plugin (hapticd plugin check FILE.so), then: "
+            "hapticd plugin clear ")
+        .add(leftOut(0)->module.c_str())
+        .add("\n");
+  } else if (mayBeLeftOut()) {
+    const char* why = strerrordesc_np(death.not_remembered);
+    line.add("it could not be put in quarantine, so the next start loads it again: ").add(death.dir);
+    line.add(": ").add(why != nullptr ? why : "not written").add("\n  fix: take it out of the scene\n");
+  } else if (death.culprit != nullptr && !death.culprit->device) {
+    line.add(drives ? "the run" : "the command")
+        .add(" has ended\n  fix: repair the plugin; hapticd plugin check FILE.so looks for the cause\n");
+  } else if (death.suspicion != Suspicion::kNone && foreignOwner(0) != nullptr) {
+    line.add("it has ended\n  fix: try that first (hapticd plugin check FILE.so); if it passes, report this with the ")
+        .add("output of: hapticd doctor --json\n");
+  } else if (!drives) {
+    line.add("the command has ended\n  fix: report it with the output of: hapticd doctor --json\n");
+  } else {
+    line.add("the run has ended\n  fix: report it with the black box and the output of: hapticd doctor --json\n");
+  }
+}
+
+void tell(Watched& servo) noexcept {
+  Line line;
+  tellCulprit(line);
+  if (servo.drives())
+    line.add(death.motors_off ? "the motors were switched off first" : "to switch the motors off crashed as well");
+  if (*death.black_box.text() != '\0') line.add("; the last seconds are in ").add(death.black_box.text());
+  if (servo.drives()) line.add("\n  ");
+  tellForeign(line);
+  tellCure(line, servo.drives());
+  line.write(STDERR_FILENO);
+}
+
+constexpr void (*kSteps[])(Watched&) noexcept = {&cutMotors, &remember, &writeBlackBox, &tell};
+
+/// For a thread that finds another at it: that one ends the process, unless it is stuck itself.
+[[noreturn]] void awaitEnd() noexcept {
+  constexpr timespec kPatience{5, 0};
+  nanosleep(&kPatience, nullptr);
+  endProcess(1);
+}
+
+}  // namespace
+
+void cutAndAwait(Watched& servo) noexcept {
+  constexpr timespec kPause{0, 500'000};
+  constexpr int kPauses = 100;
+  servo.cut(0);
+  for (int i = 0; i < kPauses && !servo.cutLeft(); ++i) nanosleep(&kPause, nullptr);
+}
+
+Line& addOwner(Line& line, const Owner& owner) noexcept {
+  line.add(owner.device ? "device module '" : "plugin '").add(owner.module.c_str());
+  return line.add(owner.device ? "' of device '" : "' of model '").add(owner.name.c_str()).add("'");
+}
+
+Line& addCall(Line& line, const Owner& owner, const char* name) noexcept {
+  if (name != nullptr) return line.add(" in its ").add(name).add("()");
+  return line.add(owner.device ? " in one of its calls" : " in a step");
+}
+
+void die(Watched* servo, const char* dir, const Cause& cause) noexcept {
+  if (servo == nullptr) endProcess(1);
+  int nobody = 0;
+  const int self = os::threadId();
+  if (!dying.compare_exchange_strong(nobody, self) && nobody != self) awaitEnd();
+  // A step that crashes itself (the device's cut, on a heap just torn) brings this thread here again: on with the next.
+  if (nobody == 0) {
+    death.dir = dir;
+    death.reason.add(cause.reason);
+    death.culprit = cause.culprit;
+    death.suspicion = cause.suspicion;
+    death.called = cause.culprit != nullptr && cause.culprit == calledHere();
+    death.call = callNameHere();
+  }
+  for (size_t step = death.step++; step < std::size(kSteps); step = death.step++) kSteps[step](*servo);
+  endProcess(1);
+}
+
+}  // namespace hapticd::watch
