@@ -110,9 +110,11 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
                                                 std::unique_ptr<World> world, const host::Services::Log& log) {
   std::unique_ptr<Runner> runner(new Runner(scene, options));
   runner->world_ = std::move(world);
+  const bool hardware = std::any_of(scene.devices.begin(), scene.devices.end(),
+                                    [](const scene::Device& device) { return device.module != "simulated"; });
   if (auto opened = runner->openArms(log); !opened)
     return Error{opened.error() +
-                 (options.virtual_time ? "\n  note: --virtual-time allows simulated devices only" : "")};
+                 (options.virtual_time && hardware ? "\n  note: --virtual-time allows simulated devices only" : "")};
   if (options.virtual_time && !runner->onlySimulated())
     return Error{
         "--virtual-time runs faster than any clock, and the scene names real hardware; expected simulated devices "
