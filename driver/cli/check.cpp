@@ -15,9 +15,7 @@
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/hand_path_advice.hpp"
 #include "diagnostics/hand_start.hpp"
-#include "diagnostics/model_advice.hpp"
 #include "diagnostics/model_trial.hpp"
-#include "diagnostics/rehearsal.hpp"
 #include "diagnostics/slow_arm.hpp"
 #include "diagnostics/unit_advice.hpp"
 #include "document/node.hpp"
@@ -152,39 +150,25 @@ void tryTheRest(const CheckArguments& options, Verdict& verdict) {
   verdict.problems.insert(verdict.problems.end(), trial.problems.begin(), trial.problems.end());
   document::sortByPlace(verdict.problems);
   verdict.warnings = trial.warnings;
-  for (const auto& found_by : {&farModels, &softModels, &doubtfulModels})
+  for (const auto& found_by : {&farModels, &softModels})
     for (const document::Problem& one : found_by(*draft))
       if (!isOfThese(one.key, unsound)) verdict.warnings.push_back(one);
-}
-
-/// Who judges what is in force knows the key of it and not the line: "servo.rate".
-void placeByKey(const document::Node& root, const std::string& file, document::Problems& problems) {
-  for (document::Problem& problem : problems) {
-    if (problem.place.file != file || problem.place.line > 1 || problem.key.find('[') != std::string::npos) continue;
-    const document::Node* node = &root;
-    for (const std::string& key : command_line::split(problem.key, '.'))
-      node = node != nullptr && node->isMap() ? node->find(key) : nullptr;
-    if (node != nullptr && node->line > 0) problem.place.line = node->line, problem.place.column = node->column;
-  }
 }
 
 /// What is in order, and yet cannot be meant, or cannot be stable.
 void addWarnings(const scene::Scene& full, const std::vector<double>& stiffness, const CheckArguments& options,
                  Verdict& verdict) {
   document::Problems more = unstable(full, stiffness);
-  for (const auto& found_by :
-       {&farModels, &softModels, &doubtfulModels, &doubtfulSettings, &idleBounds, &quarantinedModels, &slowArms})
+  for (const auto& found_by : {&farModels, &softModels, &idleBounds, &quarantinedModels, &slowArms})
     for (const document::Problem& one : found_by(full)) more.push_back(one);
   document::Problems unread;
-  const auto root = document::parseFile(verdict.file, unread);
-  if (root) adviseZeros(*root, verdict.file, more);
+  if (const auto root = document::parseFile(verdict.file, unread)) adviseZeros(*root, verdict.file, more);
   if (!options.files_only && verdict.problems.empty())  // these run the scene
     for (const auto& found_by : {&unreachableRows, &adviseHands})
       for (const document::Problem& one : found_by(full)) more.push_back(one);
   if (!options.device.empty())  // what its own check says
     for (const scene::Device& device : full.devices)
       for (const document::Problem& one : adviseDevice(device.file, catalog())) more.push_back(one);
-  if (root) placeByKey(*root, verdict.file, more);
   verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());
 }
 
@@ -225,11 +209,6 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   found.insert(found.end(), trial.problems.begin(), trial.problems.end());
   if (scene && !options.files_only)
     for (const document::Problem& hand : unreachableHands(withArm(*scene))) found.push_back(hand);
-  if (scene && !options.files_only && found.empty()) {
-    Rehearsal rehearsal = rehearse(withArm(*scene));
-    found = std::move(rehearsal.problems);
-    verdict.warnings = std::move(rehearsal.warnings);
-  }
   if (!scene && !found.empty()) tryTheRest(options, verdict);
   if (!scene) {
     const document::Problems more = tryDevice(file, catalog(), found, &verdict.warnings);
@@ -309,8 +288,7 @@ void addCheck(const Command& app, int& exit_code) {
   command.footer(
       "Each problem is one line: file:line:column: key: what is wrong, and what was expected.\nThe exit code is 2 if "
       "there is a problem. If a scene has none, its models are set up once, because only\na plugin can check some "
-      "files, such as geometry, and simulated arms go through its first seconds. A warning names each setting that "
-      "cannot be stable on\nthe device, with the bound and "
+      "files, such as geometry. A warning names each setting that cannot be stable on\nthe device, with the bound and "
       "the nearest stable setting. Warnings do not affect the exit code.\n\nExample:\n  hapticd check "
       "config/scenes/teapot.yaml config/devices/simulated-premium15.yaml\n  hapticd check config/scenes/sphere.yaml "
       "--device my-arm.yaml\n  hapticd check --schema scene > "

@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "diagnostics/model_advice.hpp"
 #include "document/reader.hpp"
 #include "tune/stability.hpp"
 
@@ -39,7 +38,6 @@ std::vector<std::string> adviceOnModels(const servo::Runner& runner, const scene
     for (document::Problem& one : more) all.push_back(std::move(one));
   };
   add(softModels(models));
-  add(diagnostics::doubtfulModels(models));
   add(tune::fastPaths(models));
   scene::Scene scene = models;
   scene.servo = runner.scene().servo;

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "diagnostics/model_trial.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Core>
-#include <algorithm>
 
 #include "host/child.hpp"
 #include "host/shape_instance.hpp"
@@ -86,19 +83,6 @@ void adviseMotion(const scene::Model& model, size_t index, document::Problems& w
                          "parameters makes it do so, where the plugin has that");
 }
 
-/// A model file in millimetres; "": none. Parts and soft bodies say it themselves.
-std::string tooLarge(const scene::Model& model, double size) {
-  constexpr double kLargest = 5;  // [m] what an arm reaches round
-  const auto given = std::find_if(model.parameters.begin(), model.parameters.end(),
-                                  [](const scene::Value& value) { return value.id == "geometry"; });
-  if (!(size > kLargest) || model.plugin == "mat_deformable" || given == model.parameters.end() ||
-      given->text.ends_with(".hpart"))
-    return "";
-  return fmt::format(
-      "geometry: the model is {0:.3g} m long, expected metres: was the file in millimetres? ({0:.3g} mm are {1:.3g} m)",
-      size, size / 1000);
-}
-
 /// A crash, an exit or a hang, with the model whose plugin did it.
 void reportEnd(const std::string& how, const host::Trail& trail, const scene::Scene& scene,
                document::Problems& problems) {
@@ -135,8 +119,6 @@ std::string tryAll(const scene::Scene& scene, double max_force, const std::vecto
       stiffness = (*shape)->report().max_stiffness;
       const bool may_move = ((*shape)->description().flags & HSP_C_MOVES) != 0;
       idle = may_move && ((*shape)->report().flags & HSP_R_MOVES) == 0;
-      if (const std::string text = tooLarge(scene.models[i], (*shape)->report().size_m); !text.empty())
-        warnings.add(i, text);
       trail.mark(static_cast<uint32_t>(i), "deactivate() or destroy");
     } else {
       problems.add(i, activated.error());
