@@ -55,14 +55,6 @@ void applyDaemon(const scene::Daemon& daemon, scene::Scene& scene) {
 
 }  // namespace
 
-std::string overwrites(const std::string& out, const std::vector<std::pair<std::string, const char*>>& inputs) {
-  std::error_code error;
-  for (const auto& [file, what] : inputs)
-    if (!out.empty() && !file.empty() && std::filesystem::equivalent(out, file, error))
-      return out + ": is " + what + " itself, expected another file";
-  return "";
-}
-
 std::string wrongPicture(const std::string& file) {
   const std::string ending = std::filesystem::path(file).extension().string();
   for (const char* other : {".png", ".jpg", ".jpeg", ".pdf", ".gif", ".webp", ".PNG", ".JPG", ".PDF"})

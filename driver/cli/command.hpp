@@ -21,10 +21,6 @@ constexpr int kWorked = 0;                          ///< exit code: worked
 constexpr int kFailed = 1;                          ///< exit code: failed while running
 constexpr int kBadInput = command_line::kBadUsage;  ///< exit code: bad input or usage
 
-/// [any] What is wrong with a file to be written that is one of those that are read: writing would destroy it. ""
-/// where it is none. @param inputs each with what it is: "the recording"
-std::string overwrites(const std::string& out, const std::vector<std::pair<std::string, const char*>>& inputs);
-
 /// [main] Why a picture, which is always SVG, cannot have this name; "": it can.
 std::string wrongPicture(const std::string& file);
 

@@ -12,6 +12,7 @@
 #include "cli/command.hpp"
 #include "cli/ctl_lead.hpp"
 #include "cli/named_files.hpp"
+#include "cli/output_file.hpp"
 #include "control/client.hpp"
 #include "control/presence.hpp"
 #include "document/json_text.hpp"
@@ -35,7 +36,9 @@ struct CtlArguments {
 
 /// Writes the triangles of an answer.
 int saveObj(const Json& json, const std::string& file) {
+  if (const std::string wrong = whyNotWritten(file, objKind()); !wrong.empty()) return fail(kBadInput, wrong);
   std::ofstream out(file);
+  out << kObjBeginning << "\n";
   const Json &xyz = json.at("xyz"), &corners = json.at("triangles");
   for (std::size_t i = 0; i + 2 < xyz.size(); i += 3)
     out << "v " << xyz[i].dump() << " " << xyz[i + 1].dump() << " " << xyz[i + 2].dump() << "\n";

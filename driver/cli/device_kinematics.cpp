@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cli/command.hpp"
+#include "cli/output_file.hpp"
 #include "document/csv.hpp"
 #include "document/reader.hpp"
 #include "host/class_table.hpp"
@@ -21,6 +22,7 @@ struct KinematicsArguments {
 };
 
 constexpr size_t kMaxCsvBytes = 256u << 20;
+constexpr const char* kTipColumns = ",x,y,z,qw,qx,qy,qz";  ///< after the joints
 
 std::string headerOf(size_t joints) {
   std::string header;
@@ -49,7 +51,7 @@ class Table {
 
   void header(size_t columns) {
     const size_t n = kinematics_.joint_count;
-    std::string text = headerOf(n) + ",x,y,z,qw,qx,qy,qz";
+    std::string text = headerOf(n) + kTipColumns;
     for (int i = 1; i <= 6; ++i)
       for (size_t j = 1; j <= n; ++j) text += ",J" + std::to_string(i) + "_" + std::to_string(j);
     for (size_t j = 1; j <= n; ++j) text += ",gravity" + std::to_string(j);
@@ -115,9 +117,9 @@ int kinematics(const KinematicsArguments& options) {
   if (!loaded.device) return kBadInput;
   auto device = host::DeviceInstance::create(*loaded.device, logToTerminal);
   if (!device) return fail(kFailed, device.error());
-  if (const std::string wrong =
-          overwrites(options.out, {{options.joints, "the file of joints"}, {options.file, "the device file"}});
-      !wrong.empty())
+  const Inputs inputs{{options.joints, "the file of joints"}, {options.file, "the device file"}};
+  const std::string columns = headerOf((*device)->kinematics().joint_count) + kTipColumns;
+  if (const std::string wrong = whyNotWritten(options.out, tableKind(columns), inputs); !wrong.empty())
     return fail(kBadInput, wrong);
   auto rows = readRows(options.joints, (*device)->kinematics().joint_count);
   if (!rows) return fail(kBadInput, rows.error());

@@ -88,7 +88,8 @@ void explainModels(const scene::Scene& scene, servo::World& world, const std::ve
     const uint32_t count = shape.surfaces() != nullptr ? shape.surfaces()->surface_count : 0;
     const std::string surfaces = shape.surfaces() != nullptr
                                      ? std::to_string(count) + (count == 1 ? " surface" : " surfaces") +
-                                           ", traced while within the activation radius"
+                                           ", traced while within the activation radius, " +
+                                           document::numberText(scene.servo.activation_radius) + " m"
                                      : "is traced by its plugin in every tick";
     say("  surfaces", surfaces);
     say("  motion", (report.flags & HSP_R_MOVES) != 0       ? "moved by its plugin: integrated in every tick"

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/open_end.hpp"
+#include "cli/output_file.hpp"
 #include "document/suggestion.hpp"
 
 namespace hapticd::cli {
@@ -37,6 +39,13 @@ std::vector<std::string> namesOf(const record::Recording& recording) {
   return names;
 }
 
+/// By which a table of this stream is known: a newer hapticd may have added some behind them.
+std::string firstColumns(const record::RecordedStream& stream) {
+  std::string header;
+  for (size_t i = 0; i < stream.columns().size() && i < 3; ++i) header += (i > 0 ? "," : "") + stream.columns()[i].name;
+  return header;
+}
+
 /// One file of one stream, or a folder with a file of each.
 int toCsv(const record::Recording& recording, const ExportArguments& options) {
   const bool one = !options.stream.empty();
@@ -44,14 +53,21 @@ int toCsv(const record::Recording& recording, const ExportArguments& options) {
     return fail(kBadInput, "--stream " + options.stream + ": the recording has no such stream, expected one of " +
                                document::listed(namesOf(recording), 10) +
                                document::suggestion(options.stream, namesOf(recording)));
+  std::vector<std::pair<const record::RecordedStream*, std::string>> tables;
+  for (const record::RecordedStream& stream : recording.streams())
+    if (!one || stream.name() == options.stream)
+      tables.emplace_back(&stream,
+                          one ? options.csv : (std::filesystem::path(options.csv) / (stream.name() + ".csv")).string());
+  for (const auto& [stream, file] : tables)
+    if (const std::string wrong =
+            whyNotWritten(file, tableKind(firstColumns(*stream)), {{options.file, "the recording"}});
+        !wrong.empty())
+      return fail(kBadInput, wrong);
   std::error_code error;
   if (!one) std::filesystem::create_directories(options.csv, error);
   if (error) return fail(kFailed, options.csv + ": cannot be created: " + error.message());
-  for (const record::RecordedStream& stream : recording.streams()) {
-    if (one && stream.name() != options.stream) continue;
-    const std::string file =
-        one ? options.csv : (std::filesystem::path(options.csv) / (stream.name() + ".csv")).string();
-    auto done = record::exportCsv(stream, file);
+  for (const auto& [stream, file] : tables) {
+    auto done = record::exportCsv(*stream, file);
     if (!done) return fail(kFailed, done.error());
     tell(file, *done);
   }
@@ -61,13 +77,14 @@ int toCsv(const record::Recording& recording, const ExportArguments& options) {
 int exportRecording(const ExportArguments& options) {
   if (options.mcap.empty() && options.csv.empty())
     return fail(kBadInput, "nothing to write, expected --mcap FILE or --csv FOLDER");
-  for (const std::string& file : {options.mcap, options.csv})
-    if (const std::string wrong = overwrites(file, {{options.file, "the recording"}}); !wrong.empty())
-      return fail(kBadInput, wrong);
+  if (const std::string wrong = whyNotWritten(options.mcap, mcapKind(), {{options.file, "the recording"}});
+      !wrong.empty())
+    return fail(kBadInput, wrong);
   auto recording = record::Recording::open(options.file);
   if (!recording) return fail(kBadInput, recording.error());
   if (const std::string& damage = (*recording)->damage(); !damage.empty())
     std::fprintf(stderr, "warning: %s: %s\n", options.file.c_str(), damage.c_str());
+  noteOpenEnd(options.file, **recording, "exporting");
   const int code = options.mcap.empty() ? kWorked : toMcap(**recording, options.mcap);
   return code == kWorked && !options.csv.empty() ? toCsv(**recording, options) : code;
 }

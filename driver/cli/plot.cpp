@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/open_end.hpp"
+#include "cli/output_file.hpp"
 #include "hapticd/client.h"
 #include "hapticd/shape.h"
 #include "record/picture.hpp"
@@ -138,7 +140,7 @@ record::RunReport reportOf(const std::string& file, const std::vector<record::Sa
 int plot(const PlotArguments& options) {
   const std::string out = options.out.empty() ? options.file + ".svg" : options.out;
   if (const std::string wrong = wrongPicture(out); !wrong.empty()) return fail(kBadInput, wrong);
-  if (const std::string wrong = overwrites(out, {{options.file, "the recording"}}); !wrong.empty())
+  if (const std::string wrong = whyNotWritten(out, pictureKind(), {{options.file, "the recording"}}); !wrong.empty())
     return fail(kBadInput, wrong);
   if (options.from && options.to && *options.from >= *options.to)
     return fail(kBadInput, "--from is not before --to, expected a time before it");
@@ -146,8 +148,7 @@ int plot(const PlotArguments& options) {
   if (!recording) return fail(kBadInput, recording.error());
   if (const std::string& damage = (*recording)->damage(); !damage.empty())
     std::fprintf(stderr, "warning: %s: %s\n", options.file.c_str(), damage.c_str());
-  if (!(*recording)->closed())
-    std::fprintf(stderr, "note: the recording ends early because its writer was killed; drawing what was written\n");
+  noteOpenEnd(options.file, **recording, "drawing");
   const record::RecordedStream* ticks = (*recording)->stream("ticks");
   const auto columns = ticks != nullptr ? columnsOf(*ticks, options.arm) : std::nullopt;
   if (!columns) return fail(kBadInput, options.file + ": has no ticks of arm " + std::to_string(options.arm));

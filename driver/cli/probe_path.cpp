@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "cli/probe_path.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "document/csv.hpp"
 
 namespace hapticd::cli {
@@ -13,11 +17,17 @@ Result<std::vector<PathRow>> readProbePath(const std::string& file) {
   const auto table = document::readCsv(file, kMaxBytes, rules, problems);
   if (!table) return Error{problems.front().text()};
   std::vector<PathRow> rows(table->rows());
+  constexpr double kLengthError = 1e-3;  // seven digits are within it; degrees and zeros are not
   for (size_t i = 0; i < rows.size(); ++i) {
     const double* v = table->row(i);
     rows[i].t = v[0];
     rows[i].position = {v[1], v[2], v[3]};
     if (table->columns == kPoseColumns) rows[i].orientation = {v[4], v[5], v[6], v[7]};
+    const double length = rows[i].orientation.norm();
+    if (!rows[i].orientation.coeffs().allFinite() || std::abs(length - 1) <= kLengthError)
+      continue;  // a row without a sample: a gap
+    return Error{fmt::format("{}:{}: qw,qx,qy,qz: ({:g}, {:g}, {:g}, {:g}) has the length {:.4g}, expected 1", file,
+                             table->lines[i], v[4], v[5], v[6], v[7], length)};
   }
   return rows;
 }

@@ -9,13 +9,14 @@
 
 namespace hapticd::cli {
 
-/// One tick of a prescribed path, world frame. Positions and orientations may be not-a-numbers: a bad sample.
+/// One tick of a prescribed path, world frame. Positions and orientations may be not-a-numbers: a bad sample. Finite
+/// orientations have the length 1, to seven digits.
 struct PathRow {
   double t = 0;              ///< [s]
   Eigen::Vector3d position;  ///< [m]
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
 
-  bool finite() const { return position.allFinite() && orientation.coeffs().allFinite() && orientation.norm() > 0.5; }
+  bool finite() const { return position.allFinite() && orientation.coeffs().allFinite(); }
 };
 
 /// [main] Reads and checks a whole file: times are finite and grow. Errors name file, line and column.

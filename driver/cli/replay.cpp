@@ -11,6 +11,8 @@
 
 #include "cli/command.hpp"
 #include "cli/guarded_command.hpp"
+#include "cli/open_end.hpp"
+#include "cli/tick_watch.hpp"
 #include "document/node.hpp"
 #include "document/suggestion.hpp"
 #include "record/recording.hpp"
@@ -142,9 +144,9 @@ int replay(const ReplayArguments& options) {
     if (auto done = change(run->scene, text); !done) return fail(kBadInput, done.error());
   takeInstructions(*run);
   warnOfChanges(*run);
-  if (!(*recording)->closed())
-    std::fprintf(stderr, "note: the recording ends early because its writer was killed; replaying what was written\n");
+  noteOpenEnd(options.file, **recording, "replaying");
   const GuardedCommand guarded;
+  const TickWatch watched;
   const SetupErrors once;
   auto again = servo::Replay::prepare(**recording, *run, logToTerminal);
   if (!again) return fail(kBadInput, options.file + ": " + again.error());

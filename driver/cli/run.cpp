@@ -15,6 +15,7 @@
 #include "base/os.hpp"
 #include "cli/command.hpp"
 #include "cli/guarded_command.hpp"
+#include "cli/output_file.hpp"
 #include "cli/run_signals.hpp"
 #include "cli/scene_advice.hpp"
 #include "cli/view_process.hpp"
@@ -144,6 +145,7 @@ int conclude(const RunArguments& options, servo::Runner& runner, const std::vect
   for (record::ModelReport& model : report.models)
     for (const servo::ModelState& state : runner.world().core().models())
       if (state.shape != nullptr && state.shape->name() == model.name) {
+        model.moves = state.moves;
         model.degraded_ticks = state.degraded_ticks;
         model.coarsest = state.coarsest;
         model.residual_m = state.degraded_residual;
@@ -239,6 +241,10 @@ std::string wrongFiles(const RunArguments& options) {
   if (const std::string wrong = wrongPicture(options.picture); !wrong.empty()) return wrong;
   for (const std::string& file : {options.report, options.picture, options.record})
     if (!writable(file)) return file + ": cannot be written, expected a file in a folder that you may write to";
+  const Inputs inputs{{options.scene, "the scene"}, {options.device, "the device file"}};
+  for (const auto& [file, kind] : {std::pair(options.report, reportKind()), std::pair(options.picture, pictureKind()),
+                                   std::pair(options.record, recordingKind())})
+    if (const std::string wrong = whyNotWritten(file, kind, inputs); !wrong.empty()) return wrong;
   if (const std::string file = writtenTwice(options); !file.empty())
     return file + ": named twice, expected different files for the scene, --report, --picture and --record";
   return "";

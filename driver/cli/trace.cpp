@@ -11,6 +11,7 @@
 #include "base/offline_tick.hpp"
 #include "cli/command.hpp"
 #include "cli/guarded_command.hpp"
+#include "cli/output_file.hpp"
 #include "cli/probe_path.hpp"
 #include "cli/tick_watch.hpp"
 #include "cli/trace_writer.hpp"
@@ -74,9 +75,8 @@ Result<void> traceRows(const scene::Scene& scene, servo::World& world, const std
 }
 
 /// What a trace reads, each with what it is.
-std::vector<std::pair<std::string, const char*>> filesRead(const TraceArguments& options, const scene::Scene& scene) {
-  std::vector<std::pair<std::string, const char*>> files{{options.scene, "the scene"},
-                                                         {options.probe, "the probe path"}};
+Inputs filesRead(const TraceArguments& options, const scene::Scene& scene) {
+  Inputs files{{options.scene, "the scene"}, {options.probe, "the probe path"}};
   for (const scene::Device& device : scene.devices) files.emplace_back(device.file.string(), "a device file");
   for (const scene::Model& model : scene.models)
     for (const scene::Value& value : model.parameters)
@@ -96,14 +96,29 @@ void warnOfFarRows(const std::string& file, const std::vector<PathRow>& rows) {
   }
 }
 
+/// A tick a row: rows of another unit or rate give another velocity than the one that a run has.
+void warnOfRowTimes(const std::string& file, const std::vector<PathRow>& rows, double rate) {
+  constexpr double kFactor = 2;
+  if (rows.size() < 2) return;
+  const double apart = (rows.back().t - rows.front().t) / static_cast<double>(rows.size() - 1);
+  if (apart <= kFactor / rate && apart >= 1 / (kFactor * rate)) return;
+  std::fprintf(
+      stderr,
+      "warning: %s: rows are %.4g s apart, and each is a tick, which in a run lasts %.4g s (servo.rate %g Hz): "
+      "damping and motion are those of that slower or faster loop\n",
+      file.c_str(), apart, 1 / rate, rate);
+}
+
 int trace(const TraceArguments& options) {
   auto scene = loadSceneOrReport(options.scene, "", false);
   if (!scene) return kBadInput;
-  if (const std::string wrong = overwrites(options.out, filesRead(options, *scene)); !wrong.empty())
+  const OutputKind kind = tableKind(TraceWriter::kFirstColumns);
+  if (const std::string wrong = whyNotWritten(options.out, kind, filesRead(options, *scene)); !wrong.empty())
     return fail(kBadInput, wrong);
   auto rows = readProbePath(options.probe);
   if (!rows) return fail(kBadInput, rows.error());
   warnOfFarRows(options.probe, *rows);
+  warnOfRowTimes(options.probe, *rows, scene->servo.rate);
   auto models = chosenModels(*scene, options.models);
   if (!models) return fail(kBadInput, models.error());
   const GuardedCommand guarded;

@@ -15,6 +15,8 @@ namespace hapticd::cli {
 
 class TraceWriter {
  public:
+  static constexpr const char* kFirstColumns = "t,model,feature,u,v,";  ///< by which such a file is known
+
   /// [main] Opens `file` ("-": standard output) and writes the header. @param models indices to print
   static Result<std::unique_ptr<TraceWriter>> open(const std::string& file, const scene::Scene& scene,
                                                    std::vector<uint32_t> models);

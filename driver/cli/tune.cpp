@@ -14,6 +14,7 @@
 #include "base/os.hpp"
 #include "cli/command.hpp"
 #include "cli/guarded_command.hpp"
+#include "cli/open_end.hpp"
 #include "cli/probe_path.hpp"
 #include "cli/tick_watch.hpp"
 #include "record/recording.hpp"
@@ -63,10 +64,7 @@ Result<tune::Motion> motionOfRecording(const std::string& file, double rate) {
   for (size_t i = 0; i < 4; ++i)
     if (ticks == nullptr || (columns[i] = ticks->find(names[i])) == nullptr)
       return Error{file + ": has no column " + names[i] + " in ticks, expected a recording of `hapticd run --record`"};
-  if (!(*recording)->closed())
-    std::fprintf(stderr,
-                 "note: %s: the recording ends early because its writer was killed; measuring over what was written\n",
-                 file.c_str());
+  noteOpenEnd(file, **recording, "measuring over");
   if (ticks->rows() < 100) return Error{file + ": " + std::to_string(ticks->rows()) + " ticks, expected at least 100"};
   std::vector<Eigen::Vector3d> position;
   for (uint64_t i = 0; i < ticks->rows(); ++i) {

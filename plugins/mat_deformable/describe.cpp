@@ -84,13 +84,14 @@ std::string springText(const medial::Tissue& tissue, double ratio, double tick) 
   return text;
 }
 
-/// @param spring what is to be said of the contact spring of a surface that is felt
-std::string line(const Group& group, const std::string& spring) {
+/// @param who says the stiffness: "the file"  @param spring what is to be said of the contact spring of a surface that
+/// is felt
+std::string line(const Group& group, const char* who, const std::string& spring) {
   const FeltMaterial& one = group.first;
   char text[320];
-  const int length = std::snprintf(text, sizeof text,
-                                   "felt %.4g N/m 1 mm deep, %.4g N/m 5 mm deep; the file says %.4g N/m%s: ", one.felt,
-                                   one.deep, one.told, spring.c_str());
+  const int length =
+      std::snprintf(text, sizeof text, "felt %.4g N/m 1 mm deep, %.4g N/m 5 mm deep; %s says %.4g N/m%s: ", one.felt,
+                    one.deep, who, one.told, spring.c_str());
   const auto left = sizeof text - static_cast<std::size_t>(length);
   const Eigen::Array3d mm = 0.01 * (1e5 * one.place.array()).round() + 0.0;  // no -0
   if (group.count == 1)
@@ -121,6 +122,7 @@ void MatDeformable::describe(const MedialFile& file, double tick) const {
   if (!(body_->greatestRadius() > 0)) say(HSP_LOG_WARNING, geometry_ + ": all radii are 0: nothing will be felt");
   describeMaterial(file, tick);
   for (const std::string& odd : file.odd) say(HSP_LOG_WARNING, "geometry: " + odd);
+  describeDynamics(file);
   // What stands in the scene for a file that has none: nobody would feel that it is left aside.
   for (const auto& [id, given] : {std::pair("stiffness", stiffness_), std::pair("mass", mass_)})
     if (!geometry_.ends_with(".ma") && given != usual(id))
@@ -131,6 +133,21 @@ void MatDeformable::describe(const MedialFile& file, double tick) const {
   char text[128];
   std::snprintf(text, sizeof text, ": the body is %.3g m long, expected metres: was the file in millimetres?", size);
   say(HSP_LOG_WARNING, geometry_ + text);
+}
+
+/// Which dynamics holds, and where a mass was given that nobody feels.
+void MatDeformable::describeDynamics(const MedialFile& file) const {
+  const Dynamics dynamics = dynamicsOf(file);
+  const bool by_file = dynamics_ == kAsFile, without = geometry_.ends_with(".ma");
+  std::string text = "dynamics: ";
+  text += dynamics == kFelt   ? "felt: mass, damping and relaxation of the body are in the force"
+          : dynamics == kSeen ? "seen: the body swings to the eye, and the force is that of a body at rest"
+                              : "off: the body follows the probe at once, and the force is that of a body at rest";
+  if (by_file) text += without ? " (so for .ma files; felt makes it felt)" : " (so for files of this format)";
+  say(HSP_LOG_DEBUG, text);
+  if (without && by_file && dynamics == kSeen && mass_ != usual("mass"))
+    say(HSP_LOG_WARNING,
+        "mass: is seen and not felt, as dynamics is that of .ma files, seen; dynamics: felt makes it felt");
 }
 
 medial::Tissue MatDeformable::tissueAt(const MedialFile& file, std::size_t point) const {
@@ -146,13 +163,14 @@ medial::Tissue MatDeformable::tissueAt(const MedialFile& file, std::size_t point
 /// A line for each material at level debug, for who asks, and a hint where it is not what the file says.
 void MatDeformable::describeMaterial(const MedialFile& file, double tick) const {
   double most = 1;
-  const bool felt = body_->feltSurface() != nullptr;
+  const bool felt = body_->feltSurface() != nullptr, without = geometry_.ends_with(".ma");
   std::vector<Place> places;
   for (const FeltMaterial& one : body_->feltMaterial()) places.push_back({one, tissueAt(file, places.size())});
   std::size_t lines = 0;
   for (const Group& group : grouped(std::move(places))) {
     if (++lines <= kMostLines)
-      say(HSP_LOG_DEBUG, line(group, felt ? springText(group.tissue, contact_ratio_, tick) : ""));
+      say(HSP_LOG_DEBUG,
+          line(group, without ? "the scene" : "the file", felt ? springText(group.tissue, contact_ratio_, tick) : ""));
     if (group.first.told > 0) most = std::max(most, group.first.deep / group.first.told);
   }
   if (felt) describeContact(file, tick);

@@ -144,6 +144,7 @@ class MatDeformable final : public Shape {
   static const void* stateExtension();
   void describe(const MedialFile& file, double tick) const;
   void describeMaterial(const MedialFile& file, double tick) const;
+  void describeDynamics(const MedialFile& file) const;
   void describeContact(const MedialFile& file, double tick) const;
   medial::Tissue tissueAt(const MedialFile& file, std::size_t point) const;  ///< what the file says of a point
   std::vector<medial::Tissue> distinct(const MedialFile& file) const;

@@ -26,7 +26,7 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
   takeParts(instance_name_);
   load(activation, report);
   if (pop_through_ > 0 && sides_ != kBoth && host() != nullptr && host()->log != nullptr)
-    host()->log(host(), HSP_LOG_WARNING, "pop_through has no effect: only a shell gives way; expected sides: both");
+    host()->log(host(), HSP_LOG_WARNING, "pop_through: has no effect: only a shell gives way; expected sides: both");
   extents_ = part() != nullptr ? extentsOf(*part()) : extentsOf(model());
   if (extents_.empty() && texture_amplitude_ > 0)
     throw std::invalid_argument("texture.amplitude: a mesh has no parameters to lay bumps along; expected 0");

@@ -32,9 +32,11 @@ class Reader {
   ModelFile read(const Json& root) {
     ModelFile file;
     if (!root.is_object()) {
-      problems_.add({},
-                    "no model file, expected a mapping with format and surfaces; triangles and CAD files become a part "
-                    "first: hapticd import FILE -o PART.hpart");
+      problems_.add(
+          {},
+          "no model file, expected a mapping with format and surfaces; triangles and CAD files become a part "
+          "first: hapticd import FILE -o PART.hpart; Bezier patches (.bpt) become a model file: hapticd import "
+          "FILE -o MODEL.yaml");
       return file;
     }
     checkKeys(root, {}, {"format", "name", "credit", "surfaces", "edges", "medial"});

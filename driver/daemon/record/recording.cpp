@@ -14,6 +14,7 @@
 #include "base/regular_file.hpp"
 #include "document/json_text.hpp"
 #include "record/layout.hpp"
+#include "record/live_writer.hpp"
 
 namespace hapticd::record {
 
@@ -72,6 +73,7 @@ double RecordedStream::number(uint64_t index, const Column& column) const {
 Result<std::unique_ptr<Recording>> Recording::open(const std::string& file) {
   const auto fd = openRegular(file);
   if (!fd) return Error{file + ": " + fd.error()};
+  const std::optional<int> writer = writerOf(*fd);  // before anything is read: it may end at any time
   struct stat info{};
   const auto size = fstat(*fd, &info) == 0 ? static_cast<size_t>(info.st_size) : 0;
   void* memory = size == 0 ? MAP_FAILED : mmap(nullptr, size, PROT_READ, MAP_SHARED, *fd, 0);
@@ -84,6 +86,8 @@ Result<std::unique_ptr<Recording>> Recording::open(const std::string& file) {
   recording->mapped_bytes_ = size;
   if (auto read = recording->read({static_cast<const std::byte*>(memory), size}); !read)
     return Error{file + ": " + read.error()};
+  if (!recording->closed_) recording->writer_ = writer;
+  if (writer) recording->damage_.clear();  // rows that came since its length was asked for
   return recording;
 }
 

@@ -54,6 +54,8 @@ class Recording {
   const std::vector<RecordedStream>& streams() const { return streams_; }
   const RecordedStream* stream(const std::string& name) const;
   bool closed() const { return closed_; }  ///< its writer ended in order
+  /// The process that still wrote it when it was opened; 0: one that cannot be seen from here.
+  std::optional<int> writer() const { return writer_; }
   /// "" or how rows that it should have were lost after they were written: the file was cut, or changed.
   const std::string& damage() const { return damage_; }
   bool blackBox() const { return black_box_; }  ///< the newest rows in a circle, not a whole run
@@ -68,6 +70,7 @@ class Recording {
   std::string about_, damage_;
   std::vector<RecordedStream> streams_;
   bool closed_ = false, black_box_ = false;
+  std::optional<int> writer_;
   void* mapped_ = nullptr;
   size_t mapped_bytes_ = 0;
 };

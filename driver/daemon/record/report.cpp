@@ -44,6 +44,7 @@ Json modelJson(const ModelReport& model) {
   json["depthless"] = pushesJson(model.contact.depthless());
   json["outside"] = pushesJson(model.contact.outside());
   json["pulls"] = pushesJson(model.contact.pulls());
+  json["energy_j"] = {{"given", model.given_j}, {"taken", model.taken_j}};
   json["step_ns"] = {{"p50", step.quantile(0.5) * kNs}, {"p99", step.quantile(0.99) * kNs}, {"max", step.max() * kNs}};
   for (const ArmContact& arm : model.arms) json["arms"][arm.device] = contactJson(arm.contact);
   return json;
@@ -110,12 +111,25 @@ std::string deepText(const ModelReport& model) {
       model.name, deepest, deepest * 1e-3);
 }
 
+/// What gives more than was pressed into it drives the hand. One run shows what its hand happened to do, so that little
+/// of it is left to chance: contacts are sampled, and one that is switched off and on has its own account.
+std::string energyText(const ModelReport& model) {
+  constexpr double kTold = 2e-3, kShare = 0.1;  // [J]
+  const double net = model.given_j - model.taken_j;
+  if (model.moves || !(net > std::max(kTold, kShare * model.taken_j))) return "";
+  return fmt::format(
+      "  warning   {} gave the hand {:.3g} mJ more than it took ({:.3g} mJ): a surface gives back what was pressed "
+      "into "
+      "it, and no more; hapticd plugin check looks for where\n",
+      model.name, net * 1e3, model.taken_j * 1e3);
+}
+
 std::string modelText(const ModelReport& model, const RunReport& report) {
   const ContactStatistics& c = model.contact;
   std::string text = fmt::format("{} ({})\n", model.name, model.plugin);
   if (model.arms.empty()) text += contactText(c, report, "");
   for (const ArmContact& arm : model.arms) text += contactText(arm.contact, report, " by " + arm.device);
-  text += oddPushesText(model) + pullText(model) + deepText(model);
+  text += oddPushesText(model) + pullText(model) + energyText(model) + deepText(model);
   if (model.degraded_ticks > 0)
     text += fmt::format("  degraded  {} ticks, to level {} of 3, so that the tick's budget holds; residual up to {}\n",
                         model.degraded_ticks, model.coarsest, lengthText(model.residual_m));

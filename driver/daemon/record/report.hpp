@@ -21,11 +21,13 @@ struct ArmContact {
 
 struct ModelReport {
   std::string name, plugin;
-  ContactStatistics contact;       ///< of the arm that is deepest in each tick
-  uint64_t degraded_ticks = 0;     ///< in which it answered coarser than asked, for a tick's budget
-  uint32_t coarsest = 0;           ///< level of accuracy, 0: as asked
-  double residual_m = 0;           ///< largest error that a coarser answer told
-  std::vector<ArmContact> arms{};  ///< of each, where there are several
+  ContactStatistics contact;        ///< of the arm that is deepest in each tick
+  uint64_t degraded_ticks = 0;      ///< in which it answered coarser than asked, for a tick's budget
+  uint32_t coarsest = 0;            ///< level of accuracy, 0: as asked
+  double residual_m = 0;            ///< largest error that a coarser answer told
+  double given_j = 0, taken_j = 0;  ///< [J] work that its forces did on the hands, and that these did against them
+  bool moves = false;               ///< by its plugin, with energy of its own
+  std::vector<ArmContact> arms{};   ///< of each, where there are several
 };
 
 /// In how many ticks limits made the force of one device smaller than the scene asked for.

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <optional>
 
 #include "base/not_real_time.hpp"
+#include "base/offline_tick.hpp"
 #include "world/arm_force.hpp"
 
 namespace hapticd::servo {
@@ -94,6 +96,7 @@ class Replay::Player final : public Clock {
   Nanoseconds now() noexcept HSP_RT override { return now_; }
 
   Nanoseconds waitUntil(Nanoseconds deadline) noexcept HSP_RT override {
+    counted_.reset();
     const NotRealTime between_ticks;
     compare();
     if (tick_ >= end_) {
@@ -107,6 +110,7 @@ class Replay::Player final : public Clock {
     feedLeads();
     feedPushes();
     ++tick_;
+    counted_.emplace();
     return now_;
   }
 
@@ -293,6 +297,7 @@ class Replay::Player final : public Clock {
   }
 
   Replay& replay_;
+  std::optional<OfflineTick> counted_;  ///< while a tick goes on
   const record::FlightRing& ring_;
   const RecordedStream& ticks_;
   std::vector<const RecordedStream*> recorded_;

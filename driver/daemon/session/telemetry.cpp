@@ -19,6 +19,7 @@ Telemetry::Telemetry(const scene::Scene& scene, double rate, uint32_t places)
   }
   names_.resize(models_.size());
   plugins_.resize(models_.size());
+  work_.resize(models_.size() * scene.devices.size());
   if (scene.devices.size() < 2) return;
   for (const scene::Device& device : scene.devices) devices_.push_back(device.name);
   by_arm_.resize(models_.size() * devices_.size());
@@ -30,6 +31,16 @@ std::vector<record::ArmContact> Telemetry::armsOf(size_t place) const {
   return arms;
 }
 
+record::ModelReport Telemetry::reportOf(size_t place) const {
+  record::ModelReport report{
+      .name = names_[place], .plugin = plugins_[place], .contact = models_[place], .arms = armsOf(place)};
+  for (size_t i = 0; i < stops_.size(); ++i) {
+    report.given_j += work_[place * stops_.size() + i].given();
+    report.taken_j += work_[place * stops_.size() + i].taken();
+  }
+  return report;
+}
+
 void Telemetry::attach(std::unique_ptr<Flight> flight) {
   flight_ = std::move(flight);
   rows_ = {};
@@ -38,10 +49,10 @@ void Telemetry::attach(std::unique_ptr<Flight> flight) {
 void Telemetry::name(uint32_t place, const std::string& name, const std::string& plugin) {
   if (!names_[place].empty()) {
     if (left_.size() == kMostLeft) left_.erase(left_.begin());
-    left_.push_back(
-        {.name = names_[place], .plugin = plugins_[place], .contact = models_[place], .arms = armsOf(place)});
+    left_.push_back(reportOf(place));
   }
   models_[place] = {};
+  for (size_t i = 0; i < stops_.size(); ++i) work_[place * stops_.size() + i] = {};
   for (size_t i = 0; i < devices_.size(); ++i) by_arm_[place * devices_.size() + i] = {};
   names_[place] = name;
   plugins_[place] = plugin;
@@ -98,6 +109,14 @@ void Telemetry::bookArms(uint32_t index, double dt, const Core& core,
   }
 }
 
+void Telemetry::bookWork(uint32_t index, const Core& core,
+                         const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT {
+  for (uint32_t arm = 0; arm < stops_.size() && arm < core.probeCount() && arm < arms.size(); ++arm)
+    if (arms[arm]->probe().valid)
+      work_[index * stops_.size() + arm].add(booked_, Eigen::Map<const Vector3d>(core.contact(index, arm).world.force),
+                                             arms[arm]->probe().position);
+}
+
 /// [N] What a contact pulls deeper in with; 0: it does not.
 double Telemetry::pullOf(const Contact& contact, const Arm& arm) noexcept HSP_RT {
   const bool pulls = contact.world.depth_m > 0 && arm.probe().valid && pullsIn(contact.world, arm.probe().position);
@@ -135,6 +154,7 @@ void Telemetry::bookModels(double dt, const Core& core, const std::vector<std::u
     const bool any = odd.untraced + odd.depthless + odd.outside + odd.pull > 0;
     if (any && pushed && model.status >= HSP_OK && !model.guard.quarantined()) bookOdd(index, odd);
     bookArms(index, dt, core, arms);
+    if (pushed) bookWork(index, core, arms);
     if (depth > -HUGE_VAL && (row.model == UINT32_MAX || depth > row.depth_m)) {
       row.depth_m = static_cast<float>(depth);
       row.model = index;
@@ -170,8 +190,7 @@ record::RunReport Telemetry::report(const std::vector<std::string>& faults) cons
   report.page_faults = page_faults_;
   report.servo_allocations = allocations_;
   for (size_t i = 0; i < models_.size(); ++i)
-    if (!names_[i].empty())
-      report.models.push_back({.name = names_[i], .plugin = plugins_[i], .contact = models_[i], .arms = armsOf(i)});
+    if (!names_[i].empty()) report.models.push_back(reportOf(i));
   // Names are keys in the report, and a model often takes the place of one of its name.
   std::map<std::string, int> times;
   for (record::ModelReport left : left_) {

@@ -9,6 +9,7 @@
 
 #include "base/clock.hpp"
 #include "record/contact_statistics.hpp"
+#include "record/contact_work.hpp"
 #include "record/histogram.hpp"
 #include "record/report.hpp"
 #include "servo/loop/tick_log.hpp"
@@ -101,6 +102,8 @@ class Telemetry final : public TickLog {
     double untraced = 0, depthless = 0, outside = 0, pull = 0;
   };
   void bookOdd(uint32_t index, const Odd& odd) noexcept HSP_RT;
+  void bookWork(uint32_t index, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
+  record::ModelReport reportOf(size_t place) const;
   static double pullOf(const Contact& contact, const Arm& arm) noexcept HSP_RT;
   void bookModels(double dt, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms,
                   BlackBoxRow& row) noexcept HSP_RT;
@@ -111,6 +114,7 @@ class Telemetry final : public TickLog {
   double rate_, simulated_seconds_ = 0;
   record::Histogram lateness_us_, compute_us_, arms_us_;
   std::vector<record::ContactStatistics> models_;
+  std::vector<record::ContactWork> work_;          ///< [model * arms + arm]
   std::vector<std::string> devices_;               ///< where there are several
   std::vector<record::ContactStatistics> by_arm_;  ///< [model * devices_.size() + arm]
   std::vector<BlackBoxRow> rows_;                  // where there is no flight

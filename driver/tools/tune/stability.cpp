@@ -34,7 +34,13 @@ void judgeModel(const scene::Scene& scene, size_t index, const scene::Device& de
                 double alone, double stiffness, document::Problems& problems) {
   const scene::Model& model = scene.models[index];
   const std::string key = "models[" + std::to_string(index) + "]";
-  const auto warn = [&](const std::string& what) { document::report(problems, model.place, key, what); };
+  const auto given = std::find_if(model.parameters.begin(), model.parameters.end(),
+                                  [](const scene::Value& value) { return value.id == "stiffness"; });
+  const bool named =
+      given != model.parameters.end() && given->place.line > 0;  // else the plugin's default, or a file's
+  const auto warn = [&](const std::string& what) {
+    document::report(problems, named ? given->place : model.place, named ? key + ".parameters.stiffness" : key, what);
+  };
   const std::string claim = model.name + " pushes with up to " + text(stiffness) + " N/m";
   if (info.max_stiffness > 0 && stiffness > info.max_stiffness)
     warn(claim + ", and " + device.name + " is stable up to " + text(info.max_stiffness) +

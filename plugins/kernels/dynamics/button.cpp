@@ -2,6 +2,7 @@
 #include "kernels/dynamics/button.hpp"
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -16,6 +17,12 @@ int topOf(const DetentCurve& detent) noexcept {
   return -1;
 }
 
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
+}
+
 int footOf(const DetentCurve& detent, int top) noexcept {
   int foot = top + 1;
   while (foot + 1 < detent.pieces() && detent.slope(foot) < 0) ++foot;
@@ -26,10 +33,12 @@ int footOf(const DetentCurve& detent, int top) noexcept {
 
 DetentCurve::DetentCurve(std::span<const Knot> knots, double end_stiffness) {
   knots_.reserve(knots.size() + 1);
-  if (knots.empty() || knots.front().travel > 0) knots_.push_back({0, 0});
+  const bool begun = knots.empty() || knots.front().travel > 0;  // at rest, which a file may leave out
+  if (begun) knots_.push_back({0, 0});
   for (const Knot& knot : knots) knots_.push_back(knot);
-  const auto wrong = [](size_t i, const std::string& what) {
-    throw std::invalid_argument("detent: point " + std::to_string(i) + ": " + what);
+  const auto wrong = [&](size_t i, const std::string& what) {
+    throw std::invalid_argument("detent: row " + std::to_string(i + (begun ? 0 : 1)) + ": " + what +
+                                "; a row is travel [m], then force [N]");
   };
   if (knots_.size() > kMaxKnots) wrong(kMaxKnots, "too many; expected at most 64");
   if (!(end_stiffness > 0) || !std::isfinite(end_stiffness))
@@ -38,7 +47,8 @@ DetentCurve::DetentCurve(std::span<const Knot> knots, double end_stiffness) {
     if (!std::isfinite(knots_[i].travel) || !std::isfinite(knots_[i].force)) wrong(i, "not a finite number");
     if (i == 0 && (knots_[0].travel != 0 || knots_[0].force != 0)) wrong(i, "expected travel 0 with force 0");
     if (i > 0 && !(knots_[i].travel > knots_[i - 1].travel))
-      wrong(i, "expected travel beyond that of the point before");
+      wrong(i, "a travel of " + number(knots_[i].travel) + " m; expected more than in the row before, " +
+                   number(knots_[i - 1].travel) + " m");
     if (i > 0 && !(knots_[i].force > 0)) wrong(i, "expected a force above 0 N: the button has to come back");
   }
   for (size_t i = 0; i + 1 < knots_.size(); ++i)

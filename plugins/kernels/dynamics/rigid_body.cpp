@@ -43,7 +43,7 @@ void validate(const RigidBodyLaw& law) {
   if (!(law.damping >= 0) || !(law.angular_damping >= 0) || !(law.tether >= 0))
     throw std::invalid_argument("damping, angular damping and tether: expected 0 or more");
   if (law.joint != Joint::kFree && !(law.axis.norm() > 0))
-    throw std::invalid_argument("axis: expected a length above 0");
+    throw std::invalid_argument("axis: no direction, as its numbers are all 0; expected one, such as [0, 1, 0]");
 }
 
 }  // namespace

@@ -19,7 +19,9 @@ constexpr int kMostRings = 8;
 constexpr double kOwnShare = 0.5;  ///< of its weight that a vertex keeps when it is spread; the rest goes to neighbours
 constexpr double kAside = 1e-6;    ///< [m] by which a probe is moved to see how its foot follows
 constexpr double kApart = 0.1;     ///< of the radius: feet on joined parts are two from so far on
-constexpr double kOpposite = 4;    ///< normals farther apart than acos(1 / this - 1) count less and less
+constexpr double kOneTube = 0.5;   ///< [rad] joined parts that turn by less are one tube or sheet
+constexpr double kRoundingOfFeet = 1e-6;  ///< of the radius: feet this near to each other are one
+constexpr double kOpposite = 4;           ///< normals farther apart than acos(1 / this - 1) count less and less
 
 /// One value for all stays one.
 std::vector<double> oneOrAll(const std::vector<double>& values, std::size_t vertices, const char* what) {
@@ -222,6 +224,42 @@ double MeshBody::apart(const MeshFoot& a, const MeshFoot& b) const noexcept {
   return gap < whole ? gap / whole : 1;
 }
 
+double MeshBody::bend(const MedialMesh::Element& one, const MedialMesh::Element& other, uint32_t a,
+                      uint32_t b) const noexcept {
+  const auto begin = one.vertex.begin(), end = begin + one.count;
+  const auto shared = std::find_first_of(begin, end, other.vertex.begin(), other.vertex.begin() + other.count);
+  if (shared == end || one.count != other.count || one.count < 2) return -1;
+  if (one.count == 3) {
+    const double cosine = std::abs(mesh_.across(a).dot(mesh_.across(b)));
+    return cosine > 0 ? std::acos(std::min(1.0, cosine)) : -1;
+  }
+  const Sphere& joint = mesh_.vertices()[*shared];
+  std::array<Vector3d, 2> away;
+  std::array<double, 2> flare{};  // angle of the cone's side against its axis, seen from the joint
+  const std::array<const MedialMesh::Element*, 2> both = {&one, &other};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Sphere& far = mesh_.vertices()[both[i]->vertex[both[i]->vertex[0] == *shared ? 1 : 0]];
+    away[i] = far.center - joint.center;
+    const double length = away[i].norm();
+    if (!(length > std::abs(far.radius - joint.radius))) return -1;  // one sphere holds the other
+    away[i] /= length;
+    flare[i] = std::asin((far.radius - joint.radius) / length);
+  }
+  return std::acos(std::clamp(-away[0].dot(away[1]), -1.0, 1.0)) + std::abs(flare[0] + flare[1]);
+}
+
+/// Along a tube of many cones, or a sheet of many slabs, the neighbour's nearest sphere is the one that they share: its
+/// normal leans, and is that of no other part. Only in the bend between two feet of their own, each off the joint by as
+/// much as half the bend lets it be, there is a crease.
+double MeshBody::besideStraight(const MeshFoot& a, const MeshFoot& b) const noexcept {
+  const double turn = bend(mesh_.elements()[a.element], mesh_.elements()[b.element], a.element, b.element);
+  if (turn < 0 || turn > kOneTube) return 1;
+  const double gap = std::min((mesh_.footOn(a.element, b.center).center - b.center).norm(),
+                              (mesh_.footOn(b.element, a.center).center - a.center).norm());
+  const double whole = std::max(0.25 * turn * turn, kRoundingOfFeet) * std::max(a.radius, b.radius);
+  return std::min(1.0, gap / whole);
+}
+
 SkeletonFoot MeshBody::footOf(const MeshFoot& found) const noexcept {
   SkeletonFoot foot;
   foot.element = found.element;
@@ -274,7 +312,8 @@ SkeletonFoot MeshBody::foot(const Vector3d& p, uint32_t start, double crease, in
   Vector3d sum = best.normal;
   for (std::size_t i = 1; i < feet.count; ++i) {
     const double cosine = feet.feet[i].normal.dot(best.normal);
-    const double opposite = std::min(1.0, kOpposite * (1 + cosine));
+    double opposite = std::min(1.0, kOpposite * (1 + cosine));
+    for (std::size_t k = 0; k < i && opposite > 0; ++k) opposite *= besideStraight(feet.feet[k], feet.feet[i]);
     sum += opposite * (1 - (feet.feet[i].distance - best.distance) / crease) * feet.feet[i].normal;
   }
   foot.normal = sum.normalized();

@@ -107,6 +107,10 @@ class MeshBody {
   SkeletonFoot footOf(const MeshFoot& found) const noexcept;
   /// 0: both feet are on one place of the body; 1: on two.
   double apart(const MeshFoot& a, const MeshFoot& b) const noexcept;
+  /// [rad] By how much the surface turns where two elements meet that go on in one another; negative: they do not.
+  double bend(const MedialMesh::Element& one, const MedialMesh::Element& other, uint32_t a, uint32_t b) const noexcept;
+  /// The same as apart() of elements that go on in one another nearly straight; 1: of all others.
+  double besideStraight(const MeshFoot& a, const MeshFoot& b) const noexcept;
   double material(const std::vector<double>& values, const SkeletonFoot& foot) const noexcept;
 
   BodyOptions options_;

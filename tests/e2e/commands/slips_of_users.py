@@ -103,6 +103,7 @@ def outputs(folder, ask):
         before = open(kept, "rb").read()
         code, out, err = ask(*words)
         check(f"{words[0]} does not write over {what}", code == 2 and what in err and open(kept, "rb").read() == before, (code, out, err))
+    others(folder, ask, recording, path, file)
     code, out, err = ask("trace", file, "--probe", path, "--out", os.path.join(folder, "feet.csv"))
     check("a path in mm is warned of", code == 0 and "row 2 is 30 m from the world's origin" in err, err)
     whole = open(recording, "rb").read()
@@ -112,6 +113,27 @@ def outputs(folder, ask):
         check(f"{name}: a damaged recording is not the same to the last bit", code != 0 and ("lost" in err or "difference" in out), (code, out, err))
         ask_plot = ask("plot", os.path.join(folder, name), "--out", os.path.join(folder, "x.svg"))
         check(f"{name}: nor is it drawn without a word", name != "cut.h5" or "it ends at byte" in ask_plot[2] and "are lost" in ask_plot[2], ask_plot)
+
+
+def others(folder, ask, recording, path, file):
+    """A file of another kind is not written over; an earlier output is."""
+    for words, kind in ((("plot", recording, "--out"), "a picture (SVG)"), (("export", recording, "--mcap"), "an MCAP file"),
+                        (("export", recording, "--stream", "ticks", "--csv"), "a table of this command"),
+                        (("run", file, "--for", "0.05", "--virtual-time", "--report"), "a report"),
+                        (("run", file, "--for", "0.05", "--virtual-time", "--picture"), "a picture (SVG)"),
+                        (("run", file, "--for", "0.05", "--virtual-time", "--record"), "a recording"),
+                        (("trace", file, "--probe", path, "--out"), "a table of this command")):
+        for name, content in (("mine.yaml", "a: 1\n"), ("cube.stl", STL), ("mine.csv", "t,x,y,z\n0,0,0,0\n"), ("mine.json", "{}\n")):
+            mine = write(folder, name, content)
+            before = open(mine, "rb").read()
+            code, out, err = ask(*words, mine)
+            check(f"{words[0]} {words[-1]} leaves {name} alone", code == 2 and f"is not {kind}" in err and open(mine, "rb").read() == before, (code, out, err))
+        again = write(folder, "again", "")
+        codes = [ask(*words, again)[0] for _ in range(2)]
+        check(f"{words[0]} {words[-1]} fills an empty file and replaces its own", codes == [0, 0] and os.path.getsize(again) > 0, codes)
+    write(folder, "p2.csv", "t,x,y,z,qw,qx,qy,qz\n0,0,0.2,0,1,0,0,0\n0.001,0,0.2,0,0.9999,0,0,0\n0.002,nan,nan,nan,nan,nan,nan,nan\n# x\n0.003,0,0.2,0,0,0,0,0\n")
+    code, out, err = ask("trace", file, "--probe", os.path.join(folder, "p2.csv"), "--out", "-")
+    check("an orientation without its length is refused at its line, others are taken", code == 2 and "p2.csv:6: " in err and "has the length 0, expected 1" in err, err)
 
 
 def everything(folder, ask):
@@ -166,6 +188,21 @@ def words(folder, ask):
     check("a picture is no PNG", code == 2 and "ends in .svg" in err and not os.path.exists(os.path.join(folder, "run.png")), err)
 
 
+TORQUE_ARM = os.path.join(SOURCE, "config/devices/simulated-premium15.yaml")
+BOX = os.path.join(SOURCE, "config/models/box.yaml")
+
+
+def at_the_number(folder, ask):
+    """A warning stands at the number that it is about."""
+    one = f"device: {TORQUE_ARM}\n"
+    text = "hapticd: 1\nservo: {rate: 200}\n" + one + f"models:\n  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {SPHERE}, stiffness: 20000}}}}\n"
+    code, out, err = ask("check", write(folder, "doubt.yaml", text))
+    check("a stiffness that cannot be stable is told at its number", "models[0].parameters.stiffness: warning: ball pushes" in out, out)
+    button = f"  - {{name: b, plugin: push_button, parameters: {{geometry: {BOX}, axis: [0, 0, -1], stiffness: 2000, detent: [[0, 0], [4, 0.003], [2, 0.004]], end_stiffness: 3000}}}}\n"
+    code, out, err = ask("check", write(folder, "doubt.yaml", "hapticd: 1\n" + one + "models:\n" + button))
+    check("rows of a detent turned round are told with the order", "row 3: a travel of 2 m" in out and "travel [m], then force [N]" in out, out)
+
+
 with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     ask = program(HAPTICD, dict(os.environ, RUNTIME_DIRECTORY=scratch, STATE_DIRECTORY=scratch))
     foreign(scratch, ask)
@@ -173,5 +210,6 @@ with tempfile.TemporaryDirectory(dir="/dev/shm") as scratch:
     outputs(scratch, ask)
     everything(scratch, ask)
     numbers(scratch, ask)
+    at_the_number(scratch, ask)
     words(scratch, ask)
 finish()

@@ -151,6 +151,12 @@ def main():
     moving = trace([sphere(R)], rows, model_keys={"path_rows": path})
     check_sphere("sphere moving and turning on a path", R, rows, moving, 1e-9, at)
 
+    rows = [[i * 1e-3, 0, 0, R + 0.01 + 4e-4 * i] for i in range(1000)]
+    for name, keys in (("that stands", {}), ("on a path", {"path_rows": [[0, 0, 0, 0, 1, 0, 0, 0], [1, 1e-9, 0, 0, 1, 0, 0, 0]]})):
+        far = trace([sphere(R)], rows, model_keys=keys)
+        errors = [0 if math.isnan(r["depth"]) else abs(r["depth"] - R + s[3]) for s, r in zip(rows, far)]
+        report(f"a model {name} leaves no foot behind", worst_of(errors) if math.isnan(far[-1]["depth"]) else math.inf, 1e-6)
+
     rows = list(walk(lambda t: R - 0.001))
     for bad in (700, 701, 1500):
         rows[bad] = [rows[bad][0], math.nan, 0, math.inf]

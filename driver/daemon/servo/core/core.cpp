@@ -127,11 +127,9 @@ void Core::moveKinematic(ModelState& model, double t, double dt) noexcept HSP_RT
 void Core::listLive() noexcept HSP_RT {
   live_.clear();
   for (uint32_t i = 0; i < models_.size(); ++i) {
-    if (models_[i].moves || models_[i].always || models_[i].active_surfaces > 0) {
-      live_.push_back(i);  // reserved for all of them: never allocates
-    } else {
-      clearContacts(i);
-    }
+    const bool traced = models_[i].always || models_[i].active_surfaces > 0;
+    if (traced || models_[i].moves) live_.push_back(i);  // reserved for all of them: never allocates
+    if (!traced) clearContacts(i);  // one that follows a path goes on without being traced, and has no foot then
   }
 }
 

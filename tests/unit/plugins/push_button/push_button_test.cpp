@@ -187,9 +187,9 @@ TEST(PushButton, EnergyOverAPressIsNeverGained) {
 }
 
 TEST(PushButton, SaysWhatIsWrongWithACurve) {
-  for (const auto& [detent, what] : {std::pair{std::vector<double>{0, 0, 0.003, 4, 0.002, 3}, "point 2"},
+  for (const auto& [detent, what] : {std::pair{std::vector<double>{0, 0, 0.003, 4, 0.002, 3}, "row 3"},
                                      {std::vector<double>{0, 0, 0.003, 0}, "above 0 N"},
-                                     {std::vector<double>{0, 1}, "point 0"}}) {
+                                     {std::vector<double>{0, 1}, "row 1"}}) {
     PluginUnderTest plugin;
     plugin.set("geometry", kModels + "box.yaml");
     ASSERT_EQ(plugin.set("detent", detent), HSP_OK);

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "record/contact_work.hpp"
 #include "record/pace_report.hpp"
 #include "record/picture.hpp"
 
@@ -248,6 +249,40 @@ TEST_F(Report, TellsPeopleOfAPullThatLastsMostOfAContact) {
       << summary(report);
   ASSERT_TRUE(writeJson(report, file("r.json")));
   EXPECT_EQ(nlohmann::json::parse(read(file("r.json"))).at("models").at("ball").at("pulls").at("ticks"), 6);
+}
+
+/// A spring of 500 N/m, pressed 5 mm deep and let go; `gain`: of its force on the way out.
+ContactWork pressed(double gain) {
+  ContactWork work;
+  for (uint64_t tick = 0; tick <= 400; ++tick) {
+    const double depth = .005 * std::sin(M_PI * static_cast<double>(tick) / 400);
+    work.add(tick, {0, 500 * depth * (tick > 200 ? gain : 1), 0}, {0, -depth, 0});
+  }
+  return work;
+}
+
+TEST(ContactWork, OfASpringIsNothingAndOfOneThatGivesMoreWhatItGives) {
+  constexpr double kStored = 0.5 * 500 * .005 * .005;
+  const ContactWork spring = pressed(1), drives = pressed(1.8);
+  EXPECT_NEAR(spring.taken(), kStored, 1e-9);
+  EXPECT_NEAR(spring.given(), kStored, 1e-9);
+  EXPECT_NEAR(drives.given(), 1.8 * kStored, 1e-4 * kStored);
+  ContactWork gap;
+  gap.add(0, {1, 0, 0}, {0, 0, 0});
+  gap.add(7, {1, 0, 0}, {1, 0, 0});  // the model was out of reach meanwhile
+  EXPECT_EQ(gap.given() + gap.taken(), 0);
+}
+
+TEST_F(Report, TellsPeopleOfAModelThatDrivesTheHand) {
+  RunReport report = sample();
+  const ContactWork work = pressed(1.8);
+  report.models[0].given_j = work.given(), report.models[0].taken_j = work.taken();
+  EXPECT_NE(summary(report).find("warning   ball gave the hand 5 mJ more than it took (6.25 mJ)"), std::string::npos)
+      << summary(report);
+  report.models[0].moves = true;  // it may have had that
+  EXPECT_EQ(summary(report).find("gave the hand"), std::string::npos);
+  report.models[0] = {.name = "ball", .given_j = 0.0063, .taken_j = 0.00625};
+  EXPECT_EQ(summary(report).find("gave the hand"), std::string::npos);
 }
 
 TEST_F(Report, TellsAResidualInAUnitThatReadsWell) {

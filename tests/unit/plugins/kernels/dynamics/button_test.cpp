@@ -76,9 +76,9 @@ TEST(Button, SaysWhichPointOfTheDetentIsWrong) {
     return "";
   };
   EXPECT_EQ(complaint({{0, 0}, {1e-3, 2}}, 100), "");
-  EXPECT_NE(complaint({{0, 0}, {1e-3, 2}, {1e-3, 3}}, 100).find("point 2"), std::string::npos);
+  EXPECT_NE(complaint({{0, 0}, {1e-3, 2}, {1e-3, 3}}, 100).find("row 3"), std::string::npos);
   EXPECT_NE(complaint({{0, 0}, {1e-3, 2}, {2e-3, 0}}, 100).find("above 0 N"), std::string::npos);
-  EXPECT_NE(complaint({{0, 1}}, 100).find("point 0"), std::string::npos);
+  EXPECT_NE(complaint({{0, 1}}, 100).find("row 1"), std::string::npos);
   EXPECT_NE(complaint({{0, 0}, {1e-3, NAN}}, 100).find("not a finite"), std::string::npos);
   EXPECT_NE(complaint({{0, 0}, {1e-3, 2}}, 0).find("end_stiffness"), std::string::npos);
 }

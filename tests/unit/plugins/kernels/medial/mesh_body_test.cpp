@@ -135,6 +135,65 @@ TEST(MeshBody, ACreaseTurnsTheNormalWithoutAJump) {
   EXPECT_LT(jump, .002);
 }
 
+/// A tube of 9 spheres, 5 mm apart, that turns by `bend` at each and whose spheres stand aside by rounding of an
+/// import.
+MeshData tube(double bend, double aside) {
+  MeshData mesh;
+  Vector3d at(-.02, 0, 0);
+  for (int i = 0; i < 9; ++i) {
+    mesh.vertices.push_back(
+        {at + aside * Vector3d(0, std::sin(7.0 * i), std::cos(5.0 * i)), .012 + aside * std::sin(3.0 * i)});
+    if (i > 0) mesh.edges.push_back({i - 1, i});
+    at += .005 * Vector3d(std::cos(bend * (i - 3.5)), std::sin(bend * (i - 3.5)), 0);
+  }
+  return mesh;
+}
+
+TEST(MeshBody, AStraightTubeOfManyConesHasTheNormalsOfACylinder) {
+  for (const double aside : {0.0, 1e-5}) {
+    const MeshBody body(bodyOf(tube(0, aside)), {});
+    double worst = 0;
+    for (int k = 0; k <= 3400; ++k) {  // 5 mm deep, between the round ends, all about
+      const double angle = .01 * k;
+      const Vector3d across(0, std::cos(angle), std::sin(angle));
+      const SkeletonFoot foot = body.foot(Vector3d(-.017 + 1e-5 * k, 0, 0) + .007 * across, kNoStart, 1e-3);
+      worst = std::max(worst, std::acos(std::min(1.0, foot.normal.dot(across))));
+    }
+    EXPECT_LT(worst, aside > 0 ? .5 * M_PI / 180 : 1e-6)
+        << aside;  // 1e-5 m aside and thinner over 5 mm lean by up to 0.4 degrees
+  }
+}
+
+TEST(MeshBody, AFlatSheetOfManySlabsHasOneNormal) {
+  MeshData flat = test::sheet(21);
+  for (Sphere& vertex : flat.vertices) vertex.center.z() = 0, vertex.radius = .008;
+  const MeshBody body(bodyOf(flat), {});
+  for (int k = 0; k < 2000; ++k) {
+    const SkeletonFoot foot = body.foot({.02 + 3e-5 * k, .03 + 2e-5 * k, .005}, kNoStart, 1e-3);
+    ASSERT_GT(foot.normal.z(), 1 - 1e-12) << k;
+  }
+}
+
+TEST(MeshBody, InTheBendOfATubeTheNormalTurnsWithoutAJump) {
+  for (const double bend : {.05, .1, .2, .35}) {
+    const MeshData data = tube(bend, 0);
+    const MeshBody body(bodyOf(data), {});
+    const Vector3d joint = data.vertices[4].center;
+    double jump = 0, sharp = 0;
+    Vector3d before = Vector3d::Zero(), sharp_before = before;
+    for (int k = -20000; k <= 20000; ++k) {  // along the inner side, 0.1 um a step
+      const Vector3d p = joint + Vector3d(1e-7 * k, .009, 0);
+      ASSERT_LT(body.mesh().distance(p), 0);
+      const SkeletonFoot foot = body.foot(p, kNoStart, 1e-3), edge = body.foot(p, kNoStart, 0);
+      if (k > -20000) jump = std::max(jump, (foot.normal - before).norm());
+      if (k > -20000) sharp = std::max(sharp, (edge.normal - sharp_before).norm());
+      before = foot.normal, sharp_before = edge.normal;
+    }
+    EXPECT_GT(sharp, .5 * bend) << bend;
+    EXPECT_LT(jump, .05 * sharp) << bend;
+  }
+}
+
 TEST(MeshBody, NeverPullsAndPushesAsItsMaterialSays) {
   MeshBodyData data = bodyOf(test::branches());
   data.stiffness.assign(data.mesh.vertices.size(), 300);
