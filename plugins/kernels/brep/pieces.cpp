@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 using spline::CurvePoint;
 using spline::SurfacePoint;
 
-constexpr double kMostTurn = 0.44;  ///< [rad] of the normals of a leaf, 25 degrees; of the tangents of a curve's piece
+constexpr double kLeafTurn = 0.44;  ///< [rad] of the normals of a leaf, 25 degrees; of the tangents of a curve's piece
 constexpr int kMostHalvings = 2;    ///< of a leaf that bends unevenly
 
 /// Principal curvatures at a point, toward Su x Sv positive; false where the tangents vanish.
@@ -59,7 +59,7 @@ class FaceCutter {
   void cutSpline() {
     const spline::SurfaceData data = splineOf(geometry_.part(), surface_);
     trace::BoxTree pieces;
-    pieces.add(data, 0, 1 - std::cos(kMostTurn));
+    pieces.add(data, 0, 1 - std::cos(kLeafTurn));
     const Array2d lo(data.domain(0)[0], data.domain(1)[0]), hi(data.domain(0)[1], data.domain(1)[1]);
     for (int i = 0; i < pieces.leafCount(); ++i) {
       const trace::Leaf& piece = pieces.leaf(i);
@@ -98,7 +98,7 @@ class FaceCutter {
       }
       widest = std::max(widest, turn);
     }
-    return std::clamp(static_cast<int>(std::ceil(widest / kMostTurn)) + 1, 2, kMost);
+    return std::clamp(static_cast<int>(std::ceil(widest / kLeafTurn)) + 1, 2, kMost);
   }
 
   /// A chord over a cell is off by an eighth of its second differences.
@@ -240,7 +240,7 @@ class EdgeCutter {
       turn = std::max(turn, std::atan2(C.C1.cross(first).norm(), C.C1.dot(first)));
       bend = std::max(bend, C.C1.cross(C.C2).norm() / (speed * speed * speed));
     }
-    if (turn > kMostTurn && depth < kDeepest) {
+    if (turn > kLeafTurn && depth < kDeepest) {
       halve(t0, 0.5 * (t0 + t1), depth + 1);
       halve(0.5 * (t0 + t1), t1, depth + 1);
       return;
