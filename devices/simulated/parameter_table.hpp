@@ -10,7 +10,7 @@ inline constexpr const char* kKinds[] = {"premium15", "chain", "phantom"};
 inline constexpr const char* kScripts[] = {"hold", "stroke", "press", "tap", "circle", "path", "none", "guided"};
 inline constexpr int kMaxDelay = 16;
 
-/// Lines for a device class T that derives from Parameters.
+/// The parameter table's lines for a device class T that derives from Parameters.
 template <class T>
 struct ParameterTable {
   using F = Fields<T>;

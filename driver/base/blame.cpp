@@ -19,7 +19,7 @@ struct Code {
   std::atomic<const void*> begin{nullptr}, end{nullptr};
   std::atomic<const Owner*> owner{nullptr};
 };
-constexpr size_t kMostLibraries = 256;  // of more, the rest is blamed on nobody
+constexpr size_t kMostLibraries = 256;  // the code of more owners is blamed on nobody
 std::array<Code, kMostLibraries> libraries;
 std::atomic<size_t> library_count{0};
 
@@ -33,7 +33,7 @@ Code* libraryAt(const void* address) noexcept {
 
 const Owner* ownerOf(const std::string& module, const std::string& name, bool device) {
   static std::mutex mutex;
-  static std::deque<Owner>& known = *new std::deque<Owner>;  // never destroyed: handlers may read it at the very end
+  static std::deque<Owner>& known = *new std::deque<Owner>;  // never destroyed: signal handlers may read it at the end
   const std::lock_guard lock(mutex);
   for (const Owner& owner : known)
     if (owner.module == module && owner.name == name && owner.device == device) return &owner;

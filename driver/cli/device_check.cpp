@@ -34,7 +34,7 @@ bool isModuleFile(const std::string& file) {
          "ELF";
 }
 
-/// The arm of a device file, or those of a module file.
+/// The arm of a device file, or the arms of a module file.
 Result<std::vector<scene::Device>> devicesOf(const ExamineArguments& options) {
   if (isModuleFile(options.file)) return device_check::devicesIn(options.file);
   const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
@@ -66,14 +66,14 @@ void print(const Outcome& outcome) {
   std::fflush(stdout);
 }
 
-/// All tests of one device, up to the first that crashes or hangs, or without which the others mean nothing.
+/// Runs all tests of one device, up to the first that crashes or hangs, or that the others depend on.
 std::vector<Outcome> examine(const scene::Device& device, const ExamineArguments& options) {
   std::vector<Outcome> outcomes;
   for (const device_check::Test& test : device_check::tests()) {
     outcomes.push_back(device_check::tryOne(test, device, static_cast<int>(options.timeout * 1000)));
     const Outcome& last = outcomes.back();
     if (!options.json) print(last);
-    const bool first = outcomes.size() <= 2;  // kinematics, open: nothing else can be tried without them
+    const bool first = outcomes.size() <= 2;  // kinematics and open: nothing else can be tried without them
     const bool unmade = first && last.verdict == Passed::kFailed && last.what.rfind("its inverse", 0) != 0;
     if (last.ended || unmade || (first && last.verdict == Passed::kSkipped)) break;
   }

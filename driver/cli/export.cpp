@@ -37,7 +37,7 @@ std::vector<std::string> namesOf(const record::Recording& recording) {
   return names;
 }
 
-/// One file of one stream, or a folder with a file of each.
+/// Writes one file of one stream, or a folder with one file per stream.
 int toCsv(const record::Recording& recording, const ExportArguments& options) {
   const bool one = !options.stream.empty();
   if (one && recording.stream(options.stream) == nullptr)

@@ -25,7 +25,7 @@ struct PlotArguments {
   std::optional<double> from, to;
 };
 
-/// The columns that are drawn; nullptr: a recording without them.
+/// The columns that are drawn; nullptr if the recording lacks them.
 struct Columns {
   const record::Column *t, *depth, *model, *lateness, *compute, *fault, *force[3], *asked[3], *position[3];
 };
@@ -72,7 +72,7 @@ record::Sample sampleAt(const record::RecordedStream& ticks, const Columns& c, u
   return sample;
 }
 
-/// When models were silenced: the rest of such a run says nothing of why nothing is felt.
+/// When models were silenced: from then on such a run does not show why nothing is felt.
 void noteSilenced(const record::Recording& recording, record::RunNotes& notes) {
   const record::RecordedStream* events = recording.stream("events");
   const auto* kind = events != nullptr ? events->find("kind") : nullptr;
@@ -88,7 +88,7 @@ void noteSilenced(const record::Recording& recording, record::RunNotes& notes) {
   }
 }
 
-/// Models and limits of the run, and whether its time was real; without them where its description cannot be read.
+/// Models and limits of the run, and whether its time was real; empty where its description cannot be read.
 record::RunNotes notesOf(const record::Recording& recording, uint32_t arm, bool& virtual_time) {
   record::RunNotes notes;
   notes.positions = true;

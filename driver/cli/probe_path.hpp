@@ -18,7 +18,7 @@ struct PathRow {
   bool finite() const { return position.allFinite() && orientation.coeffs().allFinite() && orientation.norm() > 0.5; }
 };
 
-/// [main] Reads and checks a whole file: times are finite and grow. Errors name file, line and column.
+/// [main] Reads and checks a whole file: times must be finite and grow. Errors name file, line and column.
 Result<std::vector<PathRow>> readProbePath(const std::string& file);
 
 }  // namespace hapticd::cli
