@@ -309,7 +309,7 @@ int runScene(const RunArguments& options, scene::Scene& scene) {
   return conclude(options, **runner, left_out);
 }
 
-/// Says which enable button no report of its arm has: no force could ever be felt. The module knows only the highest.
+/// Names an enable button that no report of its arm has, so that no force could be felt. A module knows the highest.
 bool switchesAreThere(const scene::Scene& scene) {
   document::Problems wrong;
   for (const scene::Device& device : scene.devices)

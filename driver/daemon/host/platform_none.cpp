@@ -45,7 +45,7 @@ Result<std::string> runProgram(std::vector<std::string>, int) {
 }
 
 void answerParent(const std::function<std::string()>&) {
-  std::abort();  // never called: nothing starts this program as a child
+  std::abort();  // never called, because nothing starts this program as a child
 }
 
 }  // namespace hapticd::host

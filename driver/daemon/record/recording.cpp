@@ -137,7 +137,7 @@ Result<void> Recording::readBlocks(std::span<const std::byte> bytes, uint64_t ad
   while (const auto block = at<BlockHeader>(bytes, address)) {
     const uint64_t from = address + sizeof *block;
     if (block->magic != BlockHeader::kMagic || block->bytes > bytes.size() - from)
-      break;  // the writer was cut off here
+      break;  // the writer ended here
     address = from + block->bytes;
     if (block->stream == BlockHeader::kIndex || block->stream >= streams_.size()) continue;
     RecordedStream& stream = streams_[block->stream];
@@ -160,7 +160,7 @@ Result<void> Recording::readBlocks(std::span<const std::byte> bytes, uint64_t ad
   return {};
 }
 
-/// A writer says how many rows there are after it has written them: where they are not there, they were there once.
+/// A writer says how many rows there are after it has written them, so rows that are missing existed once.
 /// @param stopped where no more blocks could be read
 void Recording::noteDamage(const RecordedStream& stream, uint64_t space, uint64_t stopped,
                            std::span<const std::byte> bytes) {

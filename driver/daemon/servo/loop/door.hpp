@@ -27,9 +27,9 @@ class Door {
 
   static constexpr size_t stateBytes(size_t arms) { return kStateAt + arms * kStateStride; }
 
-  /// [any] One thread; once. @param page zeroed, of stateBytes(), valid until the loop has ended
+  /// [any] Only one thread, and only once. @param page zeroed, of stateBytes(), valid until the loop has ended
   void showState(std::byte* page, uint32_t arms) noexcept;
-  /// [any] One thread; once. @param bell zeroed, valid until the loop has ended
+  /// [any] Only one thread, and only once. @param bell zeroed, valid until the loop has ended
   void hangBell(hapticd_bell* bell) noexcept { bell_.store(bell, std::memory_order_release); }
 
   /// [rt] The arms were read.
