@@ -76,7 +76,7 @@ class Command {
   void callback(const std::function<void()>& whatItDoes) const;  ///< runs when the whole command line was read
   void requireSubcommand() const;                                ///< one, and no more
   void optionsMayFollowSubcommand() const;                       ///< options of the program may stand after it too
-  void takesForeignCommandLine() const;                          ///< all from the first strange word on is left alone
+  void takesForeignCommandLine() const;                          ///< what follows the first unknown word stays as it is
   std::vector<std::string> foreignCommandLine() const;           ///< those words
   bool given(const std::string& option) const;                   ///< whether the command line contained it
   Command subcommand(const std::string& name) const;             ///< one that was added

@@ -80,7 +80,7 @@ class Catalog {
 
   SearchPath path_;
   Describe describe_;
-  std::map<std::filesystem::path, CatalogFile> files_;  // nodes stay where they are: pointers are handed out
+  std::map<std::filesystem::path, CatalogFile> files_;  // its nodes stay in place: pointers to them are given out
   std::map<std::pair<Kind, std::string>, const ClassInfo*> found_;  // a scene of 10,000 models asks for one name often
 };
 

@@ -9,7 +9,7 @@
 
 namespace hapticd::scene {
 
-/// [main] The device with the parameters that are right; nothing where the file is none, or its module is unknown.
+/// [main] The device with the parameters that are right; nothing if its file is none or its module is unknown.
 std::optional<Device> deviceDraft(const std::filesystem::path& file, host::Catalog& catalog);
 
 /// [main] A scene with problems, as far as it could be read: a model with a problem keeps what is right. Nothing where

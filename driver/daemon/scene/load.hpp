@@ -48,7 +48,7 @@ LoadedDaemon loadDaemon(const std::filesystem::path& file);
 /// @param scene receives a scene without problems; nullptr: not wanted
 Problems checkFile(const std::filesystem::path& file, host::Catalog& catalog, std::optional<Scene>* scene = nullptr);
 
-/// [main] The same for a text; `file` gives messages their name and paths their folder. Entry point for fuzzing.
+/// [main] The same for a text; `file` gives messages its name and paths their folder. Fuzzing starts here.
 Problems checkText(const std::string& text, const std::filesystem::path& file, host::Catalog& catalog,
                    std::optional<Scene>* scene = nullptr);
 

@@ -58,7 +58,7 @@ class SceneLoader {
                       "), expected each name once");
   }
 
-  /// The plugin's table, asked for once a name: ten thousand models of an unknown plugin give one long message.
+  /// The plugin's table, looked up once per name: ten thousand models of an unknown plugin give one message.
   const host::ClassInfo* pluginOf(const ModelText& text, const std::string& key) {
     if (text.plugin.empty()) return nullptr;
     const Node* at = text.node->find("plugin");

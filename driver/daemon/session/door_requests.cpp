@@ -41,7 +41,7 @@ Result<Leads::Target> RequestHandler::pushOf(const std::string& device) const {
   return Leads::Target{Order::Led::kForce, *arm, "device \"" + device + "\""};
 }
 
-/// What a request wants to lead, if it can be led at all.
+/// What a request wants to lead, if that can be led at all.
 Result<Leads::Target> RequestHandler::leadOf(const Request& request) const {
   if (!request.force.empty()) return pushOf(request.force);
   if (request.hand.empty()) {
@@ -88,7 +88,7 @@ Result<std::string> RequestHandler::lead(const control::Peer& peer, const Reques
                      why.empty() ? "" : ",\"no_force\":" + nlohmann::json(why).dump());
 }
 
-/// Memory that all share who ask for it; made for the first of them.
+/// Memory that all who ask for it share; it is made for the first of them.
 Result<void> RequestHandler::attach(std::unique_ptr<SealedMemory>& kept, const char* name, size_t bytes,
                                     SealedMemory::Writers writers) {
   if (!kept) {

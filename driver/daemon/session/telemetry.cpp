@@ -98,7 +98,7 @@ void Telemetry::bookArms(uint32_t index, double dt, const Core& core,
   }
 }
 
-/// [N] What a contact pulls deeper in with; 0: it does not.
+/// [N] With how much force a contact pulls deeper in; 0: it does not.
 double Telemetry::pullOf(const Contact& contact, const Arm& arm) noexcept HSP_RT {
   const bool pulls = contact.world.depth_m > 0 && arm.probe().valid && pullsIn(contact.world, arm.probe().position);
   return pulls ? Eigen::Map<const Vector3d>(contact.world.force).norm() : 0;
@@ -131,7 +131,7 @@ void Telemetry::bookModels(double dt, const Core& core, const std::vector<std::u
     }
     models_[index].add(depth > 0 && pushed, depth, force, dt, model.step_ns);
     if (depth > -HUGE_VAL && model.status >= HSP_OK) models_[index].addFoot(held, model.status == HSP_DEGRADED);
-    // What a model in trouble fades out with is no answer of it.
+    // The force with which a model in trouble fades out is not its answer.
     const bool any = odd.untraced + odd.depthless + odd.outside + odd.pull > 0;
     if (any && pushed && model.status >= HSP_OK && !model.guard.quarantined()) bookOdd(index, odd);
     bookArms(index, dt, core, arms);
@@ -172,7 +172,7 @@ record::RunReport Telemetry::report(const std::vector<std::string>& faults) cons
   for (size_t i = 0; i < models_.size(); ++i)
     if (!names_[i].empty())
       report.models.push_back({.name = names_[i], .plugin = plugins_[i], .contact = models_[i], .arms = armsOf(i)});
-  // Names are keys in the report, and a model often takes the place of one of its name.
+  // Names are keys in the report, and a model often takes the place of another of the same name.
   std::map<std::string, int> times;
   for (record::ModelReport left : left_) {
     const int before = times[left.name]++;

@@ -27,36 +27,36 @@ namespace hapticd::watch {
 
 namespace {
 
-/// Everything the handler needs, prepared while there is still an allocator.
+/// Everything that the handler needs, prepared while memory can still be allocated.
 struct Prepared {
   std::atomic<Watched*> servo{nullptr};
-  std::atomic<int> process{0};       ///< a fork of it is none of our business
-  std::atomic<bool> leaving{false};  ///< the process ends in order: its exit is nobody's fault
+  std::atomic<int> process{0};       ///< a fork of this process is not its business
+  std::atomic<bool> leaving{false};  ///< the process ends in order, so its exit is nobody's fault
   char dir[kLongestPath] = "";       // "": nothing is written
-  /// The C library's last words, where it keeps them: a length, and the text behind it.
+  /// The C library's last words, if it keeps them: a length, and then the text.
   const char* const* last_words = nullptr;
 };
 Prepared prepared;
 std::atomic<int> dying{0};  ///< the thread that ends the process
 
-/// What a crash in the daemon's own code says of the code that does not ship with it.
+/// What a crash in the daemon's own code says about code that does not ship with it.
 enum class Suspicion {
-  kNone,   ///< nothing: a signal from outside, or a culprit that is known
-  kCrash,  ///< it may have done it
-  kTorn    ///< memory was overwritten or freed twice, and whoever did it has gone: most likely it did
+  kNone,   ///< nothing: the signal came from outside, or the culprit is known
+  kCrash,  ///< such code may have caused the crash
+  kTorn    ///< memory was overwritten or freed twice before the crash, most likely by such code
 };
 
-/// Of that thread alone. The reason and the culprit are fixed at the first step: what the later ones find is a process
-/// that is falling apart.
+/// Belongs to that thread alone. The reason and the culprit are fixed at the first step, because later steps see a
+/// process that is falling apart.
 struct Death {
   std::atomic<size_t> step{0};  ///< the next of kSteps
   bool motors_off = false;
   const Owner* culprit = nullptr;
-  bool called = false;         ///< it was, by the thread that ends the process
-  const char* call = nullptr;  ///< its function; nullptr: a step
+  bool called = false;         ///< the thread that ends the process did so
+  const char* call = nullptr;  ///< name of its function; nullptr: a step
   Suspicion suspicion = Suspicion::kNone;
   int not_remembered = 0;  ///< errno
-  Line reason, black_box;  ///< its file, once it is written
+  Line reason, black_box;  ///< name of its file, once that is written
 };
 Death death;
 
@@ -64,18 +64,18 @@ bool sentByOther(const siginfo_t& info) noexcept {
   return info.si_code <= 0 && info.si_code != SI_TIMER && info.si_pid != 0 && info.si_pid != getpid();
 }
 
-/// Whose code a signal came from. What another process sent, and what came to the process instead of to a thread, is
-/// nobody's fault that is known: rather no name than a wrong one.
+/// Whose code raised a signal. A signal from another process, or one sent to the process instead of a thread, has no
+/// known culprit: no name is better than a wrong one.
 const Owner* culpritOf(int signal, const siginfo_t& info, const void* context) noexcept {
   const bool own_fault = wordsOfCrash(signal) != nullptr && info.si_code > 0;
   const bool raised = info.si_code == SI_TKILL && info.si_pid == getpid();
   if (!own_fault && !raised) return nullptr;
   if (const Owner* called = calledHere()) return called;
-  return isWorker() ? nullptr : ownerInterrupted(context);  // a thread that a plugin or module began itself
+  return isWorker() ? nullptr : ownerInterrupted(context);  // a thread that a plugin or module started itself
 }
 
-/// True where the allocator found its own records overwritten: whoever did that was there before, and is gone. Code
-/// that does not ship with the daemon is the likeliest to have done it.
+/// True if the allocator found its own records overwritten: whoever did that has returned long ago. Code that does not
+/// ship with the daemon is the likeliest cause.
 bool allocatorAborted() noexcept {
   constexpr const char* kItsWords[] = {"free", "alloc", "corrupt", "chunk"};
   const char* said = prepared.last_words != nullptr ? *prepared.last_words : nullptr;
@@ -95,7 +95,7 @@ Watched* watchedHere() noexcept {
   return prepared.process.load() == getpid() ? prepared.servo.load() : nullptr;
 }
 
-/// As if nobody had handled it.
+/// Ends as if nobody had handled the signal.
 void dieBySystem(int signal) noexcept {
   std::signal(signal, SIG_DFL);
   std::raise(signal);
@@ -120,7 +120,7 @@ void onFatal(int signal, siginfo_t* info, void* context) {
   const Owner* culprit = culpritOf(signal, *info, context);
   const bool own = info->si_code > 0 || (info->si_code == SI_TKILL && info->si_pid == getpid());
   const bool torn = signal == SIGABRT && allocatorAborted();
-  // Code that ships frees what was torn before: what does not ship is the likelier cause.
+  // Shipped code may free what was torn before, so code that does not ship is the likelier cause.
   if (torn && culprit != nullptr && foreignOwner(0) != nullptr && !isForeign(*culprit)) culprit = nullptr;
   die(words(signal).text(), culprit,
       culprit != nullptr || !own ? Suspicion::kNone
@@ -133,13 +133,13 @@ Line& addOwner(Line& line, const Owner& owner) noexcept {
   return line.add(owner.device ? "' of device '" : "' of model '").add(owner.name.c_str()).add("'");
 }
 
-/// " in its activate()", " in a step": what a module without a name for it was called for.
+/// " in its activate()", or " in a step", which is what a module is called for if nothing is named.
 Line& addCall(Line& line, const Owner& owner, const char* name) noexcept {
   if (name != nullptr) return line.add(" in its ").add(name).add("()");
   return line.add(owner.device ? " in one of its calls" : " in a step");
 }
 
-/// Ctrl-C, SIGTERM and their kind. One that a module sent to its own process is no wish of a person.
+/// Ctrl-C, SIGTERM and the like. If a module sent one to its own process, no person wished it.
 void onStop(int signal, siginfo_t* info, void* context) {
   const bool own = info->si_code <= 0 && info->si_code != SI_TIMER && info->si_pid == getpid();
   if (own && watchedHere() != nullptr) dieOf(words(signal).text(), culpritOf(signal, *info, context));
@@ -154,7 +154,7 @@ void onStop(int signal, siginfo_t* info, void* context) {
   dieBySystem(signal);
 }
 
-/// A plugin or library that called exit(): static objects are still there, and other threads still run.
+/// A plugin or library that called exit(): static objects still exist, and other threads still run.
 void dieOfExit(const char* what) noexcept {
   if (prepared.leaving.load() || watchedHere() == nullptr) return;
   const Owner* culprit = calledHere();
@@ -178,7 +178,7 @@ void saveBlackBox(const Watched& servo, const char* file) noexcept {
   close(fd);
 }
 
-/// What an I/O thread has still to send goes with the process: it gets a moment.
+/// What an I/O thread still has to send would be lost with the process, so it gets a moment.
 void awaitCut(const Watched& servo) noexcept {
   constexpr timespec kPause{0, 500'000};
   constexpr int kPauses = 100;
@@ -201,14 +201,14 @@ void writeBlackBox(Watched& servo) noexcept {
   death.black_box = file;
 }
 
-/// Who ended the process: the culprit, or where memory was torn all that do not ship with us; nullptr: there are no
-/// more.
+/// Who ended the process: the culprit, or, if memory was torn, all modules that do not ship with us; nullptr: there are
+/// no more.
 const Owner* leftOut(size_t number) noexcept {
   if (death.suspicion == Suspicion::kTorn) return foreignOwner(number);
   return number == 0 ? death.culprit : nullptr;
 }
 
-/// A device module cannot be left out of the next start: it is named, and no more.
+/// A device module cannot be left out of the next start, so it is only named.
 bool mayBeLeftOut() noexcept {
   const Owner* first = leftOut(0);
   return first != nullptr && !first->device && prepared.dir[0] != '\0';
@@ -251,14 +251,14 @@ void tellCulprit(Line& line) noexcept {
   line.add("\n  ");
 }
 
-/// "plugin 'torus' of model 'ring', plugin ...": what does not ship with hapticd. False: there is nothing.
+/// "plugin 'torus' of model 'ring', plugin ...": modules that do not ship with hapticd. False if there are none.
 bool addForeign(Line& line) noexcept {
   size_t count = 0;
   for (; const Owner* owner = foreignOwner(count); ++count) addOwner(line.add(count > 0 ? ", " : ""), *owner);
   return count > 0;
 }
 
-/// What is tried before the daemon itself is reported.
+/// What to try before reporting the daemon itself.
 void tellForeign(Line& line) noexcept {
   if (death.suspicion == Suspicion::kNone || foreignOwner(0) == nullptr) return;
   addForeign(line.add("what does not ship with hapticd is the likeliest cause: "));
@@ -303,7 +303,7 @@ void tell(Watched& servo) noexcept {
 
 constexpr void (*kSteps[])(Watched&) noexcept = {&cutMotors, &remember, &writeBlackBox, &tell};
 
-/// For a thread that finds another at it: that one ends the process, unless it is stuck itself.
+/// For a thread that finds another one ending the process: that one does it, unless it is stuck itself.
 [[noreturn]] void awaitEnd() noexcept {
   constexpr timespec kPatience{5, 0};
   nanosleep(&kPatience, nullptr);
@@ -332,7 +332,7 @@ void die(const char* reason, const Owner* culprit, Suspicion suspicion) noexcept
 
 void guardAgainstCrash(Watched& servo, const std::filesystem::path& dir) {
   static const bool at_exit = std::atexit(&onExit) == 0 && std::at_quick_exit(&onExit) == 0;
-  (void)at_exit;  // refused: out of memory, and the next allocation says so
+  (void)at_exit;  // if this is refused, memory is short, and the next allocation says so
   const std::string text = dir.string();
   prepared.dir[0] = '\0';
   if (text.size() < kLongestPath) std::memcpy(prepared.dir, text.c_str(), text.size() + 1);

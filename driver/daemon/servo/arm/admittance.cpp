@@ -48,7 +48,7 @@ void Admittance::step(const Vector3d& force, const Vector3d& measured, double dt
 
 /// Moves the joints one step toward the virtual mass; where they cannot follow, it cannot go either.
 void Admittance::follow(double dt) noexcept HSP_RT {
-  constexpr double kReached = 1e-4;  // [m] more than a step's curvature leaves: a joint limit or a singular pose
+  constexpr double kReached = 1e-4;  // [m] more than a step's curvature causes: a joint limit or a singular pose
   Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HDV_MAX_JOINTS> J(6, q_.size());
   const JointVector before = q_;
   if (device_->kinematics().jacobian(device_->handle(), q_.data(), J.data()) == HSP_OK && J.allFinite()) {

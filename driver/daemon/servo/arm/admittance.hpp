@@ -15,7 +15,7 @@ namespace hapticd::servo {
 class Admittance {
  public:
   static constexpr double kMaxLead = 0.02;  ///< [m] the virtual mass waits for an arm that lags farther behind
-  static constexpr double kHoming = 1;  ///< [1/s] at which joints that the tip leaves free return to where they began
+  static constexpr double kHoming = 1;  ///< [1/s] at which joints that the tip leaves free go back to where they began
 
   /// [main] Says why this device cannot do it; "" if it can.
   static std::string refusal(const hdv_info& info);

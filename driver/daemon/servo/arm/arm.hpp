@@ -58,7 +58,7 @@ class Arm {
   void write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque,
              passivity::Exchange exchange = {}) noexcept HSP_RT;
 
-  /// [any] Motors free at once, while the servo is stuck or dying; async-signal-safe. They stay so until clear().
+  /// [any] Frees the motors at once, while the servo is stuck or dying; async-signal-safe. It holds until clear().
   /// @param after [s] that the servo was stuck
   void cut(double after) noexcept;
   /// [any] True if the last cut has been sent to the hardware, as far as the module knows; async-signal-safe.

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kCalmFor = 0.5;           ///< [s] that a device must be well before its force comes back by itself
 constexpr double kCalmTravel = 0.02;       ///< [m] how far its tip may move meanwhile, while something pushes on it
-constexpr double kStaleAfter = 0.05;       ///< [s] without a new sample: no force on yesterday's position
+constexpr double kStaleAfter = 0.05;       ///< [s] without a new sample: the position is too old for a force
 constexpr double kPeriodsTrusted = 2.001;  ///< periods without a new sample before the force fades: one may be late
 constexpr double kTrustFades = 2e-3;       ///< [s] in which it fades
 constexpr double kPairWithin = 2e-3;  ///< [s] how much closer two samples may arrive than they were measured
@@ -51,8 +51,8 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
   }
   watchJump();
   if (admittance_) takeVirtualProbe();
-  // A device slower than the servo repeats its sample: a difference to itself is no speed, and one taken for a tick's
-  // way would be several times the hand's. A virtual mass moves in every tick.
+  // A device slower than the servo repeats its sample, whose difference is no speed; and the next difference, taken for
+  // that of one tick, would be several times the hand's. A virtual mass moves in every tick.
   if (velocity_ && (fresh_ || admittance_)) {
     probe_.velocity = velocity_->update(probe_.position, admittance_ ? dt : fresh_after_);
     limiter_.watchVelocity(probe_.velocity);

@@ -64,7 +64,7 @@ void ClientForces::end(uint32_t place) noexcept HSP_RT {
 }
 
 bool ClientForces::awaits(uint64_t tick) const noexcept HSP_RT {
-  constexpr uint64_t kKeepsUp = 2;  // [ticks] who answers every tenth tick is not waited for in the nine others
+  constexpr uint64_t kKeepsUp = 2;  // [ticks] a program that answers every tenth tick is not awaited in the nine others
   const auto awaited = [&](const Client& client) {
     if (client.slot == nullptr || !client.answered || tick - client.push.tick > kKeepsUp) return false;
     hapticd_push push;
@@ -94,7 +94,7 @@ void ClientForces::step(Client& client, uint64_t tick, double dt) noexcept HSP_R
   const bool was_silent = client.silence > kSilentAfter;
   client.silence = take(client, tick) ? 0 : client.silence + dt;
   const bool silent = client.slot == nullptr || client.silence > kSilentAfter;
-  if (silent && !was_silent && client.slot != nullptr) count(client.silences);  // who leaves does not fall silent
+  if (silent && !was_silent && client.slot != nullptr) count(client.silences);  // a program that leaves is not silent
   if (client.slot != nullptr && client.answered)
     client.quiet.store(silent ? client.silence : 0, std::memory_order_relaxed);
   client.gain = faded(client.gain, !silent, dt);

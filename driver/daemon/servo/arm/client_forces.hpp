@@ -20,7 +20,7 @@ class ClientForces {
   static constexpr double kFadeOut = 17e-3;     ///< [s] from full force to none: none is left 20 ms after the answer
   static constexpr double kFadeIn = 50e-3;      ///< [s] from none to full force
   static constexpr double kOldest = 20e-3;      ///< [s] an answer to an older tick does not count
-  static constexpr double kLargestNumber = link::kLargestPush;  ///< [N], [N m] beyond it a program is out of its mind
+  static constexpr double kLargestNumber = link::kLargestPush;  ///< [N], [N m] more than any sound program asks for
 
   /// Why an answer was refused.
   enum class Refusal : uint32_t { kNone, kNotFinite, kTooLarge, kAhead };
@@ -61,7 +61,7 @@ class ClientForces {
   /// [rt] True if a program that answered one of the last two ticks has not answered this one yet.
   bool awaits(uint64_t tick) const noexcept HSP_RT;
 
-  /// [rt] Once a tick, after the shapes: what the programs want now. @param tick number of this tick, @param dt [s]
+  /// [rt] Once per tick, after the shapes: takes what the programs want. @param tick number of this tick, @param dt [s]
   void collect(uint64_t tick, double dt) noexcept HSP_RT {
     if (places_ == 0 && share_ == 1) return;
     step(tick, dt);

@@ -42,7 +42,7 @@ class LedHand {
     hand_->guide(device_, p_device.data(), v_device.data(), kNoForce);
   }
 
-  const hapticd_target* taken() const noexcept { return lead_.taken(); }  ///< in the last step; nullptr: none
+  const hapticd_target* taken() const noexcept { return lead_.taken(); }  ///< of the last step; nullptr: there was none
   uint64_t refused() const noexcept { return lead_.refused(); }
   Follow::Refusal why() const noexcept { return lead_.why(); }  ///< the last was
 

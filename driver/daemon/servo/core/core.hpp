@@ -110,7 +110,7 @@ class Core {
   /// [main] Tells what the servo must know of an active shape before its first tick.
   static ModelState stateOf(host::ShapeInstance& shape, const scene::Model& described);
 
-  /// [rt] Before tick(): settles how exactly each model answers, from what the last tick took. What was changed.
+  /// [rt] Called before tick(): decides from the last tick's cost how exactly each model answers. @return what changed
   std::span<const LoadShedding::Change> shedLoad() noexcept HSP_RT;
 
   /// [rt] Obeys an order to a model, before tick(). False if it cannot be obeyed.

@@ -15,7 +15,7 @@ using ConstMap = Eigen::Map<const Vector3d>;
 
 constexpr double kLargest = 1e100;
 
-/// Also false for numbers whose squares overflow: a length of them would be none, and a ratio of two such.
+/// Also false for numbers whose squares overflow: neither a length of them nor a ratio of two would mean anything.
 bool finite(const double* values, size_t count) noexcept HSP_RT {
   for (size_t i = 0; i < count; ++i)
     if (!(std::abs(values[i]) <= kLargest)) return false;
@@ -168,7 +168,7 @@ void Core::bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT {
   }
 }
 
-/// A wall whose force grows with depth stores less than force times depth. What deforms says itself what it stores.
+/// A wall whose force grows with depth stores less than force times depth. A soft shape tells what it stores.
 void Core::bookContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT {
   const ConstMap force(contact.world.force);
   if (force.isZero(0)) return;

@@ -124,7 +124,7 @@ bool Follow::aim(const hapticd_target& target, double t) noexcept HSP_RT {
 void Follow::step(double t, double dt, hsp_pose& pose) noexcept HSP_RT {
   if (rests_) return;
   const double reach = reachOf(t - t_target_);
-  // Not the twist of this moment but its mean over the tick: so a leader that keeps its velocity is met exactly.
+  // Not the twist of this moment but its mean over the tick, so that a leader of constant velocity is met exactly.
   const double trust = dt > 0 ? (reach - reachOf(t - t_target_ - dt)) / dt : 0;
   stepPosition(trust, reach, dt);
   stepOrientation(trust, reach, dt);

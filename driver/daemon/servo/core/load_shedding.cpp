@@ -7,7 +7,7 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr uint32_t kWeight = 4;  ///< of a tick that was too long against one that was not: every fifth is forgiven
+constexpr uint32_t kWeight = 4;  ///< weight of a tick that was too long against a good one: every fifth is forgiven
 
 bool lowers(const Load& load) noexcept HSP_RT {
   return load.step_ns > 0 && load.level < Accuracy::kCoarsest;
@@ -70,7 +70,7 @@ void LoadShedding::lower(std::span<const Load> loads, uint64_t spent, uint64_t b
   }
 }
 
-/// The most important first, if what it took before still fits; after long patience even so, for it may be cheaper now.
+/// Raises the most important first, if its former cost still fits; after long patience even if it does not.
 void LoadShedding::raise(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT {
   const Load* best = nullptr;
   for (const Load& load : loads)

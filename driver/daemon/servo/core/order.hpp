@@ -45,7 +45,7 @@ struct Order {
   uint32_t place = 0;   ///< of leads of a force: which of the arm's
   double value = 0;     ///< kSet; kAccuracy: the level; kCut: 1 found before the tick's read, 0 at its write
   double seconds = 0;  ///< kMove: how long it takes at least, 0: the servo's choice; kCut: how long the servo was stuck
-  double position[3] = {}, orientation[4] = {1, 0, 0, 0};  ///< kMove: world frame; no orientation (zeros): as it is
+  double position[3] = {}, orientation[4] = {1, 0, 0, 0};  ///< kMove: world frame; no orientation (zeros): it stays
   ModelState* model = nullptr;                             ///< kAdopt: exchanged with the empty place
   const link::PoseSlot* slot = nullptr;                    ///< kLead: its memory, valid until kUnlead was obeyed
   const link::PushSlot* push = nullptr;                    ///< the same, for a force

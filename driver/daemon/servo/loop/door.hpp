@@ -23,7 +23,7 @@ class Door {
  public:
   static constexpr uint32_t kStateAt = sizeof(hapticd_state_page);  ///< [bytes] of the first arm
   static constexpr uint32_t kStateStride = 1152;                    ///< [bytes] whole cache lines
-  static constexpr int kMostWoken = 16;  ///< at a time: a crowd that waits must not hold up a tick
+  static constexpr int kMostWoken = 16;  ///< programs woken at a time: a crowd that waits must not delay a tick
 
   static constexpr size_t stateBytes(size_t arms) { return kStateAt + arms * kStateStride; }
 

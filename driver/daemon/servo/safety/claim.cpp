@@ -67,7 +67,7 @@ double Claim::holdBack(Vector3d& let, const Vector3d& from, const Vector3d& chan
   held = size > most && !mayJump(step);
   if (held) let = from + change * (most / size);
   if (!held && (size > most || size <= follows)) return 1;
-  // What somebody asked for comes slowly: until it is there, it is not the plugin that goes too far.
+  // What somebody asked for comes slowly; until it is there, the plugin is not at fault.
   if (asked_ && dt > 0) excused_ = std::max(excused_, std::min(kExcused, size / room.drift * dt));
   return follows / std::min(size, most);
 }
@@ -168,7 +168,7 @@ double Claim::angle(const ClaimStep& step, const ClaimBounds& bounds) const noex
 }
 
 bool pullsIn(const hsp_contact& contact, const Vector3d& p) noexcept HSP_RT {
-  constexpr double kSmallest = 1e-6, kRounding = 0.01;  // [m] to a foot that tells no direction; [N], and of the force
+  constexpr double kSmallest = 1e-6, kRounding = 0.01;  // [m] a foot nearer than this gives no direction; [N]
   if ((contact.flags & HSP_OUT_TRACED) == 0) return false;
   const Vector3d force(contact.force), out = Vector3d(contact.point) - p;
   const double outward = contact.depth_m > 0 ? force.dot(out) : -force.dot(out);

@@ -25,7 +25,7 @@ struct ClaimStep {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< outward, if a surface is traced
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();   ///< [m] the probe
   Eigen::Vector3d p_model = Eigen::Vector3d::Zero();   ///< [m] the same in the frame of the model, after the step
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s] relative to the model; zero where it asks for none
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s] relative to the model; zero if it asks for none
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();    ///< [m] of the model, after the step
   const Eigen::Matrix3d* turn = nullptr;               ///< of the model since its last step; nullptr: it does not turn
   double max_force = 0;      ///< [N] that the arm lets through; 0: unknown. Larger forces are not compared.
@@ -44,7 +44,7 @@ class Claim {
   static constexpr double kMargin = 10;       ///< laws of contact are steeper in places than their authors think
   static constexpr double kStep = 2;          ///< [N] a click may come as suddenly as this
   static constexpr double kUnclaimed = 2000;  ///< [N/m] used where nothing is claimed
-  static constexpr double kDamping = 100;     ///< [N s/m] allowed to every shape: friction and inertia work like it
+  static constexpr double kDamping = 100;     ///< [N s/m] allowed to every shape: friction and inertia act like it
   static constexpr double kDrift = 100;       ///< [N/s] by which a force may change with nothing to explain it
   static constexpr double kOwnSpeed = 5;      ///< [m/s] speed of a surface that moves itself
   static constexpr double kOwnTurn = 50;      ///< [rad/s] the same

@@ -29,7 +29,7 @@ bool cap(Vector3d& v, double most) noexcept HSP_RT {
   return true;
 }
 
-/// A force may grow and turn only so fast; it may always shrink, because what a shape no longer gives is never held.
+/// A force may grow and turn only at a bounded rate. It may always shrink: what a shape no longer gives is never held.
 /// @param slow the force as it would be if it never changed faster than the limit
 bool limitSlew(Vector3d& v, const Vector3d& slow, double most) noexcept HSP_RT {
   const double asked = v.norm();
