@@ -13,7 +13,7 @@ constexpr Nanoseconds kSearchPause = 100 * kMillisecond;
 constexpr Nanoseconds kFirstReport = 1000 * kMillisecond;
 constexpr Nanoseconds kOld = 5 * kMillisecond;  ///< old reports that waited for a reader arrive within this time
 constexpr int kMostReportsAtOnce = 64;          ///< how many reports the kernel keeps for a hidraw device
-constexpr int kAbove = 1;  ///< above the servo's priority, because a late sample is worth nothing
+constexpr int kAbove = 1;                       ///< above the servo's priority, because a late sample is worth nothing
 
 void pause(Nanoseconds time) noexcept {
   RealClock clock(0);

@@ -28,7 +28,7 @@ struct LinkSettings {
   Address address;
   SessionSettings session;
   std::function<void(int level, const std::string&)> log;  ///< [any thread] tells users what they should know
-  std::function<Zero(const Identity&)> zero;  ///< I/O thread: the offsets that an earlier calibration stored
+  std::function<Zero(const Identity&)> zero;        ///< I/O thread: the offsets that an earlier calibration stored
   std::function<Result<void>(Transport&)> prepare;  ///< more than wire.startup, such as a firmware upload; may be empty
 };
 
