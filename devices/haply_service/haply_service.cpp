@@ -66,7 +66,7 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
         F::real("force", &HaplyArm::force, "N", 0.1, 100, 5, "Largest force."),
         F::real("reach", &HaplyArm::reach, "m", 0.01, 2, 0.3,
                 "The tip is nowhere farther from the origin on any axis."),
-        F::integer("rate", &HaplyArm::rate, "Hz", 100, 8000, 2000, "Exchanges with the service a second, at most."),
+        F::integer("rate", &HaplyArm::rate, "Hz", 100, 8000, 2000, "Exchanges with the service per second, at most."),
     };
   }
 

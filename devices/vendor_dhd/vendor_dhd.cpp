@@ -41,7 +41,7 @@ class DhdArm : public vendor_arm::CartesianArm<DhdArm> {
         F::integer("index", &DhdArm::index, "", 0, 15, 0, "Which of the arms that the library finds, from 0."),
         F::real("force", &DhdArm::force, "N", 0.1, 100, 5, "Largest force."),
         F::real("reach", &DhdArm::reach, "m", 0.01, 2, 0.3, "The tip is nowhere farther from the origin on any axis."),
-        F::integer("rate", &DhdArm::rate, "Hz", 100, 8000, 2000, "Exchanges with the library a second, at most."),
+        F::integer("rate", &DhdArm::rate, "Hz", 100, 8000, 2000, "Exchanges with the library per second, at most."),
     };
   }
 

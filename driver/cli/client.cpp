@@ -111,7 +111,7 @@ Result<pid_t> startDaemon(const ClientArguments& options) {
   }
   kill(child, SIGTERM);
   endOf(child);
-  return Error{"the daemon cannot be asked after 30 s\n  fix: start it by itself (hapticd run) and see what it says"};
+  return Error{"the daemon did not answer within 30 s\n  fix: start it by itself (hapticd run) and see what it says"};
 }
 
 int runWithDaemon(const ClientArguments& options, const std::vector<std::string>& words) {

@@ -113,7 +113,7 @@ int stop(const CtlArguments& options, const std::string& line) {
   if (told != kWorked || control::waitForEnd(socketOf(options), kPatience)) return told;
   return fail(kFailed,
               "the daemon " + options.name +
-                  " was told to end, and has not within 10 s; its forces are off\n  fix: wait for its process, or "
+                  " was told to end, but did not within 10 s; its forces are off\n  fix: wait for its process, or "
                   "end it with kill PID (hapticd top shows it)");
 }
 

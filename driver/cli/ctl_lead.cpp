@@ -62,7 +62,7 @@ Result<hapticd_target> targetOf(std::string line) {
 }
 
 int tellOfEnd() {
-  return fail(kFailed, "the daemon has ended, or it ended this lead: nothing follows any more");
+  return fail(kFailed, "the daemon has ended, or it ended this lead: nothing is led any more");
 }
 
 /// Each line is one target, which is sent as soon as it is read. @return the exit code

@@ -40,7 +40,7 @@ Result<std::vector<scene::Device>> devicesOf(const ExamineArguments& options) {
   const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
   printProblems(loaded.problems, stderr);
   if (loaded.device) return std::vector<scene::Device>{*loaded.device};
-  return Error{options.file + " is no device file without problems, nor a module (FILE.so); see above"};
+  return Error{options.file + " is neither a valid device file nor a module (FILE.so); see above"};
 }
 
 const char* wordFor(Passed verdict) {

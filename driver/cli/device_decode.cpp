@@ -196,7 +196,7 @@ std::optional<std::string> tableOf(const DecodeArguments& options) {
            std::nullopt;
   PlainTable plain = plainTable(*text);
   if (plain.left_out > 0)
-    std::fprintf(stderr, "note: %s: rows that are no good report are left out: %zu\n", options.input.c_str(),
+    std::fprintf(stderr, "note: %s: rows that are not a good report are left out: %zu\n", options.input.c_str(),
                  plain.left_out);
   return std::move(plain.text);
 }

@@ -114,7 +114,7 @@ class Questions {
       std::string answer;
       if (!std::getline(std::cin, answer) || answer.empty()) return;
       const bool read = command_line::read(answer, value);
-      const std::string what = read ? wrong() : "\"" + answer + "\" is no number";
+      const std::string what = read ? wrong() : "\"" + answer + "\" is not a number";
       if (what.empty()) return;
       std::cout << "  " << what << "\n";
     }
@@ -128,7 +128,7 @@ class Questions {
       std::cout << question << ": " << std::flush;
       std::string answer;
       if (!std::getline(std::cin, answer) || answer.empty()) return;
-      const std::string what = readNumbers(answer, list) ? wrong() : "\"" + answer + "\" is no list of numbers";
+      const std::string what = readNumbers(answer, list) ? wrong() : "\"" + answer + "\" is not a list of numbers";
       if (what.empty()) return;
       std::cout << "  " << what << "\n";
     }
@@ -323,7 +323,7 @@ int makeNew(const Command& command, NewDeviceArguments options) {
   const std::string name = file.string();
   if (!problems.empty())
     return fail(kFailed,
-                name + " is written, but cannot be used yet\n  fix: what is said above, then hapticd check " + name);
+                name + " is written, but cannot be used yet\n  fix: mend these problems, then hapticd check " + name);
   const std::string twin = options.kind == "delta"
                                ? ""  // the simulated arm does not have this mechanism
                                : "  hapticd device twin " + name +

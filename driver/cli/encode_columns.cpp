@@ -57,7 +57,7 @@ Result<EncodeColumns> encodeColumns(const std::vector<std::string>& names, const
     const bool own = among(known, names[i]), alias = number > 0 && number <= joints && among(known, meant);
     if (!own && !alias && !ofKinematics(names[i], joints))
       return Error{"its first line has \"" + names[i].substr(0, 40) +
-                   "\", which is no number and no column of the report; expected columns among " + inOneLine(known)};
+                   "\", which is neither number nor column of the report; expected columns among " + inOneLine(known)};
     poses |= !own && !alias;
     if (own || alias) columns.names.push_back(own ? names[i] : meant), columns.from.push_back(i);
   }

@@ -141,7 +141,7 @@ int plot(const PlotArguments& options) {
   if (const std::string wrong = overwrites(out, {{options.file, "the recording"}}); !wrong.empty())
     return fail(kBadInput, wrong);
   if (options.from && options.to && *options.from >= *options.to)
-    return fail(kBadInput, "--from is not before --to, expected a time before it");
+    return fail(kBadInput, "--from is not before --to, expected an earlier time");
   auto recording = record::Recording::open(options.file);
   if (!recording) return fail(kBadInput, recording.error());
   if (const std::string& damage = (*recording)->damage(); !damage.empty())

@@ -330,7 +330,7 @@ int top(const TopArguments& options) {
   if (!options.once) return options.json ? stream(options, page) : watch(options, page);
   if (ended(page))
     return fail(kFailed, "the daemon " + options.name +
-                             " is no more: it was killed, or it crashed\n  fix: start it again with hapticd run");
+                             " has gone: it was killed, or it crashed\n  fix: start it again with hapticd run");
   View view = look(page);
   const bool still = standsStill(page, view.now.tick);
   view.held = view.now.t > 0 && !still ? static_cast<double>(view.now.tick) / view.now.t : 0;

@@ -69,7 +69,7 @@ class Parser {
   std::optional<CsvTable> take() {
     line_ = std::max(line_, 1);
     if (wrong_ == 0 && table_.lines.empty())
-      problem(0, "", "no rows, expected a header " + expected() + " and at least one row");
+      problem(0, "", "there are no rows, expected a header " + expected() + " and at least one row");
     return wrong_ == 0 ? std::optional(std::move(table_)) : std::nullopt;
   }
 

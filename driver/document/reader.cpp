@@ -184,7 +184,7 @@ std::optional<Eigen::Quaterniond> Reader::quaternion(const Node& node, const std
   for (const Node& item : node.items)
     if (const auto value = toNumber(item.scalar);
         item.isScalar() && value && std::isfinite(*value) && std::abs(*value) > 2) {
-      problem(item, key, item.scalar + " is no part of a rotation, " + kNoDegrees);
+      problem(item, key, item.scalar + " does not belong to a rotation, " + kNoDegrees);
       return std::nullopt;
     }
   std::array<double, 4> v{};

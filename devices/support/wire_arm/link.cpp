@@ -136,7 +136,7 @@ Result<void> Link::start() {
   }
   stop();
   return Error{"opened, but " + std::string(describe(session_.trouble())) + "; expected " +
-               std::to_string(static_cast<int>(wire_.rate)) + " reports a second, the motors stay off"};
+               std::to_string(static_cast<int>(wire_.rate)) + " reports per second, the motors stay off"};
 }
 
 Result<void> Link::capture(hdv_take_transfer take, void* who) {

@@ -32,7 +32,7 @@ const char* describe(Trouble trouble) noexcept {
     case Trouble::kStale:
       return "no new reports; look at power and cable";
     case Trouble::kSlow:
-      return "too few reports a second; look at the hub, or correct wire.rate";
+      return "too few reports per second; look at the hub, or correct wire.rate";
     case Trouble::kJump:
       return "an encoder jumped; calibrate again";
     case Trouble::kHardware:

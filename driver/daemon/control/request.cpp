@@ -245,7 +245,7 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
     return Error{"expected a JSON object in one line, as {\"do\": \"status\"}" + noJsonNumber(line)};
   if (!watch.twice.empty())
     return Error{Json(watch.twice.substr(0, 64)).dump(-1, ' ', true, Json::error_handler_t::replace) +
-                 " stands there twice, expected it once"};
+                 " is given twice, expected once"};
   if (const std::string wrong = readId(json, id); !wrong.empty()) return Error{wrong};
   const auto word = json.find("do");
   const Form* form = word != json.end() && word->is_string() ? formOf(word->get_ref<const std::string&>()) : nullptr;

@@ -30,7 +30,7 @@ class InverseCheck {
     if (found.overrun()) return keep("writes beyond the joint_count numbers of q");
     if (status < 0) return ++refused_, status_ = status, void();
     if (!found.finite())
-      return keep("gives joints that are no numbers for " + metres(tip.position) + ", and says HSP_OK");
+      return keep("gives joints that are not numbers for " + metres(tip.position) + ", and says HSP_OK");
     Joints back = Joints::Zero();
     std::copy_n(found.data(), calls_.joints(), back.data());
     Tip again;

@@ -31,7 +31,7 @@ Registry& registry() {
 
 /// The entry of a built-in plugin or module, which is of one of the two kinds.
 Result<const void*> linked(const void* entry) {
-  if (entry == nullptr) return Error{"what is built in under this name is of the other kind"};
+  if (entry == nullptr) return Error{"the built-in class of this name is of the other kind"};
   return entry;
 }
 

@@ -41,7 +41,7 @@ Result<std::string> runInChild(const std::function<std::string()>& work, int) {
 }
 
 Result<std::string> runProgram(std::vector<std::string>, int) {
-  return Error{"could not be tried: this program starts no other"};
+  return Error{"could not be tried: this program cannot start another"};
 }
 
 void answerParent(const std::function<std::string()>&) {

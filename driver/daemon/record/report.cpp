@@ -202,7 +202,7 @@ std::string clientText(const ClientReport& client, double answer_time) {
                         client.bounded);
   if (client.refused > 0) text += fmt::format("  {} answers were refused: {}\n", client.refused, client.why);
   if (!late(client)) return text;
-  return text + "  a tick of delay cuts the stiffest stable wall to a third\n  fix: " + lateFix(answer_time) + "\n";
+  return text + "  one tick of delay cuts the stiffest stable wall to a third\n  fix: " + lateFix(answer_time) + "\n";
 }
 
 }  // namespace

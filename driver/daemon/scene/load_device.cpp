@@ -75,7 +75,7 @@ void refuseNoForce(const Node& root, Reader& in) {
   if (force == nullptr || !force->isScalar() || document::toNumber(force->scalar) != 0.0) return;
   in.problem(
       *force, "limits.force",
-      "0 N is no limit that an arm can keep; expected above 0, such as 0.5 N to begin with. Leave it out for the "
+      "0 N is not a limit that an arm can keep; expected above 0, such as 0.5 N to begin with. Leave it out for the "
       "device's own maximum; to run without a force: models: []");
 }
 

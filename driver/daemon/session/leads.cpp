@@ -30,7 +30,7 @@ Result<void> Leads::findPlace(Target& target, const control::Peer& peer) {
   const auto others = pushers(target.index);
   if (exclusive_ && !others.empty())
     return Error{target.name + " is pushed on by process " + std::to_string(others.front().pid) +
-                 " already, and the scene lets one program alone (clients.exclusive)"};
+                 " already, and the scene allows only one (clients.exclusive)"};
   for (const Lead& lead : leads_)
     if (same(lead.target, target) && lead.peer.id == peer.id)
       return Error{target.name + " is pushed on by this connection already"};
@@ -40,7 +40,7 @@ Result<void> Leads::findPlace(Target& target, const control::Peer& peer) {
         std::any_of(others.begin(), others.end(), [&](auto& other) { return other.place == target.place; });
     if (!taken) return {};
   }
-  return Error{target.name + " is pushed on by " + std::to_string(others.size()) + " programs already, as many as can"};
+  return Error{target.name + " is pushed on by " + std::to_string(others.size()) + " programs already, the limit"};
 }
 
 Result<Descriptor> Leads::begin(Target target, const control::Peer& peer) {

@@ -86,7 +86,7 @@ control::Reply RequestHandler::answer(const control::Peer& peer, const std::stri
     if (!done) return control::withId(control::refusal(done.error(), code_), id);
     return {control::withId(*done, id), std::move(attached_)};
   } catch (const std::exception& error) {
-    return control::withId(control::refusal(std::string("it failed: ") + error.what(), "failed"), id);
+    return control::withId(control::refusal(std::string("the request failed: ") + error.what(), "failed"), id);
   }
 }
 
@@ -301,7 +301,7 @@ Result<std::string> RequestHandler::move(const Request& request) {
 /// A hold that came while this waited for its turn is the newer wish.
 Result<void> RequestHandler::clear(const control::Peer& peer, const std::string& device) {
   if (peer.asked != 0 && peer.asked < held_at_.load())
-    return refuse("held", "a hold came after this request\n  fix: ask again if the force shall come back");
+    return refuse("held", "a hold came after this request\n  fix: ask again if the force is wanted");
   const auto& devices = runner_.scene().devices;
   bool found = false;
   for (uint32_t i = 0; i < devices.size(); ++i) {

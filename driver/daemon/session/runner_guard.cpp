@@ -33,7 +33,7 @@ void Runner::keepGuard() {
   if (guards_ended_ > kMost) return;
   if (guard_->alive()) return tellGuard();
   const bool again = ++guards_ended_ <= kMost;
-  const Result<void> begun = again ? guard_->restart() : Error{"it ended again and again"};
+  const Result<void> begun = again ? guard_->restart() : Error{"it ended repeatedly"};
   log::write(begun ? HSP_LOG_WARNING : HSP_LOG_ERROR, "",
              begun ? "the guard process ended; another watches in its place"
                    : "the guard process ended, and there is no other: " + begun.error());

@@ -39,7 +39,7 @@ void converse(websocket::Channel& channel, const std::string& daemon, int number
     text = (*session)->answer(*message);
     say(number, (*session)->complaint());
   }
-  if (text.empty()) say(number, "the daemon tells of no tick any more");
+  if (text.empty()) say(number, "the daemon reports no more ticks");
 }
 
 struct Visit {

@@ -122,7 +122,7 @@ std::string Session::answer(const std::string& message) {
 void Session::obey(const Json& message) {
   const Json& permutation = childOf(childOf(childOf(childOf(message, "session"), "configure"), "basis"), "permutation");
   if (permutation.is_string() && !basis_.set(permutation.get<std::string>()))
-    complain("the basis \"" + permutation.get<std::string>().substr(0, 40) + "\" is no permutation of X, Y and Z");
+    complain("the basis \"" + permutation.get<std::string>().substr(0, 40) + "\" is not a permutation of X, Y and Z");
   for (const Json& device : childOf(message, "inverse3")) {
     const Json& id = childOf(device, "device_id");
     if (!id.is_string()) continue;

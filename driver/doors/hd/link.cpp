@@ -66,7 +66,7 @@ std::shared_ptr<Link> Link::open(const std::string& name, Facts& facts, std::str
   hapticd_state first;
   constexpr int kFirstMs = 1000;
   if (hapticd_next_state(client.get(), device, UINT64_MAX, kFirstMs, &first) != 1)
-    return why = "the daemon tells of no tick for 1 s", nullptr;
+    return why = "the daemon has reported no tick for 1 s", nullptr;
   auto link = std::make_shared<Link>(client.get(), device);
   (void)client.release();
   return link;

@@ -32,7 +32,7 @@ bool becomeRealTime() {
   const sched_param priority{kPriority};
   if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) == 0) return true;
   hintOnce(
-      "no real-time priority for the servo loop: forces may be felt a tick late\n"
+      "no real-time priority for the servo loop: forces may be felt one tick late\n"
       "  fix: join the group haptic (`hapticd doctor` says how)");
   return false;
 }

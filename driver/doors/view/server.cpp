@@ -198,8 +198,8 @@ void Connection::read() {
 }
 
 void Connection::onRead(ErrorCode error) {
-  if (error == http::error::header_limit) return refuse(431, "the head of a request has at most 8 KiB");
-  if (error == http::error::body_limit) return refuse(413, "a request has no body");
+  if (error == http::error::header_limit) return refuse(431, "the head of a request may have at most 8 KiB");
+  if (error == http::error::body_limit) return refuse(413, "a request must have no body");
   if (error.category() == make_error_code(http::error::bad_method).category() && error != http::error::end_of_stream)
     return refuse(400, "this is not HTTP");
   if (error) return;  // gone, or too slow: the socket closes with this object

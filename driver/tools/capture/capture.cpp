@@ -70,7 +70,7 @@ std::string shown(const std::string& line) {
 
 /// How to come to such text from what this seems to be.
 std::string otherForm(const std::string& text) {
-  if (!std::all_of(text.begin(), text.end(), isPrintable)) return "; this is no text, leave --hex out";
+  if (!std::all_of(text.begin(), text.end(), isPrintable)) return "; this is not text, leave --hex out";
   const bool dump = text.rfind("00000000", 0) == 0;  // xxd and hexdump -C begin so
   return dump ? "; a dump with addresses: give the file itself, or `xxd -p -c SIZE`" : "";
 }

@@ -59,7 +59,7 @@ Finding judge(const std::vector<ClientNow>& clients, double answer_time, Finding
     if (late && before.verdict == Verdict::kOk) before = {before.name, Verdict::kWarn, "", "", ""};
     before.state += (before.state.empty() ? "" : "; ") + stateOf(client.report);
     if (!late) continue;
-    before.consequence = "a tick of delay cuts the stiffest stable wall to a third";
+    before.consequence = "one tick of delay cuts the stiffest stable wall to a third";
     if (before.fix.empty()) before.fix = fixOf(client.report, answer_time);
   }
   return before;

@@ -120,7 +120,7 @@ Result<Triangles> parseStl(const std::string& bytes, const std::string& file) {
     corners.clear();
   }
   if (mesh.corners.empty())
-    return Error{file + ": no triangles, expected an STL of text (solid, facet, vertex x y z) or a whole binary one"};
+    return Error{file + ": has no triangles, expected a text STL (solid, facet, vertex x y z) or a whole binary one"};
   return mesh;
 }
 

@@ -58,8 +58,8 @@ class Search {
     if (!met)
       return Error{
           "the motion comes near no model, so there is no error to measure\n"
-          "  expected: a tip that touches what the scene is about\n"
-          "  fix: give one with --probe FILE, or one that a hand made with --motion RECORDING"};
+          "  expected: a tip that touches the models of the scene\n"
+          "  fix: give such a motion with --probe FILE, or a recorded one with --motion RECORDING"};
     plan();
     for (size_t i = 0; i < planned_.size() && going_; ++i)
       if (auto tried = attempt(planned_[i]); !tried) return Error{tried.error()};

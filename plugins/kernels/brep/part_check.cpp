@@ -193,7 +193,7 @@ class Checker {
   /// Points of `dimension` coordinates, then weights.
   void net(const Where& at, std::uint64_t place, std::uint64_t points, std::uint64_t dimension, bool rational,
            double farthest) const {
-    if (points > part_.reals.size()) at.fail("more control points than numbers");
+    if (points > part_.reals.size()) at.fail("it has more control points than numbers");
     at.range_in(place, points * (dimension + (rational ? 1 : 0)), part_.reals.size(), "points");
     for (double value : real(place, points * dimension))
       at.finite(std::array{value}, farthest, "a coordinate of a control point");
@@ -358,7 +358,7 @@ class Checker {
       triangles += body.triangle_count;
       for (std::uint32_t i = 0; i < body.face_count; ++i)
         if (part_.faces[body.first_face + i].body != b)
-          Where{"body", b}.fail("face " + std::to_string(body.first_face + i) + " is of another body");
+          Where{"body", b}.fail("face " + std::to_string(body.first_face + i) + " belongs to another body");
     }
     heldOnce(faces, part_.faces.size(), "faces");
     heldOnce(triangles, part_.triangles.size(), "triangles");

@@ -40,7 +40,7 @@ FeltSurface::FeltSurface(Nodes& nodes, const std::vector<Tissue>& tissue, std::v
   if (tissue.size() != 1 && tissue.size() != nodes.count())
     throw std::invalid_argument("felt surface: " + std::to_string(tissue.size()) + " materials, expected 1 or " +
                                 std::to_string(nodes.count()));
-  if (compliance_.size() != nodes.count()) throw std::invalid_argument("felt surface: one compliance a node expected");
+  if (compliance_.size() != nodes.count()) throw std::invalid_argument("felt surface: expected a compliance per node");
   const double g = nodes.options().split;
   shares_ << g, g, g, 1 - g;
   for (const Tissue& t : tissue) share_ = std::max(share_, t.relaxation_share);

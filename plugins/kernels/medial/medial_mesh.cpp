@@ -38,7 +38,7 @@ void requireCorners(const std::array<int, kCount>& corners, std::size_t vertices
 }  // namespace
 
 MedialMesh::MedialMesh(const MeshData& data) : vertices_(data.vertices) {
-  if (vertices_.empty()) throw std::invalid_argument("no vertices, expected at least one");
+  if (vertices_.empty()) throw std::invalid_argument("there are no vertices, expected at least one");
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     const Sphere& s = vertices_[i];
     if (!s.center.allFinite() || !std::isfinite(s.radius) || s.radius < 0)

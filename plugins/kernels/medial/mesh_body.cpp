@@ -26,7 +26,7 @@ std::vector<double> oneOrAll(const std::vector<double>& values, std::size_t vert
   if (values.empty()) return {0};
   if (values.size() != 1 && values.size() != vertices)
     throw std::invalid_argument(std::string(what) + ": " + std::to_string(values.size()) + " values, expected " +
-                                std::to_string(vertices) + ", one a vertex");
+                                std::to_string(vertices) + ", one per vertex");
   for (const double value : values)
     if (!(value >= 0) || !std::isfinite(value))
       throw std::invalid_argument(std::string(what) + ": " + std::to_string(value) +

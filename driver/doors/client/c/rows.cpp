@@ -50,7 +50,7 @@ Result<void> Rows::readStreams() {
   auto* header = reinterpret_cast<record::FileHeader*>(memory_.at(record::kHeaderAt, sizeof(record::FileHeader)));
   if (header == nullptr || std::strncmp(header->magic, record::kRecordingFormat, sizeof header->magic) != 0 ||
       header->ring != 1 || header->stream_count > record::kMaxStreams)
-    return Error{"is no black box of a daemon that this library knows"};
+    return Error{"is not a black box of a daemon that this library knows"};
   const auto* about = reinterpret_cast<const char*>(memory_.at(header->about_address, header->about_bytes));
   if (about == nullptr) return Error{"ends inside its description"};
   about_.assign(about, header->about_bytes);

@@ -73,7 +73,7 @@ Result<MeshFile> parseTextStl(std::string_view bytes, const std::string& name) {
     if (mesh.corners.size() > kMostTriangles) return tooMany(name + ": ");
   }
   if (mesh.corners.empty())
-    return Error{name + ": no triangles, expected an STL of text (solid, facet, vertex x y z) or a whole binary one"};
+    return Error{name + ": has no triangles, expected a text STL (solid, facet, vertex x y z) or a whole binary one"};
   return mesh;
 }
 
@@ -119,7 +119,7 @@ Result<MeshFile> parseObjMesh(std::string_view bytes, const std::string& name) {
     for (std::size_t k = 2; k < polygon.size(); ++k) mesh.corners.push_back({polygon[0], polygon[k - 1], polygon[k]});
     if (mesh.corners.size() > kMostTriangles) return tooMany(where());
   }
-  if (mesh.corners.empty()) return Error{name + ": no triangles, expected lines f i j k"};
+  if (mesh.corners.empty()) return Error{name + ": has no triangles, expected lines f i j k"};
   return mesh;
 }
 
