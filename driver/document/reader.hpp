@@ -22,7 +22,7 @@ struct Range {
 /// "0 to 20000 N/m", "0 N/m or more".
 std::string expectedOf(const Range& range);
 
-/// Shortest text that reads back as the number.
+/// The shortest text that reads back as the same number.
 std::string numberText(double value);
 
 class Reader {
@@ -45,7 +45,7 @@ class Reader {
   std::optional<std::string> text(const Node& node, const std::string& key);
   /// A name that may stand in a table's column: no comma, quote or control character.
   std::optional<std::string> name(const Node& node, const std::string& key);
-  /// Absolute path of a file that exists; relative ones are seen from the folder of the file being read.
+  /// The absolute path of a file that exists; relative paths start from the folder of the file being read.
   std::optional<std::filesystem::path> existingFile(const Node& node, const std::string& key);
   std::optional<Eigen::Vector3d> vector3(const Node& node, const std::string& key, const Range& range);
   /// w, x, y, z; normalised if its length is 1 within 1e-3.

@@ -20,7 +20,7 @@ const Json& childOf(const Json& json, const char* key) {
   return it != json.end() ? *it : nothing;
 }
 
-/// Three finite numbers, all of them there.
+/// Reads three finite numbers, if all of them are there.
 bool readVector(const Json& json, double v[3]) {
   const char* axes[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
@@ -45,7 +45,7 @@ Json stateOf(const hapticd_state& state, const double wanted[3], const Basis& ba
           {"control_mode", "force"}};
 }
 
-/// The handle: the orientation of the tip, and buttons.
+/// The handle: the orientation of the tip, and the buttons.
 Json gripOf(const hapticd_state& state, const std::string& id, const Basis& basis) {
   const auto q = basis.turnFromWorld(state.orientation);
   return {{"device_id", id},
