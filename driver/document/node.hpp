@@ -39,7 +39,7 @@ struct Entry {
 constexpr size_t kMaxFileBytes = 32u << 20;  ///< a scene of 10,000 models is 2 MB
 constexpr int kMaxDepth = 48;
 constexpr size_t kMaxNodes = 4'000'000;
-/// Of a short text, aliases included: "a billion laughs" ends here. Without aliases a byte is at most two values.
+/// Values of a short text, aliases included: this stops "a billion laughs". Without aliases a byte gives two at most.
 constexpr size_t maxNodes(size_t bytes) {
   return bytes < kMaxNodes / 4 - 5'000 ? 20'000 + 4 * bytes : kMaxNodes;
 }

@@ -51,7 +51,7 @@ class Reader {
   /// w, x, y, z; normalised if its length is 1 within 1e-3.
   std::optional<Eigen::Quaterniond> quaternion(const Node& node, const std::string& key);
 
-  /// A mapping by its table: unknown keys, values and required keys are checked, values stored in `object`.
+  /// Reads a mapping by its table: checks unknown keys, values and required keys, and stores values in `object`.
   void object(const Node& node, const std::string& key, const Table& table, void* object);
 
  private:

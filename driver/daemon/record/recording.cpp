@@ -137,7 +137,7 @@ Result<void> Recording::readBlocks(std::span<const std::byte> bytes, uint64_t ad
   while (const auto block = at<BlockHeader>(bytes, address)) {
     const uint64_t from = address + sizeof *block;
     if (block->magic != BlockHeader::kMagic || block->bytes > bytes.size() - from)
-      break;  // the writer ended here
+      break;  // the writer was cut off here
     address = from + block->bytes;
     if (block->stream == BlockHeader::kIndex || block->stream >= streams_.size()) continue;
     RecordedStream& stream = streams_[block->stream];

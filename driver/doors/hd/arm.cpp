@@ -25,7 +25,7 @@ uint32_t bitOf(HDenum capability) {
 
 constexpr uint32_t kNone = 0, kStopped = 8;  ///< hapticd_state.fault: none; the arm is held, or the daemon ends
 
-/// What the daemon's reasons for not letting a force flow are here (hapticd_state.fault). HD_SUCCESS: nothing to tell.
+/// The daemon's reasons for withholding a force (hapticd_state.fault) in the HDAPI. HD_SUCCESS: nothing to report.
 HDerror errorOf(uint32_t fault) {
   constexpr uint32_t kDeviceLost = 2, kStale = 4, kTooFast = 5, kOverheated = 10;
   switch (fault) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint64_t kSecond = 1'000'000'000, kMillisecond = 1'000'000;  // [ns]
 constexpr int kPatienceMs = 20;                                        ///< after this time the library ticks by itself
-constexpr uint64_t kSilentNs = 500 * kMillisecond;  ///< then the daemon counts as gone, although its process may live
+constexpr uint64_t kSilentNs = 500 * kMillisecond;  ///< then the daemon counts as gone, even if its process lives
 constexpr uint64_t kLookNs = 100 * kMillisecond;    ///< time between two checks whether the process lives
 
 void sleepNs(uint64_t ns) {

@@ -21,7 +21,7 @@ class Peer {
   /// [main] Sends text (JSON) after everything that waits. If more than kMostWaiting bytes wait, the connection ends.
   virtual void text(std::string json) = 0;
   virtual void binary(Message bytes) = 0;  ///< [main] sends bytes in the same way
-  /// [main] Nothing waits to be sent: who sends newest values only then skips what a slow reader cannot take.
+  /// [main] True if nothing waits to be sent: newest values sent only then skip what a slow reader cannot take.
   virtual bool idle() const = 0;
 
   static constexpr size_t kMostWaiting = 64u << 20;  ///< [bytes] size of the meshes of a large scene
@@ -37,7 +37,7 @@ class Conversation {
 
   virtual void onText(std::string_view text) = 0;               ///< [main] a message came
   virtual void onBinary(std::span<const std::byte> bytes) = 0;  ///< [main] the same
-  virtual void onTick() = 0;                                    ///< [main] 60 times a second: newest values
+  virtual void onTick() = 0;                                    ///< [main] 60 times per second: sends newest values
 };
 
 }  // namespace hapticd::view

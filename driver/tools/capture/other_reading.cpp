@@ -69,7 +69,7 @@ std::string wordsOf(const Field& field, const Reading& reading) {
   return words;
 }
 
-/// The likeliest first. A number that is turned about the middle of its range is a complement of its bits.
+/// The likeliest first. A number that is reversed about the middle of its range is a complement of its bits.
 std::vector<Reading> readingsOf(const Field& field) {
   using Code = Reading::Code;
   const double range = spanOf(field);

@@ -18,7 +18,7 @@ struct ArmFacts {
   double least_rate = 0.57;        ///< share of wire.rate: with fewer reports no torque is sent
 };
 
-/// [main] One line for each joint whose positions leave its limits, or jump faster than it can move; "": none.
+/// [main] One line for each joint that leaves its limits, or jumps faster than it can move; "" if none does.
 std::string implausible(const codec::Wire& wire, const ArmFacts& arm, const Decoded& decoded);
 
 }  // namespace hapticd::capture

@@ -47,7 +47,7 @@ std::string opens(const scene::Device& device) {
   return fmt::format("note: \"{}\", {} joints, {:g} Hz", info.product, info.joint_count, info.rate_hz);
 }
 
-/// A number of hdv_info that no arm has was meant in other units.
+/// A number of hdv_info that no arm has: it was meant in other units.
 std::string unlikely(const hdv_info& info) {
   const std::tuple<double, double, const char*, const char*> numbers[] = {
       {info.rate_hz, 1e5, "rate_hz", "Hz"},
@@ -67,7 +67,7 @@ std::string unlikely(const hdv_info& info) {
   return "";
 }
 
-/// What open() claims and nothing stands behind: a scene that asks for it would run without it.
+/// What open() claims without support for it: a scene that asks for it would run without it.
 std::string claims(const scene::Device& device) {
   const Opened opened = openArm(device);
   if (opened.arm == nullptr) return "skip: the arm was not opened";
@@ -101,7 +101,7 @@ std::string samples(const scene::Device& device) {
   return wrong.empty() ? check.sum() : wrong;
 }
 
-/// The calls of read() and write() that allocate; the first few are left out, as a thread takes what it keeps.
+/// The calls of read() and write() that allocate; the first few are ignored, because a thread allocates what it keeps.
 std::string noAllocation(const scene::Device& device) {
   constexpr uint64_t kFirst = 20;
   const Opened opened = openArm(device);
@@ -125,7 +125,7 @@ std::string noAllocation(const scene::Device& device) {
 std::string noSystemCalls(const scene::Device& device) {
   const Opened opened = openArm(device);
   if (opened.arm == nullptr) return "skip: the arm was not opened";
-  std::setvbuf(stdout, nullptr, _IONBF, 0);  // a print that waits in a buffer is found as well
+  std::setvbuf(stdout, nullptr, _IONBF, 0);  // so that output that waits in a buffer is found as well
   if (!conformance::watchSystemCalls()) return "skip: this kernel does not tell of system calls";
   hdv_sample sample{};
   uint64_t calls = 0;

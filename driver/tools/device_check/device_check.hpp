@@ -14,7 +14,7 @@ struct Outcome {
   const char* name;
   Verdict verdict = Verdict::kPassed;
   std::string what;    ///< what is wrong, why it was skipped, or what was seen
-  bool ended = false;  ///< by a crash or a hang
+  bool ended = false;  ///< ended by a crash or a hang
 };
 
 struct Test {
@@ -23,10 +23,10 @@ struct Test {
   std::string (*run)(const scene::Device& device);
 };
 
-/// All of them, in the order in which they run.
+/// All tests, in the order in which they run.
 const std::vector<Test>& tests();
 
-/// [main] Runs one in a child process of its own. A crash or a hang names the call in which it came.
+/// [main] Runs one test in a child process. A crash or a hang is reported with the call in which it happened.
 Outcome tryOne(const Test& test, const scene::Device& device, int limit_ms);
 
 }  // namespace hapticd::device_check

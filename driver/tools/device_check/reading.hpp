@@ -10,16 +10,16 @@
 
 namespace hapticd::device_check {
 
-/// An arm that is open, or why it is not.
+/// An arm that is open, or the reason why it is not.
 struct Opened {
   std::unique_ptr<host::DeviceInstance> arm;
   std::string why;       ///< what is wrong with the module
   std::string missing;   ///< why there is no arm to open
-  uint32_t claimed = 0;  ///< capabilities as the module gave them: the host takes away those that nothing stands behind
+  uint32_t claimed = 0;  ///< capabilities as the module gave them, since the host removes those without support
 };
 Opened openArm(const scene::Device& device);
 
-/// One call of read() and the command after it: motors off.
+/// One call of read() and the command after it, with the motors off.
 struct Reading {
   uint64_t now_ns = 0;
   hsp_status read = HSP_OK, write = HSP_OK;

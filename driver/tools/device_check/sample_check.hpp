@@ -10,9 +10,9 @@ namespace hapticd::device_check {
 class SampleCheck {
  public:
   explicit SampleCheck(const hdv_info& info) : info_(info) {}
-  /// @return what is wrong with one; "": nothing
+  /// @return what is wrong with one sample; "" if nothing is
   std::string look(const Reading& reading);
-  /// @return what is wrong with all of them: "warn: ..." for what no run faults on
+  /// @return what is wrong with all samples together: "warn: ..." if no run faults on it
   std::string sum() const;
 
  private:

@@ -19,10 +19,10 @@
 namespace hapticd::diagnostics {
 namespace {
 
-constexpr size_t kMostModels = 100;  ///< more take long to set up a second time
+constexpr size_t kMostModels = 100;  ///< more models take too long to set up a second time
 constexpr int kHandLimitMs = 60'000;
 
-/// Joints at the first tick.
+/// The joints at the first tick.
 std::optional<std::array<double, HDV_MAX_JOINTS>> firstJoints(const scene::Scene& scene, const scene::Device& device,
                                                               host::DeviceInstance& arm) {
   if (device.module != "simulated") {
@@ -64,7 +64,7 @@ std::optional<Hand> handOf(const scene::Scene& scene, uint32_t index) {
   return hand;
 }
 
-/// Model, place of the tip and depth, packed: how they travel from the child.
+/// Model, place of the tip and depth, packed so that they can come from the child.
 void packInside(uint32_t models, const servo::Core& core, const std::vector<servo::Probe>& tips, host::Packer& found) {
   uint32_t count = 0;
   host::Packer list;
@@ -81,10 +81,10 @@ void packInside(uint32_t models, const servo::Core& core, const std::vector<serv
   found.text(list.take());
 }
 
-/// Arm, model, distance and reach of each arm that no model is near enough to, packed.
+/// Arm, model, distance and reach of each arm to which no model is near enough, packed.
 void packFar(const scene::Scene& scene, const servo::World& world, servo::Core& core, const std::vector<Hand>& hands,
              host::Packer& found) {
-  constexpr double kRoom = 1.1, kLittle = 0.05;  // the poses that were tried are not all; [m]
+  constexpr double kRoom = 1.1, kLittle = 0.05;  // only some of the poses were tried; [m]
   for (uint32_t i = 0; i < hands.size(); ++i) {
     const auto nearest = nearestModel(scene, world, core, hands[i].probe.position, i);
     if (!nearest || nearest->away <= kRoom * hands[i].reach + kLittle) continue;
@@ -116,7 +116,7 @@ std::string tryTips(const scene::Scene& scene) {
   return found.take();
 }
 
-/// Where the file says what the hand wants.
+/// The place where the file says what the hand wants.
 document::Place placeOfHand(const scene::Device& device) {
   for (const char* id : {"hand.path", "hand.center", "hand.radius", "hand.script"})
     for (const scene::Value& value : device.parameters)
@@ -130,7 +130,7 @@ std::string tryStart(const scene::Scene& scene, const scene::Device& device) {
   hdv_start how{};
   how.struct_size = sizeof how;
   how.rate_hz = scene.servo.rate;
-  if (!arm) return "=";  // told by who reads the device file
+  if (!arm) return "=";  // the reader of the device file reports it
   if (const auto opened = (*arm)->open(); !opened) return opened.error();
   const auto started = (*arm)->start(how);
   return started ? "=" : started.error();
@@ -178,7 +178,7 @@ document::Problems adviseHands(const scene::Scene& scene) {
   document::Problems warnings;
   if (scene.models.empty() || scene.models.size() > kMostModels || scene.devices.empty()) return warnings;
   const auto told = host::runInChild([&] { return tryTips(scene); }, kHandLimitMs);
-  if (!told) return warnings;  // a model that crashes is told by who tried it alone
+  if (!told) return warnings;  // whoever tried the model alone reports a crash
   host::Unpacker in(*told);
   const uint32_t count = in.count();
   const std::string list = in.text();

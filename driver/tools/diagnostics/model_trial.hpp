@@ -8,7 +8,7 @@
 
 namespace hapticd::diagnostics {
 
-/// What plugins say of a scene's models.
+/// What plugins say about a scene's models.
 struct ModelTrial {
   document::Problems problems, warnings;
   std::vector<double> stiffness;  ///< [N/m] that each model claims, in scene order

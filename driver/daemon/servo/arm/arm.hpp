@@ -34,7 +34,7 @@ struct ArmOptions {
   scene::Clients clients = {};               ///< whether programs may push on it
   bool found_pressed = false;                ///< as formerly, a hold button that was down before the run enables forces
   bool full_when_slow = false;               ///< as formerly, a real arm pushes with its full force however slow it is
-  bool former_passivity = false;  ///< as formerly, a program's steady push counts as created energy
+  bool former_passivity = false;             ///< as formerly, a program's steady push counts as created energy
 };
 
 class Arm {

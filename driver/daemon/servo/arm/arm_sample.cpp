@@ -15,7 +15,7 @@ constexpr double kCalmTravel = 0.02;       ///< [m] how far its tip may move mea
 constexpr double kStaleAfter = 0.05;       ///< [s] without a new sample: the position is too old for a force
 constexpr double kPeriodsTrusted = 2.001;  ///< periods without a new sample before the force fades: one may be late
 constexpr double kTrustFades = 2e-3;       ///< [s] in which it fades
-constexpr double kPairWithin = 2e-3;  ///< [s] how much closer two samples may arrive than they were measured
+constexpr double kPairWithin = 2e-3;       ///< [s] how much closer two samples may arrive than they were measured
 
 }  // namespace
 

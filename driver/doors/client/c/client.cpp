@@ -82,7 +82,7 @@ bool refused(const std::string& line, hapticd_error* error) {
 
 }  // namespace
 
-/// So that the daemon does not tell of a program that died. Without an answer the end of the connection does it.
+/// So that the daemon does not report a program that died. Without an answer the connection's end does the same.
 void endInOrder(hapticd_client& client, const hapticd_lead& lead) try {
   constexpr double kPatience = 0.5;  // s
   const std::lock_guard lock(client.asking);

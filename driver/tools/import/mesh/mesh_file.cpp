@@ -24,7 +24,7 @@ Error tooMany(const std::string& where) {
   return Error{where + "more than 20,000,000 triangles"};
 }
 
-/// An OBJ index, counted from 1, or backwards from the last point.
+/// An OBJ index, counted from 1, or backward from the last point.
 std::optional<std::uint32_t> objIndex(std::string_view word, std::size_t points) {
   word = word.substr(0, word.find('/'));
   std::int64_t index = 0;

@@ -29,8 +29,8 @@ std::size_t sizeOf(Type type) {
 
 struct Property {
   std::string_view name;
-  Type type = Type::kUnknown;   ///< of the value, or of each in a list
-  Type count = Type::kUnknown;  ///< of the length of a list; kUnknown: not a list
+  Type type = Type::kUnknown;   ///< type of the value, or of each value in a list
+  Type count = Type::kUnknown;  ///< type of a list's length; kUnknown: it is not a list
 };
 struct Element {
   std::string_view name;
