@@ -51,7 +51,7 @@ class Geometry {
   const spline::Curve& splineCurve(std::uint32_t index) const noexcept {
     return spline_curves_[static_cast<std::size_t>(curve_slot_[index])];
   }
-  /// [any] The distinct knots of a curve in a parameter plane; empty if it is no spline.
+  /// [any] The distinct knots of a curve in a parameter plane; empty if it is not a spline.
   std::span<const double> planeKnots(std::uint32_t index) const noexcept;
   const Part& part() const noexcept { return part_; }
   std::size_t bytes() const noexcept;

@@ -14,11 +14,11 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using spline::SurfacePoint;
 
-constexpr int kBowIntervals = 6;       ///< between samples along an axis
-constexpr double kBowBetween = 1.25;   ///< what is measured at samples may be larger by this between them
-constexpr double kSagBetween = 1.5;    ///< the same of second derivatives
-constexpr double kBowRounding = 1e-9;  ///< of the terms that are compared
-constexpr double kSmoothKink = 1e-6;   ///< [rad] normals that differ by less across a border are one
+constexpr int kBowIntervals = 6;       ///< steps between samples along an axis
+constexpr double kBowBetween = 1.25;   ///< factor by which values between the samples may be larger
+constexpr double kSagBetween = 1.5;    ///< the same factor for second derivatives
+constexpr double kBowRounding = 1e-9;  ///< share of the terms that are compared
+constexpr double kSmoothKink = 1e-6;   ///< [rad] two normals across a border that differ by less than this count as one
 
 /// Derivatives along the two directions of a leaf, in its frame.
 struct LeafSample {
@@ -62,7 +62,7 @@ bool turnToPrincipal(LeafBow& bow, const SurfacePoint& E) {
   return bow.frame.allFinite() && bow.along[0].allFinite() && bow.along[1].allFinite();
 }
 
-/// Widens a term by what one sample says.
+/// Widens a term by the value of one sample.
 void extendTerm(LeafBow::Term& term, double value, const Vector3d& vector) {
   term.low = std::min(term.low, value);
   term.high = std::max(term.high, value);
@@ -78,7 +78,7 @@ void extendBow(LeafBow& bow, const LeafSample& s) {
   extendTerm(bow.twist, s.first[0].dot(s.first[1]) + s.S.dot(s.second[2]), s.second[2]);
 }
 
-/// The middle of a leaf: all terms begin with it.
+/// The middle of a leaf, from which all terms start.
 void beginBow(LeafBow& bow, const LeafSample& s, double size) {
   constexpr double kStraight = 1e-4;  // of the leaf's size times its curvature: the centre would be rounding
   for (int i = 0; i < 2; ++i) {
@@ -92,7 +92,7 @@ void beginBow(LeafBow& bow, const LeafSample& s, double size) {
   bow.twist.middle = s.second[2];
 }
 
-/// Room for what lies between the samples.
+/// Adds room for what lies between the samples.
 void widenBow(LeafBow& bow) {
   for (LeafBow::Term* term : {&bow.slope[0], &bow.slope[1], &bow.bend[0], &bow.bend[1], &bow.twist}) {
     const double more = (kBowBetween - 1) * (term->high - term->low);
@@ -102,8 +102,8 @@ void widenBow(LeafBow& bow) {
   }
 }
 
-/// What holds a leaf: a box in its frame, and cylinders about the centres of curvature of the direction along which it
-/// is deeper.
+/// What encloses a leaf: a box in its frame, and cylinders about the centres of curvature of the direction along which
+/// it is deeper.
 class LeafHull {
  public:
   /// @param corner [m] of the leaf, in the frame of the bow
@@ -147,7 +147,7 @@ class LeafHull {
   double inner_ = LeafBow::kEndless, outer_ = 0;
 };
 
-/// Whether the normal turns nowhere on a border, from one side of it to the other.
+/// True if the normal does not turn on a border, from one side of it to the other.
 bool isSmoothAcross(const Geometry& geometry, std::uint32_t surface, const Array2d& lo, const Array2d& hi, int axis,
                     bool at_high) {
   constexpr int kPlaces = 5;
@@ -166,7 +166,7 @@ bool isSmoothAcross(const Geometry& geometry, std::uint32_t surface, const Array
   return true;
 }
 
-/// The same for all borders but those where the surface ends.
+/// The same for all borders except those where the surface ends.
 bool goesOnSmoothly(const Geometry& geometry, std::uint32_t surface, const Array2d& lo, const Array2d& hi,
                     std::uint32_t ends) {
   for (int axis = 0; axis < 2; ++axis)

@@ -26,7 +26,7 @@ struct LeafBow {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: directions 1 and 2, and the normal; unit
   Eigen::Array2d middle{0, 0};                          ///< (u, v)
   Eigen::Array2d along[2];                              ///< [1/m]
-  double focus[2]{kUnknown, kUnknown};  ///< [m] o of direction i, on the normal; not a number: nothing is known
+  double focus[2]{kUnknown, kUnknown};  ///< [m] o of direction i, on the normal; NaN if nothing is known
   Term slope[2];                        ///< (S - o) S_i
   Term bend[2];                         ///< S_i S_i + (S - o) S_ii
   Term twist;                           ///< S_1 S_2 + (S - center) S_12
@@ -51,13 +51,13 @@ enum class FeetOfLeaf : std::uint8_t {
   kUnknown
 };
 
-/// What a probe sees of a leaf.
+/// How a probe sees a leaf.
 struct LeafSight {
   FeetOfLeaf feet = FeetOfLeaf::kUnknown;
-  double least_bend = 0;  ///< of kOne: the least second derivative of half the squared distance, in any direction
+  double least_bend = 0;  ///< for kOne: the least second derivative of half the squared distance, in any direction
 };
 
-/// [rt] What a probe sees of the leaf. @param q [m] the probe in the frame of the leaf
+/// [rt] How a probe sees the leaf. @param q [m] the probe in the frame of the leaf
 LeafSight feetSeenFrom(const LeafBow& bow, const Eigen::Vector3d& q) noexcept;
 
 /// [rt] (u, v) near the foot; may lie outside the leaf.

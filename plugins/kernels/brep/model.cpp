@@ -159,7 +159,7 @@ class ModelBuilder {
     }
   }
 
-  /// Faces that a look at an element concerns.
+  /// Faces that are concerned when an element is examined.
   template <class F>
   void forEachFaceOf(Element element, F&& use) const {
     const auto of_edge = [&](std::uint32_t edge) {
@@ -180,7 +180,7 @@ class ModelBuilder {
     }
   }
 
-  /// A contact that holds a face asks for the nearest point of this one alone.
+  /// A contact that holds a face asks for the nearest point of this face alone.
   void plantFaceTrees(const Body& body) {
     std::vector<std::vector<std::uint32_t>> places(body.face_count);
     for (std::uint32_t i = 0; i < elements_.size(); ++i)
@@ -262,9 +262,9 @@ class ModelBuilder {
   Model& model_;
   Part& part_;
   const ModelOptions& options_;
-  std::vector<Element> elements_;  ///< of the body whose tree is being planted
+  std::vector<Element> elements_;  ///< of the body whose tree is being built
   std::vector<AlignedBox3d> boxes_;
-  std::vector<TurnedBox> turned_;  ///< closer boxes of the same
+  std::vector<TurnedBox> turned_;  ///< closer boxes for the same elements
 };
 
 Model::Model(Part part, const ModelOptions& options) : part_(std::move(part)) {

@@ -31,7 +31,7 @@ Vector cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// All records of a kind belong to one body each.
+/// Every record of a kind must belong to exactly one body.
 void heldOnce(std::uint64_t held, std::size_t all, const char* what) {
   if (held == all) return;
   throw PartError("bodies: they hold " + std::to_string(held) + " " + what + ", expected all " + std::to_string(all) +
@@ -56,7 +56,7 @@ struct Where {
   void index_or_none(std::uint32_t value, std::size_t count, const char* what) const {
     if (value != kNone) index_in(value, count, what);
   }
-  /// A row of records inside an array.
+  /// Checks a range of records inside an array.
   void range_in(std::uint64_t first, std::uint64_t length, std::size_t count, const char* what) const {
     if (first > count || length > count - first)
       fail(std::string(what) + " " + std::to_string(first) + " to " + std::to_string(first + length) +
@@ -311,7 +311,7 @@ class Checker {
     if (b.kind != BodyKind::kMesh) at.need(b.triangle_count == 0, "triangles, expected those of meshes alone");
     for (std::uint32_t i = 0; i < b.triangle_count; ++i)
       for (std::uint32_t corner : part_.triangles[b.first_triangle + i].corner)
-        if (corner - b.first_point >= b.point_count)  // unsigned: also false below the first
+        if (corner - b.first_point >= b.point_count)  // unsigned, so it is also false below the first
           Where{"triangle", b.first_triangle + i}.fail("corner " + std::to_string(corner) + " is not of its body");
   }
 

@@ -81,7 +81,7 @@ std::vector<Section> readSections(const Json& header) {
   return sections;
 }
 
-/// The bytes of a section, known to be what was written.
+/// The bytes of a section, checked to be those that were written.
 std::span<const std::byte> bytesOf(const Section& section, std::span<const std::byte> data) {
   const std::string what = "section " + section.name;
   if (section.count > data.size() / section.record)
@@ -97,7 +97,7 @@ std::span<const std::byte> bytesOf(const Section& section, std::span<const std::
   return bytes;
 }
 
-/// Records of a file of an older version are shorter: what they lack keeps its default.
+/// Records in a file of an older version are shorter: members that they lack keep their defaults.
 template <class Record>
 void readRecords(const Section& section, std::span<const std::byte> data, std::vector<Record>& records) {
   if (section.record > sizeof(Record))
