@@ -54,7 +54,7 @@ int calibrateDevice(const CalibrationArguments& options) {
     return kWorked;
   }
   if (auto opened = (*device)->open(); !opened) return fail(kFailed, opened.error());
-  once.reset();  // from now on each is told when it comes
+  once.reset();  // from now on each message is printed when it comes
   hdv_start how{};
   how.struct_size = sizeof how;
   how.rate_hz = (*device)->info().rate_hz;
