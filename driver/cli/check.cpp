@@ -14,13 +14,14 @@
 #include "diagnostics/device_advice.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/hand_path_advice.hpp"
+#include "diagnostics/hand_script.hpp"
 #include "diagnostics/hand_start.hpp"
 #include "diagnostics/model_trial.hpp"
 #include "diagnostics/slow_arm.hpp"
 #include "diagnostics/unit_advice.hpp"
-#include "diagnostics/velocity_advice.hpp"
 #include "diagnostics/unusual_settings.hpp"
 #include "diagnostics/unusual_values.hpp"
+#include "diagnostics/velocity_advice.hpp"
 #include "document/node.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
@@ -219,6 +220,17 @@ void addRefusals(const scene::Scene& full, bool needs_velocity, Verdict& verdict
     verdict.problems.insert(verdict.problems.end(), problems.begin(), problems.end());
 }
 
+/// A simulated arm that no scene names: it is opened all the same, as `run` would.
+void tryAlone(const std::string& file, Verdict& verdict) {
+  scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
+  if (!loaded.device) return;
+  scene::Scene alone;
+  alone.file = file;
+  alone.devices.push_back(std::move(*loaded.device));
+  addRefusals(alone, false, verdict);
+  for (const document::Problem& one : hastyHands(alone)) verdict.warnings.push_back(one);
+}
+
 Verdict checkOne(const std::string& file, const CheckArguments& options) {
   std::optional<scene::Scene> scene;
   Verdict verdict{file, scene::checkFile(file, catalog(), &scene), {}};
@@ -243,6 +255,7 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   if (!scene) {
     const document::Problems more = tryDevice(file, catalog(), found, &verdict.warnings);
     found.insert(found.end(), more.begin(), more.end());
+    if (found.empty() && !options.files_only) tryAlone(file, verdict);
     document::sortByPlace(found);
   }
   verdict.warnings.insert(verdict.warnings.end(), trial.warnings.begin(), trial.warnings.end());
