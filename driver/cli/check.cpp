@@ -255,13 +255,14 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   if (!scene) {
     const document::Problems more = tryDevice(file, catalog(), found, &verdict.warnings);
     found.insert(found.end(), more.begin(), more.end());
-    if (found.empty() && !options.files_only) tryAlone(file, verdict);
+    if (found.empty()) {
+      for (const document::Problem& one : adviseDevice(file, catalog())) verdict.warnings.push_back(one);
+      if (!options.files_only) tryAlone(file, verdict);
+    }
     document::sortByPlace(found);
   }
   verdict.warnings.insert(verdict.warnings.end(), trial.warnings.begin(), trial.warnings.end());
   verdict.whole = verdict.whole && found.empty();
-  if (!scene && found.empty())
-    for (const document::Problem& one : adviseDevice(file, catalog())) verdict.warnings.push_back(one);
   if (scene) addWarnings(withArm(*scene), trial, options, verdict);
   if (scene) addUnusual(withArm(*scene), trial.boxes, verdict);
   return verdict;

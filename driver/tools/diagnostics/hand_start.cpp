@@ -173,15 +173,22 @@ std::string tryStart(const scene::Scene& scene, const scene::Device& device, boo
   return started ? "=" : started.error();
 }
 
-/// "device 'name': limits.enable.button is 3, ..." begins with a key of the device file; the rest is about its hand.
-void tellRefused(const scene::Device& device, const std::string& told, document::Problems& problems) {
+/// A refusal names the key that is wrong, at its beginning or after what could not be done: "device 'name': cannot be
+/// opened: hand.axis is zero, expected a direction".
+void tellRefused(const scene::Scene& scene, const scene::Device& device, const std::string& told,
+                 document::Problems& problems) {
   const std::string before = "device '" + device.name + "': ";
-  if (told.rfind(before, 0) == 0) {
-    const size_t end = std::min(told.find_first_of(": ", before.size()), told.size());
-    const std::string key = told.substr(before.size(), end - before.size());
-    if (const auto place = placeOfKey(device.file, key))
-      return document::report(problems, *place, key,
-                              told.substr(std::min(told.find_first_not_of(": ", end), told.size())));
+  size_t begin = told.rfind(before, 0) == 0 ? before.size() : told.size();
+  while (begin < told.size()) {
+    const size_t end = std::min(told.find_first_of(": ", begin), told.size());
+    const std::string key = told.substr(begin, end - begin);
+    const std::string what = told.substr(std::min(told.find_first_not_of(": ", end), told.size()));
+    for (const scene::Value& value : device.parameters)
+      if (value.id == key) return document::report(problems, value.place, key, what);
+    for (const auto& file : {device.file, scene.file})
+      if (const auto place = placeOfKey(file, key)) return document::report(problems, *place, key, what);
+    const size_t next = told.find(": ", begin);
+    begin = next == std::string::npos ? told.size() : next + 2;
   }
   document::report(problems, placeOfHand(device), "hand", told);
 }
@@ -221,7 +228,7 @@ document::Problems refusedArms(const scene::Scene& scene, bool needs_velocity) {
   for (const scene::Device& device : scene.devices) {
     if (device.module != "simulated") continue;
     const auto told = host::runInChild([&] { return tryStart(scene, device, needs_velocity); }, kHandLimitMs);
-    if (told && *told != "=") tellRefused(device, *told, problems);
+    if (told && *told != "=") tellRefused(scene, device, *told, problems);
   }
   return problems;
 }
