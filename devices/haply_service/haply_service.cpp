@@ -19,9 +19,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kPatienceMs = 500;  ///< for an answer, of which the service gives one a message
+constexpr int kPatienceMs = 500;  ///< how long an answer may take; the service answers each message once
 
-/// Reads a vector where there is one; what is left out stays.
+/// Reads a vector where there is one; components that are left out keep their values.
 bool readVector(const Json& json, double v[3]) {
   const char* axes[] = {"x", "y", "z"};
   double read[3];
@@ -42,7 +42,7 @@ const Json& childOf(const Json& json, const char* key) {
   return it != json.end() ? *it : nothing;
 }
 
-/// What a status says; true where it says nothing.
+/// The value of a yes-or-no key of a status; true where the key is missing.
 bool says(const Json& status, const char* key) {
   const Json& value = childOf(status, key);
   return !value.is_boolean() || value.get<bool>();
@@ -66,7 +66,7 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
         F::real("force", &HaplyArm::force, "N", 0.1, 100, 5, "Largest force."),
         F::real("reach", &HaplyArm::reach, "m", 0.01, 2, 0.3,
                 "The tip is nowhere farther from the origin on any axis."),
-        F::integer("rate", &HaplyArm::rate, "Hz", 100, 8000, 2000, "Exchanges with the service a second, at most."),
+        F::integer("rate", &HaplyArm::rate, "Hz", 100, 8000, 2000, "Exchanges with the service per second, at most."),
     };
   }
 
@@ -85,7 +85,7 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
                                names(first) + "\n  fix: plug it in, or see the service's dashboard");
     id_ = childOf(*arm, "device_id").get<std::string>();
     describe(info, force);
-    info.capabilities = HDV_C_UNVERIFIED;  // the service finds its zero
+    info.capabilities = HDV_C_UNVERIFIED;  // the service finds the arm's zero itself
     info.continuous_force = force;
     info.rate_hz = rate;
     info.buttons = 3;
@@ -113,7 +113,7 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
   void close() { channel_.reset(); }
 
  private:
-  /// Its entry in a message; nullptr: it is not there.
+  /// The arm's entry in a message; nullptr: the message has none.
   const Json* find(const Json& message) const {
     const std::string& wanted = id_.empty() ? device_id : id_;
     for (const Json& arm : childOf(message, "inverse3")) {
@@ -144,7 +144,7 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
 
   /// The thread that waits for the service. A lost arm stays lost until the next start.
   void run() {
-    (void)os::setFifo(os::kServoPriority + 1);  // it waits for the service, and the servo for nobody
+    (void)os::setFifo(os::kServoPriority + 1);  // this thread waits for the service, so that the servo need not
     const auto period = std::chrono::nanoseconds(kNanosecondsPerSecond) / rate;
     auto due = std::chrono::steady_clock::now();
     vendor_arm::Seen seen;
@@ -180,7 +180,7 @@ class HaplyArm : public vendor_arm::CartesianArm<HaplyArm> {
     ++seen.sequence;
   }
 
-  /// Those of the first handle that is there.
+  /// The buttons of the first handle that the message names.
   static uint32_t buttonsOf(const Json& message) {
     const char* names[] = {"a", "b", "c"};
     for (const char* kind : {"wireless_verse_grip", "verse_grip"})

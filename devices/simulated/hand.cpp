@@ -80,7 +80,7 @@ void Hand::script(double t, Vector3d& position, Vector3d& velocity) const noexce
   position = s.center + s.radius * s.normal;
   switch (s.script) {
     case Script::kStroke: {
-      constexpr double kRiseRatio = 0.31;  // irrational enough: the strokes cover an area, not one line
+      constexpr double kRiseRatio = 0.31;  // irrational enough that the strokes cover an area instead of one line
       const double angle = s.sweep * std::sin(phase), angle_rate = s.sweep * rate * std::cos(phase);
       position = s.center + s.radius * onArc(angle) + s.rise * std::sin(kRiseRatio * phase) * s.axis;
       velocity = s.radius * angle_rate * onArc(angle + M_PI / 2) +
@@ -91,11 +91,11 @@ void Hand::script(double t, Vector3d& position, Vector3d& velocity) const noexce
       position = s.center + s.radius * onArc(phase);
       velocity = s.radius * rate * onArc(phase + M_PI / 2);
       break;
-    case Script::kPress:  // in and out again, smoothly: 0 to `rise` deep
+    case Script::kPress:  // moves in and out again smoothly, from 0 to `rise` deep
       position -= s.rise * 0.5 * (1 - std::cos(phase)) * s.normal;
       velocity = -s.rise * 0.5 * rate * std::sin(phase) * s.normal;
       break;
-    case Script::kTap:  // as far out as in
+    case Script::kTap:  // moves as far out as it moves in
       position -= s.rise * std::sin(phase) * s.normal;
       velocity = -s.rise * rate * std::cos(phase) * s.normal;
       break;

@@ -17,9 +17,9 @@ enum class Script { kHold, kStroke, kPress, kTap, kCircle, kPath, kNone, kGuided
 struct HandSettings {
   Script script = Script::kStroke;
   double mass = 0.2, stiffness = 500, damping = 5;    ///< [kg], [N/m], [N s/m]
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< of the object to be touched
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< from the centre to where the hand is
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();    ///< strokes and circles turn about it
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< centre of the object to be touched
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< direction from the centre to the hand
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();    ///< axis about which strokes and circles turn
   double radius = 0.045, sweep = 0.9, rise = 0.008;   ///< [m], [rad], [m]
   double rate = 0.3;                                  ///< [Hz]
   double approach = 0.02, lead_in = 0.5;              ///< [m], [s]
@@ -49,10 +49,10 @@ class Hand {
   /// Throws std::invalid_argument with a message for the user.
   Hand(const HandSettings& settings, HandPath path);
 
-  /// [rt] What the hand wants `t` seconds after the start.
+  /// [rt] Where the hand wants to be `t` seconds after the start.
   HandTarget at(double t) const noexcept;
 
-  /// [rt] What a guided hand wants from now on.
+  /// [rt] Tells a guided hand where it wants to be from now on.
   void guide(const HandTarget& target) noexcept { guided_ = target; }
 
   bool holds() const noexcept { return settings_.script != Script::kNone; }

@@ -12,12 +12,12 @@ namespace hapticd::simulated {
 class HandPath {
  public:
   HandPath() = default;
-  /// [main] Reads a file. Throws std::runtime_error with file, line and what was expected.
+  /// [main] Reads a file. Throws std::runtime_error that names file, line and what was expected.
   static HandPath read(const std::string& file);
-  /// [main] The same from text; `name` stands in messages.
+  /// [main] Reads the same from text; messages call it `name`.
   static HandPath parse(const std::string& text, const std::string& name);
 
-  /// [rt] Straight lines between the rows; before the first and after the last the hand rests there.
+  /// [rt] The path is straight between the rows; before the first and after the last row the hand rests there.
   void at(double t, Eigen::Vector3d& position, Eigen::Vector3d& velocity) const noexcept;
   bool empty() const noexcept { return times_.empty(); }
 

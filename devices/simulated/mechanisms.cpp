@@ -11,7 +11,7 @@ using kinematics::ChainGeometry;
 using kinematics::ChainLink;
 
 void PhantomMechanism::evaluate(const Vector& q, const Vector& qd) noexcept {
-  const kinematics::PhantomAngles at(q);  // sines are a third of the work
+  const kinematics::PhantomAngles at(q);  // computing sines is a third of the work
   dynamics_.evaluate(at, qd, M, bias);
   tip = arm_.position(at);
   J = arm_.positionJacobian(at);
@@ -61,7 +61,7 @@ void ChainMechanism::evaluate(const Vector& q, const Vector& qd) noexcept {
   chainDynamics(loaded_, at, qd, M, bias);
   M.diagonal() += rotor_;
   Vector weight;
-  arm_.gravity(q, gravity_, weight);  // the hand carries its own
+  arm_.gravity(q, gravity_, weight);  // the hand carries its own weight
   bias += weight;
   const auto last = static_cast<size_t>(arm_.jointCount());
   tip = at.o[last] + at.R[last] * tool_;

@@ -6,7 +6,7 @@
 
 namespace hapticd::simulated {
 
-/// PHANToM with a hand's mass at the tip.
+/// A PHANToM with a hand's mass at the tip.
 class PhantomMechanism {
  public:
   using Vector = Eigen::Vector3d;
@@ -40,7 +40,7 @@ class PhantomMechanism {
   Eigen::Vector3d gravity_;
 };
 
-/// Serial chain; the hand's mass is a part of its last link.
+/// A serial chain; the hand's mass is a part of its last link.
 class ChainMechanism {
  public:
   using Vector = kinematics::JointVector;
@@ -66,7 +66,7 @@ class ChainMechanism {
   Eigen::Vector3d tip;
 
  private:
-  kinematics::Chain arm_, loaded_;  ///< without and with the hand
+  kinematics::Chain arm_, loaded_;  ///< the arm without and with the hand
   Vector rotor_;
   Eigen::Vector3d gravity_, tool_;
 };

@@ -10,7 +10,7 @@ inline constexpr const char* kKinds[] = {"premium15", "chain", "phantom"};
 inline constexpr const char* kScripts[] = {"hold", "stroke", "press", "tap", "circle", "path", "none", "guided"};
 inline constexpr int kMaxDelay = 16;
 
-/// Lines for a device class T that derives from Parameters.
+/// The parameter table's lines for a device class T that derives from Parameters.
 template <class T>
 struct ParameterTable {
   using F = Fields<T>;
@@ -25,7 +25,7 @@ struct ParameterTable {
                    "premium15, phantom: where the tip of the neutral pose lies in the device frame; chain: added to "
                    "arm.base_position."),
         F::array("arm.dh", &T::dh, "m, rad, m, rad", 4, 0, 64, -10, 10, "[]",
-                 "chain: a row a, alpha, d, theta a joint (standard Denavit-Hartenberg)."),
+                 "chain: a row a, alpha, d, theta per joint (standard Denavit-Hartenberg)."),
         F::array("arm.limits", &T::limits, "rad", 2, 0, 32, -100, 100, "[]",
                  "chain, phantom: a row least, greatest angle a joint; left out: half a turn to either side, the stops "
                  "of the "
@@ -105,7 +105,7 @@ struct ParameterTable {
         F::real("hand.sweep", &T::sweep, "rad", 0, 100, 0.9, "Angle of a stroke to either side."),
         F::real("hand.rise", &T::rise, "m", 0, 1, 0.008,
                 "Stroke: rise and fall along the axis. Press, tap: depth beyond the radius."),
-        F::real("hand.rate", &T::hand_rate, "Hz", 0, 100, 0.3, "Strokes, presses, taps or circles a second."),
+        F::real("hand.rate", &T::hand_rate, "Hz", 0, 100, 0.3, "Strokes, presses, taps or circles per second."),
         F::real("hand.approach", &T::approach, "m", 0, 1, 0.02, "How far outside its script the hand starts."),
         F::real("hand.lead_in", &T::lead_in, "s", 0.001, 100, 0.5, "Time in which it comes in from there."),
         F::real("hand.tremor", &T::tremor, "N", 0, 100, 0.05, "Tremor of 8 to 12 Hz, rms a direction."),

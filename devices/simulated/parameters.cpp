@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 /// Published figures of the Premium 1.5: gear ratios of its capstans, RE25 motors and HEDM-5500 encoders.
 const Vector3d kPremiumGear(13.3, 11.2, 11.2);
-constexpr double kPremiumCounts = 4096;     ///< a motor turn: 1024 lines, four edges each
+constexpr double kPremiumCounts = 4096;     ///< counts per motor turn: 1024 lines with four edges each
 constexpr double kPremiumStall = 0.129;     ///< [N m] at the motor
 constexpr double kPremiumRotor = 1.08e-6;   ///< [kg m^2]
 constexpr double kPremiumDamping = 0.0005;  ///< [N m s/rad]
@@ -22,7 +22,7 @@ Vector3d vector(const std::array<double, 3>& from) {
   return {from[0], from[1], from[2]};
 }
 
-/// One number for all joints, a number each, or none at all: then `fallback`.
+/// One number for all joints, or one number per joint; `fallback` where there is none at all.
 JointVector perJoint(const std::vector<double>& from, int count, double fallback, const char* id) {
   if (from.empty()) return JointVector::Constant(count, fallback);
   if (from.size() == 1) return JointVector::Constant(count, from[0]);
@@ -32,7 +32,7 @@ JointVector perJoint(const std::vector<double>& from, int count, double fallback
   return Eigen::Map<const JointVector>(from.data(), count);
 }
 
-/// Row `joint` of a list with `columns` numbers a joint; nothing if the list is left out.
+/// Row `joint` of a list with `columns` numbers per joint; nothing if the list is left out.
 const double* rowOf(const std::vector<double>& from, size_t columns, size_t joint, size_t joints, const char* id) {
   if (from.empty()) return nullptr;
   if (from.size() != columns * joints)
@@ -54,7 +54,7 @@ Eigen::Quaterniond baseOrientation(const std::vector<double>& q) {
 
 kinematics::ChainGeometry chainOf(const Parameters& p) {
   kinematics::ChainGeometry geometry;
-  geometry.base.position = vector(p.base_position) + vector(p.origin);  // origin: as the file of a real chain says it
+  geometry.base.position = vector(p.base_position) + vector(p.origin);  // origin: where a real chain's file puts it
   geometry.base.orientation = baseOrientation(p.base_orientation);
   geometry.tool.position = vector(p.tool_position);
   const size_t count = p.dh.size() / 4;

@@ -21,7 +21,7 @@ struct Parameters {
   // arm
   std::array<double, 3> origin{}, base_position{}, tool_position{};
   std::vector<double> base_orientation, dh, limits, masses, centers, inertias, lengths, arm_torque;
-  // joint: lists of one number for all joints, or a number each
+  // joint: lists of one number for all joints, or of one number per joint
   std::vector<double> gear, counts, damping, friction, max_torque, rotor, stiffness, rate_damping;
   double motor_lag = 0, friction_speed = 0, torque_noise = 0;
   bool torque_sensors = false;
@@ -43,9 +43,9 @@ kinematics::PhantomGeometry phantomOf(const Parameters& p);
 JointSettings jointsOf(const Parameters& p, int count);
 HandSettings handOf(const Parameters& p);
 
-/// [main] Kinematics, from the parameters alone.
+/// [main] The kinematics, made from the parameters alone.
 std::unique_ptr<kinematics::Arm> makeArm(const Parameters& p);
-/// [main] Dynamics. @param gravity [m/s^2] device frame
+/// [main] The dynamics. @param gravity [m/s^2] device frame
 std::unique_ptr<Plant> makePlant(const Parameters& p, const JointSettings& joints, const Eigen::Vector3d& gravity);
 
 }  // namespace hapticd::simulated

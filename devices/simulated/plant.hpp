@@ -13,24 +13,24 @@
 
 namespace hapticd::simulated {
 
-inline constexpr double kMaxJointRate = 500;  ///< [rad/s] no motor reaches it; keeps every state finite
+inline constexpr double kMaxJointRate = 500;  ///< [rad/s] no motor reaches this rate; it keeps every state finite
 
-/// State and step of any arm, whatever its mechanism.
+/// The state of any arm and how it steps, whatever its mechanism.
 class Plant {
  public:
   explicit Plant(const JointSettings& joints) : joints_(joints) {}
   virtual ~Plant() = default;
 
-  /// [main] At rest at q, with motors off.
+  /// [main] The arm rests at q, with its motors off.
   virtual void reset(const JointVector& q) = 0;
-  /// [rt] One step of h seconds.
+  /// [rt] Advances by h seconds.
   virtual void step(double h, const Drive& drive, const Pull& pull) noexcept = 0;
   virtual JointVector position() const noexcept = 0;         ///< [rt] [rad]
   virtual JointVector velocity() const noexcept = 0;         ///< [rt] [rad/s]
-  virtual Eigen::Vector3d tip() const noexcept = 0;          ///< [rt] [m] device frame, no later than a step ago
+  virtual Eigen::Vector3d tip() const noexcept = 0;          ///< [rt] [m] device frame, at most one step old
   virtual Eigen::Vector3d tipVelocity() const noexcept = 0;  ///< [rt] [m/s]
   virtual Eigen::Vector3d handForce() const noexcept = 0;    ///< [rt] [N] of the hand's spring and damper on the tip
-  /// [rt] Torque [N m] that passes from motors to links, friction taken off: what a load cell behind the gear reads.
+  /// [rt] Torque [N m] that passes from motors to links, less the friction: what a load cell behind the gear reads.
   virtual JointVector transmitted() const noexcept = 0;
 
  protected:
@@ -80,7 +80,7 @@ class PlantOf final : public Plant {
     const Vector before = qd_;
     qd_ += h * A_.ldlt().solve(tau_);
     qd_ = qd_.cwiseMax(-kMaxJointRate).cwiseMin(kMaxJointRate);
-    // What the links felt is the torque at the end of the step, as the step itself took it.
+    // The links feel the torque at the end of the step, as the step itself took it.
     transmitted_ -= drive_damping_.cwiseProduct(qd_ - before) + h * drive_stiffness_.cwiseProduct(qd_);
     q_ += h * qd_;
   }
@@ -100,7 +100,7 @@ class PlantOf final : public Plant {
       if (drive.position_mode && joints_.stiffness.size() > 0) {
         wanted += joints_.stiffness[i] * (drive.reference[i] - q_[i]) +
                   joints_.rate_damping[i] * (drive.reference_rate[i] - qd_[i]);
-        if (std::abs(wanted) < joints_.max_torque[i]) {  // saturated, the loop is open
+        if (std::abs(wanted) < joints_.max_torque[i]) {  // a saturated motor opens the loop, so it adds nothing
           drive_stiffness_[i] += joints_.stiffness[i];
           drive_damping_[i] += joints_.rate_damping[i];
           K_(i, i) += joints_.stiffness[i];

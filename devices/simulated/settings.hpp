@@ -16,7 +16,7 @@ struct JointSettings {
   JointVector max_torque;               ///< [N m]
   JointVector rotor;                    ///< [kg m^2] of the motor, reflected
   JointVector stiffness, rate_damping;  ///< [N m/rad], [N m s/rad] of the arm's own position loop; empty: it has none
-  double friction_speed = 0.1;          ///< [rad/s] at which Coulomb friction is three quarters there
+  double friction_speed = 0.1;          ///< [rad/s] at this rate Coulomb friction has three quarters of its full value
   double motor_lag = 0;                 ///< [s] electrical time constant
   double stop_stiffness = 200;          ///< [N m/rad] of the end stops
   double stop_damping = 0.5;            ///< [N m s/rad]

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMaxSubsteps = 5000;  ///< a read: one second at the default substep. A longer gap is left out.
+constexpr int kMaxSubsteps = 5000;  ///< most in a read: one second at the default substep. A longer gap is skipped.
 
 class SimulatedArm : public Device, public Parameters {
  public:
@@ -31,7 +31,7 @@ class SimulatedArm : public Device, public Parameters {
   void open(hdv_info& info) {
     arm_ = makeArm(*this);
     joints_ = jointsOf(*this, arm_->jointCount());
-    makePlant(*this, joints_, Vector3d::Zero());  // what it objects to is told now, not at the start
+    makePlant(*this, joints_, Vector3d::Zero());  // so that the plant's objections are reported now, not at the start
     hand_ = std::make_unique<Hand>(handOf(*this), path.empty() ? HandPath{} : HandPath::read(path));
     describe(info);
   }
@@ -92,7 +92,7 @@ class SimulatedArm : public Device, public Parameters {
     if (std::strcmp(name, HDV_EXT_PACE) == 0) return &kPace;
     const bool links = std::strcmp(name, HDV_EXT_LINKS) == 0;
     if (!links && std::strcmp(name, HDV_EXT_KINEMATICS) != 0) return nullptr;
-    if (links && arm_ == nullptr) return nullptr;  // the host asks for the kinematics first
+    if (links && arm_ == nullptr) return nullptr;  // the host asks for the kinematics before it opens the device
     try {
       if (links) {
         links_ = kinematics::Extension<SimulatedArm>::linksOf(*arm_);
@@ -137,14 +137,14 @@ class SimulatedArm : public Device, public Parameters {
     if (arm.sequence_ == 0) return std::min(until_ns, arm.now_ns_);
     const auto period = static_cast<uint64_t>(std::llround(1e9 / arm.rate));
     const uint64_t samples =
-        (arm.now_ns_ - arm.start_ns_) / period + 1;  // since the start: a late read delays no other
+        (arm.now_ns_ - arm.start_ns_) / period + 1;  // from the start, so that a late read delays no other
     return std::min(until_ns, arm.start_ns_ + samples * period);
   }
   static constexpr hdv_ext_pace kPace = {sizeof(hdv_ext_pace), 0, &nextSample};
   static constexpr hdv_ext_cut kCut = {sizeof(hdv_ext_cut), 0, &cut};
   static constexpr hdv_ext_hand kHand = {sizeof(hdv_ext_hand), 0, &guide, &truth, &guided};
 
-  /// What the arm says of itself; what it does not publish follows from its own kinematics at the neutral pose.
+  /// What the arm says about itself; what it does not publish follows from its own kinematics at the neutral pose.
   void describe(hdv_info& info) const {
     const int count = arm_->jointCount();
     info.joint_count = static_cast<uint32_t>(count);
@@ -214,7 +214,7 @@ class SimulatedArm : public Device, public Parameters {
     }
   }
 
-  /// Unit variance; the sum of uniform numbers is near enough to normal for a sensor.
+  /// Noise of unit variance; the sum of uniform numbers is near enough to a normal one for a sensor.
   double noise() noexcept {
     double sum = 0;
     for (int i = 0; i < 4; ++i) {
@@ -231,8 +231,8 @@ class SimulatedArm : public Device, public Parameters {
   hdv_ext_links links_{};
   JointSettings joints_;
   HandTarget target_;
-  std::array<Drive, kMaxDelay + 1> drives_;  ///< the newest is at written_
-  std::atomic<bool> cut_{false};             ///< by the watchdog, until a write of HDV_OFF
+  std::array<Drive, kMaxDelay + 1> drives_;  ///< the newest one is at written_
+  std::atomic<bool> cut_{false};             ///< the watchdog cut the motors; a write of HDV_OFF ends that
   uint64_t written_ = 0, written_ns_ = 0, start_ns_ = 0, now_ns_ = 0, sequence_ = 0, noise_ = 1;
 };
 

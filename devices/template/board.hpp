@@ -14,15 +14,15 @@ using Vec3 = std::array<double, 3>;
 /// receive() and send() then exchange the newest record with that thread and never wait for it.
 class Board {
  public:
-  static constexpr double kEncoderStep = 1e-5;                       ///< [m]
-  static constexpr double kFriction = 2;                             ///< [N s/m]
-  static constexpr double kHandStiffness = 300;                      ///< [N/m]
-  static constexpr double kHandDamping = 4;                          ///< [N s/m]
-  static constexpr double kSubstep = 1e-4;                           ///< [s]
-  static constexpr int kMaxSubsteps = 10000;                         ///< a second; a longer gap is cut short
-  static constexpr double kTop = 0.08, kBottom = 0.04, kStroke = 2;  ///< [m], [m], [s] of the hand's way
+  static constexpr double kEncoderStep = 1e-5;   ///< [m]
+  static constexpr double kFriction = 2;         ///< [N s/m]
+  static constexpr double kHandStiffness = 300;  ///< [N/m]
+  static constexpr double kHandDamping = 4;      ///< [N s/m]
+  static constexpr double kSubstep = 1e-4;       ///< [s]
+  static constexpr int kMaxSubsteps = 10000;     ///< most steps per second; a longer gap is cut short
+  static constexpr double kTop = 0.08, kBottom = 0.04, kStroke = 2;  ///< [m], [m], [s] of the hand's motion
 
-  /// [main] The carriage rests in the hand at time `now_ns`; gravity in m/s^2.
+  /// [main] The carriage rests in the hand at time `now_ns`; gravity is in m/s^2.
   void start(uint64_t now_ns, double mass, const Vec3& gravity) {
     mass_ = mass;
     gravity_ = gravity;
@@ -37,7 +37,7 @@ class Board {
     for (int i = 0; i < 3; ++i) counted[i] = kEncoderStep * std::round(position_[i] / kEncoderStep);
     return counted;
   }
-  /// [rt] Forces of the three motors in N, until the next call.
+  /// [rt] Sets the forces of the three motors in N until the next call.
   void send(const Vec3& force) noexcept { force_ = force; }
 
  private:

@@ -14,7 +14,7 @@
 
 namespace template_arm {
 
-/// The newest value of one thread for one other. Neither waits, and a value that nobody took is replaced.
+/// Passes the newest value from one thread to one other. Neither waits, and a value that nobody took is replaced.
 template <class T>
 class Newest {
  public:
@@ -23,7 +23,7 @@ class Newest {
     values_[writers_] = value;
     writers_ = between_.exchange(static_cast<uint8_t>(writers_ | kNew), std::memory_order_acq_rel) & kWhich;
   }
-  /// [rt] @return false: `value` is the one of the last time
+  /// [rt] @return false if `value` is still that of the last call
   bool take(T& value) noexcept {
     const bool fresh = (between_.load(std::memory_order_relaxed) & kNew) != 0;
     if (fresh) readers_ = between_.exchange(readers_, std::memory_order_acq_rel) & kWhich;
@@ -60,8 +60,8 @@ template <class Port, class Clock = MonotonicClock>
 class IoThread {
  public:
   static constexpr uint64_t kWait = 5'000'000;   ///< [ns] longest time in receive()
-  static constexpr uint64_t kOld = 20'000'000;   ///< [ns] a report or an order that is older moves no motor
-  static constexpr uint64_t kRamp = 50'000'000;  ///< [ns] in which the force comes back after a silence
+  static constexpr uint64_t kOld = 20'000'000;   ///< [ns] a report or a command that is older moves no motor
+  static constexpr uint64_t kRamp = 50'000'000;  ///< [ns] the force returns over this time after a silence
 
   explicit IoThread(Port& port) : port_(port) {}
   ~IoThread() { stop(); }
@@ -84,13 +84,13 @@ class IoThread {
   }
   /// [rt] For read(). @return false: no newer one has come
   bool newest(Report& report) noexcept { return reports_.take(report); }
-  /// [rt] For write(), with the time that it names.
+  /// [rt] For write(), with the time that write() names.
   void leave(const Order& order) noexcept { orders_.put(order); }
   /// [any] For hdv.cut/1; a write() with HDV_OFF ends it.
   void cut(bool free) noexcept { cut_.store(free, std::memory_order_relaxed); }
 
-  /// [io] One round: a report, or none, and a command in any case. So the motors of an arm that says nothing are off
-  /// after kOld + kWait, and one that did not hear it the first time is told again.
+  /// [io] One round takes a report, or none, and always sends a command. So the motors of an arm that falls silent are
+  /// off after kOld + kWait, and an arm that missed a command gets it again.
   void exchange() noexcept {
     Vec3 position{};
     const bool came = port_.receive(position);

@@ -53,8 +53,8 @@ class TemplateArm : public hapticd::Device {
     now_ns_ = 0;
   }
 
-  /// Every tick: the newest sample. Never waits. A real module gives HDV_S_LOST while the hardware is gone, HDV_S_FAULT
-  /// while it reports a fault, and the same sequence number again while there is no new sample.
+  /// Called in every tick: gives the newest sample and never waits. A real module gives HDV_S_LOST while the hardware
+  /// is gone, HDV_S_FAULT while it reports a fault, and the same sequence number again while there is no new sample.
   hsp_status read(uint64_t now_ns, hdv_sample& sample) noexcept HSP_RT {
     if (cut_.load(std::memory_order_relaxed)) board_.send({});
     if (now_ns > now_ns_) ++sequence_;
@@ -68,7 +68,7 @@ class TemplateArm : public hapticd::Device {
     return HSP_OK;
   }
 
-  /// Every tick: leaves the newest command. Bounds it again, whatever the host has done already.
+  /// Called in every tick: takes the newest command. It bounds the command again, whatever the host has done already.
   hsp_status write(uint64_t, const hdv_command& command) noexcept HSP_RT {
     if (command.mode == HDV_OFF) cut_.store(false, std::memory_order_relaxed);
     const bool off = command.mode != HDV_TORQUE || cut_.load(std::memory_order_relaxed);
@@ -99,7 +99,7 @@ class TemplateArm : public hapticd::Device {
     orientation[1] = orientation[2] = orientation[3] = 0;
     return HSP_OK;
   }
-  /// J[row * 3 + joint]: rows 0 to 2 velocity of the tip, rows 3 to 5 angular velocity.
+  /// J[row * 3 + joint]: rows 0 to 2 are the velocity of the tip, rows 3 to 5 its angular velocity.
   static hsp_status jacobian(const hdv_device*, const double*, double* J) noexcept HSP_RT {
     std::fill(J, J + 18, 0.0);
     for (int i = 0; i < 3; ++i) J[i * 3 + i] = 1;
@@ -117,7 +117,7 @@ class TemplateArm : public hapticd::Device {
     std::copy(position, position + 3, q);
     return HSP_OK;
   }
-  /// By the watchdog, from any thread, also in a signal handler: the motors stay free until a command says HDV_OFF.
+  /// The watchdog calls it from any thread, even in a signal handler. Motors stay free until a command says HDV_OFF.
   static void cut(hdv_device* device) noexcept HSP_RT { self(device).cut_.store(true, std::memory_order_relaxed); }
 
   static constexpr hdv_ext_kinematics kKinematics = {

@@ -13,11 +13,11 @@
 namespace hapticd::wire_arm {
 namespace {
 
-constexpr size_t kReads = 4;                     ///< transfers that always wait for the device
-constexpr size_t kBuffer = 512;                  ///< bytes of each: a high-speed packet
-constexpr Nanoseconds kWriteHangs = 15'000'000;  ///< a command that nobody takes: as good as a stall
+constexpr size_t kReads = 4;                     ///< so many transfers always wait for the device
+constexpr size_t kBuffer = 512;                  ///< bytes of each transfer: one high-speed packet
+constexpr Nanoseconds kWriteHangs = 15'000'000;  ///< a command that nobody takes in this time is as good as a stall
 constexpr unsigned kControlTimeout = 1000;       ///< [ms]
-constexpr Nanoseconds kCancelled = 500'000'000;  ///< the kernel gives back a cancelled transfer long before
+constexpr Nanoseconds kCancelled = 500'000'000;  ///< the kernel gives a cancelled transfer back long before this
 
 std::string idText(const Address& address) {
   char text[16];
@@ -44,7 +44,7 @@ Status statusOf(int error) {
   return error == LIBUSB_ERROR_PIPE ? Status::kStalled : Status::kFailed;
 }
 
-/// One context and one event loop per device: libusb's locks have no priority inheritance.
+/// Each device has its own context and event loop, because libusb's locks have no priority inheritance.
 class BulkTransport final : public Transport {
  public:
   BulkTransport() {
@@ -68,7 +68,7 @@ class BulkTransport final : public Transport {
     for (ssize_t i = 0; i < count && handle_ == nullptr; ++i) tryOne(all[i], address, identity, trouble);
     if (count >= 0) libusb_free_device_list(all, 1);
     if (handle_ == nullptr) return Error{missing(address, trouble)};
-    // A halt outlasts closing: the host must lift it. Only then, since that also resets the toggles of the packets.
+    // A halt outlasts closing, so the host must lift it; but only then, since that resets the packets' toggles too.
     for (const uint8_t endpoint : {wire.endpoint_in, wire.endpoint_out})
       if (halted_) (void)libusb_clear_halt(handle_, endpoint);
     halted_ = false;
@@ -82,7 +82,7 @@ class BulkTransport final : public Transport {
 
   void close() noexcept override {
     if (handle_ == nullptr) return;
-    closing_ = true;  // what completes from now on is not submitted again
+    closing_ = true;  // a transfer that completes from now on is not submitted again
     waiting_ = false;
     for (libusb_transfer* read : reads_) (void)libusb_cancel_transfer(read);
     if (writing_) (void)libusb_cancel_transfer(write_);
@@ -117,7 +117,7 @@ class BulkTransport final : public Transport {
     return Status::kNothing;
   }
 
-  /// The newest command wins: one that comes while the last is still on its way replaces the one that waits.
+  /// The newest command wins: if the last one is still on its way, the newest replaces the one that waits.
   Status send(std::span<const uint8_t> bytes) noexcept override {
     if (bytes.size() > out_.size()) return Status::kFailed;
     if (broken_ != Status::kOk) return broken_;
@@ -133,7 +133,7 @@ class BulkTransport final : public Transport {
                                             0, kControlTimeout));
   }
 
-  /// The same node of usbfs: the interface is claimed once this process has gone.
+  /// Opens the same usbfs node: the interface can be claimed once this process has gone.
   Descriptor wayIn(hdv_silence& how) noexcept override {
     libusb_device* device = libusb_get_device(handle_);
     char node[40];
@@ -304,7 +304,7 @@ class BulkTransport final : public Transport {
   Nanoseconds written_at_ = 0;
   int interface_ = 0;
   uint8_t endpoint_out_ = 0;
-  bool halted_ = false;  ///< it stalled when it was closed
+  bool halted_ = false;  ///< the endpoint had stalled when it was closed
   bool writing_ = false, waiting_ = false, closing_ = false, out_interrupt_ = false;
   Status broken_ = Status::kOk;
 };

@@ -16,7 +16,7 @@
 namespace hapticd::wire_arm {
 namespace {
 
-/// hidapi keeps its start-up and its last message in process-wide variables: one call of these at a time.
+/// hidapi keeps its start-up and its last message in process-wide variables, so one thread at a time may call these.
 std::mutex& libraryMutex() {
   static std::mutex mutex;
   return mutex;
@@ -34,7 +34,7 @@ std::string idText(const Address& address) {
   return text;
 }
 
-/// The kernel counts HID devices as they come: the number in "0003:1234:0006.0007" is new with each plugging-in.
+/// The kernel numbers HID devices as they come: the number in "0003:1234:0006.0007" changes with each plugging-in.
 std::string epochOf(const std::string& node) {
   std::error_code error;
   const auto link = std::filesystem::read_symlink(
@@ -90,7 +90,7 @@ class HidTransport final : public Transport {
         hid_read_timeout(handle_, to.data(), to.size(), static_cast<int>((wait + kMillisecond - 1) / kMillisecond));
     size = got > 0 ? static_cast<size_t>(got) : 0;
     if (got > 0) return Status::kOk;
-    return got == 0 ? Status::kNothing : Status::kGone;  // hidapi has no other words for any error
+    return got == 0 ? Status::kNothing : Status::kGone;  // hidapi has no words for any other error
   }
 
   Status send(std::span<const uint8_t> bytes) noexcept override {
@@ -105,7 +105,7 @@ class HidTransport final : public Transport {
 
   Status control(const codec::StartStep&) noexcept override { return Status::kFailed; }
 
-  /// Opened anew, without the lock: who holds that keeps this program from opening the device again.
+  /// Opens it anew, without the lock: whoever holds that keeps this program from opening the device again.
   Descriptor wayIn(hdv_silence& how) noexcept override {
     how.kind = HDV_BY_WRITE;
     how.size = numbered_ ? 0 : 1;  // hidraw wants a report id in any case

@@ -41,7 +41,7 @@ class DhdArm : public vendor_arm::CartesianArm<DhdArm> {
         F::integer("index", &DhdArm::index, "", 0, 15, 0, "Which of the arms that the library finds, from 0."),
         F::real("force", &DhdArm::force, "N", 0.1, 100, 5, "Largest force."),
         F::real("reach", &DhdArm::reach, "m", 0.01, 2, 0.3, "The tip is nowhere farther from the origin on any axis."),
-        F::integer("rate", &DhdArm::rate, "Hz", 100, 8000, 2000, "Exchanges with the library a second, at most."),
+        F::integer("rate", &DhdArm::rate, "Hz", 100, 8000, 2000, "Exchanges with the library per second, at most."),
     };
   }
 
@@ -52,7 +52,7 @@ class DhdArm : public vendor_arm::CartesianArm<DhdArm> {
       throw std::runtime_error("the vendor's library opens no arm " + std::to_string(index) + ": " + why() +
                                "\n  fix: try the vendor's own test program first");
     describe(info, force);
-    info.capabilities = HDV_C_UNVERIFIED;  // the vendor's own program finds the zero, before the daemon runs
+    info.capabilities = HDV_C_UNVERIFIED;  // the vendor's own program finds the zero before the daemon runs
     info.continuous_force = force;
     info.rate_hz = rate;
     info.buttons = kButtons;
@@ -107,7 +107,7 @@ class DhdArm : public vendor_arm::CartesianArm<DhdArm> {
 
   /// The thread that may block in the library. A lost arm stays lost until the next start.
   void run() {
-    (void)os::setFifo(os::kServoPriority + 1);  // it waits for the hardware, and the servo for nobody
+    (void)os::setFifo(os::kServoPriority + 1);  // this thread waits for the hardware, so that the servo need not
     const auto period = std::chrono::nanoseconds(kNanosecondsPerSecond) / rate;
     auto due = std::chrono::steady_clock::now();
     vendor_arm::Seen seen;

@@ -13,9 +13,9 @@ class Servo {
  public:
   Servo(const VendorLibrary& vendor, vendor_arm::Exchange& exchange) : vendor_(vendor), exchange_(exchange) {}
 
-  /// [main] Forces on, callback scheduled. False: the vendor's library refuses.
+  /// [main] Switches the forces on and schedules the callback. False if the vendor's library refuses.
   bool start(HHD device);
-  void stop();  ///< [main] force off, callback ended
+  void stop();  ///< [main] switches the force off and ends the callback
 
  private:
   static HDCallbackCode HDCALLBACK callback(void* self);

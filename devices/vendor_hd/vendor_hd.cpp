@@ -37,7 +37,7 @@ class VendorArm : public vendor_arm::CartesianArm<VendorArm> {
 
   void open(hdv_info& info) {
     vendor_.load(library);
-    (void)vendor_.errors();  // of others in this process
+    (void)vendor_.errors();  // drops errors of others in this process
     handle_ = vendor_.init(device.empty() ? HD_DEFAULT_DEVICE : device.c_str());
     const std::string wrong = vendor_.errors();
     if (handle_ == HD_INVALID_HANDLE || !wrong.empty())
@@ -94,7 +94,7 @@ class VendorArm : public vendor_arm::CartesianArm<VendorArm> {
     };
     std::snprintf(info.serial, sizeof info.serial, "%s", text(HD_DEVICE_SERIAL_NUMBER));
     std::snprintf(info.product, sizeof info.product, "%s", text(HD_DEVICE_MODEL_TYPE));
-    (void)vendor_.errors();  // of what this arm does not have
+    (void)vendor_.errors();  // drops errors about what this arm does not have
   }
 
   static hsp_status calibrate(hdv_device* arm) {

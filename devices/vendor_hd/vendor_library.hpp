@@ -8,12 +8,12 @@
 
 namespace hapticd::vendor_hd {
 
-/// [main] One for each arm; the library itself is there once a process.
+/// [main] Each arm has one; the library itself is loaded once per process.
 class VendorLibrary {
  public:
-  /// Throws std::runtime_error with what is missing and how to get it.
+  /// Throws std::runtime_error that names what is missing and how to get it.
   void load(const std::string& file);
-  /// The errors that wait, in words; empty: there are none.
+  /// The pending errors in words; empty if there are none.
   std::string errors() const;
 
   decltype(&::hdInitDevice) init = nullptr;

@@ -10,9 +10,9 @@ namespace hapticd::vme {
 namespace {
 
 using wire_arm::Status;
-constexpr int kTries = 3;  ///< to read a block while the board writes it
+constexpr int kTries = 3;  ///< attempts to read a block while the board writes it
 
-/// What a bus answers where nobody does: all lines stay high, and vme_user reports no error.
+/// A bus reads so where nobody answers: all lines stay high, and vme_user reports no error.
 bool nobody(std::span<const uint8_t> bytes) noexcept {
   return std::all_of(bytes.begin(), bytes.end(), [](uint8_t byte) { return byte == 0xff; });
 }
@@ -71,7 +71,7 @@ Result<wire_arm::Identity> Mailbox::open(const wire_arm::Address&, const codec::
         "\n  the arm stays off\n  fix: switch the rack and its controller board on, or correct the vme keys of "
         "the device file"};
   }
-  // What stands there now may be what a board left behind when it died: only a newer block counts.
+  // A board that died may have left what stands there now: only a newer block counts.
   std::memcpy(seen_.data(), block.data() + last_.at, last_.bytes);
   have_seen_ = last_.bytes > 0;
   alive_ = !have_seen_;
@@ -117,7 +117,7 @@ Status Mailbox::look(std::span<uint8_t> block) noexcept {
     alive_ |= !old;
     return old ? Status::kNothing : Status::kOk;
   }
-  return Status::kOk;  // half a block: the codec sees that its numbers differ, and the session gives it a name
+  return Status::kOk;  // this is half a block: the codec sees that its numbers differ, and the session reports it
 }
 
 Status Mailbox::take(std::span<uint8_t> block) noexcept {
@@ -125,7 +125,7 @@ Status Mailbox::take(std::span<uint8_t> block) noexcept {
   return nobody(block) ? Status::kAbsent : Status::kOk;
 }
 
-/// No bytes of a board that was never heard: a wrong address may be memory of somebody else.
+/// No bytes are sent to a board that was never heard: a wrong address may be memory of another board.
 Descriptor Mailbox::wayIn(hdv_silence& how) noexcept {
   how.kind = HDV_BY_PWRITE;
   how.offset = place_.command;
@@ -133,7 +133,7 @@ Descriptor Mailbox::wayIn(hdv_silence& how) noexcept {
 }
 
 Status Mailbox::send(std::span<const uint8_t> bytes) noexcept {
-  if (!alive_) return Status::kOk;  // a wrong address may be memory of somebody else: write only where a board counts
+  if (!alive_) return Status::kOk;  // a wrong address may be another board's memory: write only where a board counts
   return window_.write(place_.command, bytes) == static_cast<long>(bytes.size()) ? Status::kOk : Status::kFailed;
 }
 

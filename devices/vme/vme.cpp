@@ -36,7 +36,7 @@ class VmeArm final : public wire_arm::Arm<VmeArm> {
     return join(bus(), wire_arm::ParameterTable<VmeArm>::device(), wire_arm::ParameterTable<VmeArm>::arm());
   }
 
-  /// Nothing of USB: the window is the address. Throws std::invalid_argument where it makes no sense.
+  /// This needs nothing of USB: the window is the address. Throws std::invalid_argument where it makes no sense.
   wire_arm::Address address() const {
     if (auto fits = check(place(), format()); !fits) throw std::invalid_argument(fits.error());
     return {};

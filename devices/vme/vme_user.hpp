@@ -36,6 +36,6 @@ inline constexpr uint32_t kA16 = 1, kA24 = 2, kA32 = 4;  // address spaces
 inline constexpr uint32_t kD8 = 1, kD16 = 2, kD32 = 4;   // data widths
 inline constexpr uint32_t kSingle = 1;                   // cycles of one datum
 inline constexpr uint32_t kSuper = 0x1000, kUser = 0x2000, kProgram = 0x4000, kData = 0x8000;
-inline constexpr uint64_t kGranule = 0x10000;  // of base and size: the bridge decodes no finer
+inline constexpr uint64_t kGranule = 0x10000;  // granularity of base and size: the bridge decodes no finer
 
 }  // namespace hapticd::vme

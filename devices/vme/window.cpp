@@ -38,7 +38,7 @@ int setAndGet(int fd, unsigned long set, unsigned long get, const Place& place, 
 
 std::string reasonOf(int error) {
   if (error == EINVAL)
-    return "the bridge does not know this space, cycle or width, or the base is no multiple of 64 KiB";
+    return "the bridge does not know this space, cycle or width, or the base is not a multiple of 64 KiB";
   if (error == EFAULT) return "the window ends beyond the address space";
   if (error == EBUSY || error == ENOMEM) return "the bridge has no room for it: another window may take the place";
   return std::strerror(error);

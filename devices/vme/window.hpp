@@ -17,12 +17,12 @@ struct Place {
   uint32_t space = 2, width = 2, cycle = 0xA001;  ///< A24, D16, single user data cycles: numbers of vme_user
 };
 
-/// [main] Nothing, or what the bridge or the bus would refuse, in words.
+/// [main] Nothing, or in words what the bridge or the bus would refuse.
 Result<void> check(const Place& place);
-/// [any] "A24 0x100000 (64 KiB, D16)"
+/// [any] Describes it: "A24 0x100000 (64 KiB, D16)".
 std::string describe(const Place& place);
 
-/// [main] or one I/O thread at a time: every function is a system call.
+/// [main] or one I/O thread at a time, since every function is a system call.
 class Window {
  public:
   Window() = default;
@@ -30,14 +30,14 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Opens the node for this process alone and points the window at the place.
+  /// Opens the node for this process alone and points the window at its place on the bus.
   Result<void> open(const Place& place);
   void close() noexcept;
   bool isOpen() const noexcept { return fd_ >= 0; }
-  /// No bus: a plain file stands in.
+  /// There is no bus: a plain file stands in for it.
   bool isFile() const noexcept { return file_; }
 
-  /// Bytes that came; fewer than asked for at the window's end, 0 where no window is set, -1 with errno.
+  /// Bytes that were transferred; fewer than asked for at the window's end, 0 where no window is set, -1 with errno.
   long read(uint64_t offset, std::span<uint8_t> to) noexcept;
   long write(uint64_t offset, std::span<const uint8_t> bytes) noexcept;
 

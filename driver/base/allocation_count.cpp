@@ -7,7 +7,7 @@
 #include <cstring>
 
 namespace {
-// Plain TLS of the executable: reading it never allocates itself.
+// A plain thread-local variable of the executable: reading it never allocates.
 __thread uint64_t allocations __attribute__((tls_model("initial-exec"))) = 0;
 __thread void (*look)() __attribute__((tls_model("initial-exec"))) = nullptr;
 
@@ -21,7 +21,7 @@ __thread void (*look)() __attribute__((tls_model("initial-exec"))) = nullptr;
 }
 
 [[maybe_unused]] constexpr size_t kPlain = alignof(max_align_t);  ///< of what malloc gives
-const hapticd::OtherAllocator* other = nullptr;  ///< the one that ever was: its blocks may be freed at any time
+const hapticd::OtherAllocator* other = nullptr;  ///< the only one there was: its blocks may be freed at any time
 __thread bool from_other __attribute__((tls_model("initial-exec"))) = false;
 
 [[maybe_unused]] void* takeOther(size_t size, size_t alignment) {

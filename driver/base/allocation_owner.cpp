@@ -9,7 +9,7 @@
 namespace hapticd {
 namespace {
 
-/// Owners beyond these are not told apart: one is enough to name.
+/// Owners beyond this number are counted together: it is enough to name one.
 constexpr size_t kOwners = 16;
 
 struct Noted {
@@ -19,7 +19,7 @@ struct Noted {
 
 std::array<Noted, kOwners> g_noted;
 
-/// Within malloc: no lock, no allocation.
+/// This runs within malloc, so it takes no lock and allocates nothing.
 void noteOne() {
   const Owner* const owner = calledHere();
   if (owner == nullptr) return;

@@ -7,17 +7,17 @@
 
 namespace hapticd {
 
-/// Allocations in the code of one owner.
+/// How many allocations the code of one owner made.
 struct AllocationShare {
-  const Owner* owner = nullptr;  ///< nullptr: the daemon's own code, or nobody
+  const Owner* owner = nullptr;  ///< nullptr: the daemon's own code, or nobody's
   uint64_t count = 0;
 };
 
-/// [any] From now on the owners of this thread's allocations are noted; false: no longer. Costs nothing where nothing
+/// [any] From now on the owners of this thread's allocations are noted; false ends that. It costs nothing where nothing
 /// is allocated.
 void noteAllocations(bool on) noexcept;
 
-/// [any] The owner with the most of those that were noted in this process.
+/// [any] The owner that made most of the allocations noted in this process.
 AllocationShare mostAllocations() noexcept;
 
 }  // namespace hapticd

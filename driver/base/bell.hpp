@@ -8,21 +8,21 @@
 
 namespace hapticd {
 
-/// Strikes are counted: who remembers the count misses none. One thread waits.
+/// Wakes one waiting thread. Strikes are counted, so a thread that remembers the count misses none.
 class Bell {
  public:
   /// [rt] Strikes so far.
   uint32_t strikes() const noexcept HSP_RT { return strikes_.load(); }
-  /// [rt] Counts, and wakes nobody: no system call.
+  /// [rt] Counts a strike and wakes nobody, so it makes no system call.
   void strike() noexcept HSP_RT { strikes_.fetch_add(1); }
-  /// [any] Wakes who waits; a system call only then.
+  /// [any] Counts a strike and wakes the waiting thread; it makes a system call only if one waits.
   void wake() noexcept;
   /// [any] Both.
   void ring() noexcept {
     strike();
     wake();
   }
-  /// [any] Sleeps until there are other strikes than `heard`, at the latest until `until` (CLOCK_MONOTONIC).
+  /// [any] Sleeps until the count of strikes is not `heard`, or until `until` (CLOCK_MONOTONIC) at the latest.
   void wait(uint32_t heard, Nanoseconds until) noexcept;
 
  private:

@@ -20,7 +20,7 @@ struct Code {
   std::atomic<const void*> begin{nullptr}, end{nullptr};
   std::atomic<const Owner*> owner{nullptr};
 };
-constexpr size_t kMostLibraries = 256;  // of more, the rest is blamed on nobody
+constexpr size_t kMostLibraries = 256;  // the code of more owners is blamed on nobody
 std::array<Code, kMostLibraries> libraries;
 std::atomic<size_t> library_count{0};
 

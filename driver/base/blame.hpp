@@ -10,21 +10,21 @@
 
 namespace hapticd {
 
-/// A plugin or device module and the model or device that is an instance of it.
+/// A plugin or device module, and the model or device that is an instance of it.
 struct Owner {
   std::string module;  ///< "nurbs_rigid"
   std::string name;    ///< "teapot"
   bool device = false;
 };
 
-/// [main] The owner of that name; it lives to the end of the process, as threads of a plugin may.
+/// [main] The owner of that name; it lives until the process ends, because threads of a plugin may do so too.
 const Owner* ownerOf(const std::string& module, const std::string& name, bool device = false);
 
 namespace detail {
 inline thread_local std::atomic<const Owner*> t_called{nullptr};
 }
 
-/// Marks the calling thread as one that runs the owner's code, as long as the object lives; they may nest.
+/// Marks the calling thread as one that runs the owner's code while the object lives; such objects may nest.
 class Calling {
  public:
   explicit Calling(const Owner* owner) noexcept HSP_RT : before_(detail::t_called.load(std::memory_order_relaxed)) {
@@ -43,11 +43,11 @@ inline const Owner* calledHere() noexcept {
   return detail::t_called.load(std::memory_order_relaxed);
 }
 
-/// The daemon's own threads that call plugins, so that others can ask what they are at.
+/// The daemon's own threads that call plugins; others can ask what these threads are doing.
 enum class Worker : int { kMain, kServo, kSearch, kControl };
 constexpr int kWorkerCount = 4;
 
-/// [any] The calling thread is that worker as long as the object lives.
+/// [any] The calling thread is that worker while the object lives.
 class Working {
  public:
   explicit Working(Worker worker) noexcept;
@@ -64,17 +64,17 @@ const Owner* calledBy(Worker worker) noexcept;
 /// [any] The calling thread is one of the daemon's own. Async-signal-safe.
 bool isWorker() noexcept;
 
-/// [main] The code from `begin` up to `end` belongs to a library; its owner is told later, and the last one counts.
+/// [main] The code from `begin` up to `end` belongs to a library. Its owner is given later; the last one given counts.
 void keepCode(const void* begin, const void* end);
-/// [main] `address` lies in code that was kept: it is this owner's.
+/// [main] `address` lies in code that was kept; that code belongs to this owner.
 void ownCode(const void* address, const Owner* owner);
-/// [any] Whose code lies there; nullptr: nobody's that was told. Async-signal-safe.
+/// [any] Whose code lies at this address; nullptr: no owner was given. Async-signal-safe.
 const Owner* ownerOfCode(const void* address) noexcept;
 
-/// [any] Whose code a signal interrupted, or whose called what it interrupted: the first owner found at the context's
-/// instruction and then on its stack. @param context as a handler with SA_SIGINFO gets it. Async-signal-safe.
+/// [any] The owner of the code that a signal interrupted, or of code that called it: the first owner found at the
+/// context's instruction and then on its stack. @param context as a handler with SA_SIGINFO gets it. Async-signal-safe.
 const Owner* ownerInterrupted(const void* context) noexcept;
-/// [any] The first owner of code whose address stands on the stack from there on, so that it called what runs now.
+/// [any] The first owner of code whose address stands on the stack above `from`, so that it called what runs now.
 /// Async-signal-safe.
 const Owner* ownerOnStack(const void* from) noexcept;
 

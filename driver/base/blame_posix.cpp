@@ -43,12 +43,12 @@ const Owner* ownerInterrupted(const void* context) noexcept {
 }
 
 const Owner* ownerOnStack(const void* from) noexcept {
-  constexpr size_t kPiece = 128, kPieces = 64;  // words: 64 KiB of the stack at most
+  constexpr size_t kPiece = 128, kPieces = 64;  // words, which are 64 KiB of the stack at most
   const auto* stack = static_cast<const uintptr_t*>(from);
   for (size_t piece = 0; stack != nullptr && piece < kPieces; ++piece, stack += kPiece) {
     std::array<uintptr_t, kPiece> words{};
     iovec to{words.data(), sizeof words}, of{const_cast<uintptr_t*>(stack), sizeof words};
-    // The kernel copies: beyond the end of the stack that is an error instead of another fault.
+    // The kernel copies the stack, so that reading beyond its end is an error instead of another fault.
     const ssize_t got = process_vm_readv(getpid(), &to, 1, &of, 1, 0);
     if (got <= 0) return nullptr;
     for (size_t i = 0; i < static_cast<size_t>(got) / sizeof(uintptr_t); ++i)

@@ -8,7 +8,7 @@ namespace hapticd {
 
 namespace {
 
-/// A list that only grows, at its head, and is never destroyed: handlers read it at any moment.
+/// A list that only grows, at its head, and is never destroyed, because handlers may read it at any moment.
 struct Known {
   const Owner* owner;
   std::string place;

@@ -12,8 +12,8 @@ namespace detail {
 inline thread_local std::atomic<const char*> t_call_name{nullptr};
 }
 
-/// The calling thread runs that function of a module as long as the object lives; they may nest. A step has none: it is
-/// what a module is called for unless something else is said.
+/// The calling thread runs that function of a module while the object lives; such objects may nest. A step names none:
+/// if nothing is named, a module is called for its step.
 class CallName {
  public:
   /// @param name in static storage: "activate"
@@ -33,9 +33,9 @@ inline const char* callNameHere() noexcept {
   return detail::t_call_name.load(std::memory_order_relaxed);
 }
 
-/// [main] `place` asks for that owner: "scene.yaml:4". The last one counts.
+/// [main] `place`, such as "scene.yaml:4", asks for that owner. The last one counts.
 void keepPlace(const Owner* owner, const std::string& place);
-/// [any] What asks for that owner; "": nobody knows. Async-signal-safe.
+/// [any] The place that asks for that owner; "" if it is unknown. Async-signal-safe.
 const char* placeOf(const Owner* owner) noexcept;
 
 }  // namespace hapticd

@@ -13,7 +13,7 @@ using Nanoseconds = uint64_t;
 constexpr Nanoseconds kNanosecondsPerSecond = 1'000'000'000;
 constexpr double kSecondsPerNanosecond = 1e-9;
 
-/// [any] CLOCK_MONOTONIC, for stamps and for the cost of a piece of work.
+/// [any] CLOCK_MONOTONIC, for time stamps and for the cost of a piece of work.
 Nanoseconds monotonicNow() noexcept HSP_RT;
 
 /// A clock that the servo loop can wait on.
@@ -21,7 +21,7 @@ class Clock {
  public:
   virtual ~Clock() = default;
   virtual Nanoseconds now() noexcept HSP_RT = 0;
-  /// [rt] Returns at `deadline` or later, with the time then.
+  /// [rt] Returns at `deadline` or later, and gives the time at which it returns.
   virtual Nanoseconds waitUntil(Nanoseconds deadline) noexcept HSP_RT = 0;
 };
 
@@ -37,7 +37,7 @@ class RealClock final : public Clock {
   Nanoseconds spin_;
 };
 
-/// As fast as the processor allows: waiting jumps to the deadline.
+/// Runs as fast as the processor allows: waiting jumps to the deadline.
 class VirtualClock final : public Clock {
  public:
   explicit VirtualClock(Nanoseconds start = 0) : now_(start) {}

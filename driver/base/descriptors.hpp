@@ -32,9 +32,9 @@ class Descriptor {
   int fd_ = -1;
 };
 
-constexpr size_t kMostDescriptors = 250;  ///< in one message; the kernel takes 253
+constexpr size_t kMostDescriptors = 250;  ///< most in one message; the kernel takes 253
 
-/// [any] Sends bytes and, with the first of them, descriptors; they stay open here. Waits as the socket does.
+/// [any] Sends bytes and, with the first of them, descriptors; they stay open here. Blocks if the socket does.
 /// @return bytes that were sent, which on a stream may be fewer; -1 with errno
 std::ptrdiff_t sendWith(int socket, std::string_view bytes, std::span<const int> descriptors) noexcept;
 

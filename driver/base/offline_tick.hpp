@@ -20,14 +20,14 @@ class OfflineTick {
   OfflineTick& operator=(const OfflineTick&) = delete;
 
   static uint64_t ended() noexcept { return detail::offline_ended.load(std::memory_order_relaxed); }
-  /// The number of the tick going on, from 1; 0: none is.
+  /// The number of the tick in progress, counted from 1; 0: no tick is in progress.
   static uint64_t current() noexcept {
     const uint64_t begun = detail::offline_begun.load(std::memory_order_relaxed);
     return begun != ended() ? begun : 0;
   }
 
  private:
-  /// One thread at a time has ticks of this kind.
+  /// Only one thread at a time may have ticks of this kind.
   static void count(std::atomic<uint64_t>& number) noexcept {
     number.store(number.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   }

@@ -14,7 +14,7 @@
 
 namespace hapticd::os {
 
-constexpr size_t kThreadStackBytes = 256 * 1024;  ///< explicit: locked memory counts the whole default of 8 MiB
+constexpr size_t kThreadStackBytes = 256 * 1024;  ///< explicit, because locked memory counts the whole default of 8 MiB
 constexpr int kServoPriority = 80;                ///< below the kernel's own migration threads at 99
 
 /// A thread with an explicit stack, named for `ps` and `top`. Joins in its destructor.
@@ -39,7 +39,7 @@ class Thread {
 /// Undoes lockMemory.
 void unlockMemory();
 
-/// Makes the calling thread SCHED_FIFO at `priority`.
+/// Gives the calling thread the policy SCHED_FIFO at `priority`.
 std::error_code setFifo(int priority);
 
 /// Pins the calling thread to one processor.
@@ -54,7 +54,7 @@ void calmAllocator();
 /// Touches the stack of the calling thread below its present depth.
 void prefaultStack();
 
-/// Holds /dev/cpu_dma_latency at 0 (no deep sleep of the processor) as long as the object lives.
+/// Keeps /dev/cpu_dma_latency at 0 (no deep sleep of the processor) while the object lives.
 class DmaLatencyHold {
  public:
   DmaLatencyHold();
@@ -70,10 +70,10 @@ class DmaLatencyHold {
 /// Resident memory of the process [bytes].
 size_t residentBytes();
 
-/// What bears on real-time rights, in one line for messages: limits, capability, cgroup.
+/// What affects the right to run in real time, in one line for messages: limits, capability, cgroup.
 std::string realTimeRights();
 
-/// True inside a virtual machine, where spinning buys nothing against pauses of the host.
+/// True inside a virtual machine, where spinning does not prevent pauses that the host causes.
 bool inVirtualMachine();
 
 /// [any] Number of the calling thread; async-signal-safe.
@@ -86,12 +86,12 @@ void onSuspendSignal(void (*handler)(int));
 /// [any] Stops the whole process until it is continued.
 void suspendProcess();
 
-/// Gives the calling thread a stack of its own for handlers of fatal signals, so that they run even when its own is
+/// Gives the calling thread a separate stack for handlers of fatal signals, so that they run even when its own is
 /// full.
 void prepareSignalStack();
 
-/// A real-time thread that runs this long without sleeping gets SIGXCPU, and twice as long SIGKILL: a machine must not
-/// freeze because of a plugin that loops. Lower limits stay.
+/// A real-time thread that runs this long without sleeping gets SIGXCPU, and after twice as long SIGKILL, so that a
+/// plugin that loops cannot freeze the machine. Lower limits stay in force.
 std::error_code limitRealTimeRun(uint64_t us);
 
 /// Installs an async-signal-safe handler for SIGINT, SIGTERM, SIGQUIT and SIGHUP, and ignores SIGPIPE and SIGXFSZ.

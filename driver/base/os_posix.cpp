@@ -37,7 +37,7 @@ std::string firstLine(const char* file) {
   return line;
 }
 
-/// Value of a "Name:\tvalue" line of /proc/self/status.
+/// The value of a "Name:\tvalue" line of /proc/self/status.
 std::string statusField(const std::string& name) {
   std::ifstream in("/proc/self/status");
   for (std::string line; std::getline(in, line);)
@@ -111,7 +111,7 @@ void calmAllocator() {
 }
 
 std::error_code lockMemory() {
-  // Below this limit mlockall succeeds and the next malloc or thread fails: say so now, with the cause.
+  // Below this limit mlockall succeeds, but the next malloc or thread fails: say so now, with the cause.
   constexpr rlim_t kEnough = 64u << 20;
   constexpr unsigned kCapIpcLock = 14;
   rlimit limit{};
@@ -197,7 +197,7 @@ void onFatalSignals(void (*handler)(int, siginfo_t*, void*)) {
 namespace {
 constexpr int kStopSignals[] = {SIGINT, SIGTERM, SIGQUIT, SIGHUP};
 std::atomic<void (*)(int)> former_stops[SIGTERM + 1];                 ///< by signal; SIG_DFL: the system's own
-std::atomic<void (*)(int, siginfo_t*, void*)> stop_handler{nullptr};  ///< nullptr: none is in front
+std::atomic<void (*)(int, siginfo_t*, void*)> stop_handler{nullptr};  ///< nullptr: no handler is in front
 }  // namespace
 
 void onStopSignals(void (*handler)(int, siginfo_t*, void*)) {
@@ -239,7 +239,7 @@ void suspendProcess() {
 
 void prepareSignalStack() {
   constexpr size_t kBytes = 64 * 1024;
-  // Lives as long as its thread may crash, which is to the end of the process.
+  // It lives as long as its thread may crash, which is until the process ends.
   static thread_local std::unique_ptr<std::byte[]> stack(new std::byte[kBytes]());
   stack_t signal_stack{};
   signal_stack.ss_sp = stack.get();
@@ -259,7 +259,7 @@ void onStopSignal(void (*handler)(int)) {
   struct sigaction action{};
   action.sa_handler = handler;
   for (const int signal : {SIGINT, SIGTERM, SIGQUIT}) sigaction(signal, &action, nullptr);
-  struct sigaction before{};  // nohup: the run outlives its terminal
+  struct sigaction before{};  // nohup was used: the run outlives its terminal
   if (sigaction(SIGHUP, nullptr, &before) != 0 || before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
   action.sa_handler = SIG_IGN;
   for (const int signal : {SIGPIPE, SIGXFSZ}) sigaction(signal, &action, nullptr);

@@ -9,7 +9,7 @@ namespace hapticd {
 
 namespace {
 
-/// A list that only grows, at its head, and is never destroyed: handlers read it at any moment.
+/// A list that only grows, at its head, and is never destroyed, because handlers may read it at any moment.
 struct FileOfOwner {
   const Owner* owner;
   std::string identity;
@@ -18,7 +18,7 @@ struct FileOfOwner {
 };
 std::atomic<const FileOfOwner*> newest_file{nullptr};
 
-/// A later entry of the same module stands for this one.
+/// A later entry of the same module replaces this one.
 bool isRepeated(const FileOfOwner* entry) noexcept {
   for (const FileOfOwner* later = newest_file.load(); later != entry; later = later->next)
     if (later->foreign && later->owner->module == entry->owner->module) return true;

@@ -11,10 +11,10 @@ namespace hapticd {
 
 /// [main] @param identity of the file as it was loaded, one line without tabs  @param foreign it does not ship with us
 void keepFile(const Owner* owner, const std::string& identity, bool foreign);
-/// [any] The file of that owner; "": nobody said. Async-signal-safe.
+/// [any] The file of that owner; "" if none was given. Async-signal-safe.
 const char* fileOf(const Owner* owner) noexcept;
-/// [any] The owners whose files do not ship with us, each module once: the first is number 0; nullptr: there are no
-/// more. Async-signal-safe.
+/// [any] The owners whose files do not ship with hapticd, each module once. The first is number 0; nullptr: there are
+/// no more. Async-signal-safe.
 const Owner* foreignOwner(size_t number) noexcept;
 
 }  // namespace hapticd

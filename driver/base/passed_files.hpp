@@ -21,14 +21,14 @@ class PassedFiles {
   /// @param names one for each descriptor
   static Result<PassedFiles> copy(const std::vector<std::string>& names, std::vector<Descriptor> descriptors);
 
-  /// A file that this process chose by itself, such as that of its arm: it may be opened by name.
+  /// A file that this process chose itself, such as that of its arm, so it may be opened by name.
   void allow(const std::string& file) { own_.insert(file); }
-  /// Where the file can be opened; "": nowhere.
+  /// The path at which the file can be opened; "" if there is none.
   std::string pathOf(const std::string& file) const;
-  /// The text with the names that others know in place of those from pathOf.
+  /// The text with each path from pathOf replaced by the name that others know.
   std::string named(std::string text) const;
 
-  /// [main] The files are in force on this thread as long as this lives; they must live longer.
+  /// [main] This thread uses the files while this object lives; they must outlive it.
   class Scope {
    public:
     explicit Scope(const PassedFiles& files) noexcept;
@@ -45,12 +45,12 @@ class PassedFiles {
   std::set<std::string> own_;
 };
 
-/// [main] Where a file of that name is to be opened: itself, unless passed files are in force. The error is meant to
-/// follow the file's name.
+/// [main] The path at which a file of that name must be opened: the name itself, unless this thread uses passed files.
+/// The error is meant to follow the file's name.
 Result<std::string> whereToOpen(const std::string& file);
 
-/// [main] Opens a regular file for another process. One that a program or the kernel keeps (FUSE, proc) becomes a
-/// copy in memory: reading it asks nobody. The error is meant to follow the file's name.
+/// [main] Opens a regular file for another process. One that a program or the kernel keeps (FUSE, proc) becomes a copy
+/// in memory, which can be read without asking anybody. The error is meant to follow the file's name.
 Result<Descriptor> openToPass(const std::string& file);
 
 }  // namespace hapticd

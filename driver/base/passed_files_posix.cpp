@@ -18,12 +18,12 @@ namespace hapticd {
 
 namespace {
 
-/// statfs(2): file systems that a program serves, and where the kernel asks who reads, not only who opened.
+/// See statfs(2): file systems served by a program, and those where the kernel checks who reads, not only who opened.
 constexpr long kFuse = 0x65735546, kProc = 0x9fa0, kSys = 0x62656572;
 
 thread_local const PassedFiles* in_force = nullptr;
 
-/// What reading it gives is for another to say.
+/// Others judge what reading it gives.
 bool answersReaders(int fd) {
   struct statfs where{};
   const long kind = fstatfs(fd, &where) == 0 ? static_cast<long>(where.f_type) : kFuse;
@@ -39,14 +39,14 @@ bool writeAll(int fd, const char* bytes, size_t count) {
   return true;
 }
 
-/// @param room [bytes] that may be used; what was used is taken from it
+/// @param room [bytes] that may be used; the bytes used are subtracted
 Result<Descriptor> copied(int from, size_t& room) {
   Descriptor copy(memfd_create("passed", MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!copy) return Error{std::string("cannot be copied: ") + std::strerror(errno)};
   char part[65536];
   off_t at = 0;
   for (;;) {
-    const ssize_t got = pread(from, part, sizeof part, at);  // the sender's own place in the file stays as it is
+    const ssize_t got = pread(from, part, sizeof part, at);  // the sender's own position in the file stays as it is
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return Error{std::string("cannot be read: ") + std::strerror(errno)};
     if (got == 0) break;

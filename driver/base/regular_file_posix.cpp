@@ -59,7 +59,7 @@ Result<int> openRegular(const std::string& name) {
   const std::string& file = *where;
   struct stat info{};
   if (stat(file.c_str(), &info) != 0) return cannotBeRead(errno);
-  // known before it is opened: opening a device may already move something, and a socket has no better message
+  // checked before it is opened: opening a device may already move something, and a socket has no better message
   if (std::string other = notAFile(typeOf(info.st_mode)); !other.empty()) return Error{std::move(other)};
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (fd < 0) return cannotBeRead(errno);

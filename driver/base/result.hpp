@@ -7,7 +7,7 @@
 
 namespace hapticd {
 
-/// What went wrong, in words for the user: what failed, the measured state, the consequence, the cure.
+/// What went wrong, in words for the user: what failed, the measured state, the consequence and the cure.
 struct Error {
   std::string message;
 };

@@ -13,23 +13,23 @@ namespace hapticd {
 
 class SealedMemory {
  public:
-  /// All of it is taken at once: a size that is a mistake must not take the machine's memory.
+  /// All of it is allocated at once, so a size given by mistake must not take the machine's memory.
   static constexpr size_t kMostBytes = size_t{1} << 30;
 
-  /// Who may write besides this process.
+  /// Who may write apart from this process.
   enum class Writers {
     kAll,  ///< everybody who gets the descriptor
-    kOne   ///< nobody: no writable mapping can be made any more, nor may write() be called
+    kOne   ///< nobody: no further writable mapping can be made, and write() is refused
   };
 
-  /// [main] Zeroed, touched, and locked where the process may lock. @param name for /proc, at most 200 bytes
+  /// [main] The memory is zeroed, touched, and locked if possible. @param name for /proc, at most 200 bytes
   static Result<std::unique_ptr<SealedMemory>> create(const char* name, size_t bytes, Writers writers);
   ~SealedMemory();
   SealedMemory(const SealedMemory&) = delete;
   SealedMemory& operator=(const SealedMemory&) = delete;
 
   std::byte* data() const noexcept { return data_; }  ///< page-aligned
-  size_t bytes() const noexcept { return bytes_; }    ///< whole pages, at least what was asked for
+  size_t bytes() const noexcept { return bytes_; }    ///< in whole pages, at least as much as was asked for
   /// A descriptor to be passed on, which may outlive the object.
   Result<Descriptor> share() const;
 

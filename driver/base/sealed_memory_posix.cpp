@@ -12,7 +12,7 @@ namespace hapticd {
 
 namespace {
 
-#ifndef F_SEAL_FUTURE_WRITE  // of <linux/fcntl.h>, which cannot be included beside <fcntl.h>
+#ifndef F_SEAL_FUTURE_WRITE  // from <linux/fcntl.h>, which cannot be included beside <fcntl.h>
 constexpr int F_SEAL_FUTURE_WRITE = 0x0010;
 #endif
 
@@ -28,7 +28,7 @@ Result<std::unique_ptr<SealedMemory>> SealedMemory::create(const char* name, siz
   const size_t whole = (bytes + page - 1) / page * page;
   Descriptor fd(memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING));
   if (!fd) return cannotShare(whole, errno);
-  // allocated now: memory that is not there must be an error here, not a bus error in a tick
+  // allocated now, so that missing memory is an error here instead of a bus error in a tick
   int code = posix_fallocate(fd.get(), 0, static_cast<off_t>(whole));
   void* data = MAP_FAILED;
   if (code == 0) {
@@ -41,7 +41,7 @@ Result<std::unique_ptr<SealedMemory>> SealedMemory::create(const char* name, siz
     if (data != MAP_FAILED) munmap(data, whole);
     return cannotShare(whole, code);
   }
-  (void)mlock(data, whole);  // refused: the run has told already that it may not lock memory
+  (void)mlock(data, whole);  // if it is refused, the run has already reported that it may not lock memory
   return std::unique_ptr<SealedMemory>(new SealedMemory(std::move(fd), static_cast<std::byte*>(data), whole));
 }
 

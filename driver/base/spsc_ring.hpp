@@ -19,7 +19,7 @@ class SpscRing {
   /// [main] @param capacity rounded up to a power of two
   explicit SpscRing(size_t capacity) : slots_(std::bit_ceil(capacity)), mask_(slots_.size() - 1) {}
 
-  /// [rt] False: full, nothing written.
+  /// [rt] False if the ring is full; nothing is written then.
   bool push(const T& value) noexcept HSP_RT {
     const size_t head = head_.load(std::memory_order_relaxed);
     if (head - tail_.load(std::memory_order_acquire) == slots_.size()) return false;

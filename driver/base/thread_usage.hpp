@@ -8,7 +8,7 @@ namespace hapticd::os {
 
 /// Names the CPU clock of a thread, so that other threads can read it.
 using CpuClock = int;
-constexpr CpuClock kNoCpuClock = 1;  ///< CLOCK_MONOTONIC: before the thread has told its own
+constexpr CpuClock kNoCpuClock = 1;  ///< CLOCK_MONOTONIC until the thread has named its own clock
 
 /// [rt] Page faults (minor and major) of the calling thread so far.
 long pageFaultsOfThread() noexcept;
@@ -20,7 +20,7 @@ uint64_t cpuTime(CpuClock clock) noexcept;
 /// [rt] CPU time [ns] that the calling thread has used.
 uint64_t cpuTimeOfThread() noexcept;
 
-/// [any] The thread lost its processor since it last asked: what it did took time of others. A system call.
+/// [any] True if the thread lost its processor since the last call, so that others used time. A system call.
 bool wasPreempted() noexcept;
 
 /// [rt] Wakes at most `most` threads, of any process, that wait for a word of shared memory to change; never waits.

@@ -13,20 +13,20 @@ namespace hapticd {
 template <class T>
 class TripleBuffer {
  public:
-  /// [rt] The slot to fill before publish(); owned by the writer.
+  /// [rt] The slot to fill before publish(); it belongs to the writer.
   T& back() noexcept HSP_RT { return slots_[back_].value; }
 
   /// [rt] Makes the back slot the newest value.
   void publish() noexcept HSP_RT { back_ = middle_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex; }
 
-  /// [rt] True if a newer value than the last one has come; front() is it then.
+  /// [rt] True if a newer value than the last one has come, which front() then gives.
   bool update() noexcept HSP_RT {
     if ((middle_.load(std::memory_order_relaxed) & kFresh) == 0) return false;
     front_ = middle_.exchange(front_, std::memory_order_acq_rel) & kIndex;
     return true;
   }
 
-  /// [rt] The newest value as of the last update(); owned by the reader.
+  /// [rt] The newest value at the last update(); it belongs to the reader.
   const T& front() const noexcept HSP_RT { return slots_[front_].value; }
 
  private:

@@ -48,7 +48,7 @@ int printSchema(const std::string& format) {
   return kWorked;
 }
 
-/// The scene with the arm that `run` takes where it names none.
+/// The scene, with the arm that `run` takes where the scene names none.
 scene::Scene withArm(scene::Scene scene) {
   if (const auto file = host::shippedFile(scene::kDefaultDevice); scene.devices.empty() && file)
     if (auto loaded = scene::loadDevice(*file, catalog()); loaded.device) {
@@ -58,10 +58,10 @@ scene::Scene withArm(scene::Scene scene) {
   return scene;
 }
 
-/// What the device file of an arm that is not opened says of it; 0: unknown.
+/// What a device file says about its arm, which is not opened; 0 means unknown.
 hdv_info infoOf(const scene::Device& device) {
   hdv_info info{};
-  info.capabilities = HDV_C_PACING;  // nobody knows: no warning of it
+  info.capabilities = HDV_C_PACING;  // unknown, so there is no warning about it
   for (const scene::Value& value : device.parameters) {
     if (value.id == "device.max_stiffness") info.max_stiffness = value.number;
     if (value.id == "device.mass") info.mass_kg = value.number;
@@ -71,8 +71,8 @@ hdv_info infoOf(const scene::Device& device) {
   return info;
 }
 
-/// What cannot be stable. Only simulated arms are opened: `check` touches no hardware, and takes what the file of
-/// another one says; `run` warns of it as well.
+/// Warns of contacts that cannot be stable. Only simulated arms are opened: `check` touches no hardware, and takes what
+/// the file of another one says; `run` warns of it as well.
 document::Problems unstable(const scene::Scene& scene, const std::vector<double>& stiffness) {
   document::Problems warnings = tune::fastPaths(scene);
   for (const scene::Device& device : scene.devices) {
@@ -98,7 +98,7 @@ document::Problems unstable(const scene::Scene& scene, const std::vector<double>
   return warnings;
 }
 
-/// A bound for programs that the arm's own is below.
+/// A bound for programs above the arm's own limit has no effect.
 document::Problems idleBounds(const scene::Scene& scene) {
   document::Problems warnings;
   for (const scene::Device& device : scene.devices) {
@@ -111,7 +111,7 @@ document::Problems idleBounds(const scene::Scene& scene) {
   return warnings;
 }
 
-/// What `run` leaves out: a scene that seems to be in order would miss a model.
+/// Names what `run` leaves out: a scene that seems correct would lack a model.
 document::Problems quarantinedModels(const scene::Scene& scene) {
   document::Problems warnings;
   const auto dir = watch::stateFolder();
@@ -126,14 +126,14 @@ document::Problems quarantinedModels(const scene::Scene& scene) {
   return warnings;
 }
 
-/// What one file is told.
+/// What `check` reports about one file.
 struct Verdict {
   std::string file;
   document::Problems problems, warnings;
-  bool whole = true;  ///< false: some checks need what is missing or wrong, so they were left out
+  bool whole = true;  ///< false: something that checks need is missing or wrong, so these were left out
 };
 
-/// "models[3].pose" is about a model that is among these.
+/// True if a key such as "models[3].pose" is about one of these models.
 bool isOfThese(const std::string& key, const std::vector<bool>& models) {
   constexpr std::string_view kModels = "models[";
   if (key.rfind(kModels, 0) != 0) return false;
@@ -176,7 +176,7 @@ void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckA
   if (!options.files_only && verdict.problems.empty())  // these run the scene
     for (const auto& found_by : {&unreachableRows, &adviseHands})
       for (const document::Problem& one : found_by(full)) more.push_back(one);
-  if (!options.device.empty())  // what its own check says
+  if (!options.device.empty())  // what the module's own check says
     for (const scene::Device& device : full.devices)
       for (const document::Problem& one : adviseDevice(device.file, catalog())) more.push_back(one);
   verdict.warnings.insert(verdict.warnings.end(), more.begin(), more.end());
@@ -233,7 +233,7 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   if (scene && !options.files_only)
     if (document::Problems bad = badModules(*scene); !bad.empty()) {
       found.insert(found.end(), bad.begin(), bad.end());
-      return verdict;  // what follows would call these modules in this process
+      return verdict;  // the checks that follow would call these modules in this process
     }
   ModelTrial trial;
   if (scene && !options.files_only) trial = tryModels(*scene, servo::maxForceOf(withArm(*scene)));

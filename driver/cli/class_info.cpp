@@ -60,7 +60,7 @@ std::string defaultText(const host::ParamInfo& p) {
   }
 }
 
-/// What a file gives for it.
+/// The value that a file gives for the parameter.
 std::string valueText(const host::ParamInfo& p, const scene::Value& value) {
   if (p.kind == HSP_REAL || p.kind == HSP_INT) return document::numberText(value.number);
   if (p.kind == HSP_BOOL) return value.number != 0 ? "true" : "false";
@@ -138,7 +138,7 @@ nlohmann::ordered_json classesJson(const std::vector<const host::CatalogFile*>& 
 
 void printClasses(const std::vector<const host::CatalogFile*>& files, host::Kind kind, bool details,
                   const std::map<std::string, std::string>& notes) {
-  std::map<std::string, std::string> first;  // name to the file that wins
+  std::map<std::string, std::string> first;  // maps each name to the file that is used for it
   for (const host::CatalogFile* file : files) {
     for (const host::ClassInfo& info : file->classes) {
       if (info.kind != kind) continue;

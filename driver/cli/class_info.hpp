@@ -17,7 +17,7 @@ namespace hapticd::cli {
 void printClasses(const std::vector<const host::CatalogFile*>& files, host::Kind kind, bool details,
                   const std::map<std::string, std::string>& notes = {});
 
-/// The same facts for programs: {"plugins": [...], "unusable": [...]}; with the parameters of each.
+/// The same facts for programs: {"plugins": [...], "unusable": [...]}, with the parameters of each.
 nlohmann::ordered_json classesJson(const std::vector<const host::CatalogFile*>& files, host::Kind kind);
 nlohmann::ordered_json classJson(const host::ClassInfo& info);
 
@@ -28,7 +28,7 @@ void printUnusable(const std::vector<const host::CatalogFile*>& files);
 /// @param values of the file, which stand beside the defaults
 void printClass(const host::ClassInfo& info, const std::vector<scene::Value>& values = {});
 
-/// "  searched:" and a folder a line.
+/// " searched:" and one folder per line.
 std::string searchedText(const std::vector<std::filesystem::path>& dirs);
 
 }  // namespace hapticd::cli

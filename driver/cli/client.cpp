@@ -31,7 +31,7 @@ struct ClientArguments {
   bool env = false;
 };
 
-/// The folder of our libHD.so.
+/// The folder of hapticd's own libHD.so.
 Result<std::string> libraryFolder() {
   std::error_code error;
   const fs::path folder = (host::executableDir() / ".." / "lib" / "hapticd" / "hdapi").lexically_normal();
@@ -57,13 +57,13 @@ void passOn(int signal) {
   if (program > 0) kill(static_cast<pid_t>(program), signal);
 }
 
-/// In a child: it ends with `hapticd client`, however that ends. Kept over execve.
+/// Called in a child, which must end when `hapticd client` ends, in whatever way. It stays so over execve.
 void endWith(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) std::_Exit(kFailed);  // it ended before
 }
 
-/// In the child: becomes `words`. What it prints of its own goes nowhere if it is `silent`.
+/// Called in the child, which becomes the program in `words`. If `silent`, what it prints is dropped.
 [[noreturn]] void become(std::vector<std::string> words, bool silent) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
@@ -89,7 +89,7 @@ int endOf(pid_t child) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : kBySignal + WTERMSIG(status);
 }
 
-/// Starts a daemon and waits until it can be asked.
+/// Starts a daemon and waits until it answers requests.
 Result<pid_t> startDaemon(const ClientArguments& options) {
   constexpr int kTries = 600;
   constexpr useconds_t kPauseUs = 50'000;
@@ -111,7 +111,7 @@ Result<pid_t> startDaemon(const ClientArguments& options) {
   }
   kill(child, SIGTERM);
   endOf(child);
-  return Error{"the daemon cannot be asked after 30 s\n  fix: start it by itself (hapticd run) and see what it says"};
+  return Error{"the daemon did not answer within 30 s\n  fix: start it by itself (hapticd run) and see what it says"};
 }
 
 int runWithDaemon(const ClientArguments& options, const std::vector<std::string>& words) {
@@ -154,7 +154,7 @@ void addClient(const Command& app, int& exit_code) {
   command.addOption("--name", options->name, "name of the daemon, as given to `hapticd run --name`");
   command.addOption("--scene", options->scene, "scene of the daemon that is started where none runs");
   command.addFlag("--env", options->env, "print the environment that the program needs, for a shell");
-  command.takesForeignCommandLine();  // the options after PROGRAM are its own
+  command.takesForeignCommandLine();  // the options after PROGRAM belong to that program
   command.footer(
       "The program finds hapticd's own libHD.so and the daemon of --name. Where none runs, one is started with the\n"
       "simulated arm, and ends with the program, also where this command is killed. Options of this command stand\n"

@@ -23,7 +23,7 @@ Settings& settings() {
   return instance;
 }
 
-/// Errors of modules that a failing set-up will tell.
+/// Errors of modules that wait, because a failing set-up will report them.
 struct Waiting {
   std::mutex mutex;
   bool open = false;
@@ -35,7 +35,7 @@ Waiting& waiting() {
   return instance;
 }
 
-/// The daemon file in force, or "" where the defaults hold.
+/// The daemon file that is used, or "" where the defaults hold.
 std::filesystem::path daemonFile() {
   if (!settings().config_file.empty()) return settings().config_file;
   if (const char* named = std::getenv("HAPTICD_CONFIG"); named != nullptr && named[0] != '\0') return named;
@@ -45,7 +45,7 @@ std::filesystem::path daemonFile() {
   return host::shippedFile("hapticd.yaml").value_or("");
 }
 
-/// What holds for this machine holds for every scene.
+/// Settings of this machine's daemon file hold for every scene.
 void applyDaemon(const scene::Daemon& daemon, scene::Scene& scene) {
   if (daemon.rate) scene.servo.rate = *daemon.rate;
   for (scene::Device& device : scene.devices)

@@ -30,21 +30,21 @@ int fail(int exit_code, const std::string& message);
 /// Messages of plugins and modules, one per line, on standard error.
 void logToTerminal(int level, const std::string& who, const std::string& text);
 
-/// While one lives, errors of plugins and modules wait: a set-up that fails because of them tells them itself, in its
-/// own message, and so they are told once.
+/// While an object of this type lives, errors of plugins and modules wait. A set-up that fails because of them reports
+/// them in its own message, so that they are reported once.
 class SetupErrors {
  public:
   SetupErrors();
   ~SetupErrors() { tell(); }
   SetupErrors(const SetupErrors&) = delete;
   SetupErrors& operator=(const SetupErrors&) = delete;
-  /// [any] Whether this message is an error that waits from now on.
+  /// [any] True if this message is an error, which waits from now on.
   static bool keeps(int level, const std::string& who, const std::string& text);
-  /// [main] What waits is told, and nothing waits any more.
+  /// [main] Reports what waits, and lets nothing wait any more.
   static void tell();
 };
 
-/// --config and --plugin-path, which stand before the subcommand.
+/// The options --config and --plugin-path, which stand before the subcommand.
 void addGlobalOptions(const Command& app);
 
 /// The daemon file of this machine; a file with problems ends the program with exit code 2.
@@ -53,15 +53,15 @@ const scene::Daemon& daemonSettings();
 /// Plugins and modules, found with the search path of options, daemon file and environment.
 host::Catalog& catalog();
 
-/// Every problem as file:line:column: key: what, expected what.
+/// Prints every problem as file:line:column: key: what is wrong, and what was expected.
 void printProblems(const document::Problems& problems, std::FILE* out);
 
-/// The same for what is only warned of.
+/// Prints warnings in the same way.
 void printWarnings(document::Problems warnings, std::FILE* out);
 
 /// Loads a scene, or prints every problem on standard error.
 /// @param device_file replaces the scene's devices; empty: as the scene says
-/// @param default_device take the simulated arm where the scene names none; without it, devices may be empty
+/// @param default_device takes the simulated arm if the scene names none; without it, devices may be empty
 std::optional<scene::Scene> loadSceneOrReport(const std::string& file, const std::string& device_file = "",
                                               bool default_device = true);
 

@@ -12,7 +12,7 @@ AddCommand addCheck, addClient, addCompletion, addCtl, addDevice, addDeviceCalib
     addDeviceKinematics, addDeviceNew, addDeviceRecord, addDeviceTwin, addDoctor, addExplain, addExport, addImport, addManual, addPart,
     addPlot, addPlugin, addPluginCheck, addPluginNew, addReplay, addRun, addTop, addTrace, addTune, addView;
 
-/// A command that hangs under another one ("device calibrate") comes after it.
+/// A command below another one ("device calibrate") comes after it.
 constexpr AddCommand* kCommands[] = {
     addCheck,
     addClient,

@@ -32,7 +32,7 @@ bool isFile(const Option& argument) {
   return std::find(kFiles.begin(), kFiles.end(), argument.positionalName()) != kFiles.end();
 }
 
-/// The words of a validator such as "TEXT:{scene,device}"; none for others.
+/// The words of a validator such as "TEXT:{scene,device}"; other validators have none.
 std::vector<std::string> choicesOf(const Option& option) {
   const std::string type = option.valueName();
   const size_t begin = type.find('{'), end = type.find('}');
@@ -65,7 +65,7 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-/// For single quotes of a shell, and with the colon that zsh splits at made harmless.
+/// Makes a text safe for single quotes of a shell, and escapes the colon at which zsh splits.
 std::string quoted(const std::string& text, bool zsh = false) {
   std::string result;
   for (const char c : text) {
@@ -76,7 +76,7 @@ std::string quoted(const std::string& text, bool zsh = false) {
   return result;
 }
 
-/// Shell lines, the same in bash and zsh, that find the command in the words before the cursor.
+/// Lines of shell, the same in bash and zsh, that find the command in the words before the cursor.
 std::string findPath(const std::vector<CommandNode>& nodes, const std::string& words) {
   std::string text = "  local path_='' word_\n  for word_ in " + words + "; do\n    case \"$path_ $word_\" in\n      ";
   for (size_t i = 1; i < nodes.size(); ++i) {
@@ -88,7 +88,7 @@ std::string findPath(const std::vector<CommandNode>& nodes, const std::string& w
   return text + ") path_=\"${path_:+$path_ }$word_\" ;;\n    esac\n  done\n";
 }
 
-/// Commands whose argument is the name of something, and what `--names` is to list for them.
+/// Commands whose argument is a name, and what `--names` must list for them.
 struct Named {
   const char* kind;
   std::vector<const char*> paths;

@@ -59,7 +59,7 @@ std::string lineOf(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// `socket`: the path alone, for programs that speak to it; an error where nobody does.
+/// `socket`: prints only the path, for programs that connect to it; it is an error if nobody serves it.
 int showSocket(const CtlArguments& options) {
   auto client = control::Client::connect(socketOf(options));
   if (!client) return fail(kFailed, client.error());
@@ -83,7 +83,7 @@ int send(const CtlArguments& options, const std::string& line) {
   return show(options, control::ask(socketOf(options), line));
 }
 
-/// `add` and `reload`: the scene and what it names are opened here, with the rights of whoever asks.
+/// `add` and `reload`: the scene and the files that it names are opened here, with the rights of the caller.
 int sendScene(const CtlArguments& options, Json request) {
   auto client = control::Client::connect(socketOf(options));
   if (!client) return fail(kFailed, client.error());
@@ -96,39 +96,39 @@ int sendScene(const CtlArguments& options, Json request) {
   }
   auto files = openNamed(request["file"].get<std::string>());
   if (!files && !again) return fail(kFailed, files.error());
-  if (!files) request.erase("file");  // the daemon may read its own scene, also where its user alone may
+  if (!files) request.erase("file");  // the daemon may read its own scene, even where only the daemon's user may
   if (files) request["files"] = files->names;
   const std::vector<int> numbers = files ? files->numbers() : std::vector<int>();
   return show(options, client->askWith(lineOf(request), numbers));
 }
 
-/// No more comes: a daemon that ended in order ends the stream in order, one that died does not.
+/// The stream has ended. A daemon that ends in order ends the stream in order; one that died does not.
 int endOfStream(const CtlArguments& options) {
   if (!control::wasKilled(socketOf(options))) return kWorked;
   return fail(kFailed, "the daemon " + options.name +
                            " was killed, or it crashed: nothing more comes\n  fix: start it again with hapticd run");
 }
 
-/// `stop` answers once the daemon has ended and its name is free: what is started next shall find it so.
+/// `stop` answers once the daemon has ended and its name is free, so that a new daemon can take it.
 int stop(const CtlArguments& options, const std::string& line) {
   constexpr double kPatience = 10;  // [s]
   const int told = send(options, line);
   if (told != kWorked || control::waitForEnd(socketOf(options), kPatience)) return told;
   return fail(kFailed,
               "the daemon " + options.name +
-                  " was told to end, and has not within 10 s; its forces are off\n  fix: wait for its process, or "
+                  " was told to end, but did not within 10 s; its forces are off\n  fix: wait for its process, or "
                   "end it with kill PID (hapticd top shows it)");
 }
 
-/// Prints the triangles, and then each frame of vertices when it comes, a line of JSON each: until nobody reads them
-/// or the daemon ends.
+/// Prints the triangles, and then each frame of vertices as it comes, one line of JSON each, until nobody reads them or
+/// the daemon ends.
 int follow(const CtlArguments& options) {
-  constexpr Nanoseconds kPause = 4'000'000;  // a quarter of what a frame lasts
+  constexpr Nanoseconds kPause = 4'000'000;  // a quarter of a frame's duration
   auto client = control::Client::connect(socketOf(options));
   if (!client) return fail(kFailed, client.error());
   RealClock clock(0);
   uint64_t seen = 0;
-  for (const char* word : {"vertices", "geometry"}) {  // the first says whether there are any
+  for (const char* word : {"vertices", "geometry"}) {  // the first request tells whether there are any
     const auto answer = client->ask(lineOf({{"do", word}, {"model", options.model}}));
     const Json json = answer ? document::parseJson(*answer) : Json();
     if (!answer) return fail(kFailed, answer.error());
@@ -140,7 +140,7 @@ int follow(const CtlArguments& options) {
     const auto answer = client->ask(lineOf({{"do", "vertices"}, {"model", options.model}, {"after", seen}}));
     if (!answer) return endOfStream(options);
     const Json json = document::parseJson(*answer);
-    if (!json.is_object() || !json.value("ok", false)) break;  // or the model has left
+    if (!json.is_object() || !json.value("ok", false)) break;  // otherwise the model has left
     if (json.contains("xyz")) std::printf("%s\n", answer->c_str());
     seen = json.value("frame", seen);
     clock.waitUntil(clock.now() + kPause);
@@ -148,7 +148,7 @@ int follow(const CtlArguments& options) {
   return kWorked;
 }
 
-/// The example of a request's own --help.
+/// The example in a request's own --help.
 std::string exampleOf(const std::string& word) {
   static const std::pair<const char*, const char*> kExamples[] = {
       {"status", "status"},
@@ -175,7 +175,7 @@ std::string exampleOf(const std::string& word) {
   return "";
 }
 
-/// A subcommand that sends what `build` makes of the options.
+/// A subcommand that sends the request that `build` makes from the options.
 template <class Build>
 const Command addRequest(const Command& parent, const char* word, const char* doc,
                          const std::shared_ptr<CtlArguments>& options, int& exit_code, Build build) {
@@ -203,7 +203,7 @@ void addGeometryRequest(const Command& ctl, const std::shared_ptr<CtlArguments>&
   geometry.addOption("model", options->model, "name of the model").required();
   geometry.addOption("--obj", options->obj, "write an OBJ file, in the model's frame, instead of printing JSON");
   geometry.addOption("--tolerance", options->tolerance, "chord error [m]; 0: 0.5 % of the model's size")
-      .within(0, 1e9);  // the daemon knows what it draws
+      .within(0, 1e9);  // the daemon knows which frames it draws
   geometry
       .addFlag("--follow", options->follow,
                "print every new frame of vertices (about 60 per second), one line of JSON each")
@@ -221,11 +221,11 @@ void addFeatureRequest(const Command& ctl, const std::shared_ptr<CtlArguments>& 
   feature.addOption("number", options->number, "feature of a trace or recording, counted from 0").required();
 }
 
-/// Prints what happened, a line of JSON each; with `follow` also what happens from now on, until the daemon ends.
+/// Prints what happened, one line of JSON each; with `follow` also what happens from now on, until the daemon ends.
 int showEvents(const CtlArguments& options) {
   auto client = control::Client::connect(socketOf(options));
   if (!client) return fail(kFailed, client.error());
-  uint64_t end = UINT64_MAX;  // the first event that comes by itself
+  uint64_t end = UINT64_MAX;  // the first event that comes without being asked for
   for (const char* word : {"subscribe", "events"}) {
     if (word == std::string("subscribe") && !options.follow) continue;
     const auto answer = client->ask(lineOf({{"do", word}}));

@@ -25,7 +25,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What the servo would refuse is told here, where its line is known.
+/// What the servo would refuse is reported here, where its line number is known.
 Result<hapticd_target> checked(const hapticd_target& target) {
   constexpr double kFarthest = 10, kUnitWithin = 1e-3;  // m; as in control.md
   const auto length = [](const double* of, size_t count) {
@@ -39,7 +39,7 @@ Result<hapticd_target> checked(const hapticd_target& target) {
   return target;
 }
 
-/// Three numbers, or seven; an error says what the line has instead.
+/// Reads three numbers, or seven; an error says what the line has instead.
 Result<hapticd_target> targetOf(std::string line) {
   std::replace(line.begin(), line.end(), ',', ' ');
   std::vector<double> numbers;
@@ -62,10 +62,10 @@ Result<hapticd_target> targetOf(std::string line) {
 }
 
 int tellOfEnd() {
-  return fail(kFailed, "the daemon has ended, or it ended this lead: nothing follows any more");
+  return fail(kFailed, "the daemon has ended, or it ended this lead: nothing is led any more");
 }
 
-/// Each line is one target, put the moment it is read. @return the exit code
+/// Each line is one target, which is sent as soon as it is read. @return the exit code
 int putLines(const control::Client& client, link::PoseSlot& slot) {
   std::string line;
   for (int number = 1; std::getline(std::cin, line); ++number) {

@@ -9,7 +9,7 @@ struct LeadOptions {
   std::string socket;  ///< of the daemon
   std::string model;   ///< either a model
   std::string hand;    ///< or a device whose simulated hand is led
-  double hold = 1;     ///< [s] that the lead goes on after the last line
+  double hold = 1;     ///< [s] how long the lead continues after the last line
 };
 
 /// [main] Leads by the lines of standard input until it ends. @return an exit code

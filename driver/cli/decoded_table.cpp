@@ -9,7 +9,7 @@
 namespace hapticd::cli {
 namespace {
 
-/// Fields of one line; a comma between quotes is none.
+/// The fields of one line; a comma between quotes separates none.
 std::vector<std::string> fieldsOf(const std::string& line) {
   std::vector<std::string> fields(1);
   bool quoted = false;

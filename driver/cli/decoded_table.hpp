@@ -7,12 +7,12 @@
 namespace hapticd::cli {
 
 struct PlainTable {
-  std::string text;     ///< numbers alone, each row in its line
-  size_t left_out = 0;  ///< rows that were no good report
+  std::string text;     ///< numbers alone, each row on its own line
+  size_t left_out = 0;  ///< rows that were not a good report
 };
 
-/// [main] Without the columns in which `device decode` says what it thinks of a report (report, time, verdict, why),
-/// and without the rows that it did not find good. Any other table stays as it is.
+/// [main] Removes the columns in which `device decode` judges a report (report, time, verdict, why), and the rows that
+/// it did not find good. Any other table stays as it is.
 PlainTable plainTable(const std::string& text);
 
 }  // namespace hapticd::cli

@@ -91,7 +91,7 @@ int list() {
   return kWorked;
 }
 
-/// @param most [N] that the device file says of the arm; 0: nothing
+/// @param most [N] that the device file names for the arm; 0: it names none
 void printLimits(const scene::Limits& limits, double most) {
   const auto text = [](double value, const char* unit, const char* none) {
     return value == 0 ? std::string(none) : document::numberText(value) + " " + unit;
@@ -150,8 +150,8 @@ bool hasParameter(const hdv_class& module, const std::string& id) {
   return false;
 }
 
-/// What must be known before the arm is there: whether anybody tried its description, and whether its own weight is
-/// held.
+/// What must be known before the arm is opened: whether anybody tried its description, and whether its weight is
+/// carried.
 void printDoubts(const scene::Device& description, const host::DeviceInstance& device) {
   constexpr const char* kVerified = "device.verified";
   const bool tried = std::any_of(description.parameters.begin(), description.parameters.end(),
@@ -159,19 +159,19 @@ void printDoubts(const scene::Device& description, const host::DeviceInstance& d
   if (hasParameter(device.description(), kVerified) && !tried) std::printf("  description not tried on hardware\n");
   const hdv_ext_kinematics& kinematics = device.kinematics();
   std::array<double, HDV_MAX_JOINTS> q, torque{};
-  q.fill(0.5);  // no special pose, where an arm may stand in balance
+  q.fill(0.5);  // not a special pose, in which an arm may be balanced
   constexpr double kAnyway[3] = {4, -8, 3};
   if (kinematics.gravity(device.handle(), q.data(), kAnyway, torque.data()) < 0) return;
   if (std::all_of(torque.begin(), torque.end(), [](double t) { return t == 0; }))
     std::printf("  no masses in its description: gravity is not compensated\n");
 }
 
-/// Errors come back as results too, and are printed where that is.
+/// Errors are returned as results too, and printed by the caller.
 void logButNoErrors(int level, const std::string& who, const std::string& text) {
   if (level != HSP_LOG_ERROR) logToTerminal(level, who, text);
 }
 
-/// The facts for programs. Opens the arm if it is plugged in.
+/// The facts for programs. It opens the arm if that is plugged in.
 Json infoJson(const scene::Device& description, host::DeviceInstance& device) {
   const Eigen::Vector3d& p = description.mount.position;
   const Eigen::Quaterniond& q = description.mount.orientation;

@@ -41,7 +41,7 @@ void printWhere(host::DeviceInstance& device) {
   std::printf("\n");
 }
 
-int calibrate(const CalibrationArguments& options) {
+int calibrateDevice(const CalibrationArguments& options) {
   const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
   printProblems(loaded.problems, stderr);
   if (!loaded.device) return kBadInput;
@@ -54,7 +54,7 @@ int calibrate(const CalibrationArguments& options) {
     return kWorked;
   }
   if (auto opened = (*device)->open(); !opened) return fail(kFailed, opened.error());
-  once.reset();  // from now on each is told when it comes
+  once.reset();  // from now on each message is printed when it comes
   hdv_start how{};
   how.struct_size = sizeof how;
   how.rate_hz = (*device)->info().rate_hz;
@@ -79,7 +79,7 @@ void addDeviceCalibrate(const Command& app, int& exit_code) {
   command.addOption("file", options->file, "device file (YAML)").required();
   command.addFlag("-y,--yes", options->yes, "do not wait for Enter");
   command.footer("Example:\n  hapticd device calibrate config/devices/simulated-premium15.yaml");
-  command.callback([options, &exit_code] { exit_code = calibrate(*options); });
+  command.callback([options, &exit_code] { exit_code = calibrateDevice(*options); });
 }
 
 }  // namespace hapticd::cli

@@ -34,13 +34,13 @@ bool isModuleFile(const std::string& file) {
          "ELF";
 }
 
-/// The arm of a device file, or those of a module file.
+/// The arm of a device file, or the arms of a module file.
 Result<std::vector<scene::Device>> devicesOf(const ExamineArguments& options) {
   if (isModuleFile(options.file)) return device_check::devicesIn(options.file);
   const scene::LoadedDevice loaded = scene::loadDevice(options.file, catalog());
   printProblems(loaded.problems, stderr);
   if (loaded.device) return std::vector<scene::Device>{*loaded.device};
-  return Error{options.file + " is no device file without problems, nor a module (FILE.so); see above"};
+  return Error{options.file + " is neither a valid device file nor a module (FILE.so); see above"};
 }
 
 const char* wordFor(Passed verdict) {
@@ -66,7 +66,7 @@ void print(const Outcome& outcome) {
   std::fflush(stdout);
 }
 
-/// All tests of one device, up to the first that crashes or hangs, or without which the others mean nothing.
+/// Runs all tests of one device, up to the first that crashes or hangs, or that the others depend on.
 std::vector<Outcome> examine(const scene::Device& device, const ExamineArguments& options) {
   std::vector<Outcome> outcomes;
   for (const device_check::Test& test : device_check::tests()) {

@@ -31,7 +31,7 @@ constexpr Against kAgainst[] = {{"H4 H6 H8 H9 H13 H17 H21", "wrong numbers, faul
                                 {"H22", "a contact that buzzes"},
                                 {"H5", "an arm without its zero"}};
 
-/// The codes where there are no words.
+/// The words for these hazards, or their codes where there are none.
 std::string wordsOf(const std::string& hazards) {
   for (const Against& against : kAgainst)
     if (hazards == against.hazards) return against.words;

@@ -32,7 +32,7 @@ struct DecodeArguments {
   bool hex = false, raw = false, from_arm = false;
 };
 
-/// A device file's wire format, and what it says of its arm.
+/// A device file's wire format, and what the file says about its arm.
 struct Described {
   codec::Wire wire;
   size_t joints = 0;
@@ -54,7 +54,7 @@ capture::ArmFacts factsOf(const scene::Device& device, size_t joints) {
   return facts;
 }
 
-/// All problems of the file are printed where there are any.
+/// Prints all problems of the file, if it has any.
 std::optional<Described> describedIn(const std::string& file, int& exit_code) {
   exit_code = kBadInput;
   const scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
@@ -114,7 +114,7 @@ int decode(const DecodeArguments& options) {
   return decoded.good() == decoded.reports.size() && decoded.lost == 0 ? kWorked : kFailed;
 }
 
-/// The first line of a table that says something.
+/// The first line of a table that is not empty or a comment.
 std::string firstLine(const std::string& text) {
   std::istringstream in(text);
   std::string line;
@@ -130,7 +130,7 @@ bool lacksCommas(const std::string& line) {
          line.find_first_not_of(" ;\t\r", end) != std::string::npos;
 }
 
-/// The same numbers as the table has them.
+/// The same numbers, separated as the table needs them.
 std::string withCommas(const std::string& line) {
   std::string text, word;
   for (std::istringstream in(line); in >> word;) {
@@ -141,7 +141,7 @@ std::string withCommas(const std::string& line) {
   return text;
 }
 
-/// The names of a table's columns: its first line, or those that an order or a state begins with.
+/// The names of a table's columns: from its first line, or those that a command or a state begins with.
 std::vector<std::string> namesIn(const std::string& text, const std::vector<std::string>& known, size_t joints) {
   std::string name;
   std::vector<std::string> names;
@@ -157,7 +157,7 @@ std::vector<std::string> namesIn(const std::string& text, const std::vector<std:
   return names;
 }
 
-/// Every row as a report, raw or in hexadecimal digits.
+/// Prints every row as a report, raw or in hexadecimal digits.
 Result<std::string> encodeTable(const DecodeArguments& options, const Described& described,
                                 const EncodeColumns& columns, const document::CsvTable& table) {
   std::string out;
@@ -181,7 +181,7 @@ Result<std::string> encodeTable(const DecodeArguments& options, const Described&
   return out;
 }
 
-/// The table that is given, numbers alone; all that is wrong is told.
+/// Reads the table that is given, numbers alone; reports everything that is wrong.
 std::optional<std::string> tableOf(const DecodeArguments& options) {
   const auto text = contentOf(options.input);
   if (!text)
@@ -196,7 +196,7 @@ std::optional<std::string> tableOf(const DecodeArguments& options) {
            std::nullopt;
   PlainTable plain = plainTable(*text);
   if (plain.left_out > 0)
-    std::fprintf(stderr, "note: %s: rows that are no good report are left out: %zu\n", options.input.c_str(),
+    std::fprintf(stderr, "note: %s: rows that are not a good report are left out: %zu\n", options.input.c_str(),
                  plain.left_out);
   return std::move(plain.text);
 }

@@ -30,7 +30,7 @@ std::string headerOf(size_t joints) {
   return header;
 }
 
-/// Joints, then (where the file has them) force and torque on the hand.
+/// Reads joints, and (where the file has them) force and torque on the hand.
 Result<document::CsvTable> readRows(const std::string& file, size_t joints) {
   const std::string q = headerOf(joints);
   document::Problems problems;
@@ -83,7 +83,7 @@ class Table {
     return {};
   }
 
-  /// Rows whose tip the arm cannot reach within its joint limits.
+  /// Names rows whose tip the arm cannot reach within its joint limits.
   size_t outside() const { return outside_; }
 
  private:

@@ -28,7 +28,7 @@ struct NewDeviceArguments {
   std::string name, out, bus = "hid", kind = "phantom", id = "1234:0006";
   std::string checksum;
   std::vector<double> lengths, twists;
-  std::vector<double> counts{2000}, gear{10}, torque{0.5};  ///< one number for all joints, or one each
+  std::vector<double> counts{2000}, gear{10}, torque{0.5};  ///< one number for all joints, or one per joint
   int joints = 3, bits = 16, buttons = 1, report_id = 0;
   double force = 2;
   bool no_questions = false;
@@ -38,7 +38,7 @@ double ofJoint(const std::vector<double>& list, int joint) {
   return list[list.size() == 1 ? 0 : static_cast<size_t>(joint)];
 }
 
-/// A chain whose axes are all parallel: its tip stays in a plane, and no force across that plane can be felt.
+/// True for a chain whose axes are all parallel: its tip stays in a plane, and no force across that plane can be felt.
 bool isPlanar(const NewDeviceArguments& o) {
   const auto straight = [](double twist) { return std::abs(std::sin(twist)) < 1e-6; };
   return o.kind == "chain" && o.joints > 1 && std::all_of(o.twists.begin(), o.twists.end(), straight);
@@ -100,12 +100,12 @@ bool readNumbers(const std::string& text, std::vector<double>& numbers) {
   return true;
 }
 
-/// Asks for what no option gave; an empty answer keeps what is there.
+/// Asks for what no option gave; an empty answer keeps the present value.
 class Questions {
  public:
   explicit Questions(const Command& command) : command_(command) {}
 
-  /// Asks again until `wrong`, "" or what is wrong with the answers so far, has nothing to say.
+  /// Asks again until `wrong`, which says what is wrong with the answers so far, gives "".
   template <class Value, class Wrong>
   void ask(const char* option, const char* question, Value& value, const Wrong& wrong) {
     if (command_.given(option)) return;
@@ -114,13 +114,13 @@ class Questions {
       std::string answer;
       if (!std::getline(std::cin, answer) || answer.empty()) return;
       const bool read = command_line::read(answer, value);
-      const std::string what = read ? wrong() : "\"" + answer + "\" is no number";
+      const std::string what = read ? wrong() : "\"" + answer + "\" is not a number";
       if (what.empty()) return;
       std::cout << "  " << what << "\n";
     }
   }
 
-  /// A list, such as 0.21, 0.17; no answer leaves the template's.
+  /// Asks for a list, such as 0.21, 0.17; an empty answer keeps the template's.
   template <class Wrong>
   void askList(const char* option, const std::string& question, std::vector<double>& list, const Wrong& wrong) {
     if (command_.given(option)) return;
@@ -128,7 +128,7 @@ class Questions {
       std::cout << question << ": " << std::flush;
       std::string answer;
       if (!std::getline(std::cin, answer) || answer.empty()) return;
-      const std::string what = readNumbers(answer, list) ? wrong() : "\"" + answer + "\" is no list of numbers";
+      const std::string what = readNumbers(answer, list) ? wrong() : "\"" + answer + "\" is not a list of numbers";
       if (what.empty()) return;
       std::cout << "  " << what << "\n";
     }
@@ -209,14 +209,14 @@ std::string armOf(const NewDeviceArguments& o) {
              listOf(o.torque));
 }
 
-/// Bits of a checksum in whole bytes, which its name has: crc16-modbus, crc5-usb.
+/// How many bits a checksum has, in whole bytes, taken from its name: crc16-modbus, crc5-usb.
 int checksumBits(const std::string& name) {
   const size_t digits = name.find_first_of("0123456789");
   const int bits = digits == std::string::npos ? 8 : std::atoi(name.c_str() + digits);
   return std::clamp((bits + 7) / 8 * 8, 8, 64);
 }
 
-/// The checksum behind the first `size` bytes, or as a comment what one would look like.
+/// The checksum of the first `size` bytes, or a comment that shows how one is written.
 std::string checksumOf(const NewDeviceArguments& o, int size) {
   const bool given = !o.checksum.empty();
   const std::string name = given ? o.checksum : "crc16-modbus";
@@ -295,7 +295,7 @@ std::string textOf(const NewDeviceArguments& o) {
                       "in wire from 1\n"
                     : "",
       mountOf(o),
-      o.joints > 3 ? fmt::format("torque: {:.2g}, ", 0.1 * o.force) : "");  // N m: that force at a handle of 0.1 m
+      o.joints > 3 ? fmt::format("torque: {:.2g}, ", 0.1 * o.force) : "");  // N m: of that force at a handle of 0.1 m
 }
 
 bool usableDeviceName(const std::string& name) {
@@ -323,9 +323,9 @@ int makeNew(const Command& command, NewDeviceArguments options) {
   const std::string name = file.string();
   if (!problems.empty())
     return fail(kFailed,
-                name + " is written, but cannot be used yet\n  fix: what is said above, then hapticd check " + name);
+                name + " is written, but cannot be used yet\n  fix: mend these problems, then hapticd check " + name);
   const std::string twin = options.kind == "delta"
-                               ? ""  // the simulated arm has no such mechanism
+                               ? ""  // the simulated arm does not have this mechanism
                                : "  hapticd device twin " + name +
                                      "                 # the same arm simulated, to feel a scene with before it is "
                                      "there\n";

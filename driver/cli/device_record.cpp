@@ -52,7 +52,7 @@ int record(const CaptureArguments& options) {
     return fail(kBadInput, options.file + ": its module " + loaded.device->module +
                                " has no bytes to record, expected a device file of usb_hid, usb_bulk or vme");
   if (auto opened = (*device)->open(); !opened) return fail(kFailed, opened.error());
-  once.reset();  // from now on each is told when it comes
+  once.reset();  // from now on each message is printed when it comes
   Log log;
   log.out = options.out == "-" ? stdout : std::fopen(options.out.c_str(), "w");
   if (log.out == nullptr) return fail(kBadInput, options.out + ": cannot be written");

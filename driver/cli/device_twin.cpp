@@ -16,7 +16,7 @@
 namespace hapticd::cli {
 namespace {
 
-/// Whether the twin that was written can be run.
+/// True if the twin that was written can be run.
 int judge(const std::string& file, const std::string& out) {
   const scene::LoadedDevice twin = scene::loadDevice(out, catalog());
   document::Problems problems = twin.problems;

@@ -13,14 +13,14 @@ bool among(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// "q3" with "q" is 3; 0: it is no such name.
+/// The number in "q3" after "q" is 3; 0: it is not such a name.
 size_t numberAfter(const std::string& name, const std::string& word) {
   const std::string digits = name.rfind(word, 0) == 0 ? name.substr(word.size()) : "";
   if (digits.empty() || digits.size() > 2 || digits.find_first_not_of("0123456789") != std::string::npos) return 0;
   return std::stoul(digits);
 }
 
-/// A column that `device kinematics` reads or writes.
+/// True for a column that `device kinematics` reads or writes.
 bool ofKinematics(const std::string& name, size_t joints) {
   static const std::vector<std::string> kAlone = {"x",  "y",  "z",  "qw", "qx", "qy", "qz",
                                                   "fx", "fy", "fz", "tx", "ty", "tz"};
@@ -36,7 +36,7 @@ std::string inOneLine(const std::vector<std::string>& names) {
   return all;
 }
 
-/// Columns x, y, z of a table; empty where one of them is missing.
+/// Columns x, y, z of a table; empty if one of them is missing.
 std::vector<size_t> tipIn(const std::vector<std::string>& names) {
   std::vector<size_t> tip;
   for (const char* axis : {"x", "y", "z"})
@@ -50,14 +50,14 @@ std::vector<size_t> tipIn(const std::vector<std::string>& names) {
 Result<EncodeColumns> encodeColumns(const std::vector<std::string>& names, const std::vector<std::string>& known,
                                     size_t joints, bool to_arm) {
   EncodeColumns columns;
-  bool poses = false;  // what is given are the columns of another command
+  bool poses = false;  // the given columns are those of another command
   for (size_t i = 0; i < names.size(); ++i) {
     const size_t number = numberAfter(names[i], to_arm ? "tau" : "q");
     const std::string meant = (to_arm ? "torque" : "position") + std::to_string(number);
     const bool own = among(known, names[i]), alias = number > 0 && number <= joints && among(known, meant);
     if (!own && !alias && !ofKinematics(names[i], joints))
       return Error{"its first line has \"" + names[i].substr(0, 40) +
-                   "\", which is no number and no column of the report; expected columns among " + inOneLine(known)};
+                   "\", which is neither number nor column of the report; expected columns among " + inOneLine(known)};
     poses |= !own && !alias;
     if (own || alias) columns.names.push_back(own ? names[i] : meant), columns.from.push_back(i);
   }

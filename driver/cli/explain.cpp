@@ -26,7 +26,7 @@ using namespace diagnostics;
 
 namespace {
 
-/// One line: what, and the reason for it or against it.
+/// One line with a fact, and the reason for it or against it.
 void say(const char* what, const std::string& why) {
   std::printf("  %-22s %s\n", what, why.c_str());
 }
@@ -56,7 +56,7 @@ std::vector<uint64_t> measureSteps(servo::World& world, const scene::Scene& scen
     probe.valid = true;
     Eigen::Vector3d low = Eigen::Vector3d::Zero(), high = low;
     if (!shape.bounds(low.data(), high.data())) low.setZero(), high.setZero();
-    // Just outside the face of the box that a hand meets first.
+    // A place just outside the face of the box that a hand meets first.
     const Eigen::Vector3d front(0.5 * (low.x() + high.x()), 0.5 * (low.y() + high.y()), high.z() + 1e-3);
     probe.position = scene.models[index].pose.orientation * front + scene.models[index].pose.position;
     servo::Lockstep lockstep = world.lockstep();
@@ -74,7 +74,7 @@ std::vector<uint64_t> measureSteps(servo::World& world, const scene::Scene& scen
   return medians;
 }
 
-/// What models say of themselves at level debug, by their names.
+/// What models report about themselves at level debug, by their names.
 using Details = std::multimap<std::string, std::string>;
 
 void explainModels(const scene::Scene& scene, servo::World& world, const std::vector<uint64_t>& costs,

@@ -12,7 +12,7 @@ namespace hapticd::cli {
 
 class GuardedCommand {
  public:
-  /// [main] @param dir for the quarantine; empty: what ends this command is only named
+  /// [main] @param dir for the quarantine; if it is empty, the plugin that ends this command is only named
   explicit GuardedCommand(const std::filesystem::path& dir = {}) : guard_(none_, dir) { os::prepareSignalStack(); }
 
  private:

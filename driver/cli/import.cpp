@@ -26,13 +26,13 @@ struct ImportArguments {
   Placement placement;
   bool medial = false;
   MedialImport body;
-  std::string answers, dents;  ///< to calibrate a soft body with
+  std::string answers, dents;  ///< input for the calibration of a soft body
   double smooth_angle = 0;
   CadImport cad;
   bool json = false;
 };
 
-/// Formats that people have and that are not read: the way that leads here. "": not one of them.
+/// For formats that people use and hapticd does not read: how to convert them. "": it is not one of them.
 std::string otherWay(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -48,7 +48,7 @@ std::string otherWay(const std::string& file) {
   return "";
 }
 
-/// What the options of one format are worth with another one.
+/// Says which options of one format have no effect with another.
 std::string misplaced(const ImportArguments& options, bool cad) {
   const bool turned = options.placement.fit > 0 || options.placement.center || options.up != "y";
   if (cad && (turned || options.placement.scale != 1))

@@ -14,8 +14,8 @@ namespace hapticd::cli {
 namespace {
 
 constexpr std::size_t kMaxMeshBytes = std::size_t{4} << 30;
-constexpr double kTooLarge = 10;    ///< [m] a part so large was probably stated in millimetres
-constexpr double kTooSmall = 1e-3;  ///< [m] and one so small was scaled twice: no fingertip feels a form of it
+constexpr double kTooLarge = 10;    ///< [m] a part larger than this was probably given in millimetres
+constexpr double kTooSmall = 1e-3;  ///< [m] a part smaller than this was scaled twice: no fingertip feels its form
 
 std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
   const nlohmann::ordered_json report = {{"part", out},
@@ -36,7 +36,7 @@ std::string jsonOf(const importing::MeshReport& r, const std::string& out) {
   return report.dump(2);
 }
 
-/// What the part notes as the unit of its file.
+/// The unit of the file, as the part notes it.
 std::string unitOf(const importing::Placement& placement) {
   char text[64];
   if (placement.fit > 0)

@@ -14,7 +14,7 @@ struct MeshImport {
   bool json = false;        ///< the report as JSON
 };
 
-/// [main] Returns the exit code; everything else has been said.
+/// [main] Returns the exit code; everything else has been printed.
 int importMesh(const MeshImport& options);
 
 }  // namespace hapticd::cli

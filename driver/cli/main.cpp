@@ -31,8 +31,8 @@ std::string unknownCommand(const hapticd::cli::Command& app, int argc, char** ar
          "\", expected one of " + hapticd::document::listed(names, 30) + hapticd::document::suggestion(argv[at], names);
 }
 
-/// What is wrong with the first option that no command of this line has; "" if there is none. The parser would complain
-/// of the words behind it.
+/// Says which option is the first that no command of this line has; "" if none is. The parser would name the words
+/// after it.
 std::string unknownOption(const hapticd::cli::Command& app, int argc, char** argv) {
   std::vector<hapticd::cli::Command> path{app};
   std::vector<std::string> names;
@@ -45,7 +45,7 @@ std::string unknownOption(const hapticd::cli::Command& app, int argc, char** arg
     const std::string word = argv[i];
     for (const auto& command : path.back().subcommands())
       if (command.name() == word) {
-        if (word == "client") return "";  // what follows is another program's
+        if (word == "client") return "";  // what follows belongs to another program
         take(command);
         path.push_back(command);
         break;

@@ -10,7 +10,7 @@
 namespace hapticd::cli {
 namespace {
 
-/// A text with what troff reads specially made plain.
+/// The text with everything escaped that troff reads specially.
 std::string plain(const std::string& text) {
   std::string result;
   for (size_t i = 0; i < text.size(); ++i) {

@@ -66,7 +66,7 @@ class Collector {
     return {};
   }
 
-  /// What the files of these devices name.
+  /// Adds the files that these device files name.
   Result<void> deviceFiles(const Node& node, const fs::path& folder) {
     for (const Node& item : node.items)
       if (auto done = deviceFiles(item, folder); !done) return done;

@@ -91,7 +91,7 @@ Json describe(const Part& part, std::size_t bytes) {
           {"warnings", part.warnings}};
 }
 
-/// What stands in no record: the box about all bodies where they stand, and what is noted when the part is loaded.
+/// What no record holds: the box around all bodies in their places, and what is noted when the part is loaded.
 void addMeasures(Json& info, Part part) {
   try {
     const brep::Model model(std::move(part));
@@ -110,7 +110,7 @@ std::string listed(const Json& counts) {
   return text;
 }
 
-/// An importer leaves it to whoever loads the part to tell smooth, convex and concave edges apart.
+/// An importer leaves it to the loader of the part to tell smooth, convex and concave edges apart.
 std::string edgesOf(const Json& info) {
   Json told = info["edge_kinds"];
   told.erase(kEdgeNames[0]);

@@ -27,7 +27,7 @@ struct PlotArguments {
   std::optional<double> from, to;
 };
 
-/// The columns that are drawn; nullptr: a recording without them.
+/// The columns that are drawn; nullptr if the recording lacks them.
 struct Columns {
   const record::Column *t, *depth, *model, *lateness, *compute, *fault, *force[3], *asked[3], *position[3];
 };
@@ -74,7 +74,7 @@ record::Sample sampleAt(const record::RecordedStream& ticks, const Columns& c, u
   return sample;
 }
 
-/// When models were silenced: the rest of such a run says nothing of why nothing is felt.
+/// When models were silenced: from then on such a run does not show why nothing is felt.
 void noteSilenced(const record::Recording& recording, record::RunNotes& notes) {
   const record::RecordedStream* events = recording.stream("events");
   const auto* kind = events != nullptr ? events->find("kind") : nullptr;
@@ -90,7 +90,7 @@ void noteSilenced(const record::Recording& recording, record::RunNotes& notes) {
   }
 }
 
-/// Models and limits of the run, and whether its time was real; without them where its description cannot be read.
+/// Models and limits of the run, and whether its time was real; empty where its description cannot be read.
 record::RunNotes notesOf(const record::Recording& recording, uint32_t arm, bool& virtual_time) {
   record::RunNotes notes;
   notes.positions = true;
@@ -143,7 +143,7 @@ int plot(const PlotArguments& options) {
   if (const std::string wrong = whyNotWritten(out, pictureKind(), {{options.file, "the recording"}}); !wrong.empty())
     return fail(kBadInput, wrong);
   if (options.from && options.to && *options.from >= *options.to)
-    return fail(kBadInput, "--from is not before --to, expected a time before it");
+    return fail(kBadInput, "--from is not before --to, expected an earlier time");
   auto recording = record::Recording::open(options.file);
   if (!recording) return fail(kBadInput, recording.error());
   if (const std::string& damage = (*recording)->damage(); !damage.empty())

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Of the file that a scene would get under that name.
+/// The class that a scene would get under that name.
 std::string noteOf(const watch::QuarantinedPlugin& entry) {
   const auto found = catalog().shape(entry.plugin);
   if (!found || entry.holds(entry.plugin, host::identityOnDisk((*found)->file)))

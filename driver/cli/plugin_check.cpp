@@ -39,10 +39,10 @@ struct ConformanceArguments {
 struct Outcome {
   std::string plugin, name, why;
   bool passed = false, skipped = false, hung = false, warned = false;
-  std::string end;  ///< how its process ended, when that was no answer
+  std::string end;  ///< how its process ended, if it gave no answer
 };
 
-/// A plugin of ours that must be given a model gets one of ours, and says so.
+/// A plugin that ships with hapticd and needs a model gets a model that ships, and says so.
 void addModelOfOurs(const host::ClassInfo& info, Recipe& recipe) {
   const int index = info.indexOf("geometry");
   const bool ours = info.id.rfind("org.hapticd.", 0) == 0;
@@ -60,7 +60,7 @@ void addModelOfOurs(const host::ClassInfo& info, Recipe& recipe) {
   recipe.set.push_back(std::move(value));
 }
 
-/// What each class is tested with; `problems` has all that is wrong with it.
+/// What each class is tested with; `problems` lists all that is wrong with it.
 std::vector<Recipe> recipesFor(const std::vector<host::ClassInfo>& classes, const ConformanceArguments& options,
                                std::vector<std::string>& problems) {
   SetOption set(options.set, classes);
@@ -73,18 +73,18 @@ std::vector<Recipe> recipesFor(const std::vector<host::ClassInfo>& classes, cons
           options.file);
       return {};
     }
-    // A bare name would be looked for in the folders of the system's libraries.
+    // A bare name would be looked up in the system's library folders.
     recipes.push_back({std::filesystem::absolute(options.file).string(), info.name, set.valuesFor(info), {}});
     addModelOfOurs(info, recipes.back());
-    if (!set.problems().empty()) continue;  // what was refused is not missing
+    if (!set.problems().empty()) continue;  // a name that was refused is not missing
     for (const std::string& one : missing(info, recipes.back().set)) problems.push_back(one);
   }
   problems.insert(problems.begin(), set.problems().begin(), set.problems().end());
   return recipes;
 }
 
-/// Where it can be touched, looked for once and in a child. A search that crashes finds nothing, and the test that asks
-/// for a contact says how it ended. The error is that of a shape that refuses to be made or activated.
+/// A place where it can be touched is looked for once, in a child. A search that crashes finds nothing, and the test
+/// that asks for a contact says how it ended. The error is that of a shape that refuses to be made or activated.
 Result<Touch> lookForContact(const Recipe& recipe, const ConformanceArguments& options) {
   const auto look = [&] {
     const Made made(recipe);
@@ -112,7 +112,7 @@ Outcome tryOne(const Recipe& recipe, const ConformanceTest& test, const Conforma
   return outcome;
 }
 
-/// Some runs of random input in one child. @return "=": nothing was wrong
+/// Some runs of random input in one child. @return "=" if nothing was wrong
 Result<std::string> fuzzSome(const Recipe& recipe, const ConformanceArguments& options, uint64_t first, int count) {
   return host::runInChild(
       [&recipe, first, count] {
@@ -124,7 +124,7 @@ Result<std::string> fuzzSome(const Recipe& recipe, const ConformanceArguments& o
       options.limitMs(count));
 }
 
-/// Runs of random input until the time is over; the seed of a failure repeats it.
+/// Runs random input until the time is over; the seed of a failure repeats it.
 Outcome fuzz(const Recipe& recipe, const ConformanceArguments& options) {
   constexpr int kRunsAChild = 20;
   const Nanoseconds end = monotonicNow() + static_cast<Nanoseconds>(options.fuzz * 1e9);
@@ -174,7 +174,7 @@ size_t notActive(const Recipe& recipe, const std::string& why, const Conformance
   return left;
 }
 
-/// The tests of one class that failed, or were not run: others may need them.
+/// The tests of one class that failed, or that were not run because others failed.
 class Lacking {
  public:
   bool lacks(const ConformanceTest& test) {
@@ -195,7 +195,7 @@ class Lacking {
   size_t not_run_ = 0;
 };
 
-/// Tests whose process ends in the same way have one cause: told once, and the others by number.
+/// Tests whose process ends in the same way have one cause, which is reported once; the other tests are only numbered.
 class SameEnd {
  public:
   bool known(const Outcome& outcome) {
@@ -218,7 +218,7 @@ class SameEnd {
 };
 
 /// Memory that a plugin overwrites ends whatever test comes next. After a crash the test in guarded memory tells what
-/// was overrun, if anything was: @return its outcome, told as the cause of the crash in `crashed`
+/// was overrun, if anything was. @return its outcome, given as the cause of the crash in `crashed`
 std::optional<Outcome> overrunBehind(const Recipe& recipe, const ConformanceArguments& options, Outcome& crashed) {
   if (crashed.end.empty() || crashed.hung || crashed.name == kGuarded) return std::nullopt;
   for (const ConformanceTest& test : conformanceTests()) {
@@ -289,7 +289,7 @@ int sum(const std::vector<Outcome>& outcomes, size_t not_run, const ConformanceA
   return failed == 0 ? kWorked : kFailed;
 }
 
-/// A scene in the place of a plugin is a slip that the loader of the system would call an invalid header.
+/// A scene in the place of a plugin is a slip, which the system's loader would call an invalid header.
 bool isSharedObject(const std::string& file) {
   char magic[4] = {};
   std::ifstream(file, std::ios::binary).read(magic, sizeof magic);

@@ -59,7 +59,7 @@ std::optional<fs::path> templateFolder() {
   return fs::is_directory(source, error) ? std::optional(source) : std::nullopt;
 }
 
-/// Where the headers of the plugin interface are: beside the installed program, or in the checkout it was built from.
+/// Where the headers of the plugin interface are: with the installed program, or in the checkout it was built from.
 fs::path includeFolder() {
   std::error_code error;
   const fs::path source = fs::path(HAPTICD_TEMPLATE_DIR) / "../../driver/include";
@@ -67,7 +67,7 @@ fs::path includeFolder() {
   return "/usr/include";
 }
 
-/// One line of the compiler works with and without an installed hapticd, so it comes first.
+/// One line for the compiler works with and without an installed hapticd, so it comes first.
 void tellNextSteps(const std::string& folder, const std::string& name) {
   const char *at = folder.c_str(), *what = name.c_str();
   std::printf("\nbuild it:  g++ -std=c++20 -O2 -shared -fPIC -I %s %s/%s.cpp -o %s/%s.so\n", includeFolder().c_str(),

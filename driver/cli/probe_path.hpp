@@ -19,7 +19,7 @@ struct PathRow {
   bool finite() const { return position.allFinite() && orientation.coeffs().allFinite(); }
 };
 
-/// [main] Reads and checks a whole file: times are finite and grow. Errors name file, line and column.
+/// [main] Reads and checks a whole file: times must be finite and grow. Errors name file, line and column.
 Result<std::vector<PathRow>> readProbePath(const std::string& file);
 
 }  // namespace hapticd::cli

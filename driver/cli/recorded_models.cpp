@@ -64,10 +64,10 @@ class RecordedModelsImpl final : public RecordedModels {
   struct Built {
     std::string name, plugin, error;
     std::unique_ptr<servo::World> world;
-    std::unique_ptr<servo::ModelRerun> rerun;  ///< of a body that deforms, where the rows have the tips
+    std::unique_ptr<servo::ModelRerun> rerun;  ///< the shape of a body that deforms, if the rows have the tips
   };
 
-  /// A scene of that model alone: one that fails leaves the others.
+  /// Makes a scene of that model alone, so that a failing model does not affect the others.
   Built build(const scene::Scene& scene, const scene::Model& model, double rate) const {
     Built built{model.name, model.plugin, "", nullptr, nullptr};
     auto found = catalog().shape(model.plugin);
@@ -92,8 +92,8 @@ class RecordedModelsImpl final : public RecordedModels {
     return built;
   }
 
-  /// As a daemon is asked, but for `"at"` of `geometry`: the time [s] of the recording that a body's shape is wanted
-  /// of.
+  /// Requests are those of a daemon, except for `"at"` of `geometry`, which is the time [s] of the recording at which a
+  /// body's shape is wanted.
   std::string answer(const std::string& line, Descriptor& memory) {
     Json json = document::parseJson(line);
     std::optional<double> at;

@@ -11,9 +11,9 @@ namespace hapticd::cli {
 
 class RecordedModels {
  public:
-  /// [main] Builds what can be built: a model whose plugin or files are not here any more is answered with the reason.
+  /// [main] Builds what can be built. A model whose plugin or files no longer exist here is answered with the reason.
   static Result<std::unique_ptr<RecordedModels>> serve(const std::string& recording);
-  virtual ~RecordedModels() = default;  ///< the folder goes with it
+  virtual ~RecordedModels() = default;  ///< the folder is removed too
   RecordedModels() = default;
   RecordedModels(const RecordedModels&) = delete;
   RecordedModels& operator=(const RecordedModels&) = delete;

@@ -22,7 +22,7 @@ namespace hapticd::cli {
 
 namespace {
 
-constexpr int kPartly = 3;  ///< exit code: what was replayed is the same, and not all can be
+constexpr int kPartly = 3;  ///< exit code: what was replayed is the same, but not all can be replayed
 
 using Json = nlohmann::ordered_json;
 
@@ -32,7 +32,7 @@ struct ReplayArguments {
   bool json = false;
 };
 
-/// Plugins and modules as they are found here: the recording may come from another machine.
+/// Plugins and modules as they are found here, because the recording may come from another machine.
 Result<void> findLibraries(scene::Scene& scene) {
   for (scene::Model& model : scene.models) {
     auto found = catalog().shape(model.plugin);
@@ -47,7 +47,7 @@ Result<void> findLibraries(scene::Scene& scene) {
   return {};
 }
 
-/// "teapot.stiffness=900": a number for a parameter of a model.
+/// Parses "teapot.stiffness=900", a number for a parameter of a model.
 Result<void> change(scene::Scene& scene, const std::string& text) {
   const size_t equals = text.find('='), dot = text.find('.');
   const auto number = equals == std::string::npos ? std::nullopt : document::toNumber(text.substr(equals + 1));
@@ -84,7 +84,7 @@ void warnOfChanges(const servo::RecordedRun& run) {
       std::fprintf(stderr, "warning: %s has changed since the recording\n", file.path.c_str());
 }
 
-/// The instructions that the recorded run used, where this machine has them.
+/// The processor instructions that the recorded run used, if this machine has them.
 void takeInstructions(servo::RecordedRun& run) {
   if (run.instructions.empty()) return;
   if (run.instructions == "portable") run.scene.servo.instructions = scene::Instructions::kPortable;

@@ -47,17 +47,17 @@ struct RunArguments {
 
 const Nanoseconds program_start = monotonicNow();  ///< when the libraries were loaded
 
-/// A file that cannot be written must be known before the run, not after; a run that does not come leaves none.
+/// Known before the run, not after it: a file that cannot be written. If no run comes, no file is left.
 bool writable(const std::string& file) {
   if (file.empty()) return true;
   int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   const bool made = fd >= 0;
-  if (!made) fd = open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);  // a pipe that nobody reads: no
+  if (!made) fd = open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);  // an unread pipe is not writable
   if (made) unlink(file.c_str());
   return fd >= 0 && close(fd) == 0;
 }
 
-/// Two that would overwrite each other; "" if each has a file of its own. Devices and pipes take any number.
+/// Names two files that would overwrite each other; "" if all differ. Devices and pipes may be given more than once.
 std::string writtenTwice(const RunArguments& options) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -119,9 +119,9 @@ record::LimitReport limitsOf(const std::string& device, const servo::Limiter& li
   return report;
 }
 
-/// What the first arm, whose forces the black box keeps, was asked for over the last seconds against what it sustains.
+/// Warns if the first arm, whose forces the black box keeps, was asked for more over the last seconds than it sustains.
 void warnOfHeat(const servo::Runner& runner, double rate) {
-  constexpr double kHeatSeconds = 5;  // less does not heat a winding
+  constexpr double kHeatSeconds = 5;  // a shorter time does not heat a winding
   std::vector<double> forces;
   for (const servo::BlackBoxRow& row : runner.telemetry().blackBox())
     forces.push_back(std::hypot(row.force[0], row.force[1], row.force[2]));
@@ -131,7 +131,7 @@ void warnOfHeat(const servo::Runner& runner, double rate) {
   if (!text.empty()) log::write(HSP_LOG_WARNING, "", text);
 }
 
-/// Writes what was asked for and prints the summary; the run's own exit code unless a file fails.
+/// Writes the files that were asked for and prints the summary. @return the run's own exit code unless a file fails
 int conclude(const RunArguments& options, servo::Runner& runner, const std::vector<std::string>& left_out) {
   std::vector<std::string> faults = runner.faults();
   faults.insert(faults.end(), left_out.begin(), left_out.end());
@@ -158,7 +158,7 @@ int conclude(const RunArguments& options, servo::Runner& runner, const std::vect
               record::paceText(report, options.rate.value_or(runner.scene().servo.rate)))
                  .c_str(),
              stdout);
-  std::fflush(stdout);  // a plugin that crashes as it is taken down must not take the report along
+  std::fflush(stdout);  // the report is kept even if a plugin crashes while it is taken down
   warnOfHeat(runner, report.rate_hz);
   if (const record::Recorder* recorder = runner.recorder())
     std::printf("  recorded  %s: %llu ticks, %llu rows lost\n", options.record.c_str(),
@@ -174,7 +174,7 @@ int conclude(const RunArguments& options, servo::Runner& runner, const std::vect
   return faults.empty() ? kWorked : kFailed;
 }
 
-/// The file of a plugin that ended an earlier run was built anew, or is another one of that name: it is tried again.
+/// True if the file of a plugin that ended an earlier run was rebuilt or replaced, so that it is tried again.
 void tellTriedAgain(const scene::Model& model, const watch::QuarantinedPlugin& entry) {
   log::write(HSP_LOG_WARNING, "",
              "model " + model.name + ": plugin '" + entry.plugin + "' ended an earlier run by " + entry.reason + " (" +
@@ -202,7 +202,7 @@ std::vector<std::string> leaveOutQuarantined(scene::Scene& scene, const std::fil
   return messages;
 }
 
-/// What cannot be stable on the arms that were opened, and what they cannot hold: said before any force.
+/// Warnings, before any force, about what cannot be stable on the opened arms, and what they cannot hold.
 void warnOfSettings(servo::Runner& runner, double rate) {
   scene::Scene scene = runner.scene();
   scene.servo.rate = rate;
@@ -219,12 +219,12 @@ void warnOfSettings(servo::Runner& runner, double rate) {
   }
 }
 
-/// Into the log, except for what the message that ends the set-up will say anyway.
+/// Logs a message, unless the one that ends the set-up will contain it anyway.
 void logOfRun(int level, const std::string& who, const std::string& text) {
   if (!SetupErrors::keeps(level, who, text)) log::write(level, who, text);
 }
 
-/// A page for this run, by another process: started here, before this one takes rights that it must not inherit.
+/// Serves a page for this run in a process of its own, started before this one takes rights that it must not inherit.
 Result<void> showPage(const RunArguments& options, const servo::RunFiles* files, scene::Scene& scene) {
   if (files == nullptr || files->name().empty())
     return Error{
@@ -236,7 +236,7 @@ Result<void> showPage(const RunArguments& options, const servo::RunFiles* files,
   return {};
 }
 
-/// What is wrong with the files that the run shall write; "" if nothing is.
+/// What is wrong with the files that the run must write; "" if nothing is.
 std::string wrongFiles(const RunArguments& options) {
   if (const std::string wrong = wrongPicture(options.picture); !wrong.empty()) return wrong;
   for (const std::string& file : {options.report, options.picture, options.record})
@@ -280,7 +280,7 @@ Result<void> tickToTheEnd(servo::Runner& runner, servo::RunFiles* files) {
     if (files != nullptr) files->end();
   };
   auto done = runner.run(every, end);
-  end();  // a run that never began
+  end();  // the run never began
   if (terminal) std::fputs("\r\033[K", stderr);
   return done;
 }
@@ -300,7 +300,7 @@ int runScene(const RunArguments& options, scene::Scene& scene) {
   const SetupErrors once;
   auto world = servo::Runner::buildWorld(scene, how, logOfRun);
   if (!world) return fail(kBadInput, world.error());
-  heedStopSignals();  // from here on there are files to leave
+  heedStopSignals();  // from here on files must be removed at the end
   auto runner = servo::Runner::prepare(scene, how, std::move(*world), logOfRun);
   if (!runner) return fail(kFailed, runner.error());
   once.tell();
@@ -315,7 +315,7 @@ int runScene(const RunArguments& options, scene::Scene& scene) {
   return conclude(options, **runner, left_out);
 }
 
-/// Says which enable button no report of its arm has: no force could ever be felt. The module knows only the highest.
+/// Names an enable button that no report of its arm has, so that no force could be felt. A module knows the highest.
 bool switchesAreThere(const scene::Scene& scene) {
   document::Problems wrong;
   for (const scene::Device& device : scene.devices)
@@ -328,7 +328,7 @@ bool switchesAreThere(const scene::Scene& scene) {
 int run(const RunArguments& options) {
   if (auto opened = log::open(options.log); !opened) return fail(kBadInput, opened.error());
   if (const std::string wrong = wrongFiles(options); !wrong.empty()) return fail(kBadInput, wrong);
-  // In the set-up, whenever the run itself does not watch, and until all that a plugin could tear is freed.
+  // Watches the set-up, whenever the run itself does not watch, until all memory that a plugin could damage is freed.
   const GuardedCommand guarded(watch::stateDir());
   auto scene = loadSceneOrReport(options.scene, options.device);
   if (!scene || !switchesAreThere(*scene)) return kBadInput;
@@ -338,7 +338,7 @@ int run(const RunArguments& options) {
   return runScene(options, *scene);
 }
 
-/// "1s" is met with what to write instead of a failed conversion.
+/// For "1s" it says what to write instead of reporting a failed conversion.
 std::string plainSeconds(const std::string& text) {
   char* end = nullptr;
   std::strtod(text.c_str(), &end);

@@ -5,14 +5,14 @@
 
 namespace hapticd::cli {
 
-/// From here on SIGINT and SIGTERM end the run that a StopBySignal names. One that comes before there is a run ends it
-/// as soon as it is there.
+/// From here on SIGINT and SIGTERM end the run that a StopBySignal names. A signal that comes before there is a run
+/// ends it as soon as it exists.
 void heedStopSignals();
 
 /// From here on SIGTSTP lets the run ramp its forces out before the process stops.
 void heedSuspendSignal();
 
-/// The run that signals are for, as long as this lives. A second Ctrl-C, while the first ends the run, finds none any
+/// The run that signals end, while this object lives. A second Ctrl-C, while the first ends the run, finds no run any
 /// more.
 class StopBySignal {
  public:

@@ -22,7 +22,7 @@ document::Problems farModels(const scene::Scene& scene) {
 }
 
 document::Problems softModels(const scene::Scene& scene) {
-  constexpr double kUnfelt = 5;  // [N/m] 10 mm of it give 0.05 N, less than most arms rub
+  constexpr double kUnfelt = 5;  // [N/m] 10 mm of depth give 0.05 N, less than the friction of most arms
   document::Problems warnings;
   for (size_t i = 0; i < scene.models.size(); ++i)
     for (const scene::Value& value : scene.models[i].parameters)

@@ -10,13 +10,13 @@
 
 namespace hapticd::cli {
 
-/// [main] A model so far away that no arm reaches it was meant in other units.
+/// [main] Warns of a model so far away that no arm reaches it: its numbers were meant in other units.
 document::Problems farModels(const scene::Scene& scene);
 
-/// [main] A stiffness in N/mm, as data sheets have it, is a thousandth of what was meant: nobody feels it.
+/// [main] Warns of a stiffness in N/mm, as data sheets have it: a thousandth of what was meant, which nobody feels.
 document::Problems softModels(const scene::Scene& scene);
 
-/// [any] What `check` would say of the models that come into a run. @param stiffness [N/m] that each of them claims
+/// [any] Warns of models that are added to a run as `check` would. @param stiffness [N/m] that each of them claims
 std::vector<std::string> adviceOnModels(const servo::Runner& runner, const scene::Scene& models,
                                         const std::vector<double>& stiffness);
 

@@ -16,7 +16,7 @@ namespace {
 
 using document::Problem;
 
-/// What stands for a value in a message about a parameter that has none.
+/// The value that a message shows for a parameter that has none.
 const char* placeholder(uint32_t kind) {
   switch (kind) {
     case HSP_PATH:
@@ -57,7 +57,7 @@ SetOption::SetOption(const std::vector<std::string>& pairs, const std::vector<ho
 
 std::vector<scene::Value> SetOption::valuesFor(const host::ClassInfo& info) {
   document::Problems wrong;
-  document::Reader in(std::filesystem::current_path() / "--set", wrong);  // paths are seen from its folder
+  document::Reader in(std::filesystem::current_path() / "--set", wrong);  // paths are relative to its folder
   scene::ParameterReader reader(in, info);
   for (const auto& [id, text] : given_) {
     const int index = info.indexOf(id);

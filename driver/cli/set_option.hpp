@@ -17,10 +17,10 @@ class SetOption {
   /// @param classes of the file: an ID must belong to one of them
   SetOption(const std::vector<std::string>& pairs, const std::vector<host::ClassInfo>& classes);
 
-  /// [main] The values for one class; those that belong to others are left out.
+  /// [main] The values for one class; values for other classes are left out.
   std::vector<scene::Value> valuesFor(const host::ClassInfo& info);
 
-  /// Everything that was wrong so far, one line each: what, and what was expected.
+  /// Everything that was wrong so far, one line each: what is wrong, and what was expected.
   const std::vector<std::string>& problems() const { return problems_; }
 
  private:

@@ -11,11 +11,11 @@ namespace hapticd::cli {
 
 class TickWatch {
  public:
-  /// [main] In the thread that ticks. Where no thread can be started, nothing is watched.
+  /// [main] Make it in the thread that ticks. Where no thread can be started, nothing is watched.
   TickWatch() { (void)watch_.start(); }
 
  private:
-  /// The ticks of a command, as EndWatch sees them: no servo, and yet a tick may last.
+  /// The ticks of a command, for EndWatch: there is no servo, but a tick may still hang.
   class Ticks final : public watch::Ended {
    public:
     uint64_t ticks() const noexcept override { return OfflineTick::ended(); }

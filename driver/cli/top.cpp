@@ -40,7 +40,7 @@ struct ModelLine {
   std::string name, plugin;
   status::ModelNow now;
   status::ModelFeet feet;
-  std::string silenced;              ///< why it is not felt any more; "": it is
+  std::string silenced;              ///< why it is no longer felt; "" if it is felt
   double p50 = 0, p99 = 0, max = 0;  ///< [us] of a step
   bool traced = false;
 };
@@ -57,7 +57,7 @@ struct ArmLine {
 
 struct View {
   status::Now now;
-  double rate = 0, held = 0;  ///< [Hz] asked for, and ticks a second since the view before
+  double rate = 0, held = 0;  ///< [Hz] rate asked for, and ticks per second since the last view
   double late[3] = {}, compute[3] = {};
   std::vector<ArmLine> arms;
   std::vector<ModelLine> models;
@@ -98,7 +98,7 @@ View look(const status::Page& page) {
                    false};
     const status::SharedHistogram& step = page.model[i].step_us;
     line.p50 = step.quantile(0.5), line.p99 = step.quantile(0.99), line.max = step.max();
-    constexpr uint64_t kFresh = 50;  // ticks: what was not stepped since is far away
+    constexpr uint64_t kFresh = 50;  // ticks: a model that was not stepped for so long is far away
     line.traced = line.now.tick + kFresh >= view.now.tick && std::isfinite(line.now.depth);
     if (!line.traced) line.now.force = 0;
     line.silenced =
@@ -173,7 +173,7 @@ Json toJson(const View& view) {
           {"clients", jsonOfClients(view)}};
 }
 
-/// Programs that push; "": none does.
+/// Programs that push; "" if none does.
 std::string clientsTable(const View& view) {
   if (view.clients.empty()) return "";
   std::string text = fmt::format("\n{:<28} {:>8} {:<16} {:>9} {:>9} {:>11} {:>11} {:>7}  {}\n", "PROGRAM", "PID",
@@ -189,12 +189,12 @@ std::string clientsTable(const View& view) {
   return text;
 }
 
-/// Share of the ticks with a foot in which it was known: the nearest point, or held by a contact.
+/// Share of the ticks with a foot in which the foot was known: the nearest point, or held by a contact.
 std::string knownShare(const status::ModelFeet& feet) {
   const uint64_t known = feet.nearest + feet.held, all = known + feet.degraded;
   if (all == 0) return "-";
   const double percent = std::floor(1000.0 * static_cast<double>(known) / static_cast<double>(all)) / 10;
-  return fmt::format("{:.1f}%", percent);  // rounded down: 100 % means all
+  return fmt::format("{:.1f}%", percent);  // rounded down, so that 100 % means all
 }
 
 std::string table(const View& view, size_t rows) {
@@ -228,7 +228,7 @@ std::string table(const View& view, size_t rows) {
   return text;
 }
 
-/// Keys at once and without echo, as long as it lives.
+/// Delivers each key at once and without echo while the object lives.
 class RawKeys {
  public:
   RawKeys() : raw_(isatty(STDIN_FILENO) != 0 && tcgetattr(STDIN_FILENO, &before_) == 0) {
@@ -242,7 +242,7 @@ class RawKeys {
   RawKeys(const RawKeys&) = delete;
   RawKeys& operator=(const RawKeys&) = delete;
 
-  /// The key pressed within a time; 0: none.
+  /// The key that is pressed within a time; 0 if none is.
   char wait(double seconds) const {
     pollfd polled{STDIN_FILENO, static_cast<short>(raw_ ? POLLIN : 0), 0};
     char key = 0;
@@ -259,7 +259,7 @@ bool ended(const status::Page& page) {
   return kill(static_cast<pid_t>(page.pid), 0) != 0 && errno == ESRCH;
 }
 
-/// A daemon that ended in order took its files along.
+/// A daemon that ended in order removed its files.
 int endOfDaemon(const TopArguments& options) {
   if (!control::wasKilled(status::runtimeFolder(false) + "/" + options.name + ".sock")) return kWorked;
   return fail(kFailed,
@@ -292,7 +292,7 @@ int watch(const TopArguments& options, const status::Page& page) {
   return kWorked;
 }
 
-/// One line of JSON after the other, until nobody reads them or the daemon ends.
+/// Prints one line of JSON after the other, until nobody reads them or the daemon ends.
 int stream(const TopArguments& options, const status::Page& page) {
   RealClock clock(0);
   status::Now before{};
@@ -308,7 +308,7 @@ int stream(const TopArguments& options, const status::Page& page) {
   return endOfDaemon(options);
 }
 
-/// A process that was stopped leaves its page as it was, and looks alive. @param tick that the page had
+/// A stopped process leaves its page unchanged, so it looks alive. @param tick the tick that the page showed
 bool standsStill(const status::Page& page, uint64_t tick) {
   constexpr Nanoseconds kLook = 10'000'000, kPatience = 500'000'000;
   RealClock clock(0);
@@ -330,7 +330,7 @@ int top(const TopArguments& options) {
   if (!options.once) return options.json ? stream(options, page) : watch(options, page);
   if (ended(page))
     return fail(kFailed, "the daemon " + options.name +
-                             " is no more: it was killed, or it crashed\n  fix: start it again with hapticd run");
+                             " has gone: it was killed, or it crashed\n  fix: start it again with hapticd run");
   View view = look(page);
   const bool still = standsStill(page, view.now.tick);
   view.held = view.now.t > 0 && !still ? static_cast<double>(view.now.tick) / view.now.t : 0;

@@ -28,7 +28,7 @@ struct TraceArguments {
   std::string scene, probe, out, models;
 };
 
-/// Indices of the models to print; empty `filter`: all of them.
+/// Indices of the models to print; an empty `filter` means all of them.
 Result<std::vector<uint32_t>> chosenModels(const scene::Scene& scene, const std::string& filter) {
   std::vector<uint32_t> chosen;
   if (filter.empty()) {
@@ -84,7 +84,7 @@ Inputs filesRead(const TraceArguments& options, const scene::Scene& scene) {
   return files;
 }
 
-/// A path in mm is far from everything, and a trace says so only by its depths.
+/// Warns of a path in mm, which is far from everything: a trace shows that only by its depths.
 void warnOfFarRows(const std::string& file, const std::vector<PathRow>& rows) {
   constexpr double kFar = 10;  // [m]
   for (size_t i = 0; i < rows.size(); ++i) {

@@ -14,7 +14,7 @@ constexpr const char* kHeader =
     "t,model,feature,u,v,px,py,pz,nx,ny,nz,depth,fx,fy,fz,tx,ty,tz,contact,iterations,status,"
     "mx,my,mz,mqw,mqx,mqy,mqz\n";
 
-/// A name as a CSV field: quoted where it has a comma, quote or line end.
+/// A name as a CSV field: in quotes if it has a comma, quote or line end.
 std::string field(const std::string& name) {
   if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
   std::string quoted(1, '"');

@@ -34,13 +34,13 @@ struct TuneArguments {
 
 std::atomic<bool> stopped{false};
 
-/// Ctrl-C ends the search and keeps what it found. A plugin that does not come back lets nothing end: a second one, and
-/// whatever is sent by no hand, ends the command.
+/// Ctrl-C ends the search and keeps what was found. If a plugin never returns, the search cannot end: a second Ctrl-C,
+/// or any signal not sent by a person, ends the command.
 void stopTuning(int signal) {
   if (stopped.exchange(true) || signal != SIGINT) watch::endAnyway(calledHere());
 }
 
-/// The motion of a path file, brought to the scene's rate.
+/// The motion of a path file, resampled to the scene's rate.
 Result<tune::Motion> motionOfFile(const std::string& file, double rate) {
   auto rows = readProbePath(file);
   if (!rows) return Error{rows.error()};
@@ -79,12 +79,12 @@ Result<tune::Motion> motionOfRecording(const std::string& file, double rate) {
   return tune::resampled(tune::motionThrough(std::move(position), period), rate);
 }
 
-/// Messages of plugins were seen at the first set-up; here the same models are set up hundreds of times.
+/// Messages of plugins were printed at the first set-up; here the same models are set up hundreds of times.
 void quiet(int level, const std::string& who, const std::string& text) {
   if (level >= HSP_LOG_ERROR) logToTerminal(level, who, text);
 }
 
-/// What the user gave: a path file, a recording, or nothing.
+/// The motion that the user gave: a path file, a recording, or none.
 Result<tune::Motion> motionFor(const TuneArguments& options, const scene::Scene& scene) {
   if (!options.probe.empty()) return motionOfFile(options.probe, scene.servo.rate);
   if (!options.motion.empty()) return motionOfRecording(options.motion, scene.servo.rate);
@@ -96,7 +96,7 @@ std::string nameOfMotion(const TuneArguments& options) {
   return file.empty() ? "the motion of the scene's hand" : file;
 }
 
-/// On a terminal a bar; in a log a line every five seconds.
+/// Shows a bar on a terminal, and a line every five seconds in a log.
 bool showProgress(const tune::Progress& progress) {
   static Nanoseconds told = monotonicNow();
   constexpr Nanoseconds kEvery = 5'000'000'000;
@@ -198,7 +198,7 @@ int tuneScene(const TuneArguments& options) {
   return report(options, findings);
 }
 
-/// What to aim at, and over which motion.
+/// What the search aims at, and over which motion.
 void addGoal(const Command& command, const std::shared_ptr<TuneArguments>& options) {
   const Option budget = command
                             .addOption("--budget-us", options->budget_us,

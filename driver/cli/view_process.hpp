@@ -11,18 +11,18 @@
 
 namespace hapticd::cli {
 
-/// [main] The path of hapticd-view: beside this program's tree, or in the installation. An error says how to get it.
+/// [main] The path of hapticd-view, in this program's build tree or in the installation. An error says how to get it.
 Result<std::string> viewProgram();
 
 /// [main] Starts it in a process group of its own, so that Ctrl-C ends the run and the page hears of it. Call it before
-/// real-time rights and locked memory are taken. @return its process
+/// real-time rights and locked memory are taken. @return its process id
 Result<pid_t> startView(const std::vector<std::string>& arguments);
 
-/// [main] Becomes it; returns only where that fails.
+/// [main] Replaces this process by hapticd-view; returns only if that fails.
 Result<void> becomeView(const std::vector<std::string>& arguments);
 
-/// [main] Lets a program lead the hand of every simulated arm, instead of its script. The hand starts off the object as
-/// far as a script would come from.
+/// [main] Lets a program lead the hand of every simulated arm in place of its script. The hand starts off the object,
+/// as far away as a script would begin.
 void guideSimulatedHands(scene::Scene& scene);
 
 }  // namespace hapticd::cli

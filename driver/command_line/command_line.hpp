@@ -29,23 +29,23 @@ class Option {
   // Rules. Each gives back the option, so that the next rule can follow.
   Option required() const;
   Option expected(int count) const;            ///< takes this many values
-  Option expected(int least, int most) const;  ///< takes so many values
+  Option expected(int least, int most) const;  ///< Rules. Each returns the option, so that the next rule can follow.
   Option delimiter(char between) const;        ///< splits one word into several values
   Option oneValueEach() const;                 ///< may be repeated, and never takes the words that follow its value
   Option within(double low, double high) const;
   Option wholeWithin(int low, int high) const;
   Option oneOf(const std::vector<std::string>& words) const;
   Option existingFile() const;
-  /// The word must satisfy `wrong`, which gives back what is wrong with it, or "".
+  /// The word must satisfy `wrong`, which says what is wrong with it, or gives "".
   Option check(const std::function<std::string(const std::string& word)>& wrong) const;
   Option needs(const Option& other) const;
   Option needs(const std::string& name) const;
   Option excludes(const Option& other) const;
   Option excludes(const std::string& name) const;
   Option showDefault() const;                               ///< the help shows the value that the variable has now
-  Option valueWithoutWord(const std::string& value) const;  ///< what it gets where no value follows
+  Option valueWithoutWord(const std::string& value) const;  ///< the value that it gets where none follows
 
-  // What the help says of it.
+  // What the help says about it.
   bool positional() const;
   bool isHelp() const;
   std::string description() const;
@@ -65,8 +65,8 @@ class Command {
   explicit Command(CLI::App* app) : app_(app) {}
 
   /// @param name "-o,--out" for an option, "file" for a positional argument, "-o,--out,out" for either
-  /// @param value keeps what it holds if the option is not given; must live as long as the program. A type that has no
-  /// instance in command_line.cpp does not link.
+  /// @param value keeps what it holds if the option is not given; must live as long as the program. Only types with an
+  /// instance in command_line.cpp link.
   template <class Value>
   Option addOption(const std::string& name, Value& value, const std::string& description = "") const;
   Option addFlag(const std::string& name, bool& value, const std::string& description = "") const;
@@ -75,10 +75,10 @@ class Command {
   void footer(const std::string& text) const;                    ///< stands below the help: examples, exit codes
   void callback(const std::function<void()>& whatItDoes) const;  ///< runs when the whole command line was read
   void requireSubcommand() const;                                ///< one, and no more
-  void optionsMayFollowSubcommand() const;                       ///< options of the program stand behind it too
-  void takesForeignCommandLine() const;                          ///< all from the first strange word on is left alone
+  void optionsMayFollowSubcommand() const;                       ///< options of the program may stand after it too
+  void takesForeignCommandLine() const;                          ///< what follows the first unknown word stays as it is
   std::vector<std::string> foreignCommandLine() const;           ///< those words
-  bool given(const std::string& option) const;                   ///< whether the command line had it
+  bool given(const std::string& option) const;                   ///< whether the command line contained it
   Command subcommand(const std::string& name) const;             ///< one that was added
   std::string name() const;
   std::string description() const;
@@ -101,7 +101,7 @@ class Program : public Command {
 
   void version(const std::string& text) const;  ///< what --version prints
   /// Reads the command line and runs the callback of its command, whose exceptions pass. @return the exit code of a
-  /// program that is done: help and version were printed (0), or what is wrong (kBadUsage); nothing: go on
+  /// program that is done: it printed help or version (0), or what is wrong (kBadUsage); nothing if it must go on
   std::optional<int> parse(int argc, const char* const* argv) const;
 };
 
@@ -112,7 +112,7 @@ bool read(const std::string& word, Value& value);
 /// The parts of a list such as "a,b"; "a,,b" has an empty part.
 std::vector<std::string> split(const std::string& list, char between);
 
-/// Without white space at both ends.
+/// The text without white space at both ends.
 std::string trimmed(const std::string& text);
 
 }  // namespace hapticd::command_line

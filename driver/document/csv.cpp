@@ -10,7 +10,7 @@
 namespace hapticd::document {
 namespace {
 
-constexpr size_t kShownProblems = 20;  ///< a file of another format is wrong in every line
+constexpr size_t kShownProblems = 20;  ///< most problems of a file: one of another format is wrong in every line
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kBlanks = " \t\r";
@@ -26,7 +26,7 @@ std::optional<double> numberIn(std::string_view text) {
   return toNumber(text);
 }
 
-/// A text without quotes around it.
+/// A text without the quotes around it.
 std::string_view unquoted(std::string_view text) {
   const bool quoted = text.size() > 2 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front();
   return quoted ? text.substr(1, text.size() - 2) : text;
@@ -36,7 +36,7 @@ std::string countText(size_t columns) {
   return std::to_string(columns) + (columns == 1 ? " column" : " columns");
 }
 
-/// The fields of a line, and where each begins.
+/// The fields of a line, and the places where they begin.
 struct Field {
   std::string_view text;
   size_t offset;
@@ -69,7 +69,7 @@ class Parser {
   std::optional<CsvTable> take() {
     line_ = std::max(line_, 1);
     if (wrong_ == 0 && table_.lines.empty())
-      problem(0, "", "no rows, expected a header " + expected() + " and at least one row");
+      problem(0, "", "there are no rows, expected a header " + expected() + " and at least one row");
     return wrong_ == 0 ? std::optional(std::move(table_)) : std::nullopt;
   }
 
@@ -79,7 +79,7 @@ class Parser {
     for (const std::string& header : rules_.headers) text += (text.empty() ? "" : " or ") + header;
     return text;
   }
-  /// How columns are separated here, for a line that has other signs between them.
+  /// Says how columns are separated here, for a line that has other signs between them.
   static std::string separators(const std::vector<Field>& fields, size_t columns) {
     if (fields.size() >= columns) return "";
     bool others = fields.size() == 1 && fields[0].text.find(' ') != std::string_view::npos;
@@ -92,7 +92,7 @@ class Parser {
     report(problems_, file_, line_, static_cast<int>(offset) + 1, column, what);
   }
 
-  /// Settles the columns. True: the line was a header.
+  /// Settles the columns. True if the line was a header.
   bool header(const std::vector<Field>& fields) {
     std::string names;
     for (const Field& field : fields) names.append(names.empty() ? "" : ",").append(field.text);
@@ -109,7 +109,7 @@ class Parser {
             (numbers ? countText(fields.size()) + ", expected " + expected()
                      : "the header is \"" + names.substr(0, 60) + "\", expected " + expected()) +
                 meant);
-    wrong_ = kShownProblems;  // no row can be judged
+    wrong_ = kShownProblems;  // without columns no row can be judged
     return true;
   }
 

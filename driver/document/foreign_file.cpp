@@ -13,7 +13,7 @@ struct Kind {
   std::string_view ending, begins, name;
 };
 
-/// Where two have a name in common, the one that knows its first words comes first.
+/// If two formats have a name in common, the one with known first words comes first.
 constexpr Kind kKinds[] = {{".step", "ISO-10303-21", "a STEP file"},
                            {".stp", "ISO-10303-21", "a STEP file"},
                            {".iges", "", "an IGES file"},

@@ -6,7 +6,7 @@
 
 namespace hapticd::document {
 
-/// [main] What such a file is and what to do with it, by its name or its first words; "": nothing of the kind.
+/// [main] What such a file is and what to do with it, by its name or its first words; "" if it is unknown.
 std::string foreignFile(std::string_view text, const std::string& file);
 
 }  // namespace hapticd::document

@@ -7,7 +7,7 @@
 
 namespace hapticd::document {
 
-/// [any] Keys keep their order. A value that is_discarded() if the text is not JSON.
+/// [any] Keys keep their order. Gives a value that is_discarded() if the text is not JSON.
 nlohmann::ordered_json parseJson(std::string_view text);
 
 /// [any] As parseJson(), but throws nlohmann::json::parse_error if the text is not JSON.

@@ -14,9 +14,9 @@
 namespace hapticd::document {
 namespace {
 
-constexpr size_t kLongest = 60;  ///< of a text that is looked at: a number and its unit are short
+constexpr size_t kLongest = 60;  ///< longest text that is looked at: a number and its unit are short
 
-/// What people write for a unit, what this unit is called here, and its size in it.
+/// What people write for a unit, the unit's name here, and its size in it.
 struct Known {
   const char *written, *unit;
   double size;
@@ -42,7 +42,7 @@ std::string replaced(std::string_view text, std::string_view what, std::string_v
   return out;
 }
 
-/// A product as a person would write it.
+/// A product, written as a person would write it.
 std::string rounded(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.7g", value);
@@ -65,17 +65,17 @@ std::string squeezed(std::string_view unit) {
   return out;
 }
 
-/// The longest beginning that is a number; 0: none.
+/// The length of the longest beginning that is a number; 0 if there is none.
 size_t numberLength(std::string_view text) {
   for (size_t length = text.size(); length > 0; --length)
     if (toNumber(text.substr(0, length))) return length;
   return 0;
 }
 
-/// A text without what stands between its thousands for the eye alone, or nothing if it has none.
+/// The text without signs between its thousands, or nothing if it has none.
 std::optional<std::string> ungrouped(std::string_view text) {
   std::string out;
-  size_t group = 0;  // digits since the last one
+  size_t group = 0;  // digits since the last such sign
   bool grouped = false;
   for (const char c : text) {
     if (c == '\'' || c == '_' || c == ' ') {
@@ -132,7 +132,7 @@ std::string numberMeant(std::string_view given, std::string_view unit) {
   const std::string_view rest = withoutBlanks(std::string_view(point).substr(length));
   if (length == 0 || (decimal && length <= comma + 1)) return "";
   const std::string number = point.substr(0, length);
-  if (decimal && rest.empty() && point.size() == comma + 4)  // a thousand, or one in three decimals
+  if (decimal && rest.empty() && point.size() == comma + 4)  // either a thousand, or one with three decimals
     return "; write " + point.substr(0, comma) + point.substr(comma + 1) + ", or " + number + " with a point";
   if (decimal && rest.empty()) return "; write " + number + ", with a point, not a comma";
   if (decimal && rest.find(',') != rest.npos) return "";

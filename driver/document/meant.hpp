@@ -8,7 +8,7 @@
 
 namespace hapticd::document {
 
-/// [any] "; write 0.04: 40 mm are 0.04 m" for a text in the place of a number, or "" where nothing can be told: decimal
+/// [any] "; write 0.04: 40 mm are 0.04 m" for a text in the place of a number, or "" if it cannot be guessed: decimal
 /// commas, units, quotes, blanks or signs between digits, formulas.
 /// @param unit that is expected; "": not known
 std::string numberMeant(std::string_view text, std::string_view unit = "");

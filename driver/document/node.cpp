@@ -7,7 +7,7 @@
 namespace hapticd::document {
 namespace {
 
-constexpr size_t kShownText = 40;  ///< of a long value in a message
+constexpr size_t kShownText = 40;  ///< length of a value that a message shows
 
 void appendJsonText(const std::string& text, std::string& out) {
   static constexpr char kHex[] = "0123456789abcdef";
@@ -24,7 +24,7 @@ void appendJsonText(const std::string& text, std::string& out) {
   out += '"';
 }
 
-/// A YAML number that JSON can spell in the same way.
+/// True for a YAML number that JSON writes in the same way.
 bool jsonNumber(const std::string& text) {
   const std::optional<double> value = toNumber(text);
   if (!value || !std::isfinite(*value)) return false;

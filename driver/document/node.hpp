@@ -22,7 +22,7 @@ struct Node {
   int line = 0, column = 0;
   std::string scalar;
   std::vector<Node> items;     ///< of a sequence
-  std::vector<Entry> entries;  ///< of a map, in the order of the file; names may repeat
+  std::vector<Entry> entries;  ///< keys of a map, in the order of the file; names may repeat
 
   const Node* find(std::string_view key) const;
   bool isNull() const { return kind == Kind::kNull; }
@@ -35,11 +35,11 @@ struct Entry {
   Node key, value;
 };
 
-/// Bounds of what is read. Beyond them a file is refused with a message.
+/// Bounds of what is read. A file beyond them is refused with a message.
 constexpr size_t kMaxFileBytes = 32u << 20;  ///< a scene of 10,000 models is 2 MB
 constexpr int kMaxDepth = 48;
 constexpr size_t kMaxNodes = 4'000'000;
-/// Of a short text, aliases included: "a billion laughs" ends here. Without aliases a byte is at most two values.
+/// Values of a short text, aliases included: this stops "a billion laughs". Without aliases a byte gives two at most.
 constexpr size_t maxNodes(size_t bytes) {
   return bytes < kMaxNodes / 4 - 5'000 ? 20'000 + 4 * bytes : kMaxNodes;
 }
@@ -51,7 +51,7 @@ std::optional<Node> parseText(const std::string& text, const std::string& file, 
 /// [main] Reads and parses a file.
 std::optional<Node> parseFile(const std::filesystem::path& file, Problems& problems);
 
-/// [main] A file's bytes, or a problem: missing, a folder, unreadable, larger than `max_bytes`.
+/// [main] Reads a file's bytes, or reports a problem: it is missing, a folder, unreadable, or larger than `max_bytes`.
 std::optional<std::string> readFile(const std::filesystem::path& file, size_t max_bytes, Problems& problems);
 
 /// [any] What a node is, for messages: "a mapping", "the text \"abc\"".

@@ -18,13 +18,13 @@ namespace {
 constexpr const char* kEmpty =
     "the file is empty, expected YAML; a scene begins with \"hapticd: 1\", a device file with \"hapticd-device: 1\"";
 
-/// Why reading stops at once.
+/// The reason why reading stops at once.
 struct Refused {
   YAML::Mark mark;
   std::string what;
 };
 
-/// Builds the tree from the parser's events. Anchors are kept as copies; an alias copies again and is counted.
+/// Builds the tree from the parser's events. Anchors are kept as copies; an alias copies one again, and is counted.
 class Builder final : public YAML::EventHandler {
  public:
   Builder(const std::string& file, size_t most_nodes, Problems& problems)
@@ -65,15 +65,15 @@ class Builder final : public YAML::EventHandler {
   void OnMapEnd() override { closeLast(); }
 
   std::optional<Node> take() { return std::move(root_); }
-  /// Where the last quoted text began.
+  /// The place where the last quoted text began.
   const YAML::Mark& lastQuoted() const { return last_quoted_; }
 
  private:
   struct Open {
     Node node;
     YAML::anchor_t anchor;
-    std::optional<Node> key;                // of a map: read, its value not yet
-    std::unordered_set<std::string> names;  // of a map: to find duplicates
+    std::optional<Node> key;                // in a map: a key was read, but not its value
+    std::unordered_set<std::string> names;  // in a map: used to find duplicates
   };
 
   Node make(const YAML::Mark& mark, Node::Kind kind) {
@@ -148,7 +148,7 @@ class Builder final : public YAML::EventHandler {
   size_t nodes_ = 0, most_nodes_;
 };
 
-/// The first byte that is no part of valid UTF-8, or npos. Overlong forms are let through: nothing decodes them here.
+/// The first byte that is not part of valid UTF-8, or npos. Overlong forms pass, since nothing decodes them here.
 size_t firstBadByte(const std::string& text) {
   for (size_t i = 0; i < text.size();) {
     const auto c = static_cast<unsigned char>(text[i]);

@@ -28,7 +28,7 @@ void report(Problems& problems, const Place& place, const std::string& key, cons
 void report(Problems& problems, const std::string& file, int line, int column, const std::string& key,
             const std::string& what);
 
-/// In the order of the files' lines, as editors list them; the order of files stays.
+/// Sorted by lines within each file, as editors list them; the order of the files stays.
 void sortByPlace(Problems& problems);
 
 }  // namespace hapticd::document

@@ -14,7 +14,7 @@
 namespace hapticd::document {
 namespace {
 
-constexpr double kUnitTolerance = 1e-3;  ///< of a quaternion's length: digits that a person leaves out, not an error
+constexpr double kUnitTolerance = 1e-3;  ///< of a quaternion's length: digits that a person leaves out are no error
 constexpr size_t kLongestName = 100;
 
 std::string wordOf(const Node& node) {
@@ -49,7 +49,7 @@ bool normalise(Eigen::Quaterniond& q) {
   return true;
 }
 
-/// What a number that is too large was meant as, where that is in range: millimetres, degrees, milliseconds.
+/// What a number that is too large was meant to be, if that is in range: millimetres, degrees, milliseconds.
 static std::string inOtherUnits(double value, const Range& range) {
   struct Slip {
     const char *unit, *meant;
@@ -100,7 +100,7 @@ std::optional<size_t> Reader::choice(const Node& node, const std::string& key, s
   for (size_t i = 0; node.isScalar() && i < choices.size(); ++i)
     if (node.scalar == choices[i]) return i;
   const std::vector<std::string> all(choices.begin(), choices.end());
-  const bool word = node.isScalar() && !toNumber(node.scalar);  // a number is no key that a comma made
+  const bool word = node.isScalar() && !toNumber(node.scalar);  // a key that a comma made is never a number
   const std::string meant = word ? suggestion(node.scalar, all) : "";
   problem(node, key, describe(node) + " is an invalid value, expected one of " + listed(all, 40) + meant);
   return std::nullopt;
@@ -184,7 +184,7 @@ std::optional<Eigen::Quaterniond> Reader::quaternion(const Node& node, const std
   for (const Node& item : node.items)
     if (const auto value = toNumber(item.scalar);
         item.isScalar() && value && std::isfinite(*value) && std::abs(*value) > 2) {
-      problem(item, key, item.scalar + " is no part of a rotation, " + kNoDegrees);
+      problem(item, key, item.scalar + " does not belong to a rotation, " + kNoDegrees);
       return std::nullopt;
     }
   std::array<double, 4> v{};
@@ -202,7 +202,7 @@ std::optional<Eigen::Quaterniond> Reader::quaternion(const Node& node, const std
 
 namespace {
 
-/// Where a key belongs that was written one level too high.
+/// The place of a key that was written one level too high.
 std::string belongsTo(const Table& table, const std::string& name) {
   for (const Key& key : table.keys)
     if (key.type == Type::kObject && key.table->find(name) != nullptr)

@@ -22,7 +22,7 @@ struct Range {
 /// "0 to 20000 N/m", "0 N/m or more".
 std::string expectedOf(const Range& range);
 
-/// Shortest text that reads back as the number.
+/// The shortest text that reads back as the same number.
 std::string numberText(double value);
 
 class Reader {
@@ -45,13 +45,13 @@ class Reader {
   std::optional<std::string> text(const Node& node, const std::string& key);
   /// A name that may stand in a table's column: no comma, quote or control character.
   std::optional<std::string> name(const Node& node, const std::string& key);
-  /// Absolute path of a file that exists; relative ones are seen from the folder of the file being read.
+  /// The absolute path of a file that exists; relative paths start from the folder of the file being read.
   std::optional<std::filesystem::path> existingFile(const Node& node, const std::string& key);
   std::optional<Eigen::Vector3d> vector3(const Node& node, const std::string& key, const Range& range);
   /// w, x, y, z; normalised if its length is 1 within 1e-3.
   std::optional<Eigen::Quaterniond> quaternion(const Node& node, const std::string& key);
 
-  /// A mapping by its table: unknown keys, values and required keys are checked, values stored in `object`.
+  /// Reads a mapping by its table: checks unknown keys, values and required keys, and stores values in `object`.
   void object(const Node& node, const std::string& key, const Table& table, void* object);
 
  private:

@@ -17,7 +17,7 @@ struct Line {
   bool opens = false;  ///< a deeper line may follow
 };
 
-/// The lines up to `last` that hold something. Flow style and block texts have no indentation to be wrong.
+/// The lines up to `last` that are not empty. Flow style and block texts have no indentation that could be wrong.
 std::vector<Line> blockLines(const std::string& text, int last) {
   std::vector<Line> lines;
   std::istringstream in(text);
@@ -41,7 +41,7 @@ std::vector<Line> blockLines(const std::string& text, int last) {
   return lines;
 }
 
-/// "-name: ball": the dash of a list, glued to its first key.
+/// For "-name: ball": the dash of a list, written without a blank before its first key.
 std::optional<Problem> gluedDash(const std::string& line, size_t first, int number, const std::string& file) {
   const size_t colon = line.find(": ", first);
   if (line[first] != '-' || first + 1 >= line.size() ||
@@ -52,8 +52,8 @@ std::optional<Problem> gluedDash(const std::string& line, size_t first, int numb
                  "not YAML: no blank after the dash, expected \"- " + line.substr(first + 1, colon - first) + " ...\""};
 }
 
-/// A tab that indents, or a key without a blank after its colon, in one of the lines up to `last`: the parser stumbles
-/// later, over what then is no map.
+/// A tab used for indentation, or a key without a blank after its colon, in a line up to `last`: the parser stumbles
+/// only later, when the map does not continue.
 std::optional<Problem> wrongBlank(const std::string& text, int last, const std::string& file) {
   constexpr const char* kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
   std::istringstream in(text);
@@ -81,8 +81,8 @@ std::optional<Problem> wrongBlank(const std::string& text, int last, const std::
   return std::nullopt;
 }
 
-/// What is wrong with the indentation of one of the lines up to `last`, and where: what a parser says of it comes late,
-/// and in its own words.
+/// What is wrong with the indentation of a line up to `last`, and where: the parser notices it late, and says it in its
+/// own words.
 std::optional<Problem> wrongIndent(const std::string& text, int last, const std::string& file) {
   const auto wrong = [&](const Line& line, const std::string& expected) {
     return Problem{{file, line.number, line.indent + 1},
@@ -115,7 +115,7 @@ std::string closing(char open) {
   return open == '[' ? "]" : "}";
 }
 
-/// A quote or a bracket that is open at the end, closed by another, or closed too late.
+/// A quote or a bracket that is open at the end, or closed by a wrong one, or closed too late.
 std::optional<Problem> wrongPair(const std::string& text, const std::string& file) {
   const Scan scan = scanYaml(text);
   const auto quoted = [](char what) { return std::string("the ") + what; };
@@ -150,7 +150,7 @@ char charAt(const std::string& text, const Place& place) {
   return offset < text.size() ? text[offset] : '\0';
 }
 
-/// The parser's words in plain ones.
+/// Puts the parser's words into plain ones.
 std::string plainWords(const std::string& text, const Place& place, const std::string& words) {
   const char here = charAt(text, place);
   const auto begins = [&words](const char* with) { return words.rfind(with, 0) == 0; };

@@ -12,8 +12,8 @@ namespace hapticd::document {
 /// [any] What is wrong with a text that the parser gave up at `place`, saying `words`.
 Problem slipIn(const std::string& text, const Place& place, const std::string& words);
 
-/// [any] The quote that is never closed, if the text that was read last began with it: the parser takes the end of the
-/// file for its end.
+/// [any] The quote that is never closed, if the last text that was read began with it: then the parser takes the end of
+/// the file for its end.
 std::optional<Problem> openQuote(const std::string& text, const Place& last_quoted);
 
 }  // namespace hapticd::document

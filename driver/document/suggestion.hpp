@@ -7,10 +7,10 @@
 
 namespace hapticd::document {
 
-/// [any] Edits (insert, delete, replace, swap of neighbours) between two words, letters' case ignored.
+/// [any] Edits (insert, delete, replace, swap of neighbours) between two words, ignoring case.
 size_t editDistance(std::string_view a, std::string_view b);
 
-/// [any] The candidate nearest to `word`, or "" if none is near enough to be meant.
+/// [any] The candidate nearest to `word`, or "" if none is near enough to be the word that was meant.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);
 
 /// [any] " (did you mean \"stiffness\"?)", or "".

@@ -23,7 +23,7 @@ enum class Type : uint8_t {
   kQuaternion,  ///< w, x, y, z
   kObject,
   kList,  ///< of objects
-  kAny    ///< looked at later, with the plugin's own table
+  kAny    ///< read later, with the plugin's own table
 };
 
 struct Key {
@@ -36,21 +36,21 @@ struct Key {
   std::span<const std::string_view> choices{};
   const Table* table = nullptr;  ///< kObject, kList
   void (*store)(Reader&, const Node&, const std::string& path, const Key&, void* object) = nullptr;
-  const char* shape = "";  ///< kAny: what is expected, in words
+  const char* shape = "";  ///< for kAny: what is expected, in words
 
   std::string expected() const;  ///< "a number, 10 to 20000 Hz"
 };
 
 struct Table {
   std::span<const Key> keys;
-  const Table* other = nullptr;  ///< of the file that a key may have been meant for
+  const Table* other = nullptr;  ///< the file for which a key may have been intended
   const char* other_file = "";   ///< "the device file"
 
   const Key* find(std::string_view name) const;
   std::vector<std::string> names() const;
 };
 
-/// The line is a required one.
+/// Marks the line as a required one.
 constexpr Key required(Key key) {
   key.required = true;
   return key;
@@ -252,7 +252,7 @@ constexpr Key list(const char* name, const Table& table, Range count, const char
           }};
 }
 
-/// Kept as it stands; the node outlives the reading.
+/// Kept as it is; the node outlives the reading.
 template <auto M>
 constexpr Key any(const char* name, const char* shape, const char* doc) {
   return {name,

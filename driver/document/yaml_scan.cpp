@@ -43,7 +43,7 @@ class Scanner {
     while (at_ < text_.size() && text_[at_] != '\n') ++at_;
   }
 
-  /// The line before ends with | or > and what may follow them: a text of its own begins.
+  /// True if the line before ends with | or > and what may follow them, so that a block text begins.
   bool opensBlock() const {
     size_t end = at_;
     while (end > line_start_ && (isBlank(text_[end - 1]) || text_[end - 1] == '-' || text_[end - 1] == '+' ||
@@ -56,7 +56,7 @@ class Scanner {
     while (at < text_.size() && text_[at] == ' ') ++at;
     return at - start;
   }
-  /// Lines that are indented more than the one that opened the block.
+  /// Skips lines that are indented more than the one that opened the block.
   void skipBlock() {
     size_t opener = line_start_ - 1;
     while (opener > 0 && text_[opener - 1] != '\n') --opener;
@@ -72,7 +72,7 @@ class Scanner {
     }
   }
 
-  /// From a quote to the one that closes it.
+  /// Goes from a quote to the one that closes it.
   void quoted(char quote) {
     const Mark begin = here(quote);
     fresh_ = false;
@@ -108,7 +108,7 @@ class Scanner {
       fresh_ = true;
     } else if (c == ':' && (isBlank(next()) || (flow && after_quote_ == at_))) {
       fresh_ = true;
-    } else if (fresh_ && (c == '&' || c == '!')) {  // an anchor or a tag, before what it marks
+    } else if (fresh_ && (c == '&' || c == '!')) {  // an anchor or a tag, which stands before what it marks
       while (!isBlank(next())) ++at_;
     } else if (!(fresh_ && (isBlank(c) || ((c == '-' || c == '?') && isBlank(next()))))) {
       fresh_ = false;

@@ -13,12 +13,12 @@ struct Mark {
 };
 
 struct Scan {
-  std::vector<Mark> open;           ///< brackets that the end of the text leaves open, the outermost first
+  std::vector<Mark> open;           ///< brackets that are still open at the end of the text, the outermost first
   std::optional<Mark> quote;        ///< opened, and never closed
-  std::optional<Mark> long_quote;   ///< the first one that ends in another line
+  std::optional<Mark> long_quote;   ///< the first quote that ends in another line
   int long_quote_ends = 0;          ///< its last line
-  std::optional<Mark> wrong_close;  ///< the first closing bracket that fits none
-  std::optional<Mark> wrong_open;   ///< the bracket that is open there, if any
+  std::optional<Mark> wrong_close;  ///< the first closing bracket that does not fit
+  std::optional<Mark> wrong_open;   ///< the bracket that is open there, if there is one
 };
 
 /// [any]

@@ -13,13 +13,13 @@ namespace {
 // pi/2 in three parts: products of the first two with whole numbers below 2^20 are exact.
 constexpr double kHalfPi1 = 0x1.921fb54400000p+0, kHalfPi2 = 0x1.0b4611a600000p-34, kHalfPi3 = 0x1.3198a2e037073p-69;
 constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
-// The double nearest to pi and to 2 pi, and what is left.
+// The double nearest to pi and to 2 pi, and the remainder.
 constexpr double kPi = 0x1.921fb54442d18p+1, kPiRest = 0x1.1a62633145c07p-53;
 constexpr double kTurn = 0x1.921fb54442d18p+2, kTurnRest = 0x1.1a62633145c07p-52;
 constexpr double kEighth = 0x1.921fb54442d18p-1;  // pi/4
 constexpr double kMostQuarters = 0x1p20;
 
-/// An angle less whole quarter turns: hi + lo within an eighth of a turn, and how many there were, modulo 4.
+/// An angle less whole quarter turns: hi + lo within an eighth of a turn, and the number of quarters modulo 4.
 struct Reduced {
   double hi, lo;
   int quarter;
@@ -27,7 +27,7 @@ struct Reduced {
 
 Reduced reduced(double x) noexcept {
   double rest = 0;
-  if (std::fabs(x) >= kMostQuarters) {  // fmod is exact; what it divides by is not quite a turn
+  if (std::fabs(x) >= kMostQuarters) {  // fmod is exact; its divisor is not quite a turn
     const double left = std::fmod(x, kTurn);
     rest = -((x - left) / kTurn) * kTurnRest;
     x = left;
@@ -41,7 +41,7 @@ Reduced reduced(double x) noexcept {
   return {sum, (hi - sum) + lo, static_cast<int>(static_cast<long>(n) & 3)};
 }
 
-/// Of hi + lo within an eighth of a turn.
+/// The sine and cosine of hi + lo within an eighth of a turn.
 double sineNear(double hi, double lo) noexcept {
   const double z = hi * hi;
   constexpr double kTerms[] = {-1 / 6.0,        1 / 120.0,        -1 / 5040.0,          1 / 362880.0,
@@ -96,7 +96,7 @@ double tangent(double x) noexcept {
 
 namespace {
 
-/// Of 0 to 1: the arc of the nearest eighth, and that of what is left by the law of tangents.
+/// For 0 to 1: the arc of the nearest eighth, plus the arc of the rest by the law of tangents.
 double arcOfFraction(double x) noexcept {
   constexpr double kArcs[] = {0x0.0p+0,
                               0x1.fd5ba9aac2f6ep-4,
@@ -127,7 +127,7 @@ double arcOfFraction(double x) noexcept {
 double angleOf(double y, double x) noexcept {
   if (std::isnan(x) || std::isnan(y)) return kNan;
   const double up = std::fabs(y), out = std::fabs(x);
-  double angle;  // of (out, up), in the first quarter
+  double angle;  // angle of (out, up), in the first quarter
   if (up == 0) {
     angle = 0;
   } else if (std::isinf(up) && std::isinf(out)) {

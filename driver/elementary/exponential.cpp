@@ -12,7 +12,7 @@ namespace hapticd::elementary {
 
 namespace {
 
-// ln 2 in two parts: products of the first with whole numbers below 2^20 are exact.
+// ln 2 in two parts: products of the first part with whole numbers below 2^20 are exact.
 constexpr double kLn2 = 0x1.62e42fef00000p-1, kLn2Rest = 0x1.473de6af278edp-34, kOverLn2 = 0x1.71547652b82fep+0;
 constexpr double kInf = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -36,7 +36,7 @@ Reduced reduced(double x) noexcept {
   return {static_cast<int>(n), seriesLessOne(r, (most - r) - less)};
 }
 
-/// A number as hi + lo.
+/// A number as the sum hi + lo.
 struct Sum {
   double hi, lo;
 };
@@ -77,7 +77,7 @@ bool isOdd(double y) noexcept {
   return std::fabs(y) < 0x1p53 && std::fmod(y, 2) != 0;
 }
 
-/// x^y for x > 0, neither a special value.
+/// x^y for x > 0, if neither is a special value.
 double generalPower(double x, double y) noexcept {
   const Sum log = logarithmOf(x);
   const Sum p = product(log.hi, y);
@@ -121,7 +121,7 @@ double logarithmOfOnePlus(double x) noexcept {
 }
 
 double power(double x, double y) noexcept {
-  constexpr double kSmall = 4;  // beyond it, squares lose more than logarithms do
+  constexpr double kSmall = 4;  // above it, squares lose more digits than logarithms do
   if (y == 0 || x == 1) return 1;
   if (std::isnan(x) || std::isnan(y)) return kNan;
   const double size = std::fabs(x);

@@ -22,7 +22,7 @@ using ErrorCode = boost::system::error_code;
 
 constexpr size_t kMessageBytes = 64 * 1024, kHeadBytes = 8 * 1024;
 
-/// Starts an operation and runs until it is over; cut off after that time.
+/// Starts an operation and runs until it is over, or is cut off after that time.
 template <class Start>
 ErrorCode waitFor(asio::io_context& io, beast::tcp_stream& stream, int timeout_ms, Start start) {
   bool over = false;
@@ -57,7 +57,7 @@ class ChannelImpl final : public Channel {
     return {};
   }
 
-  /// Takes what connected; false: it is not wanted.
+  /// Takes the new connection; false if it is not wanted.
   bool take(tcp::socket socket, int timeout_ms) {
     auto& tcp_stream = beast::get_lowest_layer(stream_);
     const int native = socket.release();

@@ -9,13 +9,13 @@
 
 namespace hapticd::websocket {
 
-/// One connection; text messages of 64 KiB at most. After an error it is of no more use.
+/// One connection; text messages of 64 KiB at most. After an error it can no longer be used.
 class Channel {
  public:
   virtual ~Channel() = default;  ///< closes the connection at once
   /// [main] Connects to ws://HOST:PORT/.
   static Result<std::unique_ptr<Channel>> connect(const std::string& host, unsigned short port, int timeout_ms);
-  /// [any] One thread. Waits until it is on its way.
+  /// [any] Only one thread. Waits until the message is on its way.
   virtual Result<void> send(std::string_view text, int timeout_ms) = 0;
   /// [any] The same thread. Waits for the next message.
   virtual Result<std::string> receive(int timeout_ms) = 0;

@@ -116,7 +116,7 @@ class GridBody final : public SoftBody {
     Description description{text, !check.holds()};
     if (const medial::Steepness steep = body_.skeleton().steepest(); steep.slope >= 1) {
       std::snprintf(text, sizeof text,
-                    "%s: near u = %.3g, v = %.3g the radius changes by %.3g m a metre of skeleton, expected below 1: "
+                    "%s: near u = %.3g, v = %.3g the radius changes by %.3g m per metre of skeleton, expected below 1: "
                     "spheres there are inside others, and only the union of all is felt; place points farther apart or "
                     "radii nearer to each other",
                     file.c_str(), steep.u, steep.v, steep.slope);

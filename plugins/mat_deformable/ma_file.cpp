@@ -104,7 +104,7 @@ class MaReader {
       return problem(std::to_string(count) + " of a kind, expected 0 to " + std::to_string(kMostElements) +
                      " vertices, edges and triangles");
     }
-    if (counts_[0] == 0) problem("no vertices, expected at least one");
+    if (counts_[0] == 0) problem("there are no vertices, expected at least one");
   }
 
   template <std::size_t kCount>

@@ -108,7 +108,7 @@ void MatDeformable::activate(const hsp_activation& activation, hsp_report& repor
   const medial::FeltSurface* const surface = body_->feltSurface();
   const std::vector<unsigned char> loaded = std::exchange(states_->loaded, {});
   if (!loaded.empty() && !restoreState(loaded, body_->nodes(), body_->feltSurface()))
-    throw std::invalid_argument(geometry_ + ": the state that was loaded is of another body");
+    throw std::invalid_argument(geometry_ + ": the state that was loaded belongs to another body");
   if (viscosity_ > 0 || (surface == nullptr && (file.swings || file.damps))) report.flags |= HSP_R_VELOCITY;
   report.max_stiffness = body_->greatestStiffness() * (surface != nullptr ? surface->contactRatio() : 1);
   // A surface that is felt comes up at a hand that holds still: it swings back, or another hand lets go of it.

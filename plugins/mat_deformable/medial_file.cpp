@@ -81,7 +81,7 @@ class Reader {
     const Json& vertices = medial["vertices"];
     const Path place = below(at, "vertices");
     if (!vertices.is_array() || vertices.empty() || vertices.size() > kMostPoints)
-      return problems_.add(place, "expected [x, y, z, radius] in m, one a vertex");
+      return problems_.add(place, "expected [x, y, z, radius] in m, one per vertex");
     for (std::size_t i = 0; i < vertices.size() && !problems_.full(); ++i) {
       if (!vertices[i].is_array() || vertices[i].size() != 4) {
         problems_.add(below(place, i), "expected [x, y, z, radius] in m");
@@ -163,7 +163,7 @@ class Reader {
     if (json->is_number()) return {value(*json, at, key)};
     std::vector<double> all;
     if (!json->is_array() || json->size() != total) {
-      problems_.add(at, "expected a number, or " + std::to_string(total) + " of them, one a vertex");
+      problems_.add(at, "expected a number, or " + std::to_string(total) + " of them, one per vertex");
       return all;
     }
     for (std::size_t i = 0; i < total && !problems_.full(); ++i) all.push_back(value((*json)[i], below(at, i), key));

@@ -34,7 +34,7 @@ void NurbsRigid::activate(const hsp_activation& activation, hsp_report& report) 
   for (const Extent& extent : extents_) slope = std::max(slope, slopeOf(extent));
   if (slope > kSteepest)
     throw std::invalid_argument("texture.amplitude: bumps of " + number(texture_amplitude_) + " m rise " +
-                                number(slope) + " m a metre at this texture.wavelength; expected " + number(kSteepest) +
+                                number(slope) + " m per m at this texture.wavelength; expected " + number(kSteepest) +
                                 " or less, so at most " + number(texture_amplitude_ * kSteepest / slope) + " m");
   const contact::WallLaw law{stiffness_, damping_, exponent_, depth_scale_};
   const double steepest = stiffness_ > 0 ? contact::wallSlopeAt(law, forceToClaimFor(activation, kUnknownForce)) : 0;

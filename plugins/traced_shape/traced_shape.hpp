@@ -45,7 +45,7 @@ class TracedShape : public Shape {
         F::choice("method", &TracedShape::method_, kMethodNames, 1,
                   "dpt: the first-order step of Thompson et al.; newton: safeguarded Newton to tolerance",
                   HSP_P_ACCURACY),
-        F::integer("iterations", &TracedShape::iterations_, "", 1, 4, 1, "steps a tick of method dpt", HSP_P_ACCURACY),
+        F::integer("iterations", &TracedShape::iterations_, "", 1, 4, 1, "steps per tick of dpt", HSP_P_ACCURACY),
         F::choice("evaluation", &TracedShape::evaluation_, kEvaluationNames, 0,
                   "table: polynomials of each knot span, fastest; net: control points alone, a tenth of the memory",
                   HSP_P_ACCURACY),

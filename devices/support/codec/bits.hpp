@@ -10,7 +10,7 @@
 
 namespace hapticd::codec {
 
-/// Ones in the lowest `bits` places, 0 to 64.
+/// A number whose lowest `bits` places are ones, 0 to 64.
 constexpr uint64_t onesOf(unsigned bits) noexcept {
   return bits >= 64 ? ~uint64_t{0} : (uint64_t{1} << bits) - 1;
 }
@@ -29,7 +29,7 @@ inline uint64_t getBits(const uint8_t* bytes, size_t skip, unsigned bits, bool b
   return value;
 }
 
-/// [any] Writes them; the bits around them stay.
+/// [any] Writes those bits; the bits around them stay.
 inline void putBits(uint64_t value, uint8_t* bytes, size_t skip, unsigned bits, bool big_endian) noexcept {
   bytes += skip / 8;
   auto offset = static_cast<unsigned>(skip % 8);

@@ -47,7 +47,7 @@ uint64_t mirrored(uint64_t value, unsigned bits) noexcept {
   return out;
 }
 
-/// Bit by bit: a report has a few dozen bytes, and a table for each polynomial would be larger than all of them.
+/// It goes bit by bit, because a report has few bytes and a table for each polynomial would be larger than all of them.
 uint64_t remainder(const Check& check, std::span<const uint8_t> bytes) noexcept {
   const uint64_t ones = onesOf(check.bits);
   if (check.reflected) {

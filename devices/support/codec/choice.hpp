@@ -15,7 +15,7 @@ struct Name {
   T value;
 };
 
-/// [main] The value of that name; the first one, with a note in the tree, where there is none.
+/// [main] The value of that name; where there is none, the first value, with a note in the tree.
 /// @param fits true for values that the note shall offer
 template <class T, size_t N, class Fits>
 T choiceOf(const Tree& tree, const Name<T> (&names)[N], const Fits& fits) {

@@ -17,7 +17,7 @@ class Framer {
   void reset() noexcept { filled_ = 0, pending_ = false; }
 
   /// [any] Takes what one transfer brought and calls `report(bytes)` for each whole report in it.
-  /// @return bytes that belonged to none
+  /// @return bytes that belonged to no report
   template <class Report>
   size_t take(std::span<const uint8_t> bytes, const Report& report) noexcept {
     size_t lost = 0;
@@ -33,7 +33,7 @@ class Framer {
   }
 
  private:
-  /// @return true: `held_` is a whole report
+  /// @return true if `held_` is a whole report
   bool takePlain(uint8_t byte, size_t& lost) noexcept {
     held_[filled_++] = byte;
     if (filled_ == 1 && framing_.start >= 0 && held_[0] != framing_.start) filled_ = 0, ++lost;
@@ -69,7 +69,7 @@ class Framer {
     return filled_ == report_bytes_;
   }
 
-  /// Drops up to the next start mark that is held. @return bytes dropped
+  /// Drops the bytes up to the next start mark that is held. @return bytes dropped
   size_t resynchronise() noexcept {
     size_t next = 1;
     while (next < filled_ && framing_.start >= 0 && held_[next] != framing_.start) ++next;
@@ -80,7 +80,7 @@ class Framer {
 
   Framing framing_;
   size_t report_bytes_, filled_ = 0;
-  bool pending_ = false;  // the escape mark came, and not yet what it stands for
+  bool pending_ = false;  // the escape mark came, but not yet the byte after it
   std::array<uint8_t, kMaxReportBytes + 1> held_{};
 };
 
@@ -93,7 +93,7 @@ inline size_t addEscapes(const Framing& framing, std::span<uint8_t> bytes, size_
   for (size_t i = 0; i < size; ++i) extra += !isMark(i) && framing.escapes(bytes[i]) ? 1 : 0;
   size_t to = size + extra;
   if (to > bytes.size()) return 0;
-  for (size_t i = size; i-- > 0;) {  // backward, so that nothing is overwritten before it was read
+  for (size_t i = size; i-- > 0;) {  // goes backward, so that nothing is overwritten before it was read
     const uint8_t byte = bytes[i];
     if (isMark(i) || !framing.escapes(byte)) {
       bytes[--to] = byte;

@@ -38,14 +38,14 @@ enum class Role : uint8_t {
   kSequence,    ///< in and out: counts reports; a second one, at the end, tells a half-written report
   kFault,       ///< in: bit, or any value but zero: the hardware reports a fault
   kCalibrated,  ///< in: positions are absolute
-  kFirmware,    ///< in: must be `value`: the version that this description fits
+  kFirmware,    ///< in: must be `value`, the version that this description fits
   kConstant,    ///< in: must be `value`; out: is `value`
   kChecksum,    ///< over the bytes from `from` up to, but without, `to`
   kEnable,      ///< out: motors on
-  kCalibrate,   ///< out: the arm shall find its zero
+  kCalibrate,   ///< out: tells the arm to find its zero
   kReference,   ///< out: wanted position of joint `index` [rad or m]
-  kFollow,      ///< out: the joints shall go to their references
-  kStarts,      ///< in: counts how often the device started: another number means that it forgot everything
+  kFollow,      ///< out: tells the joints to go to their references
+  kStarts,      ///< in: counts how often the device started; a new number means that it forgot everything
   kTime,        ///< in: clock of the arm [s], which wraps
 };
 
@@ -54,20 +54,20 @@ struct Field {
   Role role = Role::kConstant;
   Type type = Type::kUnsigned;
   uint8_t bits = 8;      ///< of a number; of text 8 a character
-  uint8_t bit_skip = 0;  ///< bits of the first byte in front of it, see bits.hpp
+  uint8_t bit_skip = 0;  ///< bits of its first byte that come before it, see bits.hpp
   bool big_endian = false, wraps = false;
   int8_t bit = -1;  ///< of an integer; -1: the whole number
   uint8_t index = 0;
-  uint16_t at = 0;  ///< first byte, counted after the report id
+  uint16_t at = 0;  ///< number of the first byte, counted after the report id
   uint16_t from = 0, to = 0;
   double scale = 1, offset = 0;
   double least = 0, most = 0;  ///< raw limits of an output
   double value = 0;
-  uint64_t code = 0;      ///< of an integer constant: its bits
-  uint64_t modulo = 0;    ///< a sequence counts from 0 to modulo - 1; 0: through all of its bits
-  bool inverted = false;  ///< of a bit: 0 means yes
+  uint64_t code = 0;      ///< the bits of an integer constant
+  uint64_t modulo = 0;    ///< a sequence counts from 0 to modulo - 1; 0: it uses all of its bits
+  bool inverted = false;  ///< 0 in this bit means yes
   Check check;            ///< of a checksum
-  /// Bytes from `at` on that it touches.
+  /// How many bytes it touches, counted from `at`.
   size_t bytes() const noexcept { return (size_t{bit_skip} + bits + 7) / 8; }
 };
 
@@ -102,19 +102,19 @@ enum class Verdict : uint8_t { kGood, kWrongSize, kWrongId, kWrongFirmware, kCor
 std::pair<double, double> rangeOf(Type type, unsigned bits) noexcept;
 
 /// [any] Reads one report, with its id in front if it has one. Anything but kGood leaves `state` undefined.
-/// @param wrong the field to which a bad verdict is owed, nullptr: the report as a whole
+/// @param wrong the field that caused a bad verdict; nullptr: the report as a whole did
 Verdict decode(const Report& report, std::span<const uint8_t> bytes, State& state,
                const Field** wrong = nullptr) noexcept;
 
-/// [any] The bits of a field of a report, without its id; a checksum as the bytes that it covers have it.
+/// [any] The bits of a field of a report, given without its id; a checksum in the form of the bytes that it covers.
 uint64_t codeAt(const Field& field, std::span<const uint8_t> body) noexcept;
 uint64_t checksumAt(const Field& field, std::span<const uint8_t> body) noexcept;
 
 /// [any] Writes one report, with its id in front if it has one; numbers beyond the limits of their field are clamped, a
-/// torque that is not a number becomes none. @param bytes at least report.bytes() @return bytes written
+/// torque that is not a number becomes zero. @param bytes at least report.bytes() @return bytes written
 size_t encode(const Report& report, const Order& order, std::span<uint8_t> bytes) noexcept;
 
-/// [any] Writes a report as the arm would: the opposite of decode(), for tests that make up captures.
+/// [any] Writes a report as the arm would: the opposite of decode(), for tests that make captures.
 size_t encode(const Report& report, const State& state, std::span<uint8_t> bytes) noexcept;
 
 }  // namespace hapticd::codec

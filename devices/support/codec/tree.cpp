@@ -29,7 +29,7 @@ std::string shortText(double number) {
   return text;
 }
 
-/// What a value looks like in a message.
+/// How a value looks in a message.
 std::string shown(const Json& value) {
   constexpr size_t kLongest = 40;
   std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -9,14 +9,14 @@
 
 namespace hapticd::codec {
 
-/// One value and where it stands. What is wrong is noted with its path, and reading goes on with a value that is
-/// allowed: so all that is wrong in a file is told at once.
+/// One value and where it stands. A problem is noted with its path, and reading goes on with an allowed value, so that
+/// all problems of a file are reported at once.
 class Tree {
  public:
   bool has(const char* key) const;
-  Tree at(const char* key) const;  ///< a key that must be there; without it everything read from there is allowed
+  Tree at(const char* key) const;  ///< a key that must exist; if it is missing, an allowed value is read from there
   Tree item(size_t index) const;
-  size_t count() const;                            ///< of a list
+  size_t count() const;  ///< of a list
   /// A number, or text such as 0x1A. @param unit for messages; "": it has none
   double number(double least, double most, const char* unit = "") const;
   double whole(double least, double most) const;
@@ -26,13 +26,13 @@ class Tree {
   bool only(std::span<const char* const> keys) const;  ///< a mapping with no other keys
   void fail(const std::string& what) const;            ///< notes "path: what"
   bool exists() const { return value_ != nullptr; }
-  size_t problems() const;  ///< of the whole document so far
+  size_t problems() const;  ///< problems of the whole document so far
 
  private:
   friend class Document;
   Tree(const void* value, std::string path, void* data) : value_(value), path_(std::move(path)), data_(data) {}
   bool isMapping() const;
-  const void* value_;  // nullptr: missing, which has been noted
+  const void* value_;  // nullptr: it is missing, which has been noted
   std::string path_;
   void* data_;
 };
@@ -40,13 +40,13 @@ class Tree {
 /// Owns what a Tree looks at.
 class Document {
  public:
-  /// @param name what messages call the whole
+  /// @param name what messages call the document
   Document(const std::string& json, std::string name);
   ~Document();
   Document(const Document&) = delete;
   Document& operator=(const Document&) = delete;
   Tree root() const;
-  /// Throws std::invalid_argument with all that was noted, one line each.
+  /// Throws std::invalid_argument with all problems that were noted, one per line.
   void check() const;
 
  private:

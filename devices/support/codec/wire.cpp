@@ -43,7 +43,7 @@ void requireEach(const Tree& fields, const Report& report, size_t joints, Role r
   }
 }
 
-/// The fields, and where all of them are known, whether those are there that an arm needs.
+/// Reads the fields and, where all of them are known, checks that those are there which an arm needs.
 void readFields(const Tree& fields, size_t joints, bool input, bool sized, Report& report) {
   bool all_known = joints > 0;
   std::vector<bool> placed;
@@ -69,7 +69,7 @@ Report readReport(const Tree& tree, size_t joints, bool input) {
   const size_t before = tree.problems();
   report.size = static_cast<size_t>(tree.at("size").whole(1, kMaxReportBytes - 1));
   const bool sized = tree.problems() == before;
-  if (!sized) report.size = kMaxReportBytes - 1;  // not each field's fault too
+  if (!sized) report.size = kMaxReportBytes - 1;  // notes this once, not once per field
   readFields(tree.at("fields"), joints, input, sized, report);
   return report;
 }
@@ -83,7 +83,7 @@ std::vector<uint8_t> bytesOf(const Tree& tree) {
 void readControl(const Tree& control, StartStep& step) {
   control.only(kControlKeys);
   step.is_control = true;
-  step.request_type = static_cast<uint8_t>(control.at("type").whole(0, 127));  // to the device: nothing to read back
+  step.request_type = static_cast<uint8_t>(control.at("type").whole(0, 127));  // a report to the device is never read
   step.request = static_cast<uint8_t>(control.at("request").whole(0, 255));
   if (control.has("value")) step.value = static_cast<uint16_t>(control.at("value").whole(0, 65535));
   if (control.has("index")) step.index = static_cast<uint16_t>(control.at("index").whole(0, 65535));

@@ -18,18 +18,18 @@ enum class Exchange : uint8_t {
   kPoll,    ///< the arm answers each command
 };
 
-/// Bytes that may not stand inside a report are sent as the mark and another byte: HDLC and PPP flip a bit, SLIP has a
+/// Bytes that may not stand inside a report are sent as the mark and another byte. HDLC and PPP flip a bit, SLIP has a
 /// code for each.
 struct Escape {
   bool used = false;
   uint8_t mark = 0;
-  uint8_t flip = 0x20;  ///< exclusive or of what follows the mark; without codes
+  uint8_t flip = 0x20;  ///< exclusive or of what follows the mark, where there are no codes
   size_t count = 0;     ///< of codes
   std::array<uint8_t, 8> plain{}, code{};
-  std::array<uint8_t, 16> also{};  ///< bytes that are escaped besides marks; without codes
+  std::array<uint8_t, 16> also{};  ///< bytes that are escaped besides marks, where there are no codes
   size_t also_count = 0;
 
-  /// What follows the mark for a byte, and back.
+  /// The code that follows the mark for a byte, and the byte for a code.
   uint8_t encoded(uint8_t byte) const noexcept {
     for (size_t i = 0; i < count; ++i)
       if (plain[i] == byte) return code[i];
@@ -45,7 +45,7 @@ struct Escape {
 /// Reports inside a stream of bytes: packets start with bytes of the USB chip, reports start and end with a mark.
 struct Framing {
   bool used = false;
-  size_t header = 0;         ///< bytes at the head of each USB packet that are not ours
+  size_t header = 0;         ///< bytes at the head of each USB packet that belong to the USB chip
   size_t packet = 64;        ///< bytes of one USB packet
   int start = -1, end = -1;  ///< first and last byte of a report; -1: none
   Escape escape;
@@ -72,7 +72,7 @@ struct StartStep {
   double timeout = 1;  ///< [s] for the answer
 };
 
-/// Everything about the wire but the transport's own addresses.
+/// Everything about the wire except the transport's own addresses.
 struct Wire {
   Exchange exchange = Exchange::kStream;
   double rate = 1000;        ///< [Hz] of reports
@@ -82,11 +82,11 @@ struct Wire {
   std::vector<StartStep> startup;
   Report input, output;
   uint8_t endpoint_in = 0x81, endpoint_out = 0x02;
-  /// Its own watchdog takes a force away soon enough for a hand. A slower one counts as none: a guard process stands
-  /// by.
+  /// The arm's own watchdog ends a force soon enough for a hand. A slower one does not count: then a guard process
+  /// stands by.
   bool cutsSoon() const noexcept { return watchdog > 0 && watchdog <= 0.1; }
-  /// Reports carry a clock that is another in each of them: one with the same time is the same one again. It goes on at
-  /// least twice a report, wraps after more than two, and does not get coarser with the hours, as 32 bits of a float
+  /// Each report carries another clock value, so two reports with the same time are the same report. The clock advances
+  /// at least twice a report, wraps after more than two, and does not get coarser with the hours, as 32 bits of a float
   /// do.
   bool clockTells() const noexcept {
     return std::any_of(input.fields.begin(), input.fields.end(), [this](const Field& field) {
@@ -97,8 +97,8 @@ struct Wire {
   }
 };
 
-/// [main] Reads JSON text (the parameter `wire` of a device file). Throws std::invalid_argument: the key's path, what
-/// it is, what was expected.
+/// [main] Reads JSON text (the parameter `wire` of a device file). Throws std::invalid_argument with the key's path,
+/// its value and what was expected.
 /// @param joints of the arm: every one needs a position in and a torque out
 Wire readWire(const std::string& json, size_t joints);
 

@@ -131,7 +131,7 @@ void readNumber(const Tree& tree, const Report& report, Field& field) {
   if (tree.has("inverted")) field.inverted = tree.at("inverted").boolean();
 }
 
-/// A number has one scale and one offset, and a torque has no degrees.
+/// A number has one scale and one offset, and a torque is never in degrees.
 void refuseDegrees(const Tree& tree, const Field& field) {
   for (const auto& [key, plain] : {std::pair{"scale_degrees", "scale"}, std::pair{"offset_degrees", "offset"}}) {
     if (!tree.has(key)) continue;
@@ -142,7 +142,7 @@ void refuseDegrees(const Tree& tree, const Field& field) {
   }
 }
 
-/// A motor that can push one way only would draw the hand in where it should push it out.
+/// A motor that can push only one way would draw the hand in where it should push it out.
 void requireBothSigns(const Tree& tree, const Field& field) {
   const auto [least, most] = rangeOf(field.type, field.bits);
   const double a = least * field.scale + field.offset, b = most * field.scale + field.offset;
@@ -183,7 +183,7 @@ void readConstant(const Tree& tree, Field& field) {
   field.value = value.number(field.least, field.most);
   if (field.type == Type::kFloat || tree.problems() != before) return;
   const unsigned digits = field.type == Type::kNibble ? 4 : field.type == Type::kNibbles ? 16 : field.bits;
-  constexpr double kExact = 9007199254740992;  // 2^53: beyond it a double has not all digits
+  constexpr double kExact = 9007199254740992;  // 2^53: a double cannot hold all digits of larger numbers
   if (std::abs(field.value) < kExact && field.value == std::floor(field.value))
     field.code = static_cast<uint64_t>(static_cast<int64_t>(field.value)) & onesOf(digits);
   else
@@ -197,7 +197,7 @@ void readSequence(const Tree& tree, Field& field) {
     field.modulo = static_cast<uint64_t>(tree.at("modulo").whole(2, std::min(field.most + 1, 4294967296.0)));
 }
 
-/// By name, or by the numbers of a CRC. @return false: the method is not known
+/// The method by its name, or by the numbers of a CRC. @return false: the method is not known
 bool readMethod(const Tree& tree, Field& field) {
   Check& check = field.check;
   check.bits = field.bits;
@@ -227,7 +227,7 @@ bool readMethod(const Tree& tree, Field& field) {
   return false;
 }
 
-/// What changes a sum or a CRC; a CRC by name has all of it.
+/// The keys that change a sum or a CRC; a CRC by name fixes all of them.
 void readMethodDetails(const Tree& tree, Check& check) {
   const bool crc = tree.at("method").text() == "crc", named = check.method == Checksum::kCrc && !crc;
   const auto forbid = [&](const char* key, bool allowed, const char* what) {
@@ -264,7 +264,7 @@ void readChecksum(const Tree& tree, const Report& report, bool placed, Field& fi
     tree.at("at").fail("lies inside the bytes that the checksum covers, expected it outside");
 }
 
-/// The clock of the arm: seconds of one raw unit.
+/// The clock of the arm: how many seconds one raw unit is.
 void readTime(const Tree& tree, Field& field) {
   const Tree scale = tree.at("scale");
   const size_t before = tree.problems();
@@ -288,7 +288,7 @@ ReadField readField(const Tree& tree, const Report& report, size_t joints, bool 
   const size_t before = tree.problems();
   readNumber(tree, report, field);
   read.placed = tree.problems() == before;
-  if (!read.target_known) return read;  // what else it needs depends on what it is
+  if (!read.target_known) return read;  // what else a field needs depends on its role
   if (ofJoint(field.role)) readScale(tree, field);
   if (field.role == Role::kTorque && !input && tree.problems() == before) requireBothSigns(tree, field);
   if (field.role == Role::kConstant || field.role == Role::kFirmware) readConstant(tree, field);

@@ -11,11 +11,11 @@ namespace hapticd::codec {
 /// Every key that a field may have.
 std::span<const char* const> fieldKeys();
 
-/// Whether a field is known well enough to count it: what it is, and of which joint.
+/// Whether a field is known well enough to count it: its role, and its joint.
 struct ReadField {
   Field field;
   bool target_known = false;
-  bool placed = false;  ///< where it stands and how many bits it has is known
+  bool placed = false;  ///< whether its place and its number of bits are known
 };
 
 /// [main] Reads and checks one field; what is wrong is noted in the tree.

@@ -11,7 +11,7 @@
 namespace hapticd::codec {
 namespace {
 
-/// One mark: its byte of the report, without the id.
+/// One mark: its byte of the report, counted without the id.
 struct Mark {
   const char* key;
   int value;

@@ -11,7 +11,7 @@
 namespace hapticd::codec {
 namespace {
 
-/// Letters and digits alone, small: catalogues differ in the rest.
+/// Letters and digits alone, in lower case: catalogues differ in the rest.
 std::string squeezed(const std::string& text) {
   std::string out;
   for (const char c : text)

@@ -5,10 +5,10 @@
 
 namespace hapticd::codec {
 
-/// [main] Of "int24", "s24", "uint8_t", "float": " (did you mean \"i24\"?)", or "".
+/// [main] For "int24", "s24", "uint8_t" or "float" it is " (did you mean \"i24\"?)", or "".
 std::string typeMeant(const std::string& text);
 
-/// [main] Of "CRC-16/XMODEM", "xmodem", "crc16-ccitt": the name that this project has for it, as above.
+/// [main] The same for "CRC-16/XMODEM", "xmodem" or "crc16-ccitt", with the name that this project uses.
 std::string methodMeant(const std::string& text);
 
 }  // namespace hapticd::codec

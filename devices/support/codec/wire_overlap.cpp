@@ -14,26 +14,26 @@ bool isFlag(Role role) {
          role == Role::kCalibrate || role == Role::kFollow;
 }
 
-/// A number that changes by itself: a switch on its bits would go on and off with it.
+/// True for a number that changes by itself: a switch on its bits would change with it.
 bool isNumber(Role role) {
   return ofJoint(role) || role == Role::kSequence || role == Role::kStarts || role == Role::kTime ||
          role == Role::kChecksum;
 }
 
-/// Bits that two fields may not share. Flags may share a status byte, and constants may stand on anything that they
-/// describe.
+/// Bits that two fields may not share. Flags may share a status byte, and constants may cover
+/// anything.
 bool exclusive(Role a, Role b) {
   return ofJoint(a) || ofJoint(b) || (isFlag(a) && isNumber(b)) || (isNumber(a) && isFlag(b));
 }
 
-/// "fields[0] (position of joint 1)".
+/// Names a field: "fields[0] (position of joint 1)".
 std::string nameOf(const Tree& fields, const Field& field, size_t i) {
   std::string name = "fields[" + std::to_string(i) + "] (" + fields.item(i).at("is").text();
   if (ofJoint(field.role)) name += " of joint " + std::to_string(field.index + 1);
   return name + ")";
 }
 
-/// The first byte in which both have a bit; the size of the report where there is none.
+/// The first byte in which both fields have a bit; the size of the report where there is none.
 size_t firstShared(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
   size_t byte = 0;
   while (byte < a.size() && (a[byte] & b[byte]) == 0) ++byte;

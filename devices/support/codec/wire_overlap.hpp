@@ -8,20 +8,20 @@
 
 namespace hapticd::codec {
 
-/// Each joint has a field of such a role.
+/// True if each joint has a field of this role.
 constexpr bool ofJoint(Role role) noexcept {
   return role == Role::kPosition || role == Role::kVelocity || role == Role::kTorque || role == Role::kReference;
 }
 
-/// The bits of a report that a field reads or writes: a byte of them for each of its bytes, without the id. Of a flag
-/// (a button, a fault) it is the one bit that it looks at.
+/// The bits of a report that a field reads or writes, as one byte per byte of the report, without the id. For a flag (a
+/// button, a fault) it is the one bit that the flag reads.
 std::vector<uint8_t> bitsTaken(const Field& field, size_t report_bytes);
 
-/// [main] Numbers of joints with a byte that no checksum of the report covers; none where there is no checksum.
+/// [main] Joints whose numbers have a byte that no checksum of the report covers; none where there is no checksum.
 std::vector<const Field*> outsideChecksum(const Report& report);
 
-/// [main] Notes each field that has a bit of a joint's number, or that is one and has a bit of another field. Bits of
-/// one status byte may stand side by side.
+/// [main] Notes each field that shares a bit with a joint's number, and each joint's number that shares one with
+/// another field. Bits of one status byte may stand side by side.
 /// @param placed of each field: its place is known, so that its bits mean something
 void checkOverlaps(const Tree& fields, const Report& report, const std::vector<bool>& placed);
 

@@ -5,7 +5,7 @@
 
 namespace hapticd::codec {
 
-/// One text, as a parameter table takes it: hsp_param::choices of a HSP_DATA.
+/// The schema as one text, for the choices of an HSP_DATA in a parameter table (hsp_param::choices).
 inline constexpr const char* kWireSchema[] = {R"json({
   "type": "object", "additionalProperties": false, "required": ["rate", "input", "output"],
   "properties": {

@@ -36,10 +36,10 @@ class Arm {
   virtual int jointCount() const noexcept = 0;                    ///< [any]
   const JointLimits& limits() const noexcept { return limits_; }  ///< [any]
 
-  /// [any] Pose of the tip. False: joints that the mechanism cannot have (a delta that does not close).
+  /// [any] Pose of the tip. False if the mechanism cannot have these joints (a delta that does not close).
   virtual bool forward(const JointVector& q, Pose& tip) const noexcept = 0;
 
-  /// [any] J(q) of the point and orientation that forward() gives. False as there, and where J does not exist.
+  /// [any] J(q) of the point and orientation that forward() gives. False in the same cases, and where J does not exist.
   virtual bool jacobian(const JointVector& q, Jacobian& J) const noexcept = 0;
 
   /// [any] Torques that hold the arm still under gravity [m/s^2].
@@ -52,17 +52,17 @@ class Arm {
   /// [any] The pose in the middle of the workspace.
   virtual JointVector neutral() const noexcept = 0;
 
-  /// How the links hang together: of each the number of the one that it begins at, -1: the base. The last ends at the
-  /// tip. None: the arm cannot be drawn.
+  /// How the links are connected: for each link the number of the one it begins at, -1 for the base. The last link ends
+  /// at the tip. An empty list means that the arm cannot be drawn.
   virtual std::span<const int32_t> parents() const noexcept { return {}; }
   virtual Eigen::Vector3d base() const noexcept { return Eigen::Vector3d::Zero(); }  ///< [m] where the first begins
-  /// [any] The far end of each link and the orientation of its body. False as forward().
+  /// [any] The far end of each link and the orientation of its body. False as forward() is.
   virtual bool links(const JointVector& /*q*/, std::span<Pose> /*ends*/) const noexcept { return false; }
 
-  /// [main] Stops of one arm inside those of its mechanism. Throws std::invalid_argument with a message for the user.
+  /// [main] The stops of one arm within its mechanism's. Throws std::invalid_argument with a message for the user.
   void narrow(const JointLimits& limits);
 
-  /// [any] True within the limits, the coupled ones included.
+  /// [any] True if q is within the limits, the coupled ones included.
   virtual bool allowed(const JointVector& q) const noexcept;
 
  protected:

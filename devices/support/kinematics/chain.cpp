@@ -10,13 +10,13 @@
 namespace hapticd::kinematics {
 namespace {
 
-constexpr int kInverseSteps = 200;           ///< damped least squares converges in 5 to 30 away from the limits
-constexpr double kInverseTolerance = 1e-14;  ///< [m]: rounding of a reach of a metre is 1e-16
+constexpr int kInverseSteps = 200;  ///< damped least squares converges in 5 to 30 iterations away from the limits
+constexpr double kInverseTolerance = 1e-14;  ///< [m]: the rounding error of a reach of one metre is 1e-16
 constexpr int kInverseStarts = 10;
 constexpr double kAcceptedError = 1e-12;  ///< [m]
 
-/// cos and sin of a link twist. Tables say 1.5708 or pi / 2: a right angle is meant, and cos(pi/2) = 6e-17 would tilt
-/// it.
+/// cos and sin of a link twist. Tables say 1.5708 or pi / 2 and mean a right angle, which cos(pi/2) = 6e-17 would
+/// tilt.
 void exactTwist(double alpha, double& cosine, double& sine) {
   const double turns = alpha / (M_PI / 2), whole = std::round(turns);
   if (std::abs(turns - whole) > 1e-12) {
@@ -137,7 +137,7 @@ bool Chain::gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointV
   ChainFrames at;
   frames(q, at);
   tau.setZero(count_);
-  // From the tip inwards: what hangs on joint i is one mass at one point.
+  // This goes from the tip inwards: all that joint i carries is one mass at one point.
   double mass = 0;
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   for (int i = count_ - 1; i >= 0; --i) {
@@ -156,8 +156,8 @@ JointVector Chain::neutral() const noexcept {
 
 JointVector Chain::stepTowards(const Jacobian& J, const Eigen::Vector3d& error, double lambda,
                                const JointVector& q) const noexcept {
-  // A joint at its limit that the step would push further takes no part: clamping it afterwards instead would let the
-  // others stop short of the point they can reach without it.
+  // A joint at its limit that the step would push further takes no part: if it were clamped afterwards, the other
+  // joints would stop short of the point that they can reach without it.
   Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMaxJoints> free = J.topRows<3>();
   JointVector trial = q;
   for (int round = 0; round <= count_; ++round) {
@@ -202,7 +202,7 @@ bool Chain::reach(const Eigen::Vector3d& position, JointVector& q) const noexcep
 
 bool Chain::inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept {
   if (!position.allFinite() || !q.allFinite()) return false;
-  // From where the arm is; then, if limits stand in the way, from the middle and from bent poses to either side.
+  // Starts from where the arm is; if limits stand in the way, also from the middle and from bent poses to either side.
   for (int attempt = 0; attempt < kInverseStarts; ++attempt) {
     JointVector x = attempt == 0 ? q : neutral();
     if (attempt > 1)

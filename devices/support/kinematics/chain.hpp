@@ -12,24 +12,24 @@ namespace hapticd::kinematics {
 /// Rot_x(alpha), the joint's axis being z of the frame before it.
 struct ChainLink {
   double a = 0, alpha = 0, d = 0;  ///< [m], [rad], [m]
-  double theta = 0;                ///< [rad] added to a revolute joint's value; the fixed angle of a sliding one
+  double theta = 0;                ///< [rad] added to the value of a revolute joint; the fixed angle of a sliding joint
   bool sliding = false;
   double min = -M_PI, max = M_PI;                     ///< [rad] or [m]
   double mass = 0;                                    ///< [kg]
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< [m] of mass, in the frame after the joint
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< [m] centre of mass, in the frame after the joint
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< [kg m^2] about the centre, axes of the frame after the joint
 };
 
 struct ChainGeometry {
   std::vector<ChainLink> links;
   Pose base;  ///< frame 0 in the device frame
-  Pose tool;  ///< the tip in the last link's frame
+  Pose tool;  ///< pose of the tip in the last link's frame
 };
 
 /// Where the joints and links are for one q; axes and points in the device frame.
 struct ChainFrames {
   std::array<Eigen::Matrix3d, kMaxJoints + 1> R;  ///< orientation of frame i (0: base)
-  std::array<Eigen::Vector3d, kMaxJoints + 1> o;  ///< its origin; joint i turns about z of frame i
+  std::array<Eigen::Vector3d, kMaxJoints + 1> o;  ///< origin of that frame; joint i turns about z of frame i
 };
 
 class Chain : public Arm {
@@ -44,7 +44,7 @@ class Chain : public Arm {
   /// Position only; redundant joints stay near where they start and away from their limits.
   bool inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept override;
   JointVector neutral() const noexcept override;
-  std::span<const int32_t> parents() const noexcept override;  ///< one per joint, and the tool
+  std::span<const int32_t> parents() const noexcept override;  ///< the frames of the joints, and that of the tool
   Eigen::Vector3d base() const noexcept override { return base_; }
   bool links(const JointVector& q, std::span<Pose> ends) const noexcept override;
 

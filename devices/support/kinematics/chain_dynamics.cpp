@@ -7,7 +7,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Mass, first moment and second moment about the origin of the device frame: bodies add.
+/// Mass, first moment and second moment about the origin of the device frame; those of several bodies add up.
 struct Body {
   double mass = 0;
   Vector3d moment = Vector3d::Zero();

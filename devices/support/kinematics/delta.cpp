@@ -9,7 +9,7 @@ namespace hapticd::kinematics {
 namespace {
 
 constexpr int kMaxNewton = 40;
-constexpr double kClosed = 1e-15;      ///< [m^2] of the closure: rounding of lengths of 0.1 m
+constexpr double kClosed = 1e-15;      ///< [m^2] residual of the closure: the rounding of lengths of 0.1 m
 constexpr double kAccepted = 1e-13;    ///< [m^2]
 constexpr double kLargestStep = 0.03;  ///< [m] keeps Newton on the platform's side of the base
 
@@ -131,7 +131,7 @@ bool Delta::gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointV
   tau = -(geometry.platform_mass + 1.5 * geometry.rod_mass) * J.transpose() * g_arm;
   for (int i = 0; i < 3; ++i) {
     const auto n = static_cast<size_t>(i);
-    // centre of the upper arm at half its length, half of the rods at its end
+    // the upper arm's centre is at half its length, and half of the rods' mass is at its end
     const double moment = geometry.a * (0.5 * geometry.arm_mass + 0.5 * geometry.rod_mass);
     const Eigen::Vector3d tangent(-std::sin(q[i]) * cos_[n], -std::sin(q[i]) * sin_[n], std::cos(q[i]));
     tau[i] -= moment * tangent.dot(g_arm);
@@ -151,11 +151,11 @@ bool Delta::inverse(const Eigen::Vector3d& position, JointVector& q) const noexc
     const double reach = g.d + g.e + std::sqrt(g.b * g.b - v * v), distance = std::hypot(u, p.z());
     const double cosine = (distance * distance + g.a * g.a - reach * reach) / (2 * g.a * distance);
     if (!(std::abs(cosine) <= 1)) return false;
-    // The upper arm bends outward: the smaller of the two angles.
+    // The upper arm bends outward, so this is the smaller of the two angles.
     found[i] = std::atan2(p.z(), u) - std::acos(cosine);
     if (!(found[i] >= g.theta_min && found[i] <= g.theta_max)) return false;
   }
-  // A position has one set of angles, but angles may close with the platform behind the base as well: only poses that
+  // A position has one set of angles, but these may also close with the platform behind the base: only poses that
   // forward() gives back are in reach.
   Pose check;
   if (!forward(found, check) || (check.position - position).norm() > 1e-9) return false;

@@ -13,7 +13,7 @@ struct DeltaGeometry {
   double a = 0.060;                 ///< driven upper arm
   double b = 0.1025;                ///< parallelogram
   double c = 0.01443;               ///< platform: radial offset of the last hinge
-  double d = 0.01125, e = 0.01125;  ///< hinges before and after the parallelogram
+  double d = 0.01125, e = 0.01125;  ///< lengths of the hinges before and after the parallelogram
   double f = -0.025;                ///< platform: tangential offset
   double r = 0.040;                 ///< base: radius of the driven axes
   double s = -0.02309;              ///< base: tangential offset
@@ -29,14 +29,14 @@ class Delta : public Arm {
   explicit Delta(const DeltaGeometry& geometry = {});
 
   int jointCount() const noexcept override { return 3; }
-  /// Newton from the middle of the workspace; false if the three parallelograms cannot meet.
+  /// Newton's method from the middle of the workspace; false if the three parallelograms cannot meet.
   bool forward(const JointVector& q, Pose& tip) const noexcept override;
   bool jacobian(const JointVector& q, Jacobian& J) const noexcept override;
-  /// Half of each rod pair moves with its upper arm, half with the platform.
+  /// Half of each rod pair moves with its upper arm, the other half with the platform.
   bool gravity(const JointVector& q, const Eigen::Vector3d& gravity, JointVector& tau) const noexcept override;
   bool inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept override;
   JointVector neutral() const noexcept override { return neutral_; }
-  std::span<const int32_t> parents() const noexcept override;  ///< to the elbows, from there to the platform; the tip
+  std::span<const int32_t> parents() const noexcept override;  ///< to the elbows, then to the platform; the tip
   Eigen::Vector3d base() const noexcept override { return geometry_.base.position; }
   bool links(const JointVector& q, std::span<Pose> ends) const noexcept override;
 

@@ -11,7 +11,7 @@
 
 namespace hapticd::kinematics {
 
-/// C functions over `const Arm& T::kinematics() const` of a device class T.
+/// C functions that call `const Arm& T::kinematics() const` of a device class T.
 template <class T>
 struct Extension {
   static const Arm& arm(const hdv_device* device) { return reinterpret_cast<const T*>(device)->kinematics(); }

@@ -7,8 +7,8 @@
 
 namespace hapticd::kinematics {
 
-/// [main] In their order; an empty list keeps the published numbers. Throws std::invalid_argument with a message for
-/// the user where the count is wrong.
+/// [main] Fills in the numbers in their order; an empty list keeps the published ones. Throws std::invalid_argument
+/// with a message for the user where their count is wrong.
 /// @param id of the list, for the message
 template <class... Member>
 void assign(const std::vector<double>& from, const char* id, Member&... members) {

@@ -11,7 +11,7 @@ namespace {
 constexpr double kDegree = M_PI / 180;
 constexpr double kOpening = 55 * kDegree, kClosing = 65 * kDegree;
 
-/// Of the point (a c2 + b s3 out, a s2 - b c3 up) turned by q1: the tip with the link lengths for a and b, the centre
+/// Of the point (a c2 + b s3 out, a s2 - b c3 up), turned by q1: the tip with the link lengths for a and b, the centre
 /// of mass with the first moments.
 Eigen::Matrix3d planarJacobian(double a, double b, const PhantomAngles& at) noexcept {
   const auto [s1, c1, s2, c2, s3, c3] = at;
@@ -138,7 +138,7 @@ bool Phantom::allowed(const JointVector& q) const noexcept {
 bool Phantom::inverse(const Eigen::Vector3d& position, JointVector& q) const noexcept {
   const Eigen::Vector3d p = position - geometry_.origin + Eigen::Vector3d(0, -geometry_.l2, geometry_.l1);
   const double l1 = geometry_.l1, l2 = geometry_.l2, out = std::hypot(p.x(), p.z()), h = p.y();
-  const double turn = out > 0 ? std::atan2(p.x(), p.z()) : q[0];  // on the axis every turn will do: keep it
+  const double turn = out > 0 ? std::atan2(p.x(), p.z()) : q[0];  // on the axis every turn fits, so this one stays
   // |p|^2 = l1^2 + l2^2 + 2 l1 l2 sin(q3 - q2); the limits leave one branch of the arcsine.
   const double s = (out * out + h * h - l1 * l1 - l2 * l2) / (2 * l1 * l2);
   if (!(std::abs(s) <= 1)) return false;
@@ -146,7 +146,7 @@ bool Phantom::inverse(const Eigen::Vector3d& position, JointVector& q) const noe
   const double elbow = std::atan2(-l2 * std::cos(open), l1 + l2 * s);
   JointVector best;
   double best_distance = HUGE_VAL;
-  for (const int side : {1, -1}) {  // in front of the vertical axis, or reaching over it
+  for (const int side : {1, -1}) {  // the tip is in front of the vertical axis, or the arm reaches over it
     JointVector candidate(3);
     candidate[0] = wrapped(side > 0 ? turn : turn + M_PI);
     candidate[2] = nearest(std::atan2(h, side * out) - elbow + open, M_PI / 2);

@@ -19,13 +19,13 @@ struct PhantomGeometry {
   Eigen::Vector3d origin{0, 0, 0};                              ///< [m] tip of the neutral pose, device frame
 };
 
-/// [main] The numbers of a device file in their place; an empty list keeps the published ones. Throws
-/// std::invalid_argument with a message for the user.
+/// [main] Puts in the numbers of a device file; an empty list keeps the published ones. Throws std::invalid_argument
+/// with a message for the user.
 /// @param lengths l1 l2 l3 l5 l6 [m]  @param masses ma mc mbe mdf [kg]
 PhantomGeometry phantomGeometry(const std::vector<double>& lengths, const std::vector<double>& masses,
                                 const Eigen::Vector3d& origin);
 
-/// Sines and cosines of the joint angles: what is wanted of several functions below at one q is worked out once.
+/// Sines and cosines of the joint angles. Several functions below need them at one q, so they are worked out once.
 struct PhantomAngles {
   double s1, c1, s2, c2, s3, c3;
   explicit PhantomAngles(const Eigen::Vector3d& q) noexcept;
@@ -63,8 +63,8 @@ class Phantom : public Arm {
   Eigen::Matrix3d positionJacobian(const PhantomAngles& at) const noexcept;
   Eigen::Vector3d weight(const PhantomAngles& at, const Eigen::Vector3d& gravity) const noexcept;
 
-  static double largestOpening() noexcept;  ///< [rad] of q3 - q2: the links touch
-  static double largestClosing() noexcept;  ///< [rad] of q2 - q3
+  static double largestOpening() noexcept;  ///< [rad] limit of q3 - q2: the links touch
+  static double largestClosing() noexcept;  ///< [rad] limit of q2 - q3
 
  private:
   PhantomGeometry geometry_;

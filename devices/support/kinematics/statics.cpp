@@ -11,7 +11,7 @@ namespace {
 using Tall = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, kMaxJoints, 6>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr int kMaxSweeps = 30;  ///< one-sided Jacobi needs 5 to 8 on any 6 columns
+constexpr int kMaxSweeps = 30;  ///< one-sided Jacobi needs 5 to 8 sweeps for any 6 columns
 
 /// A = U diag(s) V^T by one-sided Jacobi rotations: small singular values keep their relative accuracy, which an
 /// eigenvalue decomposition of J J^T would square away, and nothing is allocated.

@@ -13,13 +13,13 @@ JointVector jointTorques(const Jacobian& J, const Wrench& W) noexcept;
 struct Conditioning {
   Eigen::Matrix<double, 6, 1> values = Eigen::Matrix<double, 6, 1>::Zero();
   int rank = 0;
-  double smallest = 0;           ///< of the min(6, n) that can be non-zero
-  double inverse_condition = 0;  ///< smallest / largest: 1 isotropic, 0 singular
+  double smallest = 0;           ///< how many of the min(6, n) are not zero
+  double inverse_condition = 0;  ///< smallest over largest: 1 is isotropic, 0 is singular
   double manipulability = 0;     ///< product of the min(6, n) values (Yoshikawa)
 };
 
 struct PseudoInverseOptions {
-  double length = 0.1;           ///< [m] one radian of tip rotation counts like this much travel
+  double length = 0.1;           ///< [m] one radian of tip rotation counts as this much travel
   double rank_tolerance = 1e-9;  ///< singular values below this fraction of the largest count as zero
   double damping = 0;  ///< fraction of the largest: values below it are damped (Nakamura & Hanafusa 1986); 0: exact
 };
@@ -27,10 +27,10 @@ struct PseudoInverseOptions {
 struct WrenchEstimate {
   Wrench W = Wrench::Zero();
   int rank = 0;         ///< 6: W is unique. Less: W is the smallest wrench that explains the torques
-  double residual = 0;  ///< [N m] |J^T W - tau|: torque that no wrench at the tip explains
+  double residual = 0;  ///< [N m] |J^T W - tau|: the torque that no wrench at the tip explains
 };
 
-/// [any] The wrench that measured joint torques amount to: W = pinv(J^T) tau. Rank aware; damped near singular poses.
+/// [any] The wrench that measured joint torques amount to: W = pinv(J^T) tau, by rank; damped near singular poses.
 WrenchEstimate wrenchFromTorques(const Jacobian& J, const JointVector& tau,
                                  const PseudoInverseOptions& how = {}) noexcept;
 

@@ -11,7 +11,7 @@
 
 namespace hapticd::vendor_arm {
 
-/// Base of the modules. A derived class Arm has `fields()` and `start()`, fills `reach` and calls describe().
+/// Base class of the modules. A derived class Arm has `fields()` and `start()`, fills `reach` and calls describe().
 template <class Arm>
 class CartesianArm : public Device {
  public:
@@ -43,7 +43,7 @@ class CartesianArm : public Device {
   Exchange exchange_;
 
  private:
-  /// The turn of the handle is not followed.
+  /// The handle can turn, but its turn is not measured.
   static hsp_status forward(const hdv_device*, const double* q, double position[3],
                             double orientation[4]) noexcept HSP_RT {
     std::copy_n(q, 3, position);

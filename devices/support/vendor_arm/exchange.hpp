@@ -16,7 +16,7 @@
 namespace hapticd::vendor_arm {
 
 struct Seen {
-  uint64_t time_ns = 0, sequence = 0;  ///< CLOCK_MONOTONIC; grows with each new position, 0: there was none yet
+  uint64_t time_ns = 0, sequence = 0;  ///< CLOCK_MONOTONIC; grows with each new position; 0: no position has come yet
   double position[3] = {};             ///< [m]
   uint32_t buttons = 0;
   bool calibrated = false, fault = false, lost = false;
@@ -24,7 +24,7 @@ struct Seen {
 
 class Exchange {
  public:
-  /// [main] Nothing was seen and nothing is wanted.
+  /// [main] Nothing has been measured yet and no force is wanted.
   void reset(double max_force) {
     max_force_ = max_force;
     cut_ = lost_ = false;
@@ -33,7 +33,7 @@ class Exchange {
     wanted_.back() = {}, wanted_.publish();
   }
 
-  /// [main] Waits for the first position, 2 s at most. @return there is one
+  /// [main] Waits for the first position for 2 s at most. @return whether there is one
   bool awaitFirst() noexcept {
     constexpr int kTries = 200;
     constexpr std::chrono::milliseconds kPause(10);
@@ -51,8 +51,8 @@ class Exchange {
     seen_.publish();
     ok_ = !seen.lost && !seen.fault;
   }
-  /// The force of now [N]: none while the arm is cut or not well, or where the daemon's servo says no more; never
-  /// beyond the bound.
+  /// The force to apply now [N]: none while the arm is cut or unwell, or when the daemon's servo has fallen silent;
+  /// never beyond the bound.
   void force(double out[3]) noexcept {
     constexpr uint64_t kOldNs = 20'000'000;
     wanted_.update();
@@ -89,12 +89,12 @@ class Exchange {
     wanted_.publish();
     return HSP_OK;
   }
-  void cut() noexcept HSP_RT { cut_.store(true, std::memory_order_relaxed); }          ///< [any] no force until HDV_OFF
+  void cut() noexcept HSP_RT { cut_.store(true, std::memory_order_relaxed); }  ///< [any] allows no force until HDV_OFF
   bool lost() const noexcept HSP_RT { return lost_.load(std::memory_order_relaxed); }  ///< [any]
 
  private:
   struct Wanted {
-    uint64_t time_ns = 0;  ///< CLOCK_MONOTONIC when it was written
+    uint64_t time_ns = 0;  ///< CLOCK_MONOTONIC when the wish was written
     double force[3] = {};  ///< [N]
   };
   TripleBuffer<Seen> seen_;

@@ -11,10 +11,10 @@ class LoadedLibrary {
   LoadedLibrary(const LoadedLibrary&) = delete;
   LoadedLibrary& operator=(const LoadedLibrary&) = delete;
   ~LoadedLibrary();
-  /// [main] Throws std::runtime_error with the cure where it cannot be loaded.
+  /// [main] Throws std::runtime_error that names the cure where the library cannot be loaded.
   void load(const std::string& file);
   bool isLoaded() const { return library_ != nullptr; }
-  /// [main] Throws std::runtime_error where the library lacks it. @param expected what it should be
+  /// [main] Throws std::runtime_error where the library lacks it. @param expected what the library should be
   template <class Function>
   void find(Function*& function, const char* name, const char* expected) const {
     function = reinterpret_cast<Function*>(address(name, expected));

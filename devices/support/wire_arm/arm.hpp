@@ -25,7 +25,7 @@
 
 namespace hapticd::wire_arm {
 
-/// T adds kInfo, fields() and `std::unique_ptr<Transport> makeTransport() const`, and may hide address().
+/// T adds kInfo, fields() and `std::unique_ptr<Transport> makeTransport() const`, and may replace address().
 template <class T>
 class Arm : public Device, public Parameters {
  public:
@@ -59,7 +59,7 @@ class Arm : public Device, public Parameters {
   }
 
   hsp_status read(uint64_t now_ns, hdv_sample& to) noexcept HSP_RT {
-    constexpr uint64_t kHung = 20'000'000;  // the I/O thread itself hangs in the kernel
+    constexpr uint64_t kHung = 20'000'000;  // the I/O thread itself is stuck in the kernel
     link_->read(sample_);
     trouble_.store(sample_.trouble, std::memory_order_relaxed);
     to.time_ns = sample_.time;
@@ -67,8 +67,8 @@ class Arm : public Device, public Parameters {
     to.buttons = sample_.buttons;
     to.flags = (sample_.calibrated ? uint32_t{HDV_S_CALIBRATED} : 0u) | (velocity_ ? uint32_t{HDV_S_VELOCITY} : 0u) |
                (torque_ ? uint32_t{HDV_S_TORQUE} : 0u);
-    // Silence is judged by the host, which sees no new sequence number; the motors are off by then, and come back in a
-    // ramp if it was short.
+    // The host judges silence, since it sees no new sequence number; by then the motors are off, and they come back in
+    // a ramp if it was short.
     if (sample_.trouble == Trouble::kUnplugged || sample_.trouble == Trouble::kAbsent)
       to.flags |= HDV_S_LOST;
     else if (sample_.trouble != Trouble::kNone && sample_.trouble != Trouble::kStale)
@@ -106,7 +106,7 @@ class Arm : public Device, public Parameters {
   }
   void close() { link_.reset(); }
 
-  /// Of a device on USB; a class of another bus hides it.
+  /// The address of a device on USB; a class for another bus replaces it.
   Address address() const { return addressOf(*this); }
 
   const kinematics::Arm& kinematics() const { return *arm_; }
@@ -153,12 +153,12 @@ class Arm : public Device, public Parameters {
   }
 
  protected:
-  const codec::Wire& format() const { return wire_; }  ///< once the parameters were read
+  const codec::Wire& format() const { return wire_; }  ///< set once the parameters were read
 
  private:
   size_t joints() const { return static_cast<size_t>(arm_->jointCount()); }
 
-  /// From the parameters alone; throws std::invalid_argument with all that is wrong, one line each.
+  /// Made from the parameters alone; throws std::invalid_argument with all that is wrong, one problem per line.
   void prepare() {
     std::string wrong;
     const auto attempt = [&wrong](const auto& part) {
@@ -168,7 +168,7 @@ class Arm : public Device, public Parameters {
         wrong += (wrong.empty() ? "" : "\n") + std::string(e.what());
       }
     };
-    joints_ = 0;  // not known while the mechanism is wrong
+    joints_ = 0;  // unknown while the mechanism is wrong
     attempt([&] { arm_ = makeMechanism(*this), joints_ = joints(); });
     bool wire_known = false;
     attempt([&] { wire_ = codec::readWire(wire, joints_), wire_known = true; });
@@ -189,7 +189,7 @@ class Arm : public Device, public Parameters {
                                 (may_be_one ? "1 or " : "") + std::to_string(joints_) + ", one per joint");
   }
 
-  /// What the wire format means for the arm.
+  /// Applies what the wire format means for the arm.
   void takeWire() {
     velocity_ = torque_ = follows_ = false;
     for (const codec::Field& field : wire_.output.fields) follows_ = follows_ || field.role == codec::Role::kFollow;
@@ -246,7 +246,7 @@ class Arm : public Device, public Parameters {
     std::snprintf(info.firmware, sizeof info.firmware, "%s", identity.firmware.c_str());
   }
 
-  /// Also before open() and after close(): there is nothing to cut then.
+  /// This is also called before open() and after close(), when there is nothing to cut.
   static void cut(hdv_device* device) noexcept HSP_RT {
     if (Link* link = reinterpret_cast<T*>(device)->link_.get()) link->cut();
   }
@@ -299,7 +299,7 @@ class Arm : public Device, public Parameters {
   }
 
   hsp_status calibrateDevice() {
-    constexpr int kLongest = 30'000;  // ms: the user moves every joint over its index
+    constexpr int kLongest = 30'000;  // ms: the user moves every joint past its index mark
     RealClock clock(0);
     link_->calibrateByDevice(true);
     for (int i = 0; i < kLongest && !sample_.calibrated; ++i) {

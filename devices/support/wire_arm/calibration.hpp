@@ -8,14 +8,14 @@
 
 namespace hapticd::wire_arm {
 
-/// [main] $STATE_DIRECTORY, $XDG_STATE_HOME/hapticd or ~/.local/state/hapticd.
+/// [main] The folder $STATE_DIRECTORY, $XDG_STATE_HOME/hapticd or ~/.local/state/hapticd.
 std::filesystem::path stateFolder();
 
 /// [main] Writes the offsets of `count` joints.
 Result<void> storeZero(const std::filesystem::path& folder, const Address& address, const Identity& identity,
                        const JointArray& offset, size_t count);
 
-/// [main] and I/O thread. Nothing known: never calibrated, or plugged in since.
+/// [main] and I/O thread. Nothing is known of an arm that was never calibrated, or was plugged in since.
 Zero loadZero(const std::filesystem::path& folder, const Address& address, const Identity& identity, size_t count);
 
 }  // namespace hapticd::wire_arm

@@ -16,7 +16,7 @@ constexpr size_t kPacket = 64, kHeader = 2;  ///< FTDI puts two bytes of modem s
 constexpr Nanoseconds kAnswer = 20'000'000, kRunning = 50'000'000;
 constexpr int kHelloTries = 100;
 
-/// Requests of FTDI's chips: 0 reset and purge, 1 modem lines, 3 baud rate, 4 format, 9 latency timer.
+/// Requests of FTDI's chips: 0 resets, 1 sets modem lines, 3 the baud rate, 4 the format, 9 the latency timer.
 enum : uint8_t { kReset = 0, kLines = 1, kBaud = 3, kDataFormat = 4, kLatency = 9 };
 constexpr uint8_t kVendorOut = 0x40;
 
@@ -26,7 +26,7 @@ class Loader {
 
   bool upload() { return slow() && hello() && fast() && answers({0x41}, {0x41}, kHelloTries) && chunks(); }
 
-  /// The line as reports need it: 1 ms latency, full speed.
+  /// Sets the line up as reports need it: 1 ms latency, full speed.
   bool run() { return set(kLatency, 1) && set(kBaud, 0x2) && set(kLines, 0x0101); }
 
   void forget() {
@@ -43,14 +43,14 @@ class Loader {
     step.request_type = kVendorOut, step.request = request, step.value = value;
     return transport_.control(step) == Status::kOk;
   }
-  bool slow() {  // 9600 8N1 (divisor 0x4138), RTS low, DTR low then high
+  bool slow() {  // 9600 8N1 (divisor 0x4138), RTS low, DTR low and then high
     return set(kReset, 0) && set(kReset, 1) && set(kReset, 2) && set(kLatency, 16) && set(kBaud, 0x4138) &&
            set(kDataFormat, 8) && set(kLines, 0x0200) && set(kLines, 0x0100) && set(kLines, 0x0101);
   }
   bool hello() { return answers({0x0a, 0x43, 0x0d}, {0x0a, 0x44, 0x2c, 0x0d}, kHelloTries); }
   bool fast() { return set(kLines, 0x0100) && set(kBaud, 0x15); }  // 140000 baud
 
-  /// Sends until the answer is right.
+  /// Sends the bytes until the answer is right.
   bool answers(const std::vector<uint8_t>& bytes, const std::vector<uint8_t>& expected, int tries) {
     for (int i = 0; i < tries; ++i) {
       if (transport_.send(bytes) != Status::kOk) return false;
@@ -90,7 +90,7 @@ class Loader {
   const std::vector<uint8_t>& firmware_;
 };
 
-/// True if reports of the loaded firmware answer a command.
+/// True if the loaded firmware answers a command with reports.
 bool alreadyRuns(Transport& transport, const codec::Wire& wire) {
   std::array<uint8_t, codec::kMaxReportBytes> command{}, got{};
   const size_t bytes = codec::encode(wire.output, codec::Order{}, command);

@@ -11,9 +11,9 @@ namespace {
 constexpr Nanoseconds kMillisecond = 1'000'000;
 constexpr Nanoseconds kSearchPause = 100 * kMillisecond;
 constexpr Nanoseconds kFirstReport = 1000 * kMillisecond;
-constexpr Nanoseconds kOld = 5 * kMillisecond;  ///< what waited for a reader comes within this time
-constexpr int kMostReportsAtOnce = 64;          ///< what the kernel holds of a hidraw device
-constexpr int kAbove = 1;  ///< over the servo's priority: a sample is worth nothing when it comes late
+constexpr Nanoseconds kOld = 5 * kMillisecond;  ///< old reports that waited for a reader arrive within this time
+constexpr int kMostReportsAtOnce = 64;          ///< how many reports the kernel keeps for a hidraw device
+constexpr int kAbove = 1;                       ///< above the servo's priority, because a late sample is worth nothing
 
 void pause(Nanoseconds time) noexcept {
   RealClock clock(0);
@@ -67,7 +67,7 @@ Result<Identity> Link::bringUp() {
 }
 
 /// Prepares the report that switches the motors off. Its sequence number is far from those of commands, so that a
-/// device that ignores repeated numbers does not ignore it.
+/// device that ignores repeated numbers still obeys it.
 void Link::prepareSilence() {
   constexpr uint32_t kFar = 0x5a5a5a5a;
   std::array<uint8_t, codec::kMaxReportBytes> report{};
@@ -136,7 +136,7 @@ Result<void> Link::start() {
   }
   stop();
   return Error{"opened, but " + std::string(describe(session_.trouble())) + "; expected " +
-               std::to_string(static_cast<int>(wire_.rate)) + " reports a second, the motors stay off"};
+               std::to_string(static_cast<int>(wire_.rate)) + " reports per second, the motors stay off"};
 }
 
 Result<void> Link::capture(hdv_take_transfer take, void* who) {
@@ -211,7 +211,7 @@ void Link::run() noexcept {
   (void)transport_->send({out_.data(), size});
 }
 
-/// Reports from before this thread began: the arm has moved since, and the next report would look like a jump.
+/// Drops reports from before this thread began: the arm has moved since, and the next report would look like a jump.
 void Link::forgetOld() noexcept {
   size_t size = 0;
   for (const Nanoseconds until = monotonicNow() + kOld; monotonicNow() < until;)
@@ -230,7 +230,7 @@ void Link::serve(Nanoseconds now) noexcept {
   if (!open_) return;
   now = monotonicNow();
   const Nanoseconds wait = due_ > now ? due_ - now : 0;
-  // A timeout of whole milliseconds is all that hidapi has: the arm's own reports end the wait in time. An arm that has
+  // hidapi knows timeouts of whole milliseconds only. The arm's own reports end the wait in time; an arm that has
   // answered sends none until it is asked again.
   if (answered_ && wire_.exchange == codec::Exchange::kPoll)
     pause(wait);
@@ -261,7 +261,7 @@ void Link::receive(Nanoseconds wait) noexcept {
   if (fresh) tellServo();
 }
 
-/// A servo that the samples drive answers each at once: its command need not wait for the next report to end a read.
+/// A servo that the samples drive answers each at once, so its command need not wait until the next report ends a read.
 /// What the arm sends meanwhile waits in the kernel.
 void Link::tellServo() noexcept {
   const uint32_t known = wished_.strikes();
@@ -270,10 +270,10 @@ void Link::tellServo() noexcept {
     wished_.wait(known, monotonicNow() + period_ / 2);
 }
 
-/// When to ask a polled arm, so that its answer comes half-way between two reads of the servo: wherever the phases
-/// begin, each read then finds a new one.
+/// When to ask a polled arm, so that its answer comes half-way between two reads of the servo: then each read finds a
+/// new sample, wherever the phases begin.
 Nanoseconds Link::midway(Nanoseconds due) const noexcept {
-  constexpr int64_t kShare = 8;  // of the error, at each command: a late one does not throw the phase about
+  constexpr int64_t kShare = 8;  // share of the error that a command corrects: a late one does not upset the phase
   const auto period = static_cast<int64_t>(period_), at = static_cast<int64_t>(due);
   const auto read = static_cast<int64_t>(wishes_.front().time);
   const bool follows = paced_.load(std::memory_order_relaxed);  // the servo reads when the answer comes
@@ -304,8 +304,8 @@ void Link::lose(Trouble trouble) noexcept {
   publish();
 }
 
-/// At once when it was lost, then ten times a second: a device that opens and fails again and again must not keep a
-/// thread above the servo's from ever sleeping.
+/// Tries at once when the arm was lost, then ten times a second: if a device opens and fails again and again, this
+/// thread, which is above the servo's, must still sleep.
 void Link::lookForIt() noexcept {
   while (monotonicNow() < tried_at_ + kSearchPause && !stop_) pause(10 * kMillisecond);
   if (stop_) return;
@@ -322,13 +322,13 @@ void Link::lookForIt() noexcept {
       settings_.log(HSP_LOG_DEBUG, "still missing: " + refusal_);
     }
   } catch (const std::exception& e) {
-    open_ = false;  // out of memory at worst: the next search may do better
+    open_ = false;  // there was no memory at worst: the next search may succeed
   }
 }
 
 void Link::tell() noexcept {
   const Trouble now = session_.trouble();
-  if (now == told_ || session_.sample().sequence == 0) return;  // before the first report, start() does the talking
+  if (now == told_ || session_.sample().sequence == 0) return;  // before the first report, start() reports all trouble
   told_ = now;
   try {
     if (now == Trouble::kNone)

@@ -18,7 +18,7 @@
 
 namespace hapticd::wire_arm {
 
-/// Where an arm is when it is plugged in, before anybody calibrated it.
+/// The pose in which an arm is plugged in, before anybody calibrated it.
 struct Zero {
   JointArray offset{};
   bool known = false;
@@ -27,9 +27,9 @@ struct Zero {
 struct LinkSettings {
   Address address;
   SessionSettings session;
-  std::function<void(int level, const std::string&)> log;  ///< [any thread] what users should know
-  std::function<Zero(const Identity&)> zero;               ///< I/O thread: what an earlier calibration stored
-  std::function<Result<void>(Transport&)> prepare;  ///< beyond wire.startup, such as a firmware upload; may be empty
+  std::function<void(int level, const std::string&)> log;  ///< [any thread] tells users what they should know
+  std::function<Zero(const Identity&)> zero;        ///< I/O thread: the offsets that an earlier calibration stored
+  std::function<Result<void>(Transport&)> prepare;  ///< more than wire.startup, such as a firmware upload; may be empty
 };
 
 class Link {
@@ -43,36 +43,36 @@ class Link {
   Result<Identity> open();
   /// [main] Starts the thread and waits for the first report.
   Result<void> start();
-  /// [main] Open and not started: speaks with its motors off and hands over every transfer, until `take` ends it.
+  /// [main] Open but not started: reads with the motors off and hands over every transfer, until `take` ends it.
   Result<void> capture(hdv_take_transfer take, void* who);
-  /// [main] Motors off, thread joined.
+  /// [main] Switches the motors off and joins the thread.
   void stop();
   /// [main]
   void close();
 
-  /// [rt] The newest sample. @return false: no newer than the last
+  /// [rt] The newest sample. @return false if it is no newer than the last one
   bool read(Sample& sample) noexcept HSP_RT;
-  /// [rt] Between two exchanges: lets the newest wish go out at once, and sleeps until there is something that read()
-  /// did not give, or until `until`. From the first call on this thread sends each wish when it comes.
+  /// [rt] Called between two exchanges: sends the newest wish at once, and sleeps until there is something new for
+  /// read(), or until `until`. From the first call on, this thread sends each wish when it comes.
   void waitForNews(Nanoseconds until) noexcept;
-  /// [rt] Leaves the newest wish.
+  /// [rt] Leaves the newest wish for the thread.
   void write(const Wish& wish) noexcept HSP_RT;
 
-  /// [any] Motors off, whatever the wishes say, until endCut(); async-signal-safe, and at most a report away.
+  /// [any] Frees the motors, whatever the wishes say, until endCut(); async-signal-safe, and one report late at most.
   void cut() noexcept;
-  /// [any] A cut has left for the arm, or there is none to send it to; async-signal-safe.
+  /// [any] True if a cut has been sent to the arm, or there is no arm to send it to; async-signal-safe.
   bool cutLeft() const noexcept { return !cut_.load() || cut_left_.load(); }
-  /// [any] How another process switches the motors off (hdv_ext_silence). False: no report has come yet, so that it may
-  /// be another device; or there is no other way in.
+  /// [any] How another process switches the motors off. False if no report has come yet, so that it may be another
+  /// device, or if there is no other way to reach it.
   bool silence(hdv_silence& how) const;
   /// [rt] Ends a cut: the next wish counts again.
   void endCut() noexcept HSP_RT { cut_.store(false, std::memory_order_relaxed); }
 
-  /// [main] The device shall find its zero (while true).
+  /// [main] Tells the device to find its zero (while true).
   void calibrateByDevice(bool wanted) noexcept { calibrate_.store(wanted); }
-  /// [main] Positions read `pose` where the arm is now. @return offsets, to be stored
+  /// [main] Makes positions read `pose` where the arm is now. @return offsets, to be stored
   Result<JointArray> calibrateAt(const JointArray& pose);
-  /// [main] Of the device that is open.
+  /// [main] The identity of the device that is open.
   Identity identity() const;
 
  private:
@@ -98,23 +98,23 @@ class Link {
   Session session_;
   TripleBuffer<Sample> samples_;
   TripleBuffer<Wish> wishes_;
-  Bell news_, wished_;  ///< for the servo: a sample or a trouble; for this thread: a wish
-  uint32_t heard_ = 0;  ///< the servo's: of news_, as of its last read()
+  Bell news_, wished_;  ///< wakes the servo for a sample or a trouble; wakes this thread for a wish
+  uint32_t heard_ = 0;  ///< the servo's count of news_ at its last read()
   os::Thread thread_;
-  std::atomic<bool> cut_{false}, cut_left_{false};  ///< by the watchdog or in a crash; and sent since then
+  std::atomic<bool> cut_{false}, cut_left_{false};  ///< the watchdog or a crash cut the motors; the cut was sent since
   bool cut_sent_ = false;
-  hdv_silence silence_{};  ///< of the device that was opened last
+  hdv_silence silence_{};  ///< for the device that was opened last
   Descriptor way_in_;
   std::atomic<bool> reported_{false};  ///< since it was opened
   std::atomic<bool> paced_{false};     ///< the servo waits for samples
   std::atomic<bool> stop_{false}, calibrate_{false}, zero_wanted_{false}, zero_done_{false};
-  mutable std::mutex mutex_;  ///< identity_ and pose_; the servo thread takes it never
+  mutable std::mutex mutex_;  ///< guards identity_ and pose_; the servo thread never takes it
   Identity identity_;
   JointArray pose_{}, offset_{};
   bool open_ = false, answered_ = false;
   Trouble told_ = Trouble::kNone;
   std::string refusal_;           ///< why the device could not be opened again
-  std::string back_ = "healthy";  ///< what to say once it is well
+  std::string back_ = "healthy";  ///< what to report once it is well
   Nanoseconds tried_at_ = 0;      ///< to open it again
   Nanoseconds due_ = 0, period_ = 0, sent_at_ = 0;
   uint64_t sent_wish_ = 0;

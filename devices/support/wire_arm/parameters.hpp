@@ -19,9 +19,9 @@ inline constexpr const char* kKinds[] = {"phantom", "delta", "chain"};
 inline constexpr const char* kMethods[] = {"none", "device", "pose"};
 inline constexpr const char* kLoaders[] = {"none", "falcon"};
 
-/// The values; an arm of a wire derives from them.
+/// The values of the parameters; every arm with a wire derives from them.
 struct Parameters : MechanismParameters {
-  std::string id, serial, wire, instructions, firmware;  // id to interface, firmware and loader: USB alone
+  std::string id, serial, wire, instructions, firmware;  // those from id to interface, firmware and loader: USB alone
   int interface = -1, method = 0, loader = 0;
   std::vector<double> pose, max_torque;
   double max_force = 0, continuous_force = 0, max_stiffness = 0, mass = 0, damping = 0;
@@ -96,7 +96,7 @@ struct ParameterTable {
   }
 };
 
-/// "1234:0006" as numbers. Throws std::invalid_argument.
+/// Reads "1234:0006" as two numbers. Throws std::invalid_argument.
 inline Address addressOf(const Parameters& p) {
   Address address;
   unsigned vendor = 0, product = 0;

@@ -32,7 +32,7 @@ const char* describe(Trouble trouble) noexcept {
     case Trouble::kStale:
       return "no new reports; look at power and cable";
     case Trouble::kSlow:
-      return "too few reports a second; look at the hub, or correct wire.rate";
+      return "too few reports per second; look at the hub, or correct wire.rate";
     case Trouble::kJump:
       return "an encoder jumped; calibrate again";
     case Trouble::kHardware:
@@ -67,7 +67,7 @@ void Session::attach(Nanoseconds now, const JointArray& zero, bool calibrated) n
   attached_at_ = sent_;
   good_at_ = now;
   last_bad_ = codec::Verdict::kGood;
-  // Not healthy yet: the trouble ends, like every other, after some time of good reports.
+  // The arm is not healthy yet: the trouble ends, like every other, after some time of good reports.
   raise(now, sample_.trouble == Trouble::kNone ? Trouble::kStale : sample_.trouble);
 }
 
@@ -118,19 +118,19 @@ bool Session::take(Nanoseconds now, std::span<const uint8_t> bytes) noexcept {
   return true;
 }
 
-/// After some time of good reports. The very first report need not wait: nothing was wrong before it.
+/// Ends a trouble after some time of good reports. The very first report need not wait: nothing was wrong before it.
 void Session::recover(Nanoseconds now) noexcept {
   if (sample_.trouble == Trouble::kJump) return;
   if (sample_.sequence == 0 || seconds(trouble_at_, now) >= settings_.health.recovery) sample_.trouble = Trouble::kNone;
 }
 
-/// The same report again: by its counter or, without one, by a clock that must have gone on.
+/// True if this is the same report again, by its counter or, without one, by a clock that must have advanced.
 bool Session::again() const noexcept {
   if (state_.has_sequence) return state_.sequence == last_sequence_;
   return state_.has_clock && clock_tells_ && state_.clock == last_clock_;
 }
 
-/// A board that starts anew counts from elsewhere: what was known of its joints is void.
+/// A board that restarts counts from elsewhere: what was known of its joints is void.
 bool Session::startedAnew(Nanoseconds now) noexcept {
   const bool anew = state_.has_starts && have_raw_ && state_.starts != last_starts_;
   last_starts_ = state_.starts;
@@ -141,7 +141,7 @@ bool Session::startedAnew(Nanoseconds now) noexcept {
   return true;
 }
 
-/// Unwraps positions. False: one of them jumped.
+/// Unwraps positions. False if one of them jumped.
 bool Session::follow(Nanoseconds now, const codec::State& state) noexcept {
   const double period = std::max(seconds(good_at_, now), 0.5 / wire_.rate);
   const double most = settings_.health.max_speed * std::max(period, 1 / wire_.rate);
@@ -155,13 +155,13 @@ bool Session::follow(Nanoseconds now, const codec::State& state) noexcept {
       next[i] += turns;
     }
     if (std::abs(next[i] - raw_[i]) <= most) continue;
-    if (sample_.trouble != Trouble::kJump) calibrated_ = false;  // counts were lost: the zero with them
+    if (sample_.trouble != Trouble::kJump) calibrated_ = false;  // counts were lost, and the zero with them
     raise(now, Trouble::kJump);
   }
   raw_ = next;
   have_raw_ = true;
   if (sample_.trouble != Trouble::kJump) return true;
-  // An arm that knows its own zero may be believed again after a while.
+  // An arm that knows its own zero may be trusted again after a while.
   const bool absolute = settings_.calibration != Calibration::kPose;
   if (!absolute || seconds(trouble_at_, now) < settings_.health.recovery) {
     good_at_ = now;
@@ -186,7 +186,7 @@ void Session::publish(Nanoseconds now, const codec::State& state) noexcept {
 
 bool Session::tooSlow(Nanoseconds now) noexcept {
   if (settings_.health.least_rate <= 0 || reports_ <= kRateWindow) return false;
-  if (wire_.exchange == codec::Exchange::kPoll) {  // it can answer no more commands than we sent
+  if (wire_.exchange == codec::Exchange::kPoll) {  // it cannot answer more commands than we sent
     const auto answers = static_cast<double>(reports_ - answered_[sent_ % kRateWindow]);
     return sent_ > attached_at_ + kRateWindow && answers < settings_.health.least_rate * (kRateWindow - 1);
   }
@@ -211,7 +211,7 @@ bool Session::watch(Nanoseconds now) noexcept {
   return sample_.trouble != before;
 }
 
-/// How much of the host's torque is let through: all of it some time after everything was well again.
+/// How much of the host's torque passes: all of it some time after everything was well again.
 double Session::gain(Nanoseconds now, bool healthy) noexcept {
   if (!healthy) {
     healthy_at_ = 0;
@@ -230,7 +230,7 @@ size_t Session::command(Nanoseconds now, const Wish& wish, std::span<uint8_t> by
   order.follow = wish.follow;
   for (size_t i = 0; i < settings_.joints; ++i) {
     order.torque[i] = part * wish.torque[i];
-    // From where the joint is: the arm's own loop comes in as softly as a torque does.
+    // Starts from where the joint is: the arm's own loop comes in as softly as a torque does.
     order.position[i] = raw_[i] + part * (wish.position[i] - zero_[i] - raw_[i]);
   }
   order.calibrate = calibrate_;

@@ -20,17 +20,17 @@ using JointArray = std::array<double, codec::kMaxJoints>;
 /// When an arm counts as unhealthy.
 struct HealthLimits {
   double stale = 0.015;       ///< [s] without a good report
-  double host_silent = 0.02;  ///< [s] without a command of the host: motors off
-  double least_rate = 0.57;   ///< of wire.rate, over kRateWindow reports; 0: not watched
-  double recovery = 0.2;      ///< [s] of health before a trouble counts as over
-  double ramp = 0.25;         ///< [s] from no torque to all of it after a trouble
-  double max_speed = 100;     ///< [rad/s] of a joint; beyond it an encoder jumped
+  double host_silent = 0.02;  ///< [s] without a command of the host; then the motors go off
+  double least_rate = 0.57;   ///< share of wire.rate, over kRateWindow reports; 0: it is not watched
+  double recovery = 0.2;      ///< [s] of health after which a trouble counts as over
+  double ramp = 0.25;         ///< [s] from no torque to full torque after a trouble
+  double max_speed = 100;     ///< [rad/s] of a joint; above it, an encoder jumped
 };
 
 /// How an arm gets absolute positions.
 enum class Calibration : uint8_t {
   kNone,    ///< its encoders are absolute
-  kDevice,  ///< it finds its zero itself (index pulse, homing) and says so
+  kDevice,  ///< it finds its zero by itself (index pulse, homing) and says so
   kPose,    ///< the user holds it in a known pose (inkwell, stop)
 };
 
@@ -54,7 +54,7 @@ struct Sample {
 struct Wish {
   Nanoseconds time = 0;
   uint64_t sequence = 0;            ///< grows with every write
-  bool on = false, follow = false;  ///< follow: positions are references, beside the torques
+  bool on = false, follow = false;  ///< with `follow`, positions are references in addition to the torques
   JointArray torque{}, position{};
 };
 
@@ -66,17 +66,17 @@ class Session {
   void attach(Nanoseconds now, const JointArray& zero, bool calibrated) noexcept;
   /// [any] The transport failed.
   void lose(Nanoseconds now, Trouble trouble) noexcept;
-  /// [any] One transfer. True if there is a new sample.
+  /// [any] Takes one transfer. True if there is a new sample.
   bool receive(Nanoseconds now, std::span<const uint8_t> bytes) noexcept;
-  /// [any] Judges the time since the last report. True if the judgement changed.
+  /// [any] Judges the time since the last report. True if the verdict changed.
   bool watch(Nanoseconds now) noexcept;
 
-  /// [any] The bytes of the next command: torques only with a healthy arm and a fresh wish.
+  /// [any] The bytes of the next command: it has torques only if the arm is healthy and the wish is fresh.
   size_t command(Nanoseconds now, const Wish& wish, std::span<uint8_t> bytes) noexcept;
 
   const Sample& sample() const noexcept { return sample_; }
   Trouble trouble() const noexcept { return sample_.trouble; }
-  /// The arm shall look for its zero, or take where it is as `pose`.
+  /// Tells the arm to find its zero, or takes its present place as `pose`.
   void calibrateByDevice(bool wanted) noexcept { calibrate_ = wanted; }
   void setZero(const JointArray& zero) noexcept;
   /// Positions without the calibration.
@@ -102,9 +102,9 @@ class Session {
   codec::Framer framer_;
   Sample sample_;
   codec::State state_;
-  JointArray raw_{}, zero_{}, turns_{}, span_{};  ///< span: of a wrapping position, 0: it does not wrap
+  JointArray raw_{}, zero_{}, turns_{}, span_{};  ///< span of a position that wraps; 0: it does not wrap
   std::array<Nanoseconds, kRateWindow> arrivals_{};
-  std::array<uint64_t, kRateWindow> answered_{};  ///< reports before each of the last commands
+  std::array<uint64_t, kRateWindow> answered_{};  ///< how many reports had come before each of the last commands
   uint64_t reports_ = 0, bad_reports_ = 0;
   Nanoseconds good_at_ = 0, trouble_at_ = 0, healthy_at_ = 0;
   uint32_t last_sequence_ = 0, last_starts_ = 0, sent_ = 0, attached_at_ = 0;

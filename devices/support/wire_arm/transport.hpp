@@ -18,39 +18,39 @@ enum class Status : uint8_t {
   kNothing,  ///< nothing came within the time given
   kGone,     ///< unplugged
   kStalled,  ///< the endpoint refuses
-  kAbsent,   ///< a bus without plugs: nobody answers at the address
-  kFailed,   ///< another error of the bus: unplugging often begins with some
+  kAbsent,   ///< on a bus without plugs: nobody answers at the address
+  kFailed,   ///< another error of the bus: unplugging often begins with some of these
 };
 
 /// Which device to open.
 struct Address {
   uint16_t vendor = 0, product = 0;
   int interface = -1;  ///< -1: any
-  std::string serial;  ///< empty: the first that is free
+  std::string serial;  ///< empty: the first device that is free
   bool operator==(const Address&) const = default;
 };
 
-/// What a device says of itself when it is opened.
+/// What a device says about itself when it is opened.
 struct Identity {
   std::string serial, product, firmware;
   std::string epoch;  ///< changes whenever the device was plugged in anew
 };
 
-/// [main] or the I/O thread, one at a time.
+/// [main] or the I/O thread, but only one at a time.
 class Transport {
  public:
   virtual ~Transport() = default;
   /// Finds and opens the device; the error says what was looked for and what to do.
   virtual Result<Identity> open(const Address& address, const codec::Wire& wire) = 0;
   virtual void close() noexcept = 0;
-  /// The next report or packet. @param size bytes written to `to`
+  /// Receives the next report or packet. @param size bytes written to `to`
   virtual Status receive(std::span<uint8_t> to, size_t& size, Nanoseconds wait) noexcept = 0;
   virtual Status send(std::span<const uint8_t> bytes) noexcept = 0;
-  /// A control request without data (USB set-up packets of a start-up sequence).
+  /// Sends a control request without data (USB set-up packets of a start-up sequence).
   virtual Status control(const codec::StartStep& step) noexcept = 0;
-  /// While it is open: another way to the same device, for a process that outlives this one. Fills in all but the
-  /// bytes, and as their size how many zeros come before a report.
-  /// @return a descriptor of its own; nothing: there is none
+  /// While the device is open, gives another way to it, for a process that outlives this one. Fills in all but the
+  /// bytes, whose size becomes the number of zeros before a report.
+  /// @return a descriptor of its own; nothing if there is none
   virtual Descriptor wayIn(hdv_silence&) noexcept { return {}; }
 };
 

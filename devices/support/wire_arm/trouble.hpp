@@ -10,19 +10,19 @@ enum class Trouble : uint8_t {
   kUnplugged,  ///< the device left the bus
   kStalled,    ///< an endpoint refuses transfers
   kBusError,   ///< transfers fail for another reason
-  kFirmware,   ///< reports of a version that the device file does not describe
-  kShort,      ///< reports of a wrong size
-  kCorrupt,    ///< reports with wrong marks, checksum or numbers
-  kStale,      ///< no report at all, or the same one again and again
-  kSlow,       ///< fewer reports than the device file says
+  kFirmware,   ///< reports have a version that the device file does not describe
+  kShort,      ///< reports have a wrong size
+  kCorrupt,    ///< reports have wrong marks, checksums or numbers
+  kStale,      ///< no report came, or the same one came again and again
+  kSlow,       ///< fewer reports come than the device file says
   kJump,       ///< a joint moved further than any hand moves it
   kHardware,   ///< the device reports a fault
   kAbsent,     ///< nobody answers on the bus
-  kTorn,       ///< reports that are never whole
-  kReset,      ///< the device started anew and forgot where it was
+  kTorn,       ///< reports are never whole
+  kReset,      ///< the device restarted and forgot where it was
 };
 
-/// Words for a trouble: what failed and what cures it.
+/// Words for a trouble: what failed, and what cures it.
 const char* describe(Trouble trouble) noexcept;
 
 }  // namespace hapticd::wire_arm

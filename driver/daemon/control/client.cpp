@@ -25,7 +25,7 @@ int connected(const std::string& file) {
   sockaddr_un address{};
   if (!socketAddress(file, address)) return -1;
   const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const timeval limit{kSendSeconds, 0};  // also of connect(), which waits for room in the queue of a busy server
+  const timeval limit{kSendSeconds, 0};  // bounds connect() too, which waits for room in the queue of a busy server
   if (fd >= 0) setsockopt(fd, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
   if (fd >= 0 && connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) return fd;
   const int code = errno;
@@ -64,7 +64,7 @@ Result<Client> Client::connect(const std::string& file) {
                " with --name; only its user and group may connect"};
 }
 
-/// The kernel says so as soon as the other end is closed, however its process ended.
+/// The kernel reports it as soon as the other end is closed, however its process ended.
 bool Client::ended() const {
   pollfd socket{fd_, 0, 0};
   return poll(&socket, 1, 0) > 0 && (socket.revents & (POLLHUP | POLLERR)) != 0;
@@ -88,8 +88,8 @@ Result<void> Client::say(const std::string& line, std::span<const int> descripto
   return {};
 }
 
-/// The daemon sends a descriptor with the first byte of its line, and the kernel gives out no byte of the next message
-/// with it: it belongs to the line that begins last.
+/// The daemon sends a descriptor with the first byte of its line, and the kernel delivers no byte of the next message
+/// with it, so it belongs to the line that begins last.
 void Client::take(std::string_view bytes, std::vector<Descriptor> with) {
   while (!bytes.empty()) {
     const size_t end = bytes.find('\n');
@@ -102,7 +102,7 @@ void Client::take(std::string_view bytes, std::vector<Descriptor> with) {
   }
 }
 
-/// @return false: nothing more will come
+/// @return false if nothing more will come
 bool Client::receiveMore() {
   char buffer[4096];
   std::vector<Descriptor> with;
@@ -111,14 +111,14 @@ bool Client::receiveMore() {
   return got > 0 || (got < 0 && errno == EINTR);
 }
 
-/// The next line, whatever it is.
+/// The next line, of whatever kind.
 Result<Reply> Client::receive(double seconds) {
   const Nanoseconds end = monotonicNow() + static_cast<Nanoseconds>(seconds * 1e9);
   while (lines_.empty()) {
     const Nanoseconds left = std::max<Nanoseconds>(end - monotonicNow(), 0);
     pollfd polled{fd_, POLLIN, 0};
     const int ready = poll(&polled, 1, static_cast<int>((left + 999'999) / 1'000'000));
-    if (ready < 0 && errno == EINTR) continue;  // a program may have signals of its own
+    if (ready < 0 && errno == EINTR) continue;  // a program may have handlers of its own
     if (ready != 1 || !receiveMore()) return Error{"the daemon at " + file_ + " did not answer"};
   }
   Reply reply = std::move(lines_.front());
@@ -126,7 +126,7 @@ Result<Reply> Client::receive(double seconds) {
   return reply;
 }
 
-/// The answer to the last request. Those to requests that were given up come before it.
+/// The answer to the last request. Answers to requests that were given up come before it.
 Result<Reply> Client::answer(double seconds) {
   constexpr std::string_view kNews = R"({"event":)";
   const Nanoseconds end = monotonicNow() + static_cast<Nanoseconds>(seconds * 1e9);

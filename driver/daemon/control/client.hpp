@@ -22,11 +22,11 @@ bool socketAddress(const std::string& file, sockaddr_un& address);
 /// [main] True if somebody serves the socket.
 bool connectTo(const std::string& file);
 
-/// A connection for many requests. An answer that comes after its request was given up, and what comes by itself, is
-/// taken for no other request's answer.
+/// A connection for many requests. An answer whose request was given up, and lines that come unasked, are never taken
+/// for the answer to another request.
 class Client {
  public:
-  static constexpr size_t kMostNews = 4096;  ///< lines that are kept for hear(); then the oldest go
+  static constexpr size_t kMostNews = 4096;  ///< lines that are kept for hear(); beyond that the oldest are dropped
 
   /// [main] @param file the socket of a running daemon
   static Result<Client> connect(const std::string& file);
@@ -42,13 +42,13 @@ class Client {
 
   /// [main] Sends one line and waits for its answer. @param seconds at most
   Result<std::string> ask(const std::string& line, double seconds = 10);
-  /// [main] The same, with descriptors that go along with the line; they stay open here.
+  /// [main] The same, with descriptors that are sent with the line; they stay open here.
   Result<std::string> askWith(const std::string& line, std::span<const int> descriptors, double seconds = 10);
-  /// [main] The same, with the descriptor that came along.
+  /// [main] The same, and gives the descriptor that came with the answer.
   Result<Reply> askForMore(const std::string& line, double seconds = 10);
   /// [main] Sends one line whose answer nobody waits for.
   void leave(const std::string& line);
-  /// [main] The next line that comes by itself. @param seconds at most; an error where none came
+  /// [main] The next line that comes unasked. @param seconds to wait at most; it is an error if none came
   Result<std::string> hear(double seconds);
   /// [any] The daemon has ended, or it ended this connection.
   bool ended() const;
@@ -64,8 +64,8 @@ class Client {
   int fd_;
   Reply begun_;              ///< a line whose end has not come yet
   std::deque<Reply> lines_;  ///< not given out yet
-  std::deque<Reply> news_;   ///< came by themselves while an answer was waited for
-  size_t owed_ = 0;          ///< answers that have not come yet
+  std::deque<Reply> news_;   ///< lines that came unasked while an answer was waited for
+  size_t owed_ = 0;          ///< how many answers have not come yet
 };
 
 /// [main] One request on a connection of its own. @param seconds at most

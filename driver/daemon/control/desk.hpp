@@ -14,13 +14,13 @@
 
 namespace hapticd::control {
 
-/// What the thread of the sockets hands over, and what comes back.
+/// What the sockets' thread hands to the desk, and what comes back.
 struct Job {
   enum class Kind { kAnswer, kNews, kLeft };
   Kind kind = Kind::kAnswer;
   Peer peer;
   std::string line;
-  std::vector<Descriptor> files = {};  ///< that came along with it
+  std::vector<Descriptor> files = {};  ///< that came with the line
 };
 struct Done {
   uint64_t peer = 0;
@@ -33,12 +33,12 @@ class Desk {
  public:
   ~Desk() { stop(); }
 
-  /// [main] @param work does a job; false: nothing comes back  @param ring called after each, from the desk's thread
+  /// [main] @param work does a job; false: it has no answer @param ring called after each, from the desk's thread
   std::error_code start(std::function<bool(Job&, Done&)> work, std::function<void()> ring);
-  void stop();  ///< [main] after the job that goes on; the rest is forgotten
+  void stop();  ///< [main] ends after the present job; the rest is dropped
 
   void give(Job job);        ///< [any]
-  std::vector<Done> take();  ///< [any] what is done since the last call
+  std::vector<Done> take();  ///< [any] what was done since the last call
 
  private:
   void run();

@@ -11,12 +11,12 @@
 
 namespace hapticd::control {
 
-/// Who asks. The number is never used again.
+/// Who sends a request. The number is never used again.
 struct Peer {
   uint64_t id = 0;
   pid_t pid = 0;  ///< of the process that connected
   uid_t uid = 0;
-  Nanoseconds asked = 0;  ///< CLOCK_MONOTONIC when the request got its turn to be worked on
+  Nanoseconds asked = 0;  ///< CLOCK_MONOTONIC when the request's turn came
 };
 
 /// One line, without its end, and perhaps a descriptor that the client gets along with it.
@@ -28,9 +28,9 @@ struct Reply {
   Descriptor descriptor;
 };
 
-/// Why a connection is kept, beside its requests.
+/// Why a connection is kept, apart from its requests.
 struct Standing {
-  bool stays = false;    ///< something lives as long as it does: it is never dropped for being silent
+  bool stays = false;    ///< something depends on it: it is never dropped for being silent
   bool listens = false;  ///< it gets news
 };
 

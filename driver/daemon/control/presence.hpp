@@ -10,14 +10,14 @@ namespace hapticd::control {
 /// [any] The daemon of this socket lives: it holds the lock on its name.
 bool lives(const std::string& socket);
 
-/// [main] Waits until the daemon of this socket has ended and its name is free. @return false: it lives yet
+/// [main] Waits until the daemon of this socket has ended and its name is free. @return false if it still lives
 bool waitForEnd(const std::string& socket, double seconds);
 
-/// [main] After its connection ended: the daemon has ended without putting its files away. Waits for one that is about
+/// [main] After its connection ended: true if the daemon ended without removing its files. Waits for one that is about
 /// to end in order.
 bool wasKilled(const std::string& socket);
 
-/// [main] Names of the daemons that live in a folder, in their order.
+/// [main] Names of the daemons that live in a folder, sorted.
 std::vector<std::string> running(const std::string& folder);
 
 }  // namespace hapticd::control

@@ -24,7 +24,7 @@ constexpr double kMaxPlace = 10;         ///< [m] no arm reaches farther
 constexpr double kFinestDrawing = 1e-5;  ///< [m] no screen shows less
 constexpr double kMostFrames = 1e15;     ///< that are counted exactly
 
-/// What a request may and must say. Keys in the order: what it needs, then what it may have.
+/// What a request must and may contain. Keys stand in this order: required ones, then optional ones.
 struct Form {
   const char* word;
   Kind kind;
@@ -71,7 +71,7 @@ std::string words() {
   return list;
 }
 
-/// What many programs write for a number that is none, and JSON does not have.
+/// What many programs write for a number that is not finite, which JSON does not have.
 std::string noJsonNumber(std::string_view line) {
   for (const char* word : {"NaN", "nan", "Infinity", "inf"})
     if (line.find(word) != std::string_view::npos) return std::string("; ") + word + " is no JSON number";
@@ -133,7 +133,7 @@ class Taker {
     }
     if (!good) complain(key, "a list of at most " + std::to_string(most) + " absolute paths, each once");
   }
-  /// The only word that may stand there. @param to true where it does
+  /// The only word that may stand there. @param to becomes true where it does
   void word(const char* key, const char* only, bool& to) {
     const Json* value = find(key);
     if (value == nullptr) return;
@@ -194,8 +194,8 @@ void readOrientation(Taker& take, Request& request) {
   for (double& part : request.orientation) part /= length;
 }
 
-/// Watches a request while it is parsed: too deep, or with a key twice, of which one reader takes the first and another
-/// the last.
+/// Watches a request while it is parsed. It may not be too deep, or have a key twice, since some readers take the first
+/// and others the last.
 class Watch {
  public:
   bool operator()(int depth, Json::parse_event_t event, const Json& parsed) {
@@ -210,7 +210,7 @@ class Watch {
   std::string twice;  ///< a key; "": none
 
  private:
-  std::vector<std::set<std::string>> keys_;  ///< of the objects that are open
+  std::vector<std::set<std::string>> keys_;  ///< the keys of the objects that are open
 };
 
 void readValues(Taker& take, Request& request) {
@@ -245,7 +245,7 @@ Result<Request> parseRequest(std::string_view line, std::string* id) {
     return Error{"expected a JSON object in one line, as {\"do\": \"status\"}" + noJsonNumber(line)};
   if (!watch.twice.empty())
     return Error{Json(watch.twice.substr(0, 64)).dump(-1, ' ', true, Json::error_handler_t::replace) +
-                 " stands there twice, expected it once"};
+                 " is given twice, expected once"};
   if (const std::string wrong = readId(json, id); !wrong.empty()) return Error{wrong};
   const auto word = json.find("do");
   const Form* form = word != json.end() && word->is_string() ? formOf(word->get_ref<const std::string&>()) : nullptr;

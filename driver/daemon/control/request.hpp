@@ -41,25 +41,25 @@ struct Request {
     kStop
   };
   Kind kind = Kind::kStatus;
-  std::string model, device, parameter, file;     ///< as the kind needs them
-  std::vector<std::string> files;                 ///< kAdd, kReload: names of the descriptors that came along
+  std::string model, device, parameter, file;     ///< set as the kind needs them
+  std::vector<std::string> files;                 ///< kAdd, kReload: names of the descriptors that came with it
   std::string hand;                               ///< kLead, kUnlead: the device whose simulated hand is led
   std::string force;                              ///< kLead, kUnlead: the device that is pushed on
-  double value = 0;                               ///< kSet, unless there is a word
-  double tolerance = 0;                           ///< [m] kGeometry: chord error; 0: as the daemon chooses
+  double value = 0;                               ///< kSet: the value, unless there is a word
+  double tolerance = 0;                           ///< [m] kGeometry: chord error; 0: the daemon chooses
   bool as_memory = false;                         ///< kGeometry: a descriptor of memory instead of lists in the answer
-  double after = 0;                               ///< kVertices: frame that is known; kEvents: the first that is wanted
+  double after = 0;                               ///< kVertices: the last known frame; kEvents: the first event wanted
   uint32_t number = 0;                            ///< kFeature: of a contact
   bool consent = false;                           ///< kSet: the operator agrees to change what is felt
   std::array<double, 3> position{};               ///< [m] kMove, world frame
   std::array<double, 4> orientation{1, 0, 0, 0};  ///< kMove: unit quaternion w,x,y,z
   bool turns = false;                             ///< kMove: an orientation was given
   std::optional<double> seconds;                  ///< kMove: how long it takes
-  std::string word;                               ///< kSet: of a choice or a switch
+  std::string word;                               ///< kSet: the value of a choice or a switch
 };
 
 /// [main] Parses and checks a line. An error says what is wrong and what was expected. @param id the request's "id" as
-/// JSON, also where the rest is wrong; "": it has none
+/// JSON, even if the rest is wrong; "" if it has none
 Result<Request> parseRequest(std::string_view line, std::string* id = nullptr);
 
 /// [main] {"ok":false,"code":CODE,"error":WHY}. @param code one word for programs

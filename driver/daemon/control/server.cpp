@@ -23,7 +23,7 @@ namespace hapticd::control {
 namespace {
 
 constexpr int kPollMs = 500;
-constexpr Nanoseconds kAcceptPause = 500'000'000;  ///< after a failure, as without a free descriptor
+constexpr Nanoseconds kAcceptPause = 500'000'000;  ///< after a failure, such as a lack of free descriptors
 constexpr int kReadsATurn = 4;                     ///< so that no client keeps the others waiting
 
 Error cannot(const std::string& file, const std::string& what) {
@@ -81,7 +81,7 @@ void Server::stop() {
 
 void Server::wake() {
   const char byte = 0;
-  [[maybe_unused]] const ssize_t woken = write(wake_[1], &byte, 1);  // full: it wakes up anyway
+  [[maybe_unused]] const ssize_t woken = write(wake_[1], &byte, 1);  // the pipe is full, so the thread wakes up anyway
 }
 
 void Server::serve() {
@@ -90,7 +90,7 @@ void Server::serve() {
     const bool accepts = monotonicNow() >= accept_after_;
     polled.assign({{fd_, static_cast<short>(accepts ? POLLIN : 0), 0}, {wake_[0], POLLIN, 0}});
     for (const Client& client : clients_) {
-      // one that does not read its answers is not asked for more
+      // a client that does not read its answers is asked for no more
       const bool reads = client.out.empty() && !client.closing && client.in.size() <= kMaxRequestBytes;
       const short events = client.out.empty() ? (reads ? POLLIN : 0) : POLLOUT;
       polled.push_back({client.hung ? -1 : client.fd, events, 0});
@@ -114,7 +114,7 @@ bool Server::listened() const {
   return std::any_of(clients_.begin(), clients_.end(), [](const Client& c) { return c.standing.listens; });
 }
 
-/// It is still owed an answer.
+/// True if the client is still owed an answer.
 bool Server::owes(const Client& client) const {
   return client.asked || !client.out.empty() || client.in.find('\n') != std::string::npos;
 }
@@ -140,7 +140,7 @@ void Server::end(Client& client) {
   if (client.known) desk_.give({Job::Kind::kLeft, client.peer, ""});
 }
 
-/// It has been idle for long enough to make room for another.
+/// True if the client has been idle for long enough to make room for another.
 bool Server::mayYield(const Client& client, Nanoseconds now) const {
   return client.seated && !client.standing.stays && !client.asked && now - client.heard >= kIdle;
 }
@@ -150,7 +150,7 @@ size_t Server::count(bool seated) const {
       std::count_if(clients_.begin(), clients_.end(), [&](const Client& c) { return c.seated == seated; }));
 }
 
-/// Those who stand take the places of those who left, or who make room.
+/// Clients that wait for a place take the places of those that left, or that make room.
 void Server::seat(Nanoseconds now) {
   for (Client& client : clients_) {
     if (client.seated) continue;
@@ -165,7 +165,7 @@ void Server::seat(Nanoseconds now) {
   }
 }
 
-/// Ends the one that has been silent for longest.
+/// Ends the client that has been silent for longest.
 void Server::makeRoom(bool seated) {
   const auto rank = [&](const Client& c) {
     return std::tuple(c.seated != seated || c.fd < 0, c.standing.stays, c.asked, c.heard);
@@ -208,11 +208,11 @@ bool Server::receive(Client& client) {
   char buffer[4096];
   for (int i = 0; i < kReadsATurn && client.in.size() <= kMaxRequestBytes; ++i) {
     const ssize_t got = receiveWith(client.fd, buffer, client.given);
-    if (given() > kMostDescriptors) return false;  // a program has few, and others need some too
+    if (given() > kMostDescriptors) return false;  // a program needs few, and other programs need some too
     if (got < 0 && (errno == EAGAIN || errno == EINTR)) break;
     if (got < 0) return false;
     if (got == 0) {
-      if (!client.in.empty() && client.in.back() != '\n') client.in += '\n';  // as from printf, without one
+      if (!client.in.empty() && client.in.back() != '\n') client.in += '\n';  // the last line may lack its end
       client.closing = true;
       break;
     }
@@ -227,7 +227,7 @@ std::optional<Reply> Server::urgent(const Client& client, const std::string& lin
   return service_.urgent ? service_.urgent(client.peer, line) : std::nullopt;
 }
 
-/// In the order of the lines: one at a time is worked on.
+/// Answers lines in their order: only one at a time is worked on.
 void Server::answerLines(Client& client) {
   size_t end = 0;
   while (!client.asked && client.waiting < kMaxWaiting && (end = client.in.find('\n')) != std::string::npos) {
@@ -240,7 +240,7 @@ void Server::answerLines(Client& client) {
     reply->line += '\n';
     queue(client, std::move(*reply));
   }
-  if (client.in.empty()) client.given.clear();  // no line is left that they could belong to
+  if (client.in.empty()) client.given.clear();  // no line is left to which they could belong
   if (client.in.size() > kMaxRequestBytes && client.in.find('\n') == std::string::npos) {
     queue(client, refusal("the request is longer than " + std::to_string(kMaxRequestBytes) + " bytes") + "\n");
     client.in.clear();
@@ -248,14 +248,14 @@ void Server::answerLines(Client& client) {
   }
 }
 
-/// What is urgent behind a request that is still worked on is done now; it is answered in its turn.
+/// An urgent line behind a request that is still worked on is done now; it is answered in its turn.
 void Server::actAtOnce(Client& client) {
   if (!client.asked && client.seated) return;
   for (size_t end; (end = client.in.find('\n', client.scanned)) != std::string::npos; client.scanned = end + 1)
     (void)urgent(client, client.in.substr(client.scanned, end - client.scanned));
 }
 
-/// Descriptors of clients that wait for their line's turn.
+/// Descriptors of clients whose line waits for its turn.
 size_t Server::given() const {
   size_t sum = 0;
   for (const Client& client : clients_) sum += client.given.size();
@@ -269,7 +269,7 @@ std::vector<Descriptor> Server::takeGiven(Client& client, const std::string& lin
   const size_t count = request ? std::min(request->files.size(), client.given.size()) : 0;
   for (size_t i = 0; i < count; ++i) taken.push_back(std::move(client.given[i]));
   client.given.erase(client.given.begin(), client.given.begin() + static_cast<std::ptrdiff_t>(count));
-  if (client.in.empty()) client.given.clear();  // no line is left that they could belong to
+  if (client.in.empty()) client.given.clear();  // no line is left to which they could belong
   return taken;
 }
 

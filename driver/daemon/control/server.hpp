@@ -29,8 +29,8 @@ class Server {
     /// One line without its end, and the descriptors that it names (see `files` of a request).
     std::function<Reply(const Peer&, const std::string& line, std::vector<Descriptor> files)> answer;
     std::function<Standing(const Peer&)> standing;  ///< after each answer
-    /// Lines, each with its end, for one that listens; "" for none. About every kNewsPeriod, and only while it has read
-    /// all that came before.
+    /// Lines, each with its end, for a client that listens; "" for none. Called about every kNewsPeriod, and only while
+    /// the client has read all that came before.
     std::function<std::string(const Peer&)> news;
     std::function<void(const Peer&)> left;  ///< the connection is gone
     /// From the thread of the sockets: does at once what must wait behind no other request, and answers; nothing: the
@@ -39,12 +39,12 @@ class Server {
   };
 
   static constexpr size_t kMaxClients = 32;
-  static constexpr size_t kMaxStanding = 16;  ///< beyond those: only their urgent requests are answered yet
+  static constexpr size_t kMaxStanding = 16;  ///< of clients beyond those, only urgent requests are answered yet
   static constexpr size_t kMaxStaying = 24;   ///< that whoever grants a standing shall let stay: others need places too
   static constexpr Nanoseconds kNewsPeriod = 20'000'000;
   static constexpr size_t kMaxWaiting = 1 << 20;            ///< [bytes] for a client that does not read
-  static constexpr Nanoseconds kIdle = 2'000'000'000;       ///< then a client may be dropped where another waits
-  static constexpr Nanoseconds kPatience = 10'000'000'000;  ///< for the rest of a line, or for room to answer
+  static constexpr Nanoseconds kIdle = 2'000'000'000;       ///< then a client may be dropped if another waits
+  static constexpr Nanoseconds kPatience = 10'000'000'000;  ///< time for the rest of a line, or for room to answer
 
   /// [main] Binds the socket, readable and writable by the owner and by its group. An old socket that nobody serves is
   /// replaced; one that is served is an error. @param group "": the process's own
@@ -54,7 +54,7 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   std::error_code start(Service service);  ///< [main]
-  void stop();                             ///< [main] after the return nothing more is answered
+  void stop();                             ///< [main] after it returns nothing more is answered
 
  private:
   struct Client {
@@ -62,18 +62,18 @@ class Server {
     Peer peer;
     Standing standing;
     std::string in;
-    std::vector<Descriptor> given;  ///< came along with lines in `in`, in their order
-    std::list<Reply> out;           ///< with their ends; a descriptor goes with the first byte of its line
+    std::vector<Descriptor> given;  ///< came with the lines in `in`, in their order
+    std::list<Reply> out;           ///< with their line ends; a descriptor is sent with the first byte of its line
     size_t waiting = 0;             ///< [bytes] in `out`
     Nanoseconds since = 0;          ///< half a line, or an answer not yet taken, waits since then; 0: nothing waits
-    Nanoseconds heard = 0;          ///< the last time that anything came or went
+    Nanoseconds heard = 0;          ///< the last time that bytes were received or sent
     bool closing = false;           ///< once `out` is gone
-    bool hung = false;              ///< it waits for no answer; what it asked is done all the same
+    bool hung = false;              ///< nobody reads its answers; what it asked for is done all the same
     bool seated = true;             ///< otherwise it waits for a place
     bool asked = false;             ///< one of its requests is worked on
-    bool listening = false;         ///< its news are put together
+    bool listening = false;         ///< its news are being collected
     bool known = false;             ///< to those who work on requests
-    size_t scanned = 0;             ///< [bytes] of `in`, already searched for urgent requests
+    size_t scanned = 0;             ///< [bytes] of `in` that were already searched for urgent requests
   };
   Server(std::string file, int fd, int wake_read, int wake_write)
       : file_(std::move(file)), fd_(fd), wake_{wake_read, wake_write} {}
@@ -108,7 +108,7 @@ class Server {
   std::list<Client> clients_;  ///< as they came
   uint64_t last_id_ = 0;
   Nanoseconds news_due_ = 0;
-  Nanoseconds accept_after_ = 0;  ///< a refusal of the system is not asked for again and again
+  Nanoseconds accept_after_ = 0;  ///< what the system refused is not asked for again and again
   std::atomic<bool> stop_{false};
   Desk desk_;
   os::Thread thread_;

@@ -33,7 +33,7 @@ struct Value {
   Place place;
 };
 
-/// One point of a kinematic path; poses between are interpolated (linear, and slerp).
+/// One point of a kinematic path; poses between two points are interpolated (linear, and slerp).
 struct PathPoint {
   double t = 0;
   Pose pose;
@@ -41,15 +41,15 @@ struct PathPoint {
 
 struct Model {
   std::string name, plugin;
-  std::filesystem::path library;  ///< the .so that has the plugin
-  Pose pose;                      ///< of the model in the world at the start
+  std::filesystem::path library;  ///< the .so that contains the plugin
+  Pose pose;                      ///< pose of the model in the world at the start
   bool kinematic = false;         ///< moved by `path`, not by its plugin
   std::vector<PathPoint> path;
   std::vector<Value> parameters;
   Place place;
 };
 
-/// What lets forces through: a button of the device, held (dead-man switch) or pressed once for on and once for off.
+/// What lets forces through: a button of the device, which is held (dead-man switch), or toggles.
 enum class EnableMode { kHold, kToggle };
 struct Enable {
   std::optional<int> button;  ///< none: forces are always let through
@@ -58,29 +58,29 @@ struct Enable {
 
 /// One motor for the model of its heat; numbers as data sheets give them.
 struct Motor {
-  double ratio = 1;                              ///< joint torque over motor torque
+  double ratio = 1;                              ///< joint torque divided by motor torque
   double torque_constant = 0, resistance = 0;    ///< [N m/A], [ohm] at 25 degC
   double winding_housing = 1, housing_air = 10;  ///< [K/W]
   double winding_time = 10, housing_time = 600;  ///< [s]
   double max_temperature = 100, ambient = 25;    ///< [degC]
 };
 
-/// Limits of one device, applied between contact and motors whatever the plugins say.
+/// Limits of one device, applied between contact and motors, whatever the plugins say.
 struct Limits {
   double force = 0;                ///< [N] 0: the device's own maximum
-  double torque = 0;               ///< [N m] on the hand; 0: no limit but the motors'
+  double torque = 0;               ///< [N m] on the hand; 0: the motors are the only limit
   double slew = 2000;              ///< [N/s] fastest growth of force; 0: none
-  double torque_slew = 200;        ///< [N m/s] fastest growth of torque; 0: none. As `slew`, 0.1 m from the tip
-  double power = 0;                ///< [W] most that the arm gives to the hand; 0: none
-  double impulse = 0;              ///< [N s] most within any tenth of a second; 0: none
-  std::optional<double> velocity;  ///< [m/s] faster than this latches a fault; 0: none; none: 5, of real hardware
+  double torque_slew = 200;        ///< [N m/s] fastest growth of torque; 0: none. As `slew`, at 0.1 m from the tip
+  double power = 0;                ///< [W] most power that the arm gives to the hand; 0: no limit
+  double impulse = 0;              ///< [N s] largest impulse within any tenth of a second; 0: no limit
+  std::optional<double> velocity;  ///< [m/s] a faster tip latches a fault; 0: no limit; none: 5, for real hardware
   double workspace = 0;            ///< [m] radius about the world's origin of the device; outside forces fade; 0: none
-  std::optional<double> weight;    ///< [N] at the tip, most that carries the arm's own weight; none: as much as `force`
+  std::optional<double> weight;    ///< [N] at the tip, most that carries the arm's weight; none: as large as `force`
   double ramp_in = 0.25;           ///< [s] from zero to full force at the start and after a fault
   double ramp_out = 0.02;          ///< [s] from full force to zero at a planned end; after a fault 2 ms at most
   std::optional<bool> passivity;   ///< observer and controller; none: for arms never tried on hardware
   Enable enable;
-  std::vector<Motor> motors;  ///< in the order of the joints; none: no model of their heat
+  std::vector<Motor> motors;  ///< in the order of the joints; none: their heat is not modelled
 };
 
 /// Compliance control: measured joint torque drives a virtual mass and damper, rendered as positions.
@@ -99,7 +99,7 @@ struct HdJoint {
 struct HdArm {
   std::string model, vendor, serial;
   std::vector<HdJoint> joints;    ///< turret, thigh, shin, and the three of the gimbal
-  std::vector<uint32_t> buttons;  ///< of the device, in the order of theirs
+  std::vector<uint32_t> buttons;  ///< the device's joints, in the order of the programs' joints
 };
 
 struct Device {
@@ -116,27 +116,27 @@ struct Device {
 
 enum class Pace { kClock, kDevice };
 
-/// Which processor instructions the inner loops of shapes use. Results differ in their last bits.
+/// Which processor instructions the inner loops of shapes use. The last bits of results depend on it.
 enum class Instructions {
-  kAuto,     ///< the fastest that the processor has
-  kPortable  ///< those that every processor has: the same bits on all machines
+  kAuto,     ///< the fastest instructions that the processor has
+  kPortable  ///< instructions that every processor has: the same bits on all machines
 };
 
 struct Velocity {
   std::string estimator = "window";  ///< window, butterworth, foaw, least_squares, kalman
-  double parameter = 3;              ///< samples, cut-off in Hz, or process noise: what the estimator takes
+  double parameter = 3;              ///< what the estimator takes: samples, cut-off in Hz, or process noise
 };
 
 struct Servo {
   double rate = 1000;                    ///< [Hz]
   double activation_radius = 0.10;       ///< [m] surfaces nearer than this are traced
-  double hysteresis = 0.05;              ///< [m] beyond the radius until they are dropped again
+  double hysteresis = 0.05;              ///< [m] beyond that radius, at which they are dropped again
   Eigen::Vector3d gravity{0, -9.81, 0};  ///< [m/s^2] world
   Pace pace = Pace::kClock;
   Velocity velocity;
   std::optional<double> spin_us;  ///< [us] busy wait before the deadline; none: chosen for the machine
   Instructions instructions = Instructions::kAuto;
-  double budget_us = 0;  ///< [us] of a tick for all shapes; 0: four fifths of the period
+  double budget_us = 0;  ///< [us] per tick for all shapes together; 0: four fifths of the period
 };
 
 /// Whether programs may push on the arms with forces of their own.
@@ -145,15 +145,15 @@ enum class ClientMode {
   kAdd,     ///< their forces are added to those of the models
   kInstead  ///< the models fade out while a program pushes
 };
-/// Whose axes programs of the HDAPI count in.
+/// In whose axes the coordinates of HDAPI programs are.
 enum class ClientFrame { kWorld, kDevice };
 struct Clients {
   ClientMode mode = ClientMode::kOff;
-  double max_force = 0;    ///< [N] of one program; 0: as much as the device's limit
+  double max_force = 0;    ///< [N] of one program; 0: as much as the device's limit allows
   bool exclusive = false;  ///< one program an arm; otherwise their forces add up
-  double answer_time = 0;  ///< [s] after a tick began in which the servo listens for answers; 0: it waits for nobody
-  bool push = true;        ///< false: programs see what those who push see, and may not
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< [m] of the HDAPI's coordinates, in the axes of `frame`
+  double answer_time = 0;  ///< [s] after a tick began during which the servo waits for answers; 0: it does not wait
+  bool push = true;        ///< false: programs see what pushing programs see, but may not push
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< [m] origin of the HDAPI's coordinates, in the axes of `frame`
   ClientFrame frame = ClientFrame::kWorld;           ///< whose axes those are: the world's, or the arm's mount
 };
 

@@ -14,7 +14,7 @@
 
 namespace hapticd::host {
 
-/// One of them. Descriptions give its path, kBuiltInFolder/NAME, where a loaded one has its file.
+/// One of them. Its description has the path kBuiltInFolder/NAME, where a loaded one has its file.
 struct BuiltIn {
   std::string name;
   const hsp_entry* shapes = nullptr;
@@ -23,16 +23,16 @@ struct BuiltIn {
 
 constexpr const char* kBuiltInFolder = "(built in)";
 
-/// [main] Before the first scene is read: what this program holds. The list outlives every instance.
+/// [main] Called before the first scene is read: says what this program contains. The list outlives every instance.
 void setBuiltIns(std::span<const BuiltIn> list);
 
-/// [main] The same with the list that hapticd_link_modules() made for this program. Other programs do not have it.
+/// [main] The same with the list that hapticd_link_modules() made for this program. Other programs have no such list.
 void takeBuiltIns();
 
-/// [any] The built-in plugin or module of that path; nullptr: it is none.
+/// [any] The built-in plugin or module of that path; nullptr if there is none.
 const BuiltIn* findBuiltIn(const std::filesystem::path& path);
 
-/// [any] Paths of all that hold classes of a kind.
+/// [any] Paths of all built-in files that hold classes of a kind.
 std::vector<std::filesystem::path> builtIns(Kind kind);
 
 }  // namespace hapticd::host

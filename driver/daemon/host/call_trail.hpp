@@ -5,7 +5,7 @@
 
 namespace hapticd::host {
 
-/// [main] From now on calls of device modules at set-up are told to `trail`; nullptr: no longer. In a child only.
+/// [main] From now on calls of device modules at set-up are noted in `trail`; nullptr ends that. Used in a child only.
 void followCalls(Trail* trail) noexcept;
 
 /// [main] A module's function is about to be called. @param name in static storage

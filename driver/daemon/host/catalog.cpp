@@ -32,7 +32,7 @@ std::vector<fs::path> sharedObjects(const fs::path& dir) {
   return found;
 }
 
-/// A name from a file must not walk out of the directories that are searched.
+/// A name from a file must not lead out of the folders that are searched.
 bool plainName(const std::string& name) {
   return !name.empty() && name.find('/') == std::string::npos && name.size() < 200 && name[0] != '.';
 }
@@ -47,7 +47,7 @@ std::string textOf(const std::vector<fs::path>& dirs) {
   return text;
 }
 
-/// Plugins and modules that ship: `driver/demo` builds two of them alone.
+/// Plugins and modules that ship with hapticd: `driver/demo` builds only two of them.
 bool ships(const std::string& name) {
   constexpr const char* kShipped[] = {"mat_deformable", "nurbs_rigid", "pendulum", "push_button", "template",
                                       "simulated",      "usb_hid",     "usb_bulk", "vme",         "template_arm",
@@ -120,8 +120,8 @@ const CatalogFile& Catalog::describeOnce(const fs::path& file) {
   if (const auto known = files_.find(file); known != files_.end()) return known->second;
   CatalogFile& entry = files_[file];
   entry.path = file;
-  // A library that is loaded is described as it is, even if its file has changed since: it is the one that will be
-  // used, and its constructors have run already. Any other is described by a child process.
+  // A library that is loaded is described as it is, even if its file has changed since, because it will be used, and
+  // its constructors have run already. A child process describes any other.
   const std::shared_ptr<Library> loaded = Library::loaded(file);
   if (!loaded) entry.stamp = stampOf(file);
   auto classes = loaded ? describe(file) : describe_(file);

@@ -30,13 +30,13 @@ struct SearchPath {
   void prepend(const std::vector<std::filesystem::path>& dirs);
 };
 
-/// [main] True for what is built in, and for a file in a folder of shipped modules. Others are somebody else's.
+/// [main] True for what is built in, and for a file in a folder of shipped modules. Other files are foreign.
 bool ships(const std::filesystem::path& library);
 
 /// A file that looks like a plugin or module: its description, or the reason why there is none.
 struct CatalogFile {
   std::filesystem::path path;
-  std::optional<FileStamp> stamp;  ///< of the file that was described; nothing: the library that is loaded was
+  std::optional<FileStamp> stamp;  ///< of the file that was described; nothing if the library was loaded
   std::vector<ClassInfo> classes;
   std::string error;  ///< "": none
 };
@@ -48,15 +48,15 @@ class Catalog {
 
   explicit Catalog(SearchPath path = SearchPath::standard()) : path_(std::move(path)), describe_(describeInChild) {}
 
-  /// [main] Another way from now on.
+  /// [main] Describes files in another way from now on.
   void describeBy(Describe describe) { describe_ = std::move(describe); }
 
-  /// [main] Forgets files that changed, failed or were loaded when they were described, and where names were found: a
-  /// process that goes on for days calls it before it looks again. Pointers that were handed out end.
+  /// [main] Forgets files that changed, failed, or were loaded when they were described, and where names were found. A
+  /// process that runs for days calls it before it looks again. Pointers given out before become invalid.
   void refresh();
 
-  /// [main] The plugin of that name or id. NAME.so is tried first; only if that fails all files are described.
-  /// The message has the reason of a NAME.so that could not be used, the nearest names and the search path.
+  /// [main] The plugin of that name or id. NAME.so is tried first; only if that fails, all files are described. The
+  /// message says why a NAME.so could not be used, and has the nearest names and the search path.
   Result<const ClassInfo*> shape(const std::string& name) { return find(Kind::kShape, name); }
   Result<const ClassInfo*> device(const std::string& name) { return find(Kind::kDevice, name); }
 
@@ -67,7 +67,7 @@ class Catalog {
   std::vector<std::string> names(Kind kind);
 
   const SearchPath& searchPath() const { return path_; }
-  /// Files described so far; tests use it to see that nothing else was touched.
+  /// Files described so far; tests use it to see that no other file was touched.
   size_t described() const { return files_.size(); }
 
  private:
@@ -80,7 +80,7 @@ class Catalog {
 
   SearchPath path_;
   Describe describe_;
-  std::map<std::filesystem::path, CatalogFile> files_;  // nodes stay where they are: pointers are handed out
+  std::map<std::filesystem::path, CatalogFile> files_;  // its nodes stay in place: pointers to them are given out
   std::map<std::pair<Kind, std::string>, const ClassInfo*> found_;  // a scene of 10,000 models asks for one name often
 };
 

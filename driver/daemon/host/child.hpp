@@ -14,7 +14,7 @@ namespace hapticd::host {
 /// how the child ended ("crashed: Segmentation fault", "took longer than 5 s") and is meant to follow "it ".
 Result<std::string> runInChild(const std::function<std::string()>& work, int limit_ms);
 
-/// How far a child came, known to its parent even where it crashes. Made before the child.
+/// How far a child came; its parent can read it even if the child crashes. Make it before the child.
 class Trail {
  public:
   Trail();
@@ -29,15 +29,15 @@ class Trail {
 
  private:
   struct Mark;
-  Mark* mark_;  ///< in memory of both; nullptr: there is none
+  Mark* mark_;  ///< in memory that both share; nullptr if there is none
 };
 
-/// [any] Starts a program that ends with answerParent() and returns its bytes, with the same errors. Nothing of this
-/// process is copied, as a fork does it: that would cost each of its threads a page fault at the next write to a page.
+/// [any] Starts a program that ends with answerParent() and returns its bytes, with the same errors. It copies nothing
+/// of this process. A fork would, and then each thread's next write to a page would cause a page fault.
 /// @param arguments the program's path first
 Result<std::string> runProgram(std::vector<std::string> arguments, int limit_ms);
 
-/// [main] In such a program: what `work` returns goes to the parent, and the program ends.
+/// [main] Called in such a program: sends what `work` returns to the parent, and ends the program.
 [[noreturn]] void answerParent(const std::function<std::string()>& work);
 
 }  // namespace hapticd::host

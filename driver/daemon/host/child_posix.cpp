@@ -30,7 +30,7 @@ using std::chrono::steady_clock;
 
 constexpr size_t kLargestAnswer = 64u << 20;
 constexpr int kThrew = 113;   ///< exit code of a child that an exception ended
-constexpr int kAnswerFd = 3;  ///< where a program that was started answers: what it loads may print
+constexpr int kAnswerFd = 3;  ///< a started program answers here, because what it loads may print
 constexpr int kFatal[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM, SIGQUIT, SIGHUP};
 
 bool writeAll(int fd, const std::string& bytes) {
@@ -45,23 +45,23 @@ bool writeAll(int fd, const std::string& bytes) {
 
 int answer_fd = -1;  ///< of a child; a terminate handler takes no argument
 
-/// Ends the child by the exception at hand, whose words take the place of the answer.
+/// Ends the child because of the present exception, whose text replaces the answer.
 [[noreturn]] void endByException() {
   try {
     if (std::current_exception()) throw;
   } catch (const std::exception& e) {
     writeAll(answer_fd, e.what());
-  } catch (...) {  // nothing of it can be told
+  } catch (...) {  // nothing is known about it
   }
   _exit(kThrew);
 }
 
-/// The child's work: no core file, and never back into other code.
+/// Does the child's work: it leaves no core file, and never returns to other code.
 [[noreturn]] void answer(const std::function<std::string()>& work, int fd) {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
   answer_fd = fd;
-  // An exception out of a constructor comes through dlopen() or ends there, as the compilers of plugin and host will.
+  // An exception from a constructor passes through dlopen() or ends there, as the compilers decide.
   std::set_terminate(&endByException);
   try {
     _exit(writeAll(fd, work()) ? 0 : 1);
@@ -70,7 +70,7 @@ int answer_fd = -1;  ///< of a child; a terminate handler takes no argument
   }
 }
 
-/// A fork of this process: the signals as a program finds them, and no output.
+/// A fork of this process, with the signals of a new program, and without output.
 [[noreturn]] void childMain(const std::function<std::string()>& work, int fd) {
   for (const int signal : kFatal) ::signal(signal, SIG_DFL);
   if (const int null = open("/dev/null", O_RDWR | O_CLOEXEC); null >= 0) {
@@ -80,7 +80,7 @@ int answer_fd = -1;  ///< of a child; a terminate handler takes no argument
   answer(work, fd);
 }
 
-/// What posix_spawn is told: default signals, none of them blocked, no output, `answer` as the only other file.
+/// What posix_spawn is told: default signals, none blocked, no output, and `answer` as the only other file.
 class Surroundings {
  public:
   explicit Surroundings(int answer) {
@@ -113,7 +113,7 @@ class Surroundings {
   posix_spawnattr_t how_;
 };
 
-/// How long the child stood ready without a processor. 0 where the kernel does not count it.
+/// How long the child was ready but had no processor. 0 where the kernel does not count it.
 nanoseconds keptWaiting(pid_t child) {
   char path[32], words[96] = {};
   std::snprintf(path, sizeof path, "/proc/%d/schedstat", static_cast<int>(child));
@@ -126,13 +126,13 @@ nanoseconds keptWaiting(pid_t child) {
   return nanoseconds(waited);
 }
 
-/// The time that a child may take. What others took from it on a busy machine is given back, up to ten times the limit.
+/// The time that a child may take. Time that others took from it on a busy machine is added, up to ten times the limit.
 class Allowance {
  public:
   Allowance(pid_t child, milliseconds limit)
       : child_(child), limit_(limit), begun_(steady_clock::now()), end_(begun_ + limit) {}
 
-  /// More than 0 while it may go on.
+  /// More than 0 while the child may go on.
   milliseconds left() {
     const auto now = steady_clock::now();
     if (now >= end_) end_ = begun_ + limit_ + std::min<nanoseconds>(keptWaiting(child_), 9 * limit_);
@@ -145,7 +145,7 @@ class Allowance {
   steady_clock::time_point begun_, end_;
 };
 
-/// Everything the child writes until it closes the pipe; nothing when the time is over first.
+/// Everything that the child writes until it closes the pipe; nothing if the time ends first.
 std::optional<std::string> readAll(int fd, Allowance& allowed) {
   std::string bytes;
   char buffer[16384];
@@ -164,7 +164,7 @@ std::optional<std::string> readAll(int fd, Allowance& allowed) {
   return std::nullopt;
 }
 
-/// How the child ended. One that has closed the pipe and lives on beyond its time is ended; `in_time` says whether.
+/// How the child ended. A child that closed the pipe and outlives its time is ended; `in_time` says whether it was not.
 int waitFor(pid_t child, Allowance& allowed, bool& in_time) {
   constexpr auto kPause = milliseconds(1);
   int status = 0;
@@ -200,8 +200,8 @@ Error notTried(const char* what, int code) {
   return Error{std::string("could not be tried: ") + what + ": " + std::strerror(code)};
 }
 
-/// Opens a pipe above the descriptors that the child gives to its standard streams and its answer. A process that was
-/// started without 0, 1 or 2 would get one of these otherwise, and the child would overwrite it.
+/// Opens a pipe above the descriptors that the child gives to its standard streams and its answer. Otherwise a process
+/// that was started without 0, 1 or 2 would get one of these, and the child would overwrite it.
 bool pipeBeyondStandard(int (&ends)[2]) {
   int low[2];
   if (pipe2(low, O_CLOEXEC) != 0) return false;
@@ -219,7 +219,7 @@ bool pipeBeyondStandard(int (&ends)[2]) {
 
 struct Trail::Mark {
   std::atomic<uint32_t> item{0};
-  std::atomic<const char*> call{""};  ///< a fork has the literals of its parent at the same places
+  std::atomic<const char*> call{""};  ///< a fork has its parent's literals at the same addresses
 };
 
 Trail::Trail() : mark_(nullptr) {

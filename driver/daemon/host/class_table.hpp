@@ -14,10 +14,10 @@ namespace hapticd::host {
 /// [any] Name of a status for messages.
 std::string statusText(hsp_status status);
 
-/// [any] "HSP_E_NUMERIC", as a module's author writes it.
+/// [any] "HSP_E_NUMERIC", as the author of a module writes it.
 std::string statusName(hsp_status status);
 
-/// [main] The status of a failed call, and what the module said about it, as the tail of a message.
+/// [main] The status of a failed call, and what the module said about it, as the end of a message.
 std::string reasonOf(hsp_status status, const Services& services);
 
 /// [main] The value in the form of the ABI; it points into `value`.
@@ -27,7 +27,7 @@ hsp_value toAbi(const scene::Value& value);
 bool complete(const hsp_class& shape);
 bool complete(const hdv_class& device);
 
-/// [any] A text of a plugin's table as it may be printed: "" where it has none.
+/// [any] A text of a plugin's table in printable form; "" if there is none.
 inline const char* textOf(const char* text) noexcept {
   return text != nullptr ? text : "";
 }

@@ -9,26 +9,26 @@
 
 namespace hapticd::host {
 
-/// The shape writes straight into one of three buffers, 60 times a second while somebody looks; one other thread takes
-/// the newest. Neither waits. While nobody looks, nothing is written.
+/// While somebody looks, the shape writes 60 times per second directly into one of three buffers, and one other thread
+/// takes the newest. Neither waits. While nobody looks, nothing is written.
 class Contour {
  public:
   static constexpr double kRate = 60;  ///< [Hz]
   struct Frame {
-    uint64_t number = 0;     ///< 1 is the first; 0: none has come yet
+    uint64_t number = 0;     ///< number of the frame, from 1; 0: none has come yet
     std::vector<float> xyz;  ///< [m] in the model's frame
   };
 
-  /// [main] Memory is taken here.
+  /// [main] This allocates the memory.
   explicit Contour(uint32_t vertices) : vertices_(vertices) {
-    for (int slot = 0; slot < 3; ++slot) {  // each comes round as the back one
+    for (int slot = 0; slot < 3; ++slot) {  // each becomes the back one in turn
       frames_.back().xyz.resize(3 * std::size_t{vertices});
       frames_.update();
       frames_.publish();
     }
   }
 
-  /// [rt] Before a step of dt [s]: where it shall write vertices now; nullptr: nowhere.
+  /// [rt] Called before a step of dt [s]: where the step must write vertices; nullptr: nowhere.
   float* offer(double dt) noexcept HSP_RT {
     since_ += dt;
     offered_ = since_ >= 1 / kRate && wanted_.load(std::memory_order_relaxed) > 0;
@@ -36,7 +36,7 @@ class Contour {
     since_ = since_ < 2 / kRate ? since_ - 1 / kRate : 0;
     return frames_.back().xyz.data();
   }
-  /// [rt] After that step. `written`: it went well.
+  /// [rt] Called after that step. `written` says that it succeeded.
   void close(bool written) noexcept HSP_RT {
     if (!offered_ || !written) return;
     frames_.back().number = ++number_;
@@ -44,7 +44,7 @@ class Contour {
     wanted_.fetch_sub(1, std::memory_order_relaxed);
   }
 
-  /// [any] One thread: the newest frame, valid until the next call. More come for as long as this is called.
+  /// [any] Only one thread: the newest frame, valid until the next call. More are made as long as this is called.
   const Frame& newest() noexcept {
     wanted_.store(kPatience, std::memory_order_relaxed);
     frames_.update();
@@ -53,7 +53,7 @@ class Contour {
   uint32_t vertices() const noexcept { return vertices_; }
 
  private:
-  static constexpr int kPatience = 60;  ///< frames that are made for one who does not ask again
+  static constexpr int kPatience = 60;  ///< frames that are made for a reader that does not ask again
   uint32_t vertices_;
   TripleBuffer<Frame> frames_;
   std::atomic<int> wanted_{0};

@@ -16,10 +16,10 @@ namespace hapticd::host {
 namespace {
 
 constexpr int kLimitMs = 5000;         ///< constructors that take longer would hold up the daemon as well
-constexpr uint32_t kMaxParams = 4096;  ///< more is a table that was misread
+constexpr uint32_t kMaxParams = 4096;  ///< a table with more was misread
 constexpr uint32_t kMaxChoices = 4096;
 
-/// A parameter of any minor version: members that the file does not have stay zero.
+/// A parameter of any minor version: members that the file lacks stay zero.
 ParamInfo copyParam(const hsp_param& given) {
   hsp_param p{};
   std::memcpy(&p, &given, std::min<size_t>(given.struct_size, sizeof p));
@@ -31,7 +31,7 @@ ParamInfo copyParam(const hsp_param& given) {
   return info;
 }
 
-/// Nothing, or why a table cannot be used to check files.
+/// Nothing, or the reason why a table cannot be used to check files.
 std::string wrongIn(const ParamInfo& p) {
   if (p.id.empty()) return "a parameter without an id";
   if (p.kind < HSP_REAL || p.kind > HSP_DATA) return p.id + ": kind " + std::to_string(p.kind) + " is unknown";

@@ -18,7 +18,7 @@ const Extension* extensionOf(const hdv_class& device_class, hdv_device* device, 
   return found != nullptr && found->struct_size >= sizeof(Extension) ? found : nullptr;
 }
 
-/// Links that can be drawn: of some number, each beginning at an earlier one. nullptr: these cannot.
+/// Links that can be drawn: at least one, each beginning at an earlier one. nullptr: these cannot be drawn.
 const hdv_ext_links* drawable(const hdv_ext_links* links) {
   if (links == nullptr || links->link_count == 0 || links->link_count > HDV_MAX_LINKS || links->parent == nullptr ||
       links->frames == nullptr)
@@ -28,7 +28,7 @@ const hdv_ext_links* drawable(const hdv_ext_links* links) {
   return links;
 }
 
-/// What open() said about the hardware is used as limits: nothing in it may be nonsense.
+/// What open() said about the hardware is used for limits, so all of it must make sense.
 std::string wrongIn(const hdv_info& info, uint32_t kinematic_joints) {
   if (info.joint_count == 0 || info.joint_count > HDV_MAX_JOINTS)
     return "reports " + std::to_string(info.joint_count) + " joints, expected 1 to " + std::to_string(HDV_MAX_JOINTS);

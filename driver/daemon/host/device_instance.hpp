@@ -18,7 +18,7 @@
 
 namespace hapticd::host {
 
-/// Samples from elsewhere than the hardware, which is never opened: a recording that is run again.
+/// Samples from another source than the hardware, which is never opened: a recording that is replayed.
 struct Playback {
   hdv_info info{};      ///< what the device said of itself
   hdv_sample sample{};  ///< what the next read gives
@@ -27,13 +27,13 @@ struct Playback {
 
 class DeviceInstance {
  public:
-  /// [main] Loads the library (once a process), creates the instance and sets the parameters of the device file.
+  /// [main] Loads the library (once per process), creates the instance and sets the parameters of the device file.
   static Result<std::unique_ptr<DeviceInstance>> create(const scene::Device& device, Services::Log log);
   ~DeviceInstance();  ///< [main] stops, closes and destroys
   DeviceInstance(const DeviceInstance&) = delete;
   DeviceInstance& operator=(const DeviceInstance&) = delete;
 
-  /// [main] Instead of the hardware; before open(). The playback outlives the instance.
+  /// [main] Used in place of the hardware; call it before open(). The playback outlives the instance.
   void playBack(const Playback* playback) { playback_ = playback; }
 
   Result<void> open();                       ///< [main] finds the hardware
@@ -55,21 +55,21 @@ class DeviceInstance {
     return class_->write(device_, now_ns, &command);
   }
 
-  /// [any] Motors free at once, by the module's own means; async-signal-safe. False: the module has none.
+  /// [any] Frees the motors at once, by the module's own means; async-signal-safe. False if the module has none.
   bool cut() noexcept {
     if (cut_ == nullptr || playback_ != nullptr) return playback_ != nullptr;
     const Calling calling(owner_);
     cut_->cut(device_);
     return true;
   }
-  /// [any] What cut() asked for has left for the hardware, as far as the module knows; async-signal-safe.
+  /// [any] True if the cut has been sent to the hardware, as far as the module knows; async-signal-safe.
   bool cutLeft() const noexcept {
     if (silence_ == nullptr || silence_->left == nullptr || playback_ != nullptr) return true;
     return silence_->left(device_) != 0;
   }
-  /// [any] It may be switched off by another process.
+  /// [any] True if another process may switch the arm off.
   bool silenceable() const noexcept { return silence_ != nullptr && silence_->how != nullptr && playback_ == nullptr; }
-  /// [any] How a process that outlives this one switches the motors off. False: it cannot, now or ever.
+  /// [any] How a process that outlives this one switches the motors off. False if it cannot, now or ever.
   bool silence(hdv_silence& how) noexcept {
     how = {};
     how.struct_size = sizeof how;
@@ -78,21 +78,21 @@ class DeviceInstance {
     return silence_->how(device_, &how) != 0 && how.size <= sizeof how.bytes;
   }
 
-  /// [any] Its samples can drive the loop: waitForSample() waits for them.
+  /// [any] True if its samples can drive the loop: waitForSample() waits for them.
   bool canPace() const { return pace_ != nullptr && (info_.capabilities & HDV_C_PACING) != 0; }
-  /// [rt] Between two ticks: sleeps until there is news of the arm, or until `until`. @return time of the next tick
+  /// [rt] Sleeps between two ticks until the arm has news, or until `until`. @return time of the next tick
   uint64_t waitForSample(uint64_t until) noexcept {
     if (playback_ != nullptr) return until;
     const Calling calling(owner_);
     return pace_->wait(device_, until);
   }
 
-  /// [any] Why the arm is not well as of the last read, in words of static storage: "cause; cure". nullptr: unknown.
+  /// [any] Why the arm was unwell at the last read, in words of static storage: "cause; cure". nullptr: unknown.
   const char* trouble() const noexcept HSP_RT {
     return trouble_ != nullptr && playback_ == nullptr ? trouble_->why(device_) : nullptr;
   }
 
-  /// The hand of a simulated arm; nullptr: the arm has none, or is played back.
+  /// The hand of a simulated arm; nullptr: the arm has none, or it is played back.
   const hdv_ext_hand* hand() const {
     const bool simulated = (info_.capabilities & HDV_C_SIMULATED) != 0;
     return simulated && playback_ == nullptr ? hand_ : nullptr;
@@ -103,7 +103,7 @@ class DeviceInstance {
   const hdv_info& info() const { return info_; }                         ///< valid once open
   const hdv_ext_kinematics& kinematics() const { return *kinematics_; }  ///< every module has it
   const hdv_ext_calibration* calibration() const { return calibration_; }
-  /// Where its links are; nullptr: the module does not say. Also of an arm that is played back.
+  /// Where its links are, even for an arm that is played back; nullptr: the module does not say.
   const hdv_ext_links* links() const { return links_; }
   hdv_device* handle() const { return device_; }
 

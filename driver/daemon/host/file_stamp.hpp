@@ -9,18 +9,18 @@
 
 namespace hapticd::host {
 
-/// What changes when a file is written or replaced: device, inode, size, time of the last change in s and ns.
+/// Changes when a file is written or replaced: device, inode, size, time of the last change in s and ns.
 using FileStamp = std::array<int64_t, 5>;
 
-/// [main] Nothing: there is no such file.
+/// [main] Nothing if there is no such file.
 std::optional<FileStamp> stampOf(const std::filesystem::path& file);
 
-/// One line that another build of a file does not have: its size, the time of its last change, and its real path.
+/// One line that differs for another build of a file: its size, the time of its last change, and its real path.
 std::string identityText(const std::filesystem::path& real, const std::optional<FileStamp>& stamp);
 
-/// [main] That of a file as it is on the disk.
+/// [main] The line of a file as it is on the disk.
 std::string identityOnDisk(const std::filesystem::path& file);
-/// [main] That of a file as its code was loaded, whatever it has become since; "": it was not.
+/// [main] The line of a file as its code was loaded, whatever it has become since; "" if it was not loaded.
 std::string identityLoaded(const std::filesystem::path& file);
 
 }  // namespace hapticd::host

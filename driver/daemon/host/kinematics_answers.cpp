@@ -12,8 +12,8 @@
 namespace hapticd::host {
 namespace {
 
-constexpr double kFarthest = 100;  ///< [m] no arm reaches so far: millimetres, or a number that was never set
-constexpr double kUnit = 0.02;     ///< of a quaternion's length: more than rounding makes
+constexpr double kFarthest = 100;  ///< [m] no arm reaches so far: these are millimetres, or a number that was never set
+constexpr double kUnit = 0.02;     ///< share of a quaternion's length: more than rounding causes
 
 std::string fourDigits(double value) {
   char text[32];
@@ -35,7 +35,7 @@ std::string wrongTable(const hdv_ext_kinematics& kinematics) {
   return "";
 }
 
-/// What one function answered at the places where it was asked.
+/// What one function answered at the places where it was called.
 struct Answers {
   const char* function;
   int asked = 0, refused = 0, no_numbers = 0;
@@ -49,7 +49,7 @@ struct Answers {
     if (!finite && no_numbers++ == 0) at = q;
     return finite;
   }
-  /// @param everywhere false: one place without a number is one too many
+  /// @param everywhere if it is false, one place without a number is one too many
   std::string wrong(Eigen::Index joints, bool everywhere, const char* where) const {
     const std::string name = std::string("has kinematics whose ") + function + "() ";
     if (asked > 0 && refused == asked)
@@ -62,7 +62,7 @@ struct Answers {
   }
 };
 
-/// Something that no force may be computed from, at one place; "" for nothing.
+/// Something at one place from which no force may be computed; "" if there is nothing.
 std::string wrongTip(const Tip& tip, const Joints& q, Eigen::Index joints) {
   const std::string at = " with the joints at " + placeText(q, joints);
   if (!(std::abs(tip.length - 1) <= kUnit))
@@ -79,14 +79,14 @@ std::string overrun(const char* function, const char* room, Eigen::Index numbers
          " numbers of " + room + ": see its joint_count and the order J[row * joint_count + joint]";
 }
 
-/// All three functions of the servo path at the places that `place` names.
+/// Calls all three functions of the servo path at the places that `place` names.
 std::string wrongAnswers(const KinematicsCalls& calls, const std::function<Joints(int)>& place, bool known_stops) {
   const Eigen::Index n = calls.joints();
   Answers forward{"forward"}, jacobian{"jacobian"}, gravity{"gravity"};
   for (int i = 0; i < kPlaces; ++i) {
     const Joints q = place(i);
     Tip tip;
-    tip.position.setConstant(std::nan(""));  // what is not written is no number
+    tip.position.setConstant(std::nan(""));  // so that what is not written is not a number
     const hsp_status status = calls.forward(q, tip);
     if (!forward.take(status, tip.position.allFinite() && std::isfinite(tip.length), q)) continue;
     if (std::string wrong = wrongTip(tip, q, n); !wrong.empty()) return wrong;
@@ -101,8 +101,8 @@ std::string wrongAnswers(const KinematicsCalls& calls, const std::function<Joint
   }
   const char* where = known_stops ? "between its stops" : "within 0.9 rad (or m) of zero";
   for (const Answers* one : {&forward, &jacobian, &gravity}) {
-    if (one == &forward && !known_stops && one->refused == one->asked) return "";  // its joints may be elsewhere
-    if (one == &gravity && one->refused == one->asked) continue;  // its weight is not known, and not carried
+    if (one == &forward && !known_stops && one->refused == one->asked) return "";  // it may have other joints there
+    if (one == &gravity && one->refused == one->asked) continue;  // its weight is unknown, and is not carried
     if (std::string wrong = one->wrong(n, !known_stops, where); !wrong.empty()) return wrong;
   }
   return "";

@@ -17,7 +17,7 @@ namespace hapticd::host {
 
 using Joints = Eigen::Matrix<double, HDV_MAX_JOINTS, 1>;
 
-/// Room for `Most` numbers with a mark behind the first `used`, so that what a module writes beyond is seen.
+/// Room for `Most` numbers with a mark behind the first `used`, so that what a module writes beyond them is seen.
 template <size_t Most>
 class MarkedRoom {
  public:
@@ -37,7 +37,7 @@ class MarkedRoom {
   }
 
  private:
-  static constexpr size_t kBeyond = 512;  ///< numbers that a slip of the row or the joint count may write
+  static constexpr size_t kBeyond = 512;  ///< how many numbers a wrong row or joint count may write
   static constexpr double kMark = 8.25e77;
   size_t used_;
   std::array<double, Most + kBeyond> numbers_;

@@ -14,10 +14,10 @@ namespace {
 using Twist = Eigen::Matrix<double, 6, 1>;
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kStep = 1e-5;         ///< [rad or m] of a difference: its error is some 1e-10 of the arm's size
-constexpr double kWrong = 0.02;        ///< of the longest column: more than rounding and sloppy constants make
-constexpr double kSmooth = 1e-3;       ///< of it: two differences that differ by more say that the place is an edge
-constexpr double kLeastColumn = 1e-3;  ///< [m/rad] below it, no column tells anything
+constexpr double kStep = 1e-5;         ///< [rad or m] step of a difference: its error is some 1e-10 of the arm's size
+constexpr double kWrong = 0.02;        ///< share of the longest column: more than rounding and rough constants cause
+constexpr double kSmooth = 1e-3;       ///< share of it: if two differences differ by more, the place is at an edge
+constexpr double kLeastColumn = 1e-3;  ///< [m/rad] below this no column tells anything
 
 std::optional<Tip> tipAt(const KinematicsCalls& calls, const Joints& q) {
   Tip tip;
@@ -26,7 +26,7 @@ std::optional<Tip> tipAt(const KinematicsCalls& calls, const Joints& q) {
   return tip;
 }
 
-/// Central difference of the tip's pose by one joint: linear velocity above, angular velocity below.
+/// Central difference of the tip's pose with respect to one joint: linear velocity above, angular velocity below.
 std::optional<Twist> difference(const KinematicsCalls& calls, Joints q, Eigen::Index joint, double step) {
   q[joint] += step;
   const auto after = tipAt(calls, q);

@@ -15,25 +15,25 @@ namespace hapticd::host {
 /// @return what is wrong, for one message; empty: nothing was found
 std::string wrongJacobian(const hdv_ext_kinematics& kinematics, const hdv_device* device);
 
-/// [main] All for which no arm may get a force, as far as it is known before the arm is open: a joint count that cannot
-/// be, a function that is missing, one that answers nowhere or with no number, an orientation without length, a tip
-/// farther away than any arm reaches, a function that writes beyond its room, and a wrong Jacobian.
+/// [main] Problems that forbid forces, as far as they are known before the arm is open: an impossible joint count, a
+/// function that is missing, one that answers nowhere or with no number, an orientation without length, a tip farther
+/// away than any arm reaches, a function that writes beyond its room, and a wrong Jacobian.
 /// @return as wrongJacobian()
 std::string wrongKinematics(const hdv_ext_kinematics& kinematics, const hdv_device* device);
 
-/// [main] The same between the stops of an arm that is open, where a run will call them: there every answer must be a
-/// number, and some place must have one.
+/// [main] The same between the stops of an open arm, where a run will call the functions: there every answer must be a
+/// number, and at least one place must have an answer.
 std::string wrongBetweenStops(const hdv_ext_kinematics& kinematics, const hdv_device* device, const hdv_info& info);
 
-/// [main] An inverse() that does not lead back to the tip, or leads where no arm reaches: no run faults on it, but
-/// simulated hands and `device encode` go wrong by it. @return as wrongJacobian()
+/// [main] An inverse() that does not lead back to the tip, or leads where no arm reaches. It causes no fault in a run,
+/// but simulated hands and `device encode` go wrong because of it. @return as wrongJacobian()
 std::string wrongInverse(const hdv_ext_kinematics& kinematics, const hdv_device* device);
 
-/// [main] What makes no run fault, and yet is hardly meant: joints that turn the tip and have no angular rows, a tip
-/// farther away than a hand leads it.
+/// [main] What causes no fault in a run, but is hardly intended: joints that turn the tip without angular rows, or a
+/// tip farther away than a hand moves it.
 std::vector<std::string> doubtsAboutKinematics(const hdv_ext_kinematics& kinematics, const hdv_device* device);
 
-/// [main] Joints whose motors cannot carry the arm's own weight at any place between its stops; "": none is known.
+/// [main] Joints whose motors cannot carry the arm's own weight at any place between its stops; "" if there are none.
 std::string weightBeyondMotors(const hdv_ext_kinematics& kinematics, const hdv_device* device, const hdv_info& info);
 
 }  // namespace hapticd::host

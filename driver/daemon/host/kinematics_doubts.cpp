@@ -16,7 +16,7 @@ std::string metres(const Eigen::Vector3d& p) {
   return text;
 }
 
-/// inverse(forward(q)) leads to the same tip, though perhaps by other joints, and to none where no arm reaches.
+/// inverse(forward(q)) must lead to the same tip, perhaps with other joints, and never where no arm reaches.
 class InverseCheck {
  public:
   explicit InverseCheck(const KinematicsCalls& calls) : calls_(calls) {}
@@ -30,13 +30,13 @@ class InverseCheck {
     if (found.overrun()) return keep("writes beyond the joint_count numbers of q");
     if (status < 0) return ++refused_, status_ = status, void();
     if (!found.finite())
-      return keep("gives joints that are no numbers for " + metres(tip.position) + ", and says HSP_OK");
+      return keep("gives joints that are not numbers for " + metres(tip.position) + ", and says HSP_OK");
     Joints back = Joints::Zero();
     std::copy_n(found.data(), calls_.joints(), back.data());
     Tip again;
     if (calls_.forward(back, again) < 0) return;
     const double off = (again.position - tip.position).norm();
-    constexpr double kOff = 1e-3;  // [m] more than a search leaves that stopped early
+    constexpr double kOff = 1e-3;  // [m] a larger error than that of a search that stopped early
     if (!(off <= kOff))
       keep("gives joints " + placeText(back, calls_.joints()) + " for " + metres(tip.position) +
            ", where forward() puts the tip at " + metres(again.position));
@@ -70,13 +70,13 @@ class InverseCheck {
   std::string wrong_;
 };
 
-/// How much forward() turns the tip where the joints go from one place to the next, and whether J knows of it.
+/// How far forward() turns the tip while the joints move from one place to the next, and whether J shows it.
 bool turnsWithoutRows(const KinematicsCalls& calls, const Joints& q, const Tip& tip) {
   KinematicsCalls::JacobianRoom J(static_cast<size_t>(6 * calls.joints()));
   if (calls.jacobian(q, J) < 0) return false;
   const double* rows = J.data() + 3 * calls.joints();
   if (!std::all_of(rows, rows + 3 * calls.joints(), [](double value) { return value == 0; })) return false;
-  constexpr double kMoved = 1e-3, kTurns = 0.1;  // [rad or m], of a radian for a radian
+  constexpr double kMoved = 1e-3, kTurns = 0.1;  // [rad or m], of one radian for each radian
   for (Eigen::Index joint = 0; joint < calls.joints(); ++joint) {
     Joints moved = q;
     moved[joint] += kMoved;
@@ -93,7 +93,7 @@ std::string wrongInverse(const hdv_ext_kinematics& kinematics, const hdv_device*
   const KinematicsCalls calls(kinematics, device);
   InverseCheck inverse(calls);
   bool any = false;
-  // An arm may reach less far than a radian or a metre: its inverse() rightly refuses the wide places.
+  // An arm may reach less far than a radian or a metre, so its inverse() rightly refuses the outer places.
   for (const double part : {1.0, 0.1}) {
     if (!inverse.refusedAll()) break;
     for (int i = 0; i < kPlaces; ++i) {
@@ -109,7 +109,7 @@ std::string wrongInverse(const hdv_ext_kinematics& kinematics, const hdv_device*
 }
 
 std::vector<std::string> doubtsAboutKinematics(const hdv_ext_kinematics& kinematics, const hdv_device* device) {
-  constexpr double kFar = 5;  // [m] no hand leads an arm so far
+  constexpr double kFar = 5;  // [m] no hand moves an arm so far
   const KinematicsCalls calls(kinematics, device);
   double farthest = 0;
   bool turns = true, any = false;
@@ -140,7 +140,7 @@ std::string weightBeyondMotors(const hdv_ext_kinematics& kinematics, const hdv_d
   Joints least = Joints::Constant(HUGE_VAL);
   for (int i = 0; i < kPlaces; ++i) {
     const Joints q = placeBetweenStops(i, info);
-    // Whichever way the arm is mounted: the lightest of six.
+    // The arm may be mounted in any way: this takes the lightest of six.
     for (Eigen::Index joint = 0; joint < calls.joints(); ++joint) {
       double lightest = HUGE_VAL;
       for (int way = 0; way < 6; ++way) {

@@ -10,17 +10,17 @@ namespace hapticd::host {
 
 constexpr int kPlaces = 12;
 
-/// Spread over a radian, without one that is special: 0 and right angles are where arms are singular.
+/// Places spread over a radian, none of them special: arms are singular at 0 and right angles.
 inline Joints anyPlace(int index) {
   Joints q;
   for (int i = 0; i < HDV_MAX_JOINTS; ++i) q[i] = 0.9 * std::sin(1.7 * (index + 1) + 2.3 * i);
   return q * (index % 3 == 0 ? 0.3 : 1.0);
 }
 
-/// [rad or m] No arm moves farther: stops beyond are those of an arm that has none.
+/// [rad or m] No arm moves farther: stops beyond this mean that the arm has none.
 inline constexpr double kFarthestStop = 1e3;
 
-/// The same spread over the way between the stops, as far as there are any.
+/// The same, spread over the range between the stops, if there are any.
 inline Joints placeBetweenStops(int index, const hdv_info& info) {
   Joints q = anyPlace(index);
   for (uint32_t i = 0; i < info.joint_count && i < HDV_MAX_JOINTS; ++i) {

@@ -14,14 +14,14 @@
 namespace hapticd::host {
 namespace {
 
-constexpr uint32_t kMaxClasses = 1024;  ///< more in one file is a table that was misread
+constexpr uint32_t kMaxClasses = 1024;  ///< a table with more in one file was misread
 
-/// What is loaded now, by the file's real path: two spellings of one file give one library. A library that nobody uses
-/// any more keeps its code, and the loader gives the same again, whatever the file has become.
+/// What is loaded now, by the file's real path: two spellings of one file give one library. A library that is no longer
+/// used keeps its code, and the loader gives it out again, however the file has changed.
 struct Registry {
   std::mutex mutex;
   std::map<std::filesystem::path, std::weak_ptr<Library>> loaded;
-  std::map<std::filesystem::path, std::optional<FileStamp>> first;  ///< of the files whose code is in memory
+  std::map<std::filesystem::path, std::optional<FileStamp>> first;  ///< identities of the files whose code is in memory
 };
 
 Registry& registry() {
@@ -29,9 +29,9 @@ Registry& registry() {
   return instance;
 }
 
-/// The entry of a built-in plugin or module, which has one of the two kinds.
+/// The entry of a built-in plugin or module, which is of one of the two kinds.
 Result<const void*> linked(const void* entry) {
-  if (entry == nullptr) return Error{"what is built in under this name is of the other kind"};
+  if (entry == nullptr) return Error{"the built-in class of this name is of the other kind"};
   return entry;
 }
 
@@ -69,7 +69,7 @@ Result<std::shared_ptr<Library>> Library::open(const std::filesystem::path& file
   std::weak_ptr<Library>& slot = all.loaded[real];
   if (std::shared_ptr<Library> loaded = slot.lock()) return loaded;
 
-  const auto stamp = stampOf(real);  // before: a file that is replaced now is taken for a new one at worst
+  const auto stamp = stampOf(real);  // read first: a file that is replaced now is at worst taken for a new one
   const auto handle = loadFile(real);
   if (!handle) return Error{"cannot load " + real.string() + "\n  the loader says: " + handle.error()};
   all.first.emplace(real, stamp);

@@ -8,10 +8,10 @@
 
 namespace hapticd::host {
 
-/// [main] Loads a file whole; it is never unloaded. @return a handle for symbolOf(), or the loader's own reason
+/// [main] Loads a file completely; it is never unloaded. @return a handle for symbolOf(), or the loader's own reason
 Result<void*> loadFile(const std::filesystem::path& file);
 
-/// [main] Address of a symbol of a loaded file, or the loader's own reason.
+/// [main] The address of a symbol of a loaded file, or the loader's own reason.
 Result<const void*> symbolOf(void* handle, const char* symbol);
 
 }  // namespace hapticd::host

@@ -41,11 +41,11 @@ Result<std::string> runInChild(const std::function<std::string()>& work, int) {
 }
 
 Result<std::string> runProgram(std::vector<std::string>, int) {
-  return Error{"could not be tried: this program starts no other"};
+  return Error{"could not be tried: this program cannot start another"};
 }
 
 void answerParent(const std::function<std::string()>&) {
-  std::abort();  // never called: nothing starts this program as a child
+  std::abort();  // never called, because nothing starts this program as a child
 }
 
 }  // namespace hapticd::host

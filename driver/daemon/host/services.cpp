@@ -11,14 +11,14 @@
 namespace hapticd::host {
 namespace {
 
-constexpr size_t kCacheLine = 64;          ///< blocks of two instances never share one
+constexpr size_t kCacheLine = 64;          ///< so that blocks of two instances never share a cache line
 constexpr size_t kLargestAlign = 1 << 21;  ///< a huge page
 constexpr size_t kLargestBlock = std::min<uint64_t>(uint64_t{1} << 40, SIZE_MAX / 2);
-constexpr size_t kLongestMessage = 4096;  ///< a plugin that loses its terminator does not flood the log
+constexpr size_t kLongestMessage = 4096;  ///< so that a plugin that forgets its terminator does not flood the log
 
 thread_local bool t_servo_thread = false;
 
-/// A message of the servo thread; longer ones are cut.
+/// A message from the servo thread; longer messages are cut.
 struct Record {
   int32_t level;
   std::array<char, 48> who;
@@ -27,7 +27,7 @@ struct Record {
 constexpr size_t kRecords = 64;  ///< read five times a second
 std::atomic<uint32_t> lost_records{0};
 
-/// One for the process, as there is one servo thread.
+/// The process has one, because there is one servo thread.
 SpscRing<Record>& servoRecords() {
   static SpscRing<Record> ring(kRecords);
   return ring;
@@ -72,7 +72,7 @@ void Services::forgetError() {
 }
 
 void Services::markServoThread() {
-  (void)servoRecords();  // made before the thread's first tick
+  (void)servoRecords();  // allocated before the thread's first tick
   t_servo_thread = true;
 }
 
@@ -106,7 +106,7 @@ void* Services::allocate(size_t bytes, size_t align) {
   const size_t rounded = (bytes + align - 1) / align * align;
   void* block = ::operator new(rounded, std::align_val_t{align}, std::nothrow);
   if (block == nullptr) return nullptr;
-  std::memset(block, 0, rounded);  // touches every page too: none faults in the servo thread
+  std::memset(block, 0, rounded);  // touches every page too, so that none faults in the servo thread
   blocks_.emplace(block, Block{rounded, align});
   locked_bytes_ += rounded;
   return block;
@@ -114,7 +114,7 @@ void* Services::allocate(size_t bytes, size_t align) {
 
 void Services::release(void* block) {
   const auto found = blocks_.find(block);
-  if (found == blocks_.end()) return;  // not ours, or given back before: freeing it would corrupt the heap
+  if (found == blocks_.end()) return;  // it is not ours, or was returned before: freeing it would corrupt the heap
   locked_bytes_ -= found->second.bytes;
   ::operator delete(block, std::align_val_t{found->second.align});
   blocks_.erase(found);

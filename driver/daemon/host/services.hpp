@@ -13,7 +13,7 @@
 
 namespace hapticd::host {
 
-/// Numbers that a shape wrote into the trace from the servo thread. Only the shape knows what they mean.
+/// Numbers that a shape traced from the servo thread. Only the shape knows what they mean.
 struct TraceEvent {
   uint32_t event = 0;
   double a = 0, b = 0;
@@ -31,26 +31,26 @@ class Services {
   Services& operator=(const Services&) = delete;
 
   const hsp_host* abi() const { return &abi_; }
-  /// [main] Newest message of level error, for set-up failures.
+  /// [main] The newest message of level error, for set-up failures.
   std::string lastError() const;
-  /// [main] Forgets it, so that the next call is not blamed for an older one.
+  /// [main] Forgets that message, so that the next call is not blamed for an older one.
   void forgetError();
-  size_t lockedBytes() const { return locked_bytes_; }  ///< [main] given out by alloc
+  size_t lockedBytes() const { return locked_bytes_; }  ///< [main] how much alloc has given out
 
-  /// [any] One reader: the next event of the servo thread. False: none.
+  /// [any] Only one reader: the next event of the servo thread. False if there is none.
   bool takeEvent(TraceEvent& event) noexcept { return events_.pop(event); }
-  /// [any] True once after the instance has asked to be activated again.
+  /// [any] True once, after the instance has asked to be activated again.
   bool takeRestartRequest() noexcept { return restart_.exchange(false, std::memory_order_relaxed); }
 
-  /// [main] Marks the calling thread as the servo thread, for is_rt_thread. What instances log on it waits in a ring of
-  /// records of fixed size, without a lock, until passOn() is called.
+  /// [main] Marks the calling thread as the servo thread, for is_rt_thread. Messages that instances log on it wait in a
+  /// ring of records of fixed size, without a lock, until passOn() is called.
   static void markServoThread();
   /// [main] One reader: passes on what was logged on the servo thread since the last call, and how many messages found
   /// the ring full.
   static void passOn(const Log& log);
 
  private:
-  static constexpr size_t kEvents = 64;  ///< a click or two a tick, read every 10 ms or so; the rest may be lost
+  static constexpr size_t kEvents = 64;  ///< a click or two per tick, read about every 10 ms; the rest may be lost
   struct Block {
     size_t bytes, align;
   };
@@ -63,7 +63,7 @@ class Services {
   hsp_host abi_{};
   std::string who_;
   Log log_;
-  mutable std::mutex mutex_;  // log() comes from the main and the simulation thread
+  mutable std::mutex mutex_;  // log() is called from the main and the simulation thread
   std::string last_error_;
   std::unordered_map<void*, Block> blocks_;
   size_t locked_bytes_ = 0;

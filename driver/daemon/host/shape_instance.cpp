@@ -14,7 +14,7 @@
 namespace hapticd::host {
 namespace {
 
-/// An extension whose struct reaches at least to its last member of revision 1.
+/// The extension, if its struct reaches at least to its last member of revision 1.
 template <class Extension>
 const Extension* extensionOf(const hsp_class& shape_class, hsp_shape* shape, const char* name, size_t needed) {
   if (!HSP_HAS(&shape_class, extension) || shape_class.extension == nullptr) return nullptr;
@@ -22,10 +22,10 @@ const Extension* extensionOf(const hsp_class& shape_class, hsp_shape* shape, con
   return found != nullptr && found->struct_size >= needed ? found : nullptr;
 }
 
-constexpr uint32_t kMostSurfaces = 1'000'000;  ///< the search keeps tables of so many for each probe
-constexpr uint32_t kMostVertices = 1'000'000;  ///< of a drawing; three times 12 MB are kept for them
+constexpr uint32_t kMostSurfaces = 1'000'000;  ///< the search keeps tables of this size for each probe
+constexpr uint32_t kMostVertices = 1'000'000;  ///< of a drawing; 12 MB are kept three times
 
-/// Claims are bounds that the host works with: one that is not a number would switch its checks off.
+/// Claims are bounds that the host works with: one that is not a number would disable its checks.
 std::string wrongIn(const hsp_report& report) {
   for (const double claim : {report.max_stiffness, report.max_force, report.size_m, report.max_jump})
     if (!std::isfinite(claim) || claim < 0)
@@ -36,13 +36,13 @@ std::string wrongIn(const hsp_report& report) {
   return "";
 }
 
-/// Where the scene asks for it; "": a model that no file has.
+/// The place where the scene asks for it; "" for a model that no file has.
 std::string placeOf(const scene::Model& model) {
   if (model.place.file.empty() || model.place.line == 0) return model.place.file;
   return model.place.file + ":" + std::to_string(model.place.line);
 }
 
-/// The largest damping among the parameters, given or left at their defaults.
+/// The largest damping among the parameters, whether given or by default.
 double dampingOf(const hsp_class& shape, const std::vector<scene::Value>& given) {
   double most = 0;
   for (uint32_t i = 0; i < shape.param_count; ++i) {

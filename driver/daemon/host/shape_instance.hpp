@@ -17,7 +17,7 @@ namespace hapticd::host {
 
 class ShapeInstance {
  public:
-  /// [main] Loads the library (once a process), creates the instance and sets the parameters of the model.
+  /// [main] Loads the library (once per process), creates the instance and sets the parameters of the model.
   static Result<std::unique_ptr<ShapeInstance>> create(const scene::Model& model, Services::Log log);
   ~ShapeInstance();  ///< [main] deactivates and destroys
   ShapeInstance(const ShapeInstance&) = delete;
@@ -26,7 +26,7 @@ class ShapeInstance {
   Result<void> activate(const hsp_activation& activation);  ///< [main]
   void deactivate();                                        ///< [main]
 
-  /// [rt] Adds to `step` where vertices are to be written, if somebody looks.
+  /// [rt] Adds to `step` the place where vertices must be written, if somebody looks.
   hsp_status step(hsp_step& step) noexcept HSP_RT {
     const Calling calling(owner_);
     if (contour_ == nullptr) return class_->step(shape_, &step);
@@ -40,7 +40,7 @@ class ShapeInstance {
     const Calling calling(owner_);
     class_->reset(shape_);
   }
-  /// [rt] Starts tracing a surface, or offers a second foot on it. The shape has surfaces.
+  /// [rt] Starts tracing a surface, or offers a second foot on it. Only for a shape with surfaces.
   void activate(const hsp_near& near) noexcept HSP_RT {
     const Calling calling(owner_);
     surfaces_->activate(shape_, &near);
@@ -49,9 +49,9 @@ class ShapeInstance {
     const Calling calling(owner_);
     surfaces_->deactivate(shape_, probe, surface);
   }
-  /// [sim] Surfaces near a point of the model frame; what is no sound answer is left out. @return how many of `near`
+  /// [sim] Surfaces near a point in the model frame; unsound answers are left out. @return how many are in `near`
   size_t nearby(const double p_model[3], double radius_m, std::span<hsp_near> near) const noexcept;
-  /// [rt] [J] that the shape says it stores; 0: it does not say, or answers what is no energy.
+  /// [rt] [J] energy that the shape says it stores; 0: it does not say, or its answer is not an energy.
   double storedEnergy() const noexcept HSP_RT {
     if (energy_ == nullptr) return 0;
     const Calling calling(owner_);
@@ -60,13 +60,13 @@ class ShapeInstance {
   }
   /// [main] Triangles in the current shape, checked: every number is finite and every corner a vertex.
   hsp_status tessellate(double chord_error_m, hsp_mesh& mesh) const;
-  /// [main] A box around it in the model frame. False: it does not say, or answers what is not a box.
+  /// [main] A box around it in the model frame. False: the shape does not say, or its answer is not a box.
   bool bounds(double min[3], double max[3]) const;
 
   const std::string& name() const { return name_; }
   const hsp_class& description() const { return *class_; }
   const hsp_report& report() const { return report_; }  ///< valid while active
-  /// [N s/m] The damping that the shape was asked for: the largest of its parameters in that unit.
+  /// [N s/m] The damping that was set on the shape: the largest of its parameters with that unit.
   double claimedDamping() const { return damping_; }
   const hsp_ext_surfaces* surfaces() const { return surfaces_; }  ///< nullptr: the shape traces itself
   uint32_t surfaceCount() const noexcept { return surface_count_; }

@@ -14,9 +14,9 @@
 
 namespace hapticd::link {
 
-constexpr double kLargestPush = 1e6;  ///< [N], [N m] a record with a number beyond it is refused
+constexpr double kLargestPush = 1e6;  ///< [N], [N m] a record with a larger number is refused
 
-/// A record behind a count that is odd while the record is written. Lives in shared memory, zeroed at first.
+/// A record with a count before it that is odd while the record is written. It lives in shared memory, zeroed at first.
 template <class Record>
 class LeadSlot {
   static constexpr size_t kWords = sizeof(Record) / 8;
@@ -24,13 +24,13 @@ class LeadSlot {
   static_assert(std::atomic<uint64_t>::is_always_lock_free);
 
  public:
-  /// [rt] The record, if there is one with another count than `seen`, which it becomes. Tries once: a writer that was
-  /// killed inside, or that never stops writing, leaves the record of before in force.
+  /// [rt] The record, if its count is not `seen`, which then becomes that count. It tries once: if a writer was killed
+  /// inside, or never stops writing, the previous record stays in force.
   bool take(uint64_t& seen, Record& record) const noexcept HSP_RT {
     const uint64_t before = count_.load(std::memory_order_acquire);
     if (before == seen || before % 2 != 0) return false;
     std::array<uint64_t, kWords> words;
-    // acquire on each word: who sees one of a later record sees that record's odd count too
+    // acquire on each word: a thread that sees a word of a later record also sees that record's odd count
     for (size_t i = 0; i < kWords; ++i) words[i] = words_[i].load(std::memory_order_acquire);
     if (count_.load(std::memory_order_relaxed) != before) return false;
     seen = before;
@@ -55,10 +55,10 @@ class LeadSlot {
 using PoseSlot = LeadSlot<hapticd_target>;
 using PushSlot = LeadSlot<hapticd_push>;
 
-/// What the servo tells those who push: the other way round, it writes and they read.
+/// What the servo tells programs that push: here the servo writes and they read.
 using StateSlot = LeadSlot<hapticd_state>;
 using JacobianSlot = LeadSlot<hapticd_jacobian>;
-constexpr size_t kJacobianAt = 320;  ///< [bytes] of an arm's Jacobian behind the beginning of its state
+constexpr size_t kJacobianAt = 320;  ///< [bytes] offset of an arm's Jacobian from the beginning of its state
 static_assert(sizeof(StateSlot) <= kJacobianAt);
 
 static_assert(sizeof(PoseSlot) <= sizeof(hapticd_lead_page) && sizeof(PushSlot) <= sizeof(hapticd_lead_page));

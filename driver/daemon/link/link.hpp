@@ -24,11 +24,11 @@ struct ArmState {
   std::array<bool, kMaxProbes> valid{};
 };
 
-/// An order of the simulation side to the tracers.
+/// An order from the simulation side to the tracers.
 struct ActivationRecord {
   enum class Order : uint32_t {
     kStart,  ///< the surface has come near: trace it
-    kOffer,  ///< it is traced already: here is the global foot, take it if it is nearer
+    kOffer,  ///< it is traced already; here is the global foot, to be taken if it is nearer
     kStop    ///< it has left the neighbourhood
   };
   uint32_t model = 0;
@@ -43,10 +43,10 @@ struct ModelTransform {
   std::array<double, 4> orientation{1, 0, 0, 0};  ///< w,x,y,z
 };
 
-/// Both directions of one link. Each member has one writing and one reading thread.
+/// Both directions of one link. Each member has one writing thread and one reading thread.
 struct Link {
   static constexpr size_t kRecords = 1 << 14;     ///< several searches' worth of a model of thousands of patches
-  static constexpr size_t kTransforms = 1 << 12;  ///< 5 ms of dozens of moving models at 10 kHz
+  static constexpr size_t kTransforms = 1 << 12;  ///< 5 ms of records of dozens of moving models at 10 kHz
 
   TripleBuffer<ArmState> arm;                        ///< servo to simulation
   SpscRing<ModelTransform> transforms{kTransforms};  ///< servo to simulation

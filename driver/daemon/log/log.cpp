@@ -22,7 +22,7 @@ namespace {
 constexpr size_t kFileBytes = 10 << 20, kOldFiles = 3;
 constexpr std::array kLevels{spdlog::level::debug, spdlog::level::info, spdlog::level::warn, spdlog::level::err};
 constexpr std::array kNames{"debug", "info", "warning", "error"};
-constexpr std::array kPriorities{"<7>", "<6>", "<4>", "<3>"};  // of syslog, which journald reads at a line's beginning
+constexpr std::array kPriorities{"<7>", "<6>", "<4>", "<3>"};  // of syslog, read by journald at a line's beginning
 
 enum class Target : uint8_t { kTerminal, kJournal, kPlain };
 
@@ -58,7 +58,7 @@ std::unique_ptr<spdlog::formatter> pattern(const char* text) {
 
 std::unique_ptr<spdlog::formatter> patternFor(Target target, bool json) {
   if (json || target == Target::kJournal) return pattern("%v");
-  // The status line of a run is on the terminal: it goes, and comes again below.
+  // The status line of a run is on the terminal: it is removed, and printed again below.
   if (target == Target::kTerminal) return pattern("\r\033[K%H:%M:%S.%e %^%*%$: %v");
   return pattern("%Y-%m-%d %H:%M:%S.%e %*: %v");
 }
@@ -103,7 +103,7 @@ std::string jsonLine(int32_t level, const std::string& who, const std::string& t
   return line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// Every line of a message needs its priority, or journald takes the second for information.
+/// Every line of a message needs its priority, or journald takes the second line for information.
 std::string journalLines(int32_t level, const std::string& text) {
   const std::string priority = kPriorities[static_cast<size_t>(level)];
   std::string lines = priority;

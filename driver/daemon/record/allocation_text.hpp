@@ -8,8 +8,8 @@
 
 namespace hapticd::record {
 
-/// [any] A warning for people, "" where allocations do not grow with the ticks: a few are those of an order.
-/// @param most whose code made most of them
+/// [any] A warning for people, "" where allocations do not grow with the ticks: an order causes a few.
+/// @param most the owner of the code that made most of them
 std::string allocationText(const RunReport& report, const AllocationShare& most);
 
 }  // namespace hapticd::record

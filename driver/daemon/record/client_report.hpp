@@ -9,38 +9,38 @@ namespace hapticd::record {
 
 struct ClientReport {
   std::string device, program;
-  int pid = 0;             ///< of the last, where it was started several times
+  int pid = 0;             ///< of the last process, if the program was started several times
   uint64_t times = 1;      ///< that it was started
   uint64_t answers = 0;    ///< that counted
-  uint64_t in_time = 0;    ///< of these, in the tick that they answer
-  uint64_t next_tick = 0;  ///< of these, one tick late
-  uint64_t silences = 0;   ///< times that it fell silent, and its force ramped out
+  uint64_t in_time = 0;    ///< of these, answered in the tick that they answer
+  uint64_t next_tick = 0;  ///< of these, answered one tick late
+  uint64_t silences = 0;   ///< how often it fell silent, and its force ramped out
   double largest_n = 0;    ///< [N] of its force
-  double asked_n = 0;      ///< [N] the largest that it asked for
+  double asked_n = 0;      ///< [N] the largest force that it asked for
   uint64_t bounded = 0;    ///< answers that were cut to the bound
   uint64_t refused = 0;    ///< answers that were refused whole
-  std::string why;         ///< of the last of these; "": none was
+  std::string why;         ///< why the last of these was refused; "": none was
 
   double sameTick() const { return share(in_time); }
   double nextTick() const { return share(next_tick); }
 
  private:
-  double share(uint64_t part) const {  // counted one after the other: a reader may meet the part first
+  double share(uint64_t part) const {  // they are counted one after the other, and a reader may see the part first
     const double whole = static_cast<double>(answers), some = static_cast<double>(part);
     return answers == 0 ? 0 : some < whole ? some / whole : 1;
   }
 };
 
-/// A tick of delay cuts the stiffest stable wall to a third: less than this is told.
+/// One tick of delay reduces the stiffest stable wall to a third: a smaller share than this is reported.
 constexpr double kEnoughInTime = 0.95;
 
-/// It answered long enough to be judged, and too late.
+/// True if it answered for long enough to be judged, and too late.
 bool late(const ClientReport& client);
 
-/// What helps a late program. @param answer_time [s] of the scene's clients
+/// Advice for a late program. @param answer_time [s] of the scene's clients
 std::string lateFix(double answer_time);
 
-/// Adds to those of the same program on the same device. At most 32 are kept, the newest.
+/// Adds this to the counts of the same program on the same device. At most 32 are kept, the newest.
 void add(std::vector<ClientReport>& all, const ClientReport& one);
 
 }  // namespace hapticd::record

@@ -14,7 +14,7 @@ namespace hapticd::record {
 
 enum class ColumnType : uint8_t { kReal, kReal32, kCount, kWord, kInt };  ///< double, float, uint64, uint32, int32
 
-/// [any] Bytes of a number of this type; 0 for a value that is none of the enumeration.
+/// [any] Bytes of a number of this type; 0 for a value that is not in the enumeration.
 constexpr uint32_t bytesOf(ColumnType type) {
   switch (type) {
     case ColumnType::kReal:
@@ -34,7 +34,7 @@ struct Column {
   uint32_t offset = 0;  ///< [bytes] from the start of the row
 };
 
-/// Columns one after the other, numbers aligned to their size, rows to 8 bytes.
+/// Columns one after the other; numbers are aligned to their size, rows to 8 bytes.
 class RowLayout {
  public:
   /// [main] Adds a column and gives back its offset in the row.

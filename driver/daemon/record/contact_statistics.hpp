@@ -10,7 +10,7 @@
 
 namespace hapticd::record {
 
-/// Ticks in which a model pushed though its answer told of no contact.
+/// Ticks in which a model pushed although its answer reported no contact.
 struct Pushes {
   uint64_t ticks = 0;
   double max_force = 0;  ///< [N] in those
@@ -22,9 +22,9 @@ struct Pushes {
 
 class ContactStatistics {
  public:
-  static constexpr double kBuzzWindow = 0.02;  ///< [s] faster changes of depth than this are felt as buzz
+  static constexpr double kBuzzWindow = 0.02;  ///< [s] changes of depth faster than this are felt as buzz
 
-  /// [rt] One tick. @param depth_m, force_n count only in contact and if finite @param step_ns 0: not measured
+  /// [rt] One tick. @param depth_m, force_n count only in contact and if finite @param step_ns 0: it was not measured
   void add(bool contact, double depth_m, double force_n, double dt, uint64_t step_ns) noexcept HSP_RT {
     if (step_ns > 0) step_us_.add(static_cast<double>(step_ns) * 1e-3);
     if (!contact || !std::isfinite(depth_m) || !std::isfinite(force_n)) {
@@ -32,7 +32,7 @@ class ContactStatistics {
       return;
     }
     ++ticks_;
-    const double delta = depth_m - mean_;  // Welford's recurrence: no cancellation over long runs
+    const double delta = depth_m - mean_;  // Welford's recurrence, which loses no digits over long runs
     mean_ += delta / static_cast<double>(ticks_);
     spread_ += delta * (depth_m - mean_);
     max_depth_ = std::max(max_depth_, depth_m);
@@ -41,17 +41,17 @@ class ContactStatistics {
     addToWindow(depth_m, dt);
   }
 
-  /// [rt] A tick in which it pushed though it traced no surface: no contact can be told of it.
+  /// [rt] A tick in which it pushed although it traced no surface, so that no contact can be reported.
   void addUntraced(double force_n) noexcept HSP_RT { untraced_.add(force_n); }
-  /// [rt] The same with a surface, and a depth_m of 0: as of a shape that never fills it in.
+  /// [rt] The same with a surface and a depth_m of 0, as from a shape that never fills it in.
   void addDepthless(double force_n) noexcept HSP_RT { depthless_.add(force_n); }
-  /// [rt] The same with a depth_m below 0: from outside, as a magnet does, or a depth of wrong sign.
+  /// [rt] The same with a depth_m below 0: it pushed from outside, as a magnet does, or the depth has the wrong sign.
   void addOutside(double force_n) noexcept HSP_RT { outside_.add(force_n); }
 
   /// [rt] A tick of contact in which its force drew the probe deeper in.
   void addPull(double force_n) noexcept HSP_RT { pulls_.add(force_n); }
 
-  /// [rt] What is known of the foot of a tick. Not called in ticks without one.
+  /// [rt] Whether the foot of a tick is proved. Not called in ticks without a foot.
   void addFoot(bool held, bool degraded) noexcept HSP_RT {
     ++(degraded ? degraded_feet_ : held ? held_feet_ : nearest_feet_);
   }
@@ -83,7 +83,7 @@ class ContactStatistics {
     if (window_time_ >= kBuzzWindow) closeWindow();
   }
   void closeWindow() noexcept HSP_RT {
-    if (window_time_ >= kBuzzWindow) {  // a broken-off window would count the impact itself as buzz
+    if (window_time_ >= kBuzzWindow) {  // a window that was broken off would count the impact itself as buzz
       buzz_sum_ += window_spread_;
       buzz_ticks_ += static_cast<uint64_t>(window_ticks_);
     }

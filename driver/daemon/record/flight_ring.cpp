@@ -23,9 +23,9 @@ Result<std::byte*> mapMemory(const std::string& file, size_t bytes) {
   if (file.empty()) {
     memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   } else {
-    unlink(file.c_str());  // a reader of an older one keeps what it has mapped
+    unlink(file.c_str());  // a reader of an older file keeps what it has mapped
     const int fd = open(file.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0640);
-    // allocated now: a full file system must be an error here, not a bus error in a tick
+    // allocated now, so that a full file system is an error here instead of a bus error in a tick
     const int full = fd < 0 ? errno : posix_fallocate(fd, 0, static_cast<off_t>(bytes));
     if (full == 0) memory = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
     if (full != 0) errno = full;
@@ -50,7 +50,7 @@ void putText(std::byte* memory, uint64_t at, const std::string& bytes) {
   put(memory, at, bytes.data(), bytes.size());
 }
 
-/// Where index and rows of each stream stand behind the skeleton. @param end of the file: grows by them
+/// Where the index and the rows of each stream are, after the skeleton. @param end of the file, which grows by them
 std::vector<Place> placesOf(const std::vector<StreamSpec>& streams, const std::vector<uint32_t>& rows, uint64_t& end) {
   std::vector<Place> places;
   for (size_t i = 0; i < streams.size(); ++i) {

@@ -54,7 +54,7 @@ std::string objectHeader(const std::string& messages) {
 std::string numberType(ColumnType type) {
   const uint32_t bytes = bytesOf(type), bits = 8 * bytes;
   if (type == ColumnType::kReal || type == ColumnType::kReal32) {
-    // class 1 version 1: little-endian IEEE, normalised mantissa with its first bit implied, sign in the top bit
+    // class 1 version 1: little-endian IEEE, mantissa normalised with an implied first bit, sign in the top bit
     const bool wide = type == ColumnType::kReal;
     return Bytes()
         .u8(0x11)
@@ -80,7 +80,7 @@ std::string textType(uint64_t length) {
   return Bytes().u8(0x13).u8(kNullPaddedUtf8).u8(0).u8(0).u32(length).take();
 }
 
-/// Compound of version 3: member offsets take as few bytes as the row's size does.
+/// A compound of version 3: member offsets take as few bytes as the row's size does.
 std::string compoundType(const RowLayout& layout) {
   const uint32_t size = layout.rowBytes();
   const int offset_bytes = size < 0x100 ? 1 : size < 0x10000 ? 2 : 3;
@@ -177,7 +177,7 @@ std::string textDataset(uint64_t address, uint64_t length) {
 }
 
 std::string TableHeader::bytes() const {
-  constexpr uint32_t kGrowingFill = 0x0B;  // space as it is needed, zeros where nothing was written
+  constexpr uint32_t kGrowingFill = 0x0B;  // space is allocated as it is needed, and is zero where nothing was written
   return objectHeader(
       message(kDataspace, Bytes().u8(2).u8(1).u8(1).u8(1).u64(rows).u64(UINT64_MAX).take()) +
       message(kFillValue, Bytes().u8(3).u8(kGrowingFill).take()) +
@@ -204,7 +204,7 @@ std::string ChunkIndex::bytes(size_t level) const {
     key(out, row);
     out.u64(child);
   }
-  // the key after the last child bounds it; a full node keeps the bound that its right neighbour begins with
+  // the key after the last child is its bound; a full node keeps the first key of its right neighbour as the bound
   key(out, node.right == kNowhere ? (chunks_ + 1) * chunk_rows_ : node.entries.back().first + fullChild(level));
   std::string text = out.take();
   text.resize(kNodeBytes, '\0');

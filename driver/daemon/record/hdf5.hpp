@@ -16,10 +16,10 @@ namespace hapticd::record::hdf5 {
 constexpr uint64_t kNowhere = UINT64_MAX;  ///< the undefined address
 constexpr uint32_t kSuperblockBytes = 48;
 
-/// [any] Jenkins' lookup3 of the bytes, by which HDF5 guards its metadata.
+/// [any] Jenkins' lookup3 of the bytes, with which HDF5 guards its metadata.
 uint32_t checksum(const std::string& bytes);
 
-/// [main] The superblock: where the root group is and where the file ends.
+/// [main] The superblock says where the root group is and where the file ends.
 std::string superblock(uint64_t root_address, uint64_t end_of_file);
 
 struct Link {
@@ -27,29 +27,29 @@ struct Link {
   uint64_t address;  ///< of the object header
 };
 
-/// [main] A group: its links and texts as attributes.
+/// [main] A group has its links, and its texts as attributes.
 std::string group(const std::vector<Link>& links, const std::vector<std::pair<std::string, std::string>>& attributes);
 
 /// [main] A dataset that is one text of fixed length at `address`.
 std::string textDataset(uint64_t address, uint64_t length);
 
-/// A table of rows in chunks. Its description is in a block of its own, so that the header, which changes as the table
+/// A table of rows in chunks. Its description has a block of its own, so that the header, which changes as the table
 /// grows, fits into one page and one write.
 struct TableHeader {
   uint64_t rows = 0, index_address = kNowhere;
   uint32_t chunk_rows = 1, row_bytes = 8;
   uint64_t description_address = 0, description_bytes = 0;
 
-  /// [main] Always of the same size.
+  /// [main] Its size is always the same.
   std::string bytes() const;
 };
 std::string tableDescription(const RowLayout& layout);  ///< [main] for TableHeader::description_address
 
-/// The chunks of one table as a B-tree that grows at its right edge. Nodes keep their size and place; only the last of
-/// each level is ever written again, and a node is written before what points to it.
+/// The chunks of one table as a B-tree that grows at its right edge. Nodes keep their size and place. Only the last of
+/// each level is ever rewritten, and a node is written before anything points to it.
 class ChunkIndex {
  public:
-  static constexpr uint32_t kFanOut = 64;  ///< entries a node, HDF5's default
+  static constexpr uint32_t kFanOut = 64;  ///< entries per node, HDF5's default
   static constexpr uint32_t kNodeBytes = 24 + (kFanOut + 1) * 24 + kFanOut * 8;
 
   ChunkIndex(uint32_t chunk_rows, uint64_t chunk_bytes) : chunk_rows_(chunk_rows), chunk_bytes_(chunk_bytes) {}

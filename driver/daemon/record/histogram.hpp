@@ -16,7 +16,7 @@ class Histogram {
   static constexpr int kSteps = 32, kLowest = -10, kHighest = 26;
   static constexpr int kBuckets = (kHighest - kLowest) * kSteps;
 
-  /// [rt] Counts one value; what is below the range counts in the first bucket, what is above in the last.
+  /// [rt] Counts one value; values below the range count in the first bucket, values above it in the last.
   void add(double value) noexcept HSP_RT {
     ++counts_[static_cast<size_t>(bucketOf(value))];
     ++total_;
@@ -38,7 +38,7 @@ class Histogram {
   uint64_t total() const noexcept { return total_; }
   uint64_t count(int bucket) const noexcept { return counts_[static_cast<size_t>(bucket)]; }
 
-  /// Lower edge of a bucket; edgeOf(kBuckets) is the upper edge of the last.
+  /// The lower edge of a bucket; edgeOf(kBuckets) is the upper edge of the last.
   static double edgeOf(int bucket) noexcept {
     const double fraction = static_cast<double>(bucket % kSteps) / kSteps;
     return std::ldexp(1 + fraction, kLowest + bucket / kSteps);

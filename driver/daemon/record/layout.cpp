@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint64_t kFirstObject = 1024;
 constexpr uint64_t kPage = 4096;
-constexpr uint64_t kTableSlot = 256;  ///< table headers stand in slots of this size: none crosses a page
+constexpr uint64_t kTableSlot = 256;  ///< table headers are in slots of this size, so that none crosses a page
 
 uint64_t aligned(uint64_t address, uint64_t to) {
   return (address + to - 1) / to * to;
@@ -24,7 +24,7 @@ void place(std::string& file, uint64_t address, const std::string& part) {
   std::memcpy(file.data() + address, part.data(), part.size());
 }
 
-/// Appends at the next multiple of eight.
+/// Appends `part` at the next multiple of eight.
 uint64_t append(std::string& file, const std::string& part) {
   const uint64_t address = aligned(file.size(), 8);
   place(file, address, part);

@@ -21,14 +21,14 @@ constexpr uint32_t kMaxRowBytes = 1 << 16;
 struct StreamHeader {
   char name[16] = {};
   uint32_t row_bytes = 0, chunk_rows = 0;
-  uint64_t rows = 0;  ///< in a file: that are whole; in a black box: ever written
+  uint64_t rows = 0;  ///< in a file: rows that are complete; in a black box: rows ever written
   uint64_t lost = 0;  ///< rows that were overwritten before they could be written to the file
 };
 
 struct FileHeader {
   char magic[24] = {};
   uint32_t stream_count = 0;
-  uint32_t ring = 0;    ///< 1: a black box, the newest rows of each stream in a circle
+  uint32_t ring = 0;    ///< 1: a black box, with the newest rows of each stream in a circle
   uint32_t closed = 0;  ///< 1: ended in order
   uint32_t reserved = 0;
   uint64_t about_address = 0, about_bytes = 0;  ///< JSON: versions, columns, the scene
@@ -38,7 +38,7 @@ struct FileHeader {
 static_assert(sizeof(FileHeader) <= 512, "one sector, so that it is written whole");
 static_assert(std::is_trivially_copyable_v<FileHeader> && std::atomic_ref<uint64_t>::is_always_lock_free);
 
-/// In front of each chunk of rows, and of each node of the HDF5 index between them.
+/// It precedes each chunk of rows, and each node of the HDF5 index between them.
 struct BlockHeader {
   static constexpr uint32_t kMagic = 0x4b4c4248;  ///< "HBLK"
   static constexpr uint32_t kIndex = UINT32_MAX;  ///< a node of the index
@@ -46,13 +46,13 @@ struct BlockHeader {
   uint64_t bytes = 0;  ///< that follow
 };
 
-/// What a recording says of itself besides its rows; both texts are datasets of the file.
+/// What a recording says about itself besides its rows; both texts are datasets of the file.
 struct About {
   std::string json;   ///< dataset "about"
   std::string scene;  ///< dataset "scene": the scene file as the user wrote it
 };
 
-/// The fixed part of a file, up to its first block.
+/// The fixed part of a file, before its first block.
 struct Skeleton {
   std::string bytes;
   std::vector<uint64_t> tables;        ///< address of each stream's table header

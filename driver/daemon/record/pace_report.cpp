@@ -6,17 +6,17 @@
 namespace hapticd::record {
 namespace {
 
-constexpr uint64_t kFew = 10;  ///< ticks that any machine is late in
+constexpr uint64_t kFew = 10;  ///< any machine is late in some ticks
 
-/// Values above a bound; those of the bucket that the bound lies in do not count.
+/// How many values are above a bound; those in the bound's own bucket do not count.
 uint64_t above(const Histogram& h, double bound) {
   uint64_t count = 0;
   for (int i = Histogram::bucketOf(bound) + 1; i < Histogram::kBuckets; ++i) count += h.count(i);
   return count;
 }
 
-/// A model whose steps compute longer than a period. Of the servo thread only time of the processor is taken, once a
-/// step was slow: a shape that sleeps shows by its longest step alone.
+/// Names a model whose steps compute longer than a period. Once a step was slow, the servo thread is measured by
+/// processor time alone: a shape that sleeps is seen by its longest step.
 std::string slowText(const ModelReport& model, double period_us, uint64_t least_part) {
   const Histogram& step = model.contact.stepUs();
   const uint64_t slow = above(step, period_us);
@@ -26,10 +26,10 @@ std::string slowText(const ModelReport& model, double period_us, uint64_t least_
                      model.name, typical * 1e-3, slow, period_us * 1e-3);
 }
 
-/// The model whose longest step alone kept the loop from its period, however few such steps there were.
+/// Names the model whose longest step alone kept the loop from its period, however few such steps there were.
 std::string heldUpText(const RunReport& report, double period_us) {
   constexpr double kVirtual =
-      50;  // periods: on the wall clock of a busy machine a step is long for no fault of its own
+      50;  // periods: on a busy machine the wall clock makes a step long through no fault of its own
   if (!report.virtual_time && report.missed_ticks == 0) return "";
   const ModelReport* slowest = nullptr;
   for (const ModelReport& model : report.models)
@@ -50,7 +50,7 @@ std::string paceText(const RunReport& report, double asked_hz) {
   const double period_us = 1e6 / asked_hz;
   const uint64_t late = above(report.compute_us, period_us), all = report.compute_us.total();
   std::string text;
-  // In virtual time the wall clock is what is known: what others took from a busy machine is in it.
+  // In virtual time only the wall clock is known, which includes what others took from a busy machine.
   for (const ModelReport& model : report.models) text += slowText(model, period_us, report.virtual_time ? 20 : 1000);
   if (report.virtual_time && late >= kFew && late * 20 >= all)
     text += fmt::format(

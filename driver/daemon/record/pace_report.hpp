@@ -7,8 +7,8 @@
 
 namespace hapticd::record {
 
-/// [any] Lines for people, "" where nothing is slow: the models whose steps take longer than a whole period, and, of a
-/// run in virtual time, that a real clock would not be held. A few slow ticks are those of a busy machine.
+/// [any] Lines for people, "" where nothing is slow. They name models whose steps take longer than a whole period, and
+/// runs in virtual time that could not keep up with a real clock. A busy machine causes a few slow ticks.
 /// @param asked_hz rate that the scene asks for
 std::string paceText(const RunReport& report, double asked_hz);
 

@@ -15,27 +15,27 @@ namespace hapticd::record {
 struct Sample {
   double t = 0;        ///< [s]
   double depth_m = 0;  ///< negative: distance outside; nan: nothing is traced
-  int model = -1;      ///< of that depth, index in RunNotes::models; -1: none
+  int model = -1;      ///< the model of that depth, index in RunNotes::models; -1: none
   double force_n = 0;  ///< as sent
-  double asked_n = 0;  ///< of the models, before the limits; nan: not known
-  uint32_t fault = 0;  ///< of the arm, 0: none
+  double asked_n = 0;  ///< force of the models, before the limits; nan: unknown
+  uint32_t fault = 0;  ///< fault of the arm, 0: none
   double lateness_us = 0, compute_us = 0;
-  std::array<double, 3> position_m{};  ///< of the tip; drawn where it is asked for; nan: not known
+  std::array<double, 3> position_m{};  ///< position of the tip, drawn if asked for; nan: unknown
 };
 
-/// What stands in a picture by name.
+/// What a picture shows by name.
 struct RunNotes {
   std::vector<std::string> models;
   double force_limit_n = 0;                               ///< limits.force of the arm; 0 or not finite: not drawn
-  bool positions = false;                                 ///< a row for each coordinate of the tip too
-  std::vector<std::pair<double, std::string>> moments{};  ///< [s] with what happened then: "ring is silenced"
-  std::string arm{};                                      ///< whose samples these are, where there are several
+  bool positions = false;                                 ///< adds a row for each coordinate of the tip
+  std::vector<std::pair<double, std::string>> moments{};  ///< [s] times, and what happened then: "ring is silenced"
+  std::string arm{};                                      ///< whose samples these are, if there are several arms
 };
 
-/// Short words for a fault of a recording, "too fast"; from servo::Fault, whose numbers recordings keep.
+/// Short words for a fault of a recording, "too fast". It is a servo::Fault, whose numbers recordings keep.
 std::string nameOfFault(uint32_t fault);
 
-/// [main] Draws the run as SVG. Long runs are drawn by the range of each pixel column, so that no peak is lost.
+/// [main] Draws the run as SVG. Of a long run each pixel column shows the range of its values, so that no peak is lost.
 Result<void> drawRun(const RunReport& report, const std::vector<Sample>& samples, const RunNotes& notes,
                      const std::string& file);
 

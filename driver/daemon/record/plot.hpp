@@ -10,14 +10,14 @@
 
 namespace hapticd::record {
 
-/// Points in order; a not-a-number lifts the pen. Of many points in one pixel column the range is drawn, so no peak is
-/// lost.
+/// Points in order; a NaN interrupts the line. Where many points share a pixel column their range is drawn, so that no
+/// peak is lost.
 struct Curve {
   std::string name;  ///< "": not in the legend
   std::string colour;
   std::vector<double> x, y;
   double width = 1.6;
-  bool dots = false;  ///< a dot a point and no line
+  bool dots = false;  ///< draws one dot per point and no line
 };
 
 /// A histogram: counts[i] from edges[i] to edges[i + 1].
@@ -26,7 +26,7 @@ struct Bars {
   std::vector<double> edges, counts;
 };
 
-/// A named line across the panel: a moment, or a bound.
+/// A named line across the panel, at a moment or a bound.
 struct Mark {
   double at = 0;
   std::string name, colour = "#c0392b";
@@ -37,10 +37,10 @@ struct NamedPoint {
   double x = 0, y = 0;
   std::string label, name, colour = "#222";
   double half = 3.5;             ///< [px]
-  double x_low = 0, x_high = 0;  ///< an interval of x, drawn where it has a length
+  double x_low = 0, x_high = 0;  ///< an interval of x, drawn if it has a length
 };
 
-/// A part of the x axis that something holds, drawn as a strip at the foot of the panel.
+/// A part of the x axis during which something holds, drawn as a strip at the foot of the panel.
 struct Span {
   double from = 0, to = 0;
   std::string name, colour;
@@ -57,7 +57,7 @@ struct Panel {
   std::vector<Bars> bars{};
   std::vector<NamedPoint> points{};
   std::vector<Mark> moments{}, bounds{};  ///< along x, along y
-  std::vector<Span> spans{};              ///< one of a name is in the legend
+  std::vector<Span> spans{};              ///< only one of the same name is in the legend
   double height = 200;                    ///< [px] of the area between the axes
 };
 

@@ -12,7 +12,7 @@ struct Axis {
   double low = 0, high = 1;
   bool logarithmic = false;
 
-  /// 0 at the low end, 1 at the high one; beyond them outside of that.
+  /// 0 at the low end, 1 at the high end; values beyond the ends lie outside 0 to 1.
   double share(double value) const;
   /// The value at a share of the axis.
   double at(double share) const;
@@ -20,10 +20,10 @@ struct Axis {
   std::vector<double> ticks(size_t most) const;
 };
 
-/// An axis that holds everything from `low` to `high`, its ends at round values. Zero stays an end where it is one.
+/// An axis that holds everything from `low` to `high`, with ends at round values. An end at zero stays there.
 Axis axisOver(const std::string& label, double low, double high, bool logarithmic = false);
 
-/// A number beside a tick: 0.5, 200, 20k.
+/// The number beside a tick: 0.5, 200, 20k.
 std::string tickText(double value);
 
 }  // namespace hapticd::record

@@ -20,19 +20,19 @@ class Recorder {
   static Result<std::unique_ptr<Recorder>> create(const FlightRing& ring, const std::string& file);
   ~Recorder() { stop(); }
 
-  std::error_code start();  ///< [main] begins to follow in a thread of its own
+  std::error_code start();  ///< [main] starts to follow the black box in a thread of its own
 
-  /// [main] Copies what is there now; for runs in virtual time, called between ticks often enough to lose nothing.
+  /// [main] Copies what is there now. Runs in virtual time call it between ticks, often enough to lose nothing.
   void drain();
 
   /// [main] Ends the thread, copies the rest, closes the file. @return what went wrong with the file
   Result<void> finish();
 
   uint64_t rows(size_t stream) const { return recording_->rows(stream); }  ///< [main] after finish()
-  uint64_t lost() const;                                                   ///< [main] rows of all streams, the same
-  /// [any] The black box may overwrite what is not yet in the file, if the servo does not wait.
+  uint64_t lost() const;                                                   ///< [main] rows of all streams together
+  /// [any] True if the black box may overwrite rows that are not yet in the file, unless the servo waits.
   bool behind() const noexcept HSP_RT;
-  /// [any] The file cannot be written: nothing more is recorded. What went wrong is what finish() gives.
+  /// [any] True if the file cannot be written, so that nothing more is recorded; finish() says why.
   bool failed() const { return failed_.load(std::memory_order_relaxed); }
 
  private:

@@ -164,7 +164,7 @@ Result<void> Recording::readBlocks(std::span<const std::byte> bytes, uint64_t ad
   return {};
 }
 
-/// A writer says how many rows there are after it has written them: where they are not there, they were there once.
+/// A writer says how many rows there are after it has written them, so rows that are missing existed once.
 /// @param stopped where no more blocks could be read
 void Recording::noteDamage(const RecordedStream& stream, uint64_t space, uint64_t stopped,
                            std::span<const std::byte> bytes) {

@@ -28,7 +28,7 @@ class RecordedStream {
   }
   const Column* find(const std::string& name) const;
 
-  /// [any] A number of a row as a double; counts beyond 2^53 are rounded.
+  /// [any] A number of a row as a double; counts above 2^53 are rounded.
   double number(uint64_t index, const Column& column) const;
 
  private:
@@ -44,7 +44,7 @@ class Recording {
  public:
   /// [main] Maps the file and checks it.
   static Result<std::unique_ptr<Recording>> open(const std::string& file);
-  /// [main] The same over memory that outlives the object. @param name for messages
+  /// [main] The same for memory that outlives the object. @param name for messages
   static Result<std::unique_ptr<Recording>> parse(std::span<const std::byte> bytes, const std::string& name);
   ~Recording();
   Recording(const Recording&) = delete;
@@ -58,7 +58,7 @@ class Recording {
   std::optional<int> writer() const { return writer_; }
   /// "" or how rows that it should have were lost after they were written: the file was cut, or changed.
   const std::string& damage() const { return damage_; }
-  bool blackBox() const { return black_box_; }  ///< the newest rows in a circle, not a whole run
+  bool blackBox() const { return black_box_; }  ///< it has the newest rows in a circle, not a whole run
 
  private:
   Recording() = default;

@@ -16,21 +16,21 @@ class RecordingFile {
  public:
   static constexpr uint64_t kChunkBytes = 256 * 1024;
 
-  /// [main] Replaces the file. @param chunk_bytes of rows that are stored together, about
+  /// [main] Replaces the file. @param chunk_bytes about how many bytes of rows are stored together
   static Result<std::unique_ptr<RecordingFile>> create(const std::string& file, const std::vector<StreamSpec>& streams,
                                                        const About& about, uint64_t chunk_bytes = kChunkBytes);
-  ~RecordingFile();  ///< [main] closes without saying that all is well
+  ~RecordingFile();  ///< [main] closes it without marking it as complete
   RecordingFile(const RecordingFile&) = delete;
   RecordingFile& operator=(const RecordingFile&) = delete;
 
-  /// [main] Appends rows; they count from the next publish() on. After an error nothing more is written.
+  /// [main] Appends rows; they are part of the file from the next publish() on. After an error nothing more is written.
   Result<void> append(size_t stream, const std::byte* rows, uint64_t count);
 
-  /// [main] Rows that are missing between the last and the next.
+  /// [main] Notes that rows are missing between the last and the next.
   void lost(size_t stream, uint64_t count) { streams_[stream].lost += count; }
 
   Result<void> publish();  ///< [main] makes what was appended part of the file
-  Result<void> close();    ///< [main] publishes, marks the file as whole and closes it
+  Result<void> close();    ///< [main] publishes, marks the file as complete and closes it
 
   uint64_t rows(size_t stream) const { return streams_[stream].rows; }
   uint64_t lostRows(size_t stream) const { return streams_[stream].lost; }

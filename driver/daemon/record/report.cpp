@@ -66,8 +66,8 @@ std::string contactText(const ContactStatistics& c, const RunReport& report, con
   return text;
 }
 
-/// A field has no surface, and a magnet pulls from outside. A shape with a surface that forgets the flag or the depth
-/// is felt, and everything here says that it is not.
+/// A field has no surface, and a magnet pulls from outside. But a shape with a surface that forgets the flag or the
+/// depth is felt, while the report says that it is not.
 std::string oddPushesText(const ModelReport& model) {
   const auto told = [&](const char* word, const Pushes& pushes, const char* how, const char* follows) {
     if (pushes.ticks == 0) return std::string();
@@ -78,12 +78,12 @@ std::string oddPushesText(const ModelReport& model) {
   const std::string untraced = told("warning", c.untraced(), "without HSP_OUT_TRACED", "no contact is told of these");
   const std::string outside =
       told("outside", c.outside(), "from outside (depth_m below 0)", "contacts are told inside only");
-  // It does fill in a depth. What lingers for a moment outside, as friction may, is no news.
+  // It does fill in a depth. What lingers outside for a moment, as friction may, need not be reported.
   if (c.contactTicks() > 0) return untraced + (c.outside().ticks > c.contactTicks() ? outside : "");
   return untraced + told("warning", c.depthless(), "with depth_m left at 0", "no contact is told of these") + outside;
 }
 
-/// A detent and a magnet pull for a part of a contact; a force of the wrong sign does for most of it.
+/// A detent and a magnet pull during a part of a contact; a force of the wrong sign pulls during most of it.
 std::string pullText(const ModelReport& model) {
   const Pushes& pulls = model.contact.pulls();
   const uint64_t ticks = model.contact.contactTicks();
@@ -94,12 +94,12 @@ std::string pullText(const ModelReport& model) {
       model.name, 100 * static_cast<double>(pulls.ticks) / static_cast<double>(ticks), pulls.max_force);
 }
 
-/// [m] in a unit that reads well.
+/// [m] written in a unit that reads well.
 std::string lengthText(double length) {
   return length < 1e-3 ? fmt::format("{:.3g} um", length * 1e6) : fmt::format("{:.3g} mm", length * 1e3);
 }
 
-/// A depth in mm shows as a depth that no arm reaches.
+/// A depth given in mm shows as a depth that no arm reaches.
 std::string deepText(const ModelReport& model) {
   constexpr double kDeep = 0.5;  // [m]
   const double deepest = model.contact.maxDepth();
@@ -143,7 +143,7 @@ std::string modelText(const ModelReport& model, const RunReport& report) {
   return text;
 }
 
-/// Models that answered coarser than they were asked to, those without contact too.
+/// Models that answered more coarsely than they were asked to, even without contact.
 std::string degradedText(const RunReport& report) {
   uint64_t models = 0, most = 0;
   for (const ModelReport& model : report.models) {
@@ -160,11 +160,11 @@ bool felt(const ContactStatistics& contact) {
   return contact.contactTicks() + contact.untraced().ticks + contact.depthless().ticks + contact.outside().ticks > 0;
 }
 
-/// For whoever wonders why nothing was felt.
+/// Explains why nothing was felt.
 std::string untouchedText(const RunReport& report) {
   const bool touched = std::any_of(report.models.begin(), report.models.end(),
                                    [](const ModelReport& model) { return felt(model.contact); });
-  // What silenced a model says more of why.
+  // What silenced a model says more about the reason.
   const bool silenced = std::any_of(report.faults.begin(), report.faults.end(),
                                     [](const std::string& fault) { return fault.rfind("model ", 0) == 0; });
   if (touched || silenced || report.ticks == 0) return "";
@@ -180,9 +180,9 @@ std::string limitText(const LimitReport& device, uint64_t ticks) {
   return text + ")\n";
 }
 
-/// A hand that leans on a stop feels it, and no model: it must not look for the force in the scene.
+/// A hand that leans on a stop feels the stop and no model, so nobody must look for that force in the scene.
 std::string stopText(const StopReport& stop, const RunReport& report) {
-  constexpr double kTold = 0.1;  // [s] shorter ones are bumps
+  constexpr double kTold = 0.1;  // [s] shorter times at a stop are bumps
   const double seconds = report.rate_hz > 0 ? static_cast<double>(stop.ticks) / report.rate_hz : 0;
   if (seconds < kTold) return "";
   return fmt::format("stop of {}: joint {} (q{}) stood at the end of its range for {:.1f} s: the arm goes no further\n",
@@ -216,7 +216,7 @@ std::string clientText(const ClientReport& client, double answer_time) {
                         client.bounded);
   if (client.refused > 0) text += fmt::format("  {} answers were refused: {}\n", client.refused, client.why);
   if (!late(client)) return text;
-  return text + "  a tick of delay cuts the stiffest stable wall to a third\n  fix: " + lateFix(answer_time) + "\n";
+  return text + "  one tick of delay cuts the stiffest stable wall to a third\n  fix: " + lateFix(answer_time) + "\n";
 }
 
 }  // namespace

@@ -33,8 +33,8 @@ struct ModelReport {
 /// In how many ticks limits made the force of one device smaller than the scene asked for.
 struct LimitReport {
   std::string device;
-  uint64_t any = 0;                                     ///< ticks in which at least one limit did
-  std::vector<std::pair<std::string, uint64_t>> ticks;  ///< by limit, those that did
+  uint64_t any = 0;                                     ///< ticks in which at least one limit did so
+  std::vector<std::pair<std::string, uint64_t>> ticks;  ///< for each limit, the ticks in which it did so
 };
 
 /// How long a joint stood at the end of its range.
@@ -46,22 +46,22 @@ struct StopReport {
 
 struct RunReport {
   std::string scene;
-  double seconds = 0, rate_hz = 0;  ///< simulated or real time of the run; ticks a second that were held
-  double wall_seconds = 0;          ///< time that passed on the wall
+  double seconds = 0, rate_hz = 0;  ///< simulated or real time of the run; ticks per second that were achieved
+  double wall_seconds = 0;          ///< time that passed on the wall clock
   bool virtual_time = false;
   uint64_t ticks = 0, overruns = 0, missed_ticks = 0;
   Histogram lateness_us, compute_us;
-  Histogram arms_us;               ///< part of compute: the physics of simulated arms, the traffic of others
-  long page_faults = 0;            ///< of the servo thread after its warm-up
+  Histogram arms_us;               ///< the arms' part of compute: physics of simulated arms, traffic of others
+  long page_faults = 0;            ///< those of the servo thread after its warm-up
   uint64_t servo_allocations = 0;  ///< the same
   uint64_t resident_bytes = 0;
   double start_ms = 0;  ///< from the start of the program to the first tick
   std::vector<ModelReport> models;
   std::vector<LimitReport> limits;  ///< one per device
-  std::vector<StopReport> stops;    ///< of joints that stood at one
+  std::vector<StopReport> stops;    ///< joints that stood at a stop
   std::vector<std::string> faults;
   std::vector<ClientReport> clients;  ///< programs that pushed
-  double answer_time = 0;             ///< [s] that the servo listened for them
+  double answer_time = 0;             ///< [s] how long the servo listened for them
 };
 
 /// [main] Writes the report as JSON, whole or not at all.

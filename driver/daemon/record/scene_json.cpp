@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON has no infinity and no not-a-number; texts stand for them.
+/// JSON has no infinity and no NaN, so texts stand for them.
 Json real(double value) {
   if (std::isfinite(value)) return value;
   return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
@@ -239,7 +239,7 @@ Json clientsJson(const scene::Clients& clients) {
           {"frame", clients.frame == scene::ClientFrame::kDevice ? "device" : "world"}};
 }
 
-/// Recordings older than this had none.
+/// Recordings older than this member do not have it.
 scene::Clients toClients(const Json& json) {
   if (!json.contains("clients")) return {};
   const Json& clients = json.at("clients");

@@ -9,11 +9,11 @@
 
 namespace hapticd::scene {
 
-/// [main] The device with the parameters that are right; nothing where the file is none, or its module is unknown.
+/// [main] The device with the parameters that are right; nothing if its file is none or its module is unknown.
 std::optional<Device> deviceDraft(const std::filesystem::path& file, host::Catalog& catalog);
 
-/// [main] A scene with problems, as far as it could be read: a model that has one is in it with what is right of it.
-/// Nothing where the file is no scene.
+/// [main] A scene with problems, as far as it could be read: a model with a problem keeps what is right. Nothing where
+/// the file is no scene.
 std::optional<Scene> sceneDraft(const std::filesystem::path& file, host::Catalog& catalog);
 
 }  // namespace hapticd::scene

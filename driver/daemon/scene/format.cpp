@@ -87,7 +87,7 @@ constexpr Key kClientsKeys[] = {
                                     "instead: the models fade out while a program pushes.")),
     real<&Clients::max_force>("max_force", {0, 1000, "N"}, "0",
                               "Largest force of one program; 0: as much as the device's limit."),
-    boolean<&Clients::exclusive>("exclusive", "false", "One program an arm; a second is refused."),
+    boolean<&Clients::exclusive>("exclusive", "false", "One program per arm; a second is refused."),
     real<&Clients::answer_time>(
         "answer_time", {0, 200e-6, "s"}, "0",
         "The servo listens so long after a tick began for programs that answered the last ticks, "

@@ -23,7 +23,7 @@ struct ModelText {
   const Node *parameters = nullptr, *motion = nullptr, *path = nullptr;
 };
 
-/// An arm as the scene names it: its file, and what this scene says otherwise.
+/// An arm as the scene names it: its file, and the settings that this scene overrides.
 struct DeviceReference {
   std::filesystem::path file;
   std::string name;
@@ -66,7 +66,7 @@ struct DaemonText {
 
 extern const Table kSceneTable, kModelTable, kClientsTable, kDeviceReferenceTable, kDeviceTable, kDaemonTable;
 
-/// A format by the key that its files begin with.
+/// A format, and the key with which its files begin.
 struct Format {
   const char* key;   ///< "hapticd"
   const char* name;  ///< "scene"

@@ -15,7 +15,7 @@ void checkRoot(const Node& root, Reader& in, host::Catalog& catalog, std::option
   if (format == nullptr) {
     detail::hasFormat(root, nullptr, in);
   } else if (format->table == &kSceneTable) {
-    // A hand is read against the arm that `run` takes where the scene names none.
+    // A hand is checked against the arm that `run` takes where the scene names none.
     const bool default_arm = root.find("hand") != nullptr;
     auto loaded = detail::loadScene(root, in, catalog, {.default_device = default_arm, .device_file = {}});
     if (scene != nullptr) *scene = std::move(loaded);

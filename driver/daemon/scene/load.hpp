@@ -18,12 +18,12 @@ using document::Problems;
 struct LoadOptions {
   /// False: with no device named, none is taken either (`hapticd trace` needs no arm).
   bool default_device = true;
-  /// Replaces the devices that the scene names; empty: as the scene says.
+  /// Replaces the devices that the scene names; empty: the scene's own are used.
   std::filesystem::path device_file;
 };
 
 struct Loaded {
-  std::optional<Scene> scene;  ///< nothing where there are problems
+  std::optional<Scene> scene;  ///< nothing if there are problems
   Problems problems;
 };
 struct LoadedDevice {
@@ -44,11 +44,11 @@ LoadedDevice loadDevice(const std::filesystem::path& file, host::Catalog& catalo
 /// [main] A daemon file.
 LoadedDaemon loadDaemon(const std::filesystem::path& file);
 
-/// [main] Any of the three, told apart by their first key. Used by `hapticd check`.
-/// @param scene where a scene without problems goes; nullptr: not wanted
+/// [main] Loads any of the three formats, told apart by their first key. Used by `hapticd check`.
+/// @param scene receives a scene without problems; nullptr: not wanted
 Problems checkFile(const std::filesystem::path& file, host::Catalog& catalog, std::optional<Scene>* scene = nullptr);
 
-/// [main] The same for a text; `file` gives messages their name and paths their folder. Entry point for fuzzing.
+/// [main] The same for a text; `file` gives messages its name and paths their folder. Fuzzing starts here.
 Problems checkText(const std::string& text, const std::filesystem::path& file, host::Catalog& catalog,
                    std::optional<Scene>* scene = nullptr);
 
@@ -56,7 +56,7 @@ Problems checkText(const std::string& text, const std::filesystem::path& file, h
 /// With a catalog, the parameters of every plugin found are part of it.
 std::string jsonSchema(const std::string& format, host::Catalog* catalog);
 
-/// File of the device that a scene without one is run with.
+/// The device file that is used for a scene without one.
 constexpr const char* kDefaultDevice = "devices/simulated-premium15.yaml";
 
 }  // namespace hapticd::scene

@@ -46,7 +46,7 @@ HdJoint readHdJoint(const Node& node, const std::string& key, Reader& in) {
   return joint;
 }
 
-/// A list of a few.
+/// A short list.
 bool isShortList(const Node& list, const std::string& key, size_t most, const char* of, Reader& in) {
   if (list.isSequence() && list.items.size() <= most) return true;
   in.problem(list, key,
@@ -68,14 +68,14 @@ HdArm readHd(const HdText& text, Reader& in) {
   return arm;
 }
 
-/// Who writes 0 means no force, and no limit would be the contrary.
+/// Somebody who writes 0 means no force, but no limit would mean the opposite.
 void refuseNoForce(const Node& root, Reader& in) {
   const Node* limits = root.find("limits");
   const Node* force = limits != nullptr && limits->isMap() ? limits->find("force") : nullptr;
   if (force == nullptr || !force->isScalar() || document::toNumber(force->scalar) != 0.0) return;
   in.problem(
       *force, "limits.force",
-      "0 N is no limit that an arm can keep; expected above 0, such as 0.5 N to begin with. Leave it out for the "
+      "0 N is not a limit that an arm can keep; expected above 0, such as 0.5 N to begin with. Leave it out for the "
       "device's own maximum; to run without a force: models: []");
 }
 

@@ -58,7 +58,7 @@ class SceneLoader {
                       "), expected each name once");
   }
 
-  /// The plugin's table, asked for once a name: ten thousand models of an unknown plugin give one long message.
+  /// The plugin's table, looked up once per name: ten thousand models of an unknown plugin give one message.
   const host::ClassInfo* pluginOf(const ModelText& text, const std::string& key) {
     if (text.plugin.empty()) return nullptr;
     const Node* at = text.node->find("plugin");
@@ -95,7 +95,7 @@ class SceneLoader {
     addPath(key, path, model);
   }
 
-  /// `motion:` beside `plugin:` is for the host and, where the plugin has such a parameter, for the plugin too.
+  /// `motion:` beside `plugin:` is for the host and, if the plugin has such a parameter, for the plugin too.
   void readMotion(const Node& node, const std::string& key, const host::ClassInfo& info, ParameterReader& reader) {
     const int index = info.indexOf("motion");
     if (index >= 0) return reader.readOne(node, key, static_cast<uint32_t>(index));
@@ -112,7 +112,7 @@ class SceneLoader {
     if (const auto file = in_.existingFile(*path, key + ".path")) model.path = readKinematicPath(*file, in_.problems());
   }
 
-  /// A mode alone, or a mapping with it.
+  /// A mode alone, or a mapping that contains it.
   void readClients(const Node& node) {
     if (node.isMap()) return in_.object(node, "clients", kClientsTable, &scene_.clients);
     const std::vector<std::string> modes(std::begin(kClientModes), std::end(kClientModes));
@@ -142,7 +142,7 @@ class SceneLoader {
     for (size_t i = 0; i < list.items.size(); ++i) addNamed(list.items[i], "devices[" + std::to_string(i) + "]");
   }
 
-  /// A path, or a mapping with a path and what this scene says otherwise.
+  /// A path, or a mapping with a path and the settings that this scene overrides.
   void addNamed(const Node& node, const std::string& key) {
     DeviceReference reference;
     const size_t before = in_.problems().size();

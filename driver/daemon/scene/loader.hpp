@@ -18,7 +18,7 @@ const Format* formatOf(const Node& root);
 /// True if the document has the wanted format; otherwise a problem says what it is and what was expected.
 bool hasFormat(const Node& root, const char* wanted, Reader& in);
 
-/// What a scene file's tree says. Problems go to `in`.
+/// Reads what a scene file's tree says. Problems go to `in`.
 std::optional<Scene> loadScene(const Node& root, Reader& in, host::Catalog& catalog, const LoadOptions& options);
 
 /// One device from its file, with what a scene says otherwise.
@@ -26,7 +26,7 @@ std::optional<Scene> loadScene(const Node& root, Reader& in, host::Catalog& cata
 std::optional<Device> loadDeviceFile(const DeviceReference& reference, host::Catalog& catalog, Problems& problems,
                                      Reader* scene_in, const Node* hand, bool* has_hand);
 
-/// What a device file's tree says.
+/// Reads what a device file's tree says.
 std::optional<Device> loadDevice(const Node& root, Reader& in, const DeviceReference& reference, host::Catalog& catalog,
                                  Reader* scene_in, const Node* hand, bool* has_hand);
 

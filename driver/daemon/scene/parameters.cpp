@@ -10,7 +10,7 @@ namespace hapticd::scene {
 using namespace document;
 namespace {
 
-constexpr size_t kShownProblems = 8;  ///< of one array: the rest say the same
+constexpr size_t kShownProblems = 8;  ///< most problems of one array: the others would say the same
 
 /// True if some id begins with "id.".
 bool isGroup(const host::ClassInfo& info, const std::string& id) {
@@ -20,7 +20,7 @@ bool isGroup(const host::ClassInfo& info, const std::string& id) {
   return false;
 }
 
-/// The ids of a group without its name: "script" of "hand.script"; all of them for "".
+/// The ids of a group without the group's name: "script" of "hand.script"; all of them for "".
 std::vector<std::string> idsIn(const host::ClassInfo& info, const std::string& group) {
   std::vector<std::string> ids;
   for (const std::string& id : info.paramIds())
@@ -87,7 +87,7 @@ void ParameterReader::nothing(const Entry& entry, const std::string& key, uint32
 void ParameterReader::unknown(const Entry& entry, const std::string& key, const std::string& id) {
   std::vector<std::string> ids = info_.paramIds();
   if (ids.empty()) return in_->problem(entry.key, key, "unknown key: " + info_.name + " has no parameters");
-  // Within a group, only the names of this group fit: another one's would be as unknown there.
+  // Within a group only this group's names are suggested: names of other groups would be as unknown here.
   const std::string group = id.substr(0, id.find('.') == id.npos ? 0 : id.rfind('.'));
   if (!group.empty()) std::erase_if(ids, [&](const std::string& one) { return one.rfind(group + ".", 0) != 0; });
   in_->problem(entry.key, key,
@@ -146,7 +146,7 @@ bool ParameterReader::readValue(const Node& node, const std::string& key, const 
 }
 
 bool ParameterReader::readPath(const Node& node, const std::string& key, Value& value) {
-  // A device node appears when the device is plugged in, which is checked when it is opened.
+  // A device node appears when the device is plugged in, so it is checked when it is opened.
   if (info_.kind == host::Kind::kDevice && node.isScalar() && node.scalar.rfind("/dev/", 0) == 0)
     return value.text = node.scalar, true;
   const auto file = in_->existingFile(node, key);
@@ -154,7 +154,7 @@ bool ParameterReader::readPath(const Node& node, const std::string& key, Value& 
   return file.has_value();
 }
 
-/// "m, rad, m, rad" of a row of four: one for each column. Otherwise the same for all.
+/// Units such as "m, rad, m, rad" are one per column of a row of four. A single unit holds for all columns.
 static std::vector<std::string> unitsOf(const host::ParamInfo& param) {
   std::vector<std::string> units(1);
   for (const char c : param.unit) {
@@ -181,8 +181,9 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
       const Node& item = node.items[i];
       const std::string path = key + "[" + std::to_string(i) + "]";
       if (item.isSequence() && param.columns > 1 && item.items.size() != param.columns)
-        in_->problem(item, path,
-                     "a row of " + std::to_string(item.items.size()) + ", expected " + std::to_string(param.columns));
+        in_->problem(
+            item, path,
+            "it has " + std::to_string(item.items.size()) + " numbers, expected " + std::to_string(param.columns));
       else if (item.isSequence())
         for (size_t j = 0; j < item.items.size(); ++j) add(item.items[j], path + "[" + std::to_string(j) + "]", j);
       else

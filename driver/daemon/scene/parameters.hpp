@@ -18,7 +18,7 @@ class ParameterReader {
   ParameterReader(Reader& in, const host::ClassInfo& info)
       : in_(&in), info_(info), given_(info.params.size()), seen_(info.params.size()) {}
 
-  /// Continues with nodes of another file: what it gives replaces what came before.
+  /// Continues with nodes of another file, whose values replace earlier ones.
   void overrideFrom(Reader& in);
 
   /// Reads a mapping; nested mappings flatten to dotted ids. @param key where it stands, "models[2].parameters"
@@ -44,7 +44,7 @@ class ParameterReader {
   Reader* in_;
   const host::ClassInfo& info_;
   std::vector<Value> values_;
-  std::vector<int> given_;  // line of each parameter in the file being read, good or not; 0: not given
+  std::vector<int> given_;  // line of each parameter in the file being read, right or wrong; 0: not given
   std::vector<bool> seen_;  // in any file
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A default is written as YAML in the tables; as JSON it is the same node.
+/// The tables have a default as YAML; as JSON it is the same node.
 Json defaultOf(const std::string& yaml) {
   Problems none;
   const auto node = parseText(yaml, "default", none);
@@ -132,7 +132,7 @@ Json schemaOf(const host::ParamInfo& param) {
   return json;
 }
 
-/// Puts a parameter where its dotted id nests it.
+/// Puts a parameter at the place that its dotted id names.
 void place(Json& object, const std::string& id, const host::ParamInfo& param) {
   Json& properties = object["properties"];
   const size_t dot = id.find('.');
@@ -154,7 +154,7 @@ Json parametersOf(const host::ClassInfo& info) {
   return json;
 }
 
-/// "If plugin is X, then parameters are those of X", for every class that the catalog knows.
+/// Writes "if plugin is X, then parameters are those of X" for every class in the catalog.
 Json choicesOf(host::Catalog& catalog, host::Kind kind, const char* selector) {
   Json rules = Json::array();
   for (const host::CatalogFile* file : catalog.files(kind))
@@ -180,7 +180,7 @@ void addPaths(Json& scene) {
   model["path"]["type"] = "string";
 }
 
-/// What the lists of `hd` hold.
+/// What the lists of `hd` contain.
 void addHd(Json& device) {
   Json& hd = device["properties"]["hd"]["properties"];
   const Json joint{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 1}, {"maxItems", 3}};

@@ -42,7 +42,7 @@ std::string machine() {
   return uname(&name) == 0 ? std::string(name.sysname) + " " + name.release + " " + name.machine : "";
 }
 
-/// What paths in the scene, and of models that are added beside it, are relative to.
+/// The folder to which paths in the scene, and of models that are added during the run, are relative.
 std::string folderOf(const std::filesystem::path& file) {
   std::error_code unknown;
   return std::filesystem::absolute(file, unknown).parent_path().string();
@@ -74,7 +74,7 @@ Json infoJson(const hdv_info& info) {
           {"product", std::string(info.product, strnlen(info.product, sizeof info.product))}};
 }
 
-/// How the links of an arm hang together, for those who draw it.
+/// How the links of an arm are connected, for programs that draw it.
 Json linksJson(Arm& arm) {
   const hdv_ext_links* links = arm.device().links();
   if (links == nullptr) return Json();
@@ -107,7 +107,7 @@ hdv_info toInfo(const Json& json) {
   return info;
 }
 
-/// Every file that the scene's forces come from.
+/// Every file on which the scene's forces depend.
 Json filesJson(const scene::Scene& scene) {
   constexpr uint32_t kPath = HSP_PATH;
   std::set<std::string> files;
@@ -122,7 +122,7 @@ Json filesJson(const scene::Scene& scene) {
   return list;
 }
 
-/// Streams by their numbers, which are those of the file's own header.
+/// Streams by their numbers, as in the file's own header.
 Json streamsJson(const std::vector<record::StreamSpec>& streams) {
   Json list = Json::array();
   for (size_t i = 0; i < streams.size(); ++i)

@@ -18,29 +18,29 @@ struct RunFacts {
   double rate = 1000;  ///< [Hz]
   uint64_t period_ns = 1'000'000, ticks = 0;
   bool virtual_time = false;
-  bool found_pressed = false;     ///< a hold button that was down before the run enabled, as it did once
-  bool former_claims = false;     ///< torques, and steps after a parameter was set, were held to no claim
-  bool full_when_slow = false;    ///< real arms pushed with their full force however slow they were
-  bool former_passivity = false;  ///< a steady push of a program was energy from nothing
+  bool found_pressed = false;     ///< as formerly, a hold button that was down before the run enabled forces
+  bool former_claims = false;     ///< as formerly, claims bounded neither torques nor steps after a parameter was set
+  bool full_when_slow = false;    ///< as formerly, real arms pushed with their full force however slow they were
+  bool former_passivity = false;  ///< as formerly, a program's steady push counted as created energy
 };
 
 /// [main] @param streams of flightStreams
 record::About aboutRun(const scene::Scene& scene, const World& world, const std::vector<std::unique_ptr<Arm>>& arms,
                        const RunFacts& facts, const std::vector<record::StreamSpec>& streams);
 
-/// A file that forces depend on, as it was.
+/// A file on which forces depend, as it was during the run.
 struct Fingerprint {
   std::string path, hash;
 };
 
-/// What a replay needs of it.
+/// What a replay needs to know of the run.
 struct RecordedRun {
   RunFacts facts;
   scene::Scene scene;
   std::vector<hdv_info> devices;
   std::vector<Fingerprint> files;
   std::string version, started;
-  std::string instructions;  ///< that the shapes took; "": it is older than the choice
+  std::string instructions;  ///< instructions that the shapes used; "": the recording is older than the choice
 };
 
 /// [main] Reads it back. An error says what is wrong with the text.

@@ -33,7 +33,7 @@ Json defaultOf(const hsp_param& param) {
   return numbers.is_array() ? numbers : Json::array();
 }
 
-/// A parameter as JSON has it: choices and switches by their names.
+/// A parameter's value in JSON: choices and switches by their names.
 Json valueJson(const scene::Model& model, const hsp_param& param, uint32_t index) {
   const scene::Value* value = given(model, index);
   switch (param.kind) {
@@ -74,7 +74,7 @@ Json liveParameters(const Session& session, uint32_t place) {
   return live;
 }
 
-/// Where a model is: what moves has rows, what stands has the place that it came to.
+/// Where a model is: a moving model has rows, a resting one is listed with the place that it came to.
 Json poseJson(const Session& session, uint32_t place) {
   PoseRow row;
   if (session.runner.telemetry().flight()->newestPose(place, row))
@@ -222,7 +222,7 @@ std::string snapshotAnswer(const Session& session) {
   const record::FlightRing& ring = session.runner.telemetry().flight()->ring();
   const auto mode = session.leads.mayPush() ? session.runner.scene().clients.mode : scene::ClientMode::kOff;
   Json next = Json::object(), models = Json::array(), devices = Json::array();
-  // Before the poses: who reads from there on misses no motion of what it is told here.
+  // This comes before the poses, so that a reader that starts there misses no motion of what it is told here.
   for (size_t i = 0; i < ring.specs().size(); ++i) next[ring.specs()[i].name] = ring.written(i);
   for (uint32_t i = 0; i < session.places.size(); ++i)
     if (session.places[i].taken) models.push_back(modelJson(session, i));
@@ -292,7 +292,7 @@ std::string noForceWhy(const Session& session, uint32_t index) {
 
 namespace {
 
-/// Who pushes or pushed on an arm with refused answers: the one whose answers were refused most.
+/// The program that pushes or pushed on an arm with the most refused answers.
 void addRefused(const Session& session, uint32_t arm, Json& json) {
   uint64_t most = 0;
   for (const Leads::Pusher& pusher : session.leads.pushers(arm)) {
@@ -306,7 +306,7 @@ void addRefused(const Session& session, uint32_t arm, Json& json) {
   }
 }
 
-/// Of an event of a lead: which program, and what it does.
+/// For an event of a lead: which program it is, and what it does.
 void addProgram(const Session& session, const hapticd_event& event, Json& json) {
   const bool push = event.model < 0 && event.code == static_cast<uint32_t>(Order::Led::kForce);
   if (event.kind == HAPTICD_REFUSED && push) return addRefused(session, static_cast<uint32_t>(event.probe), json);

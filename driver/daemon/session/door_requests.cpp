@@ -31,7 +31,7 @@ Result<Leads::Target> RequestHandler::pushOf(const std::string& device) const {
   if (!arm) return Error{arm.error()};
   if (!runner_.scene().clients.push)
     return refuse("unsupported",
-                  "the scene lets programs look on, and none push\n  fix: clients: {push: true} in the scene");
+                  "the scene lets programs watch, but not push\n  fix: clients: {push: true} in the scene");
   if (!leads_.mayPush())
     return refuse("unsupported", "a reload took the permission to push back: " + scene_file_ +
                                      "\n  fix: clients: add (or instead) in the scene, and hapticd ctl reload");
@@ -41,7 +41,7 @@ Result<Leads::Target> RequestHandler::pushOf(const std::string& device) const {
   return Leads::Target{Order::Led::kForce, *arm, "device \"" + device + "\""};
 }
 
-/// What a request wants to lead, if it can be led at all.
+/// What a request wants to lead, if that can be led at all.
 Result<Leads::Target> RequestHandler::leadOf(const Request& request) const {
   if (!request.force.empty()) return pushOf(request.force);
   if (request.hand.empty()) {
@@ -54,7 +54,7 @@ Result<Leads::Target> RequestHandler::leadOf(const Request& request) const {
     if (!place) return Error{place.error()};
     if (!places_[*place].model.kinematic)
       return refuse("unsupported", "model \"" + request.model +
-                                       "\" is not kinematic: only such can be led\n"
+                                       "\" is not kinematic: only kinematic models can be led\n"
                                        "  fix: motion: kinematic in the scene");
     return Leads::Target{Order::Led::kModel, *place, "model \"" + request.model + "\""};
   }
@@ -62,7 +62,7 @@ Result<Leads::Target> RequestHandler::leadOf(const Request& request) const {
   if (!arm) return Error{arm.error()};
   const std::string name = "device \"" + request.hand + "\"";
   if (!runner_.arms()[*arm]->simulated())
-    return refuse("unsupported", name + " is no simulation: its hand is a person's");
+    return refuse("unsupported", name + " is not simulated: its hand is a person's");
   if (!runner_.arms()[*arm]->hand().guided())
     return refuse("unsupported",
                   "the hand of " + name + " follows a script\n  fix: hand: {script: guided} in the scene");
@@ -72,7 +72,7 @@ Result<Leads::Target> RequestHandler::leadOf(const Request& request) const {
 Result<std::string> RequestHandler::lead(const control::Peer& peer, const Request& request) {
   if (runner_.virtualTime())
     return refuse("unsupported",
-                  "the run is in virtual time, which no program outside keeps\n  fix: start it without --virtual-time");
+                  "the run is in virtual time, which programs cannot follow\n  fix: start it without --virtual-time");
   const auto target = leadOf(request);
   if (!target) return Error{target.error()};
   if (!stays(peer) && staying() >= control::Server::kMaxStaying)
@@ -88,7 +88,7 @@ Result<std::string> RequestHandler::lead(const control::Peer& peer, const Reques
                      why.empty() ? "" : ",\"no_force\":" + nlohmann::json(why).dump());
 }
 
-/// Memory that all share who ask for it; made for the first of them.
+/// Memory that all who ask for it share; it is made for the first of them.
 Result<void> RequestHandler::attach(std::unique_ptr<SealedMemory>& kept, const char* name, size_t bytes,
                                     SealedMemory::Writers writers) {
   if (!kept) {

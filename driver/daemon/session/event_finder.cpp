@@ -7,7 +7,7 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr double kStalled = 0.25;  ///< [s] without a tick: no load of a machine that can hold a rate makes so much
+constexpr double kStalled = 0.25;  ///< [s] without a tick: no machine that can keep a rate is ever so late
 constexpr uint32_t kWhy = 16;      ///< of the code of HAPTICD_REFUSED, see client.h
 
 uint32_t codeOf(Order::Led led, Follow::Refusal why) noexcept HSP_RT {
@@ -108,7 +108,7 @@ void EventFinder::look(double t, uint32_t index, const Arm& arm) noexcept HSP_RT
   const auto number = static_cast<int32_t>(index);
   if (const Fault fault = arm.limiter().fault(); fault != note.fault) {
     note.fault = fault;
-    if (fault != Fault::kStopped)  // else nobody held it: the run ends as it shall
+    if (fault != Fault::kStopped)  // otherwise nobody held it: the run ends as planned
       add(fault != Fault::kNone ? HAPTICD_FAULT : HAPTICD_CLEARED, -1, number, static_cast<uint32_t>(fault),
           fault != Fault::kNone ? arm.limiter().measured() : 0);
   }

@@ -19,11 +19,11 @@ namespace hapticd::servo {
 
 class EventFinder {
  public:
-  static constexpr double kFreeFor = 0.05;       ///< [s] away from a model, before another touch is told
-  static constexpr double kRefusedPeriod = 1.0;  ///< [s] between two words about a leader that is refused
-  static constexpr size_t kMost = 64;            ///< events that one tick tells; more are dropped
+  static constexpr double kFreeFor = 0.05;       ///< [s] away from a model before another touch is reported
+  static constexpr double kRefusedPeriod = 1.0;  ///< [s] between two reports about a leader that is refused
+  static constexpr size_t kMost = 64;            ///< events that one tick reports; more are dropped
 
-  /// [main] @param places models that there may be @param arms of the scene
+  /// [main] @param places most models that there may be @param arms of the scene
   EventFinder(size_t places, size_t arms) : models_(places), arms_(arms) {}
 
   /// [rt] An order that the tick obeys.
@@ -31,7 +31,7 @@ class EventFinder {
   /// [rt] After a tick at t [s].
   void tick(double t, const Core& core, const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
 
-  /// [rt] Of this tick, without its number; forgotten with the next call of forget().
+  /// [rt] Events of this tick, without their number; the next call of forget() forgets them.
   std::span<const hapticd_event> found() const noexcept { return {found_.data(), count_}; }
   void forget() noexcept HSP_RT { count_ = 0; }  ///< [rt]
 
@@ -49,7 +49,7 @@ class EventFinder {
     uint64_t refused = 0;
     double refused_told = -kRefusedPeriod;
   };
-  struct ArmNote : RefusedNote {  // of who leads the hand
+  struct ArmNote : RefusedNote {  // for the leader of the hand
     Fault fault = Fault::kNone;
     RefusedNote pushes;
   };
@@ -72,10 +72,10 @@ class EventFinder {
   size_t count_ = 0, leaving_ = 0;
 };
 
-/// [main] Of a target of a model or a hand that was refused: what was wrong with it; "": another event.
+/// [main] For a refused target of a model or a hand: what was wrong with it; "" for another event.
 const char* whyRefused(const hapticd_event& event);
 
-/// [main] "click", as in JSON; "" for a number that is none.
+/// [main] "click", as in JSON; "" for a number that means none.
 const char* nameOfEvent(uint32_t kind);
 
 }  // namespace hapticd::servo

@@ -16,8 +16,8 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr size_t kAtOnce = 256;    ///< events that are read in one go
-constexpr double kBegins = 0.005;  ///< [s] nobody brings a tip to a surface so soon: it was inside already
+constexpr size_t kAtOnce = 256;    ///< events that are read at a time
+constexpr double kBegins = 0.005;  ///< [s] nobody moves a tip to a surface so soon: it was inside already
 
 }  // namespace
 
@@ -163,7 +163,7 @@ EventLog::Message EventLog::messageOfArm(const hapticd_event& event) const {
     return {HSP_LOG_INFO, device(event),
             held ? "the hold is over; its forces come back" : "the fault is over; its forces come back"};
   const auto fault = static_cast<Fault>(event.code);
-  if (fault == Fault::kStopped)  // by an order to hold: the end of a run is no event
+  if (fault == Fault::kStopped)  // only an order to hold counts: the end of a run is no event
     return {HSP_LOG_WARNING, device(event), "it is held: its forces ended and stay off until: hapticd ctl clear"};
   const char* trouble = event.probe >= 0 && arm < arms_.size() ? arms_[arm]->troubleOf(fault) : nullptr;
   return {HSP_LOG_ERROR, "", "fault: " + faultMessage(device(event), fault, event.value, trouble)};

@@ -20,24 +20,24 @@ class EventLog {
  public:
   using Arms = std::vector<std::unique_ptr<Arm>>;
 
-  /// [main] @param places models that there may be @param devices names of the arms, in their order
+  /// [main] @param places most models that there may be @param devices names of the arms, in order
   EventLog(size_t places, std::vector<std::string> devices, const Arms& arms)
       : models_(places), devices_(std::move(devices)), arms_(arms) {}
 
-  /// [any] A model takes a place; "": it has left, and what happened before still bears its name.
+  /// [any] A model takes a place; "": it has left, and earlier events still have its name.
   void name(uint32_t place, const std::string& model);
 
   /// [main] Writes the events since the last call.
   void tell(const Flight& flight);
 
-  /// [any] What a process calls itself that is about to lead: it may be gone when its event is told.
+  /// [any] The name of a process that is about to lead; it may be gone when its event is reported.
   void leads(pid_t pid, const std::string& program);
 
-  /// [any] A program begins to push on an arm, or ends.
+  /// [any] A program begins to push on an arm, or stops pushing.
   void pushes(uint32_t arm, uint32_t place, pid_t pid, const std::string& program);
   void pushesNoMore(uint32_t arm, uint32_t place, PusherLog::End how);
 
-  /// A message for the log; an empty text: none is due.
+  /// A message for the log; its text is empty if none is due.
   struct Message {
     int32_t level;  ///< HSP_LOG_DEBUG, ...
     std::string who, text;
@@ -46,7 +46,7 @@ class EventLog {
   Message messageOf(const hapticd_event& event) const;
   /// [main] Keeps what the words of later events depend on: whether an arm is held.
   void note(const hapticd_event& event);
-  /// [main] Of an arm whose enable switch was found pressed, in words.
+  /// [main] The message for an arm whose enable switch was found pressed.
   Message messageOfSwitch(size_t arm) const;
 
  private:
@@ -60,12 +60,12 @@ class EventLog {
   Message messageOfArm(const hapticd_event& event) const;
   Message messageOfLeader(const hapticd_event& event) const;
 
-  mutable std::mutex mutex_;  // a model comes on the thread of the control socket
+  mutable std::mutex mutex_;  // models are added on the thread of the control socket
   std::vector<std::string> models_, devices_;
   const Arms& arms_;
   std::vector<bool> told_of_switch_, held_;
   PusherLog pushers_;
-  std::map<pid_t, std::string> programs_;  ///< names of those that lead; at most kMostPrograms
+  std::map<pid_t, std::string> programs_;  ///< names of the programs that lead; at most kMostPrograms
   uint64_t next_ = 0;
 };
 

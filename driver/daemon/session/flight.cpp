@@ -52,7 +52,7 @@ bool Flight::read(uint64_t tick, TickRow& row, ArmRow& arm) const {
 }
 
 bool Flight::newestPose(uint32_t model, PoseRow& row) const {
-  constexpr uint64_t kMostAtOnce = 1024;  // models that move in one tick
+  constexpr uint64_t kMostAtOnce = 1024;  // most models that move in one tick
   const uint64_t end = ring_->written(kPoses);
   for (uint64_t back = 1; back <= std::min(end, kMostAtOnce); ++back)
     if (ring_->copy(kPoses, end - back, 1, reinterpret_cast<std::byte*>(&row)) == 1 && row.model == model) return true;
@@ -120,7 +120,7 @@ void Flight::tick(double t, double dt, Nanoseconds late, Nanoseconds spent, cons
   std::byte* to = ring_->next(kTicks);
   std::memcpy(to, &row, sizeof row);
   for (uint32_t i = 0; i < arms.size(); ++i) tickArm(columns_[i], *arms[i], core, i, to);
-  ring_->commit(kTicks);  // last: whoever sees the tick sees all of it
+  ring_->commit(kTicks);  // last, so that whoever sees the tick sees all of it
   ++tick_;
 }
 
@@ -222,7 +222,7 @@ void Flight::contacts(const Core& core, TickRow& tick) noexcept HSP_RT {
       row.step_us = static_cast<float>(static_cast<double>(model.step_ns) * 1e-3);
       row.gain = static_cast<float>(model.guard.gain());
       push(kContacts, row);
-      if (!contact.traced || row.depth <= tick.depth) continue;  // not a number: the first one is the deepest
+      if (!contact.traced || row.depth <= tick.depth) continue;  // not a number, so the first one is the deepest
       tick.depth = row.depth;
       tick.model = static_cast<int32_t>(index);
     }

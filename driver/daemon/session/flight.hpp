@@ -15,9 +15,9 @@
 
 namespace hapticd::servo {
 
-/// The streams of a recording, in the order of the file.
-/// Pushes stay empty where no program may push, links where no arm says where its own are, motors where no device file
-/// describes them.
+/// The streams of a recording, in the order of the file. Pushes stay empty if no program
+/// may push, links if no arm says where its links are, motors if no device file describes
+/// them.
 enum FlightStream : size_t {
   kTicks,
   kContacts,
@@ -74,28 +74,28 @@ struct OrderRow {
   double value = 0, seconds = 0, position[3] = {}, orientation[4] = {};
 };
 
-/// A record of a leader that the tick took.
+/// The record of a leader that the tick took.
 struct LeadRow {
   uint64_t tick = 0;
   uint32_t led = 0, target = 0;  ///< Order::Led; model or arm
   hapticd_target wanted{};
 };
 
-/// An answer of a program that pushes, which the tick took.
+/// The answer of a pushing program that the tick took.
 struct PushRow {
   uint64_t tick = 0;
   uint32_t arm = 0, place = 0;
   hapticd_push push{};
 };
 
-/// The far end of a link of an arm, for those who draw it: 60 times a second.
+/// The far end of an arm's link, 60 times per second, for programs that draw it.
 struct LinkRow {
   uint64_t tick = 0;
   uint32_t arm = 0, link = 0;
   Arm::LinkEnd end{};
 };
 
-/// A motor by the model of its heat: 10 times a second.
+/// A motor's state by the model of its heat, 10 times per second.
 struct MotorRow {
   uint64_t tick = 0;
   uint32_t arm = 0, joint = 0;
@@ -133,12 +133,12 @@ class Flight {
 
   /// [main] The oldest tick that is kept.
   uint64_t oldest() const noexcept;
-  /// [main] One tick and its first arm. False: it is not kept any more, or was not yet.
+  /// [main] One tick and its first arm. False if it is no longer kept, or does not exist yet.
   bool read(uint64_t tick, TickRow& row, ArmRow& arm) const;
-  /// [any] The newest pose of a model that moves. False: none is kept.
+  /// [any] The newest pose of a model that moves. False if none is kept.
   bool newestPose(uint32_t model, PoseRow& row) const;
-  /// [any] Events from number `first` on, at most `most`; `first` becomes the number of the first that is given. Those
-  /// that are not kept any more are left out.
+  /// [any] At most `most` events from number `first` on; `first` becomes the number of the first one given. Events that
+  /// are no longer kept are left out.
   std::vector<hapticd_event> events(uint64_t& first, size_t most) const;
 
  private:

@@ -204,7 +204,7 @@ RowLayout eventColumns() {
   return layout;
 }
 
-/// An arm in the rows of ticks: the columns depend on what it measures.
+/// An arm in the rows of ticks; its columns depend on what it measures.
 void addArm(RowLayout& layout, const std::string& arm, const hdv_info& info, bool pushed) {
   while (layout.rowBytes() % 8 != 0) layout.add(arm + "reserved", ColumnType::kWord, "", "0");
   armColumns(layout, arm);
@@ -230,7 +230,7 @@ std::vector<StreamSpec> flightStreams(const scene::Scene& scene, const std::vect
   streams[kTicks] = {"ticks", {}, ticks};
   streams[kContacts] = {"contacts", contactColumns(),
                         std::max(kFewest, ticks * models * std::max<uint64_t>(arms.size(), 1))};
-  // What moves may also come while it runs: of that a second is kept.
+  // A moving model may also be added during a run: one second is kept of such poses.
   const auto second = static_cast<uint64_t>(rate);
   streams[kPoses] = {"poses", poseColumns(),
                      std::max({kFewest, second, ticks * std::min<uint64_t>(moving, kModelsAtOnce)})};

@@ -7,10 +7,10 @@
 
 namespace hapticd::servo {
 
-/// [any] The peer has rights of its own, so that what the daemon may read is not meant for it.
+/// [any] True if the peer has rights of its own, so that what the daemon may read is not meant for it.
 bool isForeign(const control::Peer& peer);
 
-/// [main] The model with its files' paths as a plugin can open them: copies of what was passed.
+/// [main] The model with paths that a plugin can open: those of copies of the passed files.
 scene::Model withPaths(scene::Model model, const PassedFiles& files);
 
 }  // namespace hapticd::servo

@@ -7,8 +7,8 @@
 
 namespace hapticd::servo {
 
-/// [main] Gives a model of a recording the defaults that its plugin had then, where the scene did not give a value: so
-/// that an old recording answers as it did. @param plugin_id, version of the plugin that made the recording
+/// [main] Gives a recorded model the defaults that its plugin had then, where the scene gave no value, so that an old
+/// recording gives the same answers. @param plugin_id, version of the plugin that made the recording
 void useFormerDefaults(scene::Model& model, const std::string& plugin_id, const std::string& version);
 
 }  // namespace hapticd::servo

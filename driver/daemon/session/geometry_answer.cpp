@@ -16,15 +16,15 @@
 namespace hapticd::servo {
 namespace {
 
-constexpr double kChordShare = 0.005;                       ///< of a model's size: fine enough for a screen
+constexpr double kChordShare = 0.005;                       ///< share of a model's size: fine enough for a screen
 constexpr std::size_t kMostMemory = std::size_t{64} << 20;  ///< [bytes] that a drawing takes beside the servo's
-constexpr double kDefaultChord = 1e-3;                      ///< [m] of a model that does not say its size
+constexpr double kDefaultChord = 1e-3;                      ///< [m] for a model that does not say its size
 
 bool tooLong(const std::string& text) {
   return text.size() > control::Server::kMaxWaiting;
 }
 
-/// Appends a list of coordinates, as far as an answer may be long. False: one is not a number.
+/// Appends a list of coordinates, as long as an answer may be. False if one is not a number.
 bool appendPlaces(std::string& text, const float* xyz, std::size_t count) {
   for (std::size_t i = 0; i < count && !tooLong(text); ++i) {
     if (!std::isfinite(xyz[i])) return false;
@@ -41,7 +41,7 @@ bool allFinite(const float* numbers, std::size_t count) {
   return std::all_of(numbers, numbers + count, [](float number) { return std::isfinite(number); });
 }
 
-/// @param tolerance as asked for; afterwards as it was taken
+/// @param tolerance as asked for; afterwards the one that was used
 Result<hsp_mesh> cut(const host::ShapeInstance& shape, double& tolerance) {
   if (shape.geometry() == nullptr) return Error{kNoTriangles};
   const double size = shape.report().size_m;

@@ -10,13 +10,13 @@
 namespace hapticd::servo {
 
 /// [main] The triangles of an active model in its own frame, a soft body's as it is pressed now: one line of JSON with
-/// xyz [m] and triangles, both flat lists. @param tolerance chord error [m]; 0: 5/1000 of the model's size. Fails
-/// where the model has no triangles, or more than one answer may hold.
+/// xyz [m] and triangles, both flat lists. @param tolerance chord error [m]; 0: 5/1000 of the model's size. Fails if
+/// the model has no triangles, or more than one answer may hold.
 Result<std::string> geometryAnswer(const host::ShapeInstance& shape, double tolerance);
 
-/// [main] The same as memory that may be read alone, which has no bound but the machine's: f32 xyz [m], then f32 unit
-/// normals of the model where it has such ("normals" of the answer), then u32 triangles. The answer is one line of
-/// JSON: bytes, vertices, triangles, normals, tolerance. @param memory gets the descriptor
+/// [main] The same as read-only memory, whose size only the machine bounds: f32 xyz [m], then f32 unit normals of the
+/// model where it has such ("normals" of the answer), then u32 triangles. The answer is one line of JSON: bytes,
+/// vertices, triangles, normals, tolerance. @param memory gets the descriptor
 Result<std::string> geometryInMemory(const host::ShapeInstance& shape, double tolerance, Descriptor& memory);
 
 /// [main] The newest vertices that the steps of an active model have written, one line of JSON: frame, counted from 1,

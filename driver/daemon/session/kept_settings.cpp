@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Parameters by their names instead of in the order of the file.
+/// Lists parameters by their names instead of in the order of the file.
 Json byName(const Json& values) {
   Json named = Json::object();
   for (const Json& value : values)
@@ -22,7 +22,7 @@ Json byName(const Json& values) {
   return named;
 }
 
-/// The keys of two objects whose values differ, objects within them by their own keys.
+/// Keys of two objects whose values differ; objects within them give their own keys.
 void compare(const Json& a, const Json& b, const std::string& prefix, std::set<std::string>& found) {
   if (a == b) return;
   if (!a.is_object() || !b.is_object()) {

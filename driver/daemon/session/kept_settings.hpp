@@ -8,7 +8,7 @@
 
 namespace hapticd::servo {
 
-/// [main] Keys, as scenes have them, of everything but models in which the wanted scene differs from the one that runs:
+/// [main] Keys in which the wanted scene differs from the running one, models excepted, in the scenes' own words:
 /// "servo.rate", "clients.max_force", "ARM: limits.force".
 std::vector<std::string> keptSettings(const scene::Scene& running, const scene::Scene& wanted);
 

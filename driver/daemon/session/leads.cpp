@@ -25,12 +25,12 @@ bool same(const Leads::Target& a, const Leads::Target& b) {
 
 }  // namespace
 
-/// Another place each time: what the last program there left may ramp out yet.
+/// A new place each time, since the force of the last program there may still ramp out.
 Result<void> Leads::findPlace(Target& target, const control::Peer& peer) {
   const auto others = pushers(target.index);
   if (exclusive_ && !others.empty())
     return Error{target.name + " is pushed on by process " + std::to_string(others.front().pid) +
-                 " already, and the scene lets one program alone (clients.exclusive)"};
+                 " already, and the scene allows only one (clients.exclusive)"};
   for (const Lead& lead : leads_)
     if (same(lead.target, target) && lead.peer.id == peer.id)
       return Error{target.name + " is pushed on by this connection already"};
@@ -40,7 +40,7 @@ Result<void> Leads::findPlace(Target& target, const control::Peer& peer) {
         std::any_of(others.begin(), others.end(), [&](auto& other) { return other.place == target.place; });
     if (!taken) return {};
   }
-  return Error{target.name + " is pushed on by " + std::to_string(others.size()) + " programs already, as many as can"};
+  return Error{target.name + " is pushed on by " + std::to_string(others.size()) + " programs already, the limit"};
 }
 
 Result<Descriptor> Leads::begin(Target target, const control::Peer& peer) {
@@ -57,13 +57,13 @@ Result<Descriptor> Leads::begin(Target target, const control::Peer& peer) {
   Order order = orderOf(Order::Kind::kLead, target);
   order.value = peer.pid;
   if (target.led == Order::Led::kForce)
-    order.push = new ((*memory)->data()) link::PushSlot;  // all zeros as it is
+    order.push = new ((*memory)->data()) link::PushSlot;  // all zeros mean that it stays as it is
   else
     order.slot = new ((*memory)->data()) link::PoseSlot;
   if (programs_.size() >= kMostPrograms) programs_.clear();
-  programs_[peer.pid] = programOf(peer.pid);  // before the servo tells of it
+  programs_[peer.pid] = programOf(peer.pid);  // set before the servo reports it
   const auto given = give_(order);
-  // also where the servo was late: it may obey yet
+  // even if the servo was late, because it may still obey
   leads_.push_back({target, peer, std::move(*memory), programs_[peer.pid]});
   tell(leads_.back(), News::kBegins);
   if (given) return std::move(*shared);

@@ -23,12 +23,12 @@ class Leads {
   /// Gives an order to the servo and waits until it is obeyed.
   using Give = std::function<Result<void>(const Order&)>;
 
-  /// What is led, and by which name its leader knows it.
+  /// What is led, and the name by which its leader knows it.
   struct Target {
     Order::Led led = Order::Led::kModel;
     uint32_t index = 0;  ///< model or arm
     std::string name;    ///< "model door", for messages
-    uint32_t place = 0;  ///< of a force: given by begin()
+    uint32_t place = 0;  ///< for a force; given by begin()
   };
 
   /// A program that pushes.
@@ -37,15 +37,15 @@ class Leads {
     uint32_t place;
     std::string program;
   };
-  /// A program begins to push; it ends by a request, or its connection is gone.
+  /// A program begins to push; it ends by a request, or when its connection is gone.
   enum class News { kBegins, kEnds, kLeft };
-  /// Hears of a program that pushes on an arm.
+  /// Is told when a program begins or stops pushing on an arm.
   using Tell = std::function<void(uint32_t arm, const Pusher& pusher, News news)>;
 
   /// @param exclusive one program pushes on an arm; otherwise as many as there are places
   explicit Leads(Give give, bool exclusive = false, Tell tell = nullptr)
       : give_(std::move(give)), tell_(std::move(tell)), exclusive_(exclusive) {}
-  ~Leads();  ///< tells of those that push still
+  ~Leads();  ///< reports those that still push
   Leads(const Leads&) = delete;
   Leads& operator=(const Leads&) = delete;
 
@@ -53,23 +53,23 @@ class Leads {
   Result<Descriptor> begin(Target target, const control::Peer& peer);
   /// [main] Ends the lead of this peer.
   Result<void> end(const Target& target, const control::Peer& peer) { return end(target, peer, News::kEnds); }
-  /// [main] Ends whatever leads a model: it moves otherwise, or leaves.
+  /// [main] Ends whatever leads a model, because it is moved otherwise, or leaves.
   Result<void> endOfModel(uint32_t model);
-  /// [main] Ends all pushes: the permission is gone. Whatever a program writes from now on, nobody reads.
+  /// [main] Ends all pushes, because the permission is gone. Nobody reads what a program writes from now on.
   void endPushes();
   /// [main] Ends all leads of a peer that is gone.
   void left(const control::Peer& peer);
 
   /// [main] The process that leads a model or a hand, if one does.
   std::optional<pid_t> leader(Order::Led led, uint32_t index) const;
-  /// [main] What a process calls itself that led or pushed; "?": none of this number did.
+  /// [main] The name of a process that led or pushed; "?" if none had this number.
   std::string program(pid_t pid) const;
   /// [main] Those that push on an arm.
   std::vector<Pusher> pushers(uint32_t arm) const;
   /// [main] False: programs may not push, whatever the scene said at the start.
   bool mayPush() const { return may_push_; }
   void letPush(bool may) { may_push_ = may; }  ///< [main]
-  /// [main] Something lives as long as the peer's connection.
+  /// [main] True if something lives as long as the peer's connection.
   bool holds(const control::Peer& peer) const;
   /// [main] Numbers of the peers that hold something.
   std::set<uint64_t> holders() const;
@@ -91,8 +91,8 @@ class Leads {
   bool exclusive_, may_push_ = true;
   uint32_t last_place_ = 0;
   std::vector<Lead> leads_;
-  std::map<pid_t, std::string> programs_;            ///< of those that came last
-  std::vector<std::unique_ptr<SealedMemory>> kept_;  ///< of leads that the servo did not end: it may look there yet
+  std::map<pid_t, std::string> programs_;            ///< of the programs that came last
+  std::vector<std::unique_ptr<SealedMemory>> kept_;  ///< of leads that the servo did not end, which it may still read
 };
 
 }  // namespace hapticd::servo

@@ -24,7 +24,7 @@ namespace {
 
 using control::Request;
 
-/// Which of what was added is not what the person who added it takes it for, as `notes` of the answer.
+/// Which added models are not what the person who added them takes them for, as `notes` of the answer.
 void tellReplaced(nlohmann::ordered_json& json, const std::vector<scene::Model>& models,
                   const host::Services::Log& log) {
   std::set<std::string> told;
@@ -47,7 +47,7 @@ bool sameDevices(const scene::Scene& a, const scene::Scene& b) {
 
 }  // namespace
 
-/// The scene of a request. The rights of whoever asks count: what is not passed along open is opened by name only for
+/// The scene of a request. The rights of the caller count: a file that is not passed open is opened by name only for
 /// the daemon's own user and for root.
 Result<scene::Scene> RequestHandler::loadFor(const control::Peer& peer, const Request& request) {
   passed_.reset();
@@ -65,7 +65,7 @@ Result<scene::Scene> RequestHandler::loadFor(const control::Peer& peer, const Re
                     "fix: use hapticd ctl, or see \"files\" in the documentation of the protocol");
 }
 
-/// What was started with, read anew. Its texts are nobody else's business.
+/// The daemon's own scene, read anew. Its texts are not shown to others.
 Result<scene::Scene> RequestHandler::loadOwn(const control::Peer& peer) {
   if (!isForeign(peer)) return load_(scene_file_);
   if (scene_passed_)
@@ -76,7 +76,7 @@ Result<scene::Scene> RequestHandler::loadOwn(const control::Peer& peer) {
   return scene;
 }
 
-/// The arms' own files stay readable, as the scene must name the arms that run; what they hold is not told.
+/// The arms' own files stay readable, since a scene must name the running arms; but their content is not shown.
 Result<scene::Scene> RequestHandler::loadPassed(const control::Peer& peer, const std::string& file) {
   std::vector<std::string> own;
   for (const scene::Device& device : runner_.scene().devices) {
@@ -94,7 +94,7 @@ Result<scene::Scene> RequestHandler::loadPassed(const control::Peer& peer, const
   return Error{passed_->named(scene.error())};
 }
 
-/// What is wrong with the daemon's own scene quotes it.
+/// A problem in the daemon's own scene quotes it.
 std::string RequestHandler::tellable(const control::Peer& peer, const std::string& why) const {
   if (passed_) return passed_->named(why);
   return isForeign(peer) ? scene_file_ + ": cannot be used\n  fix: ask the daemon's user for hapticd check" : why;
@@ -135,9 +135,9 @@ Result<void> RequestHandler::refuseQuarantined(const std::vector<scene::Model>& 
   return {};
 }
 
-/// All of them or none: everything that can fail is done before the first is given to the servo.
+/// Adds all of them or none: everything that can fail is done before the first one is given to the servo.
 Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
-  code_ = "failed";  // that no model of these names was found is as it should be
+  code_ = "failed";  // it is right that no model of these names was found
   std::vector<uint32_t> empty;
   for (uint32_t i = 0; i < places_.size(); ++i)
     if (!places_[i].taken && runner_.world().shapes()[i] == nullptr) empty.push_back(i);
@@ -162,15 +162,15 @@ Result<void> RequestHandler::adopt(const std::vector<scene::Model>& models) {
     order.model = prepared_.back().get();
     const auto given = give(order);
     places_[place] = {models[i], true, true};
-    runner_.world().keep(place, std::move(shapes[i]), models[i]);  // also where it was late: it may obey yet
+    runner_.world().keep(place, std::move(shapes[i]), models[i]);  // even if it was late, because it may still obey
     if (!given) return given;
     prepared_.pop_back();
   }
   return {};
 }
 
-/// What `hapticd check` says of the models that came, as `warnings` of the answer and in the log. Whoever passed no
-/// file along is not told of the daemon's own.
+/// What `hapticd check` says about the added models, as `warnings` of the answer and in the log. A caller that passed
+/// no file is not told about the daemon's own.
 void RequestHandler::tellWarnings(const control::Peer& peer, const std::vector<scene::Model>& models,
                                   nlohmann::ordered_json& json) const {
   if (!advise_ || (isForeign(peer) && !passed_)) return;
@@ -199,7 +199,7 @@ nlohmann::ordered_json RequestHandler::waitingOf(const std::vector<scene::Model>
 }
 
 nlohmann::ordered_json RequestHandler::cameAnswer(const std::vector<scene::Model>& models) {
-  constexpr double kMet = 0.25;  // [s] the search has met a new model within some 0.1 s, and then it is stepped
+  constexpr double kMet = 0.25;  // [s] the search meets a new model within about 0.1 s, and then it is stepped
   nlohmann::ordered_json json = {{"ok", true}, {"models", models.size()}};
   if (auto waiting = waitingOf(models, kMet); !waiting.empty()) json["waiting"] = std::move(waiting);
   return json;
@@ -250,8 +250,8 @@ Result<std::string> RequestHandler::reload(const control::Peer& peer, const Requ
   return lineOf(json);
 }
 
-/// A scene that lets nobody push ends the pushes of programs at once, in their ramp; one that lets them push gives back
-/// what another took, and no more than the start gave.
+/// A scene that lets nobody push ends the pushes of programs at once, with their ramp. One that allows them restores
+/// what another scene took, but no more than the start allowed.
 void RequestHandler::takePermission(const scene::Clients& wanted) {
   const bool may = wanted.mode != scene::ClientMode::kOff && wanted.push;
   const scene::Clients& given = runner_.scene().clients;
@@ -262,7 +262,7 @@ void RequestHandler::takePermission(const scene::Clients& wanted) {
   if (!may) leads_.endPushes();
 }
 
-/// What the scene says and the run does not do, told in the log as well.
+/// What the scene says and the run does not do; it is logged as well.
 std::vector<std::string> RequestHandler::tellKept(const scene::Scene& wanted) const {
   std::vector<std::string> kept = keptSettings(runner_.scene(), wanted);
   if (!leads_.mayPush()) std::erase(kept, "clients.mode"), std::erase(kept, "clients.push");

@@ -12,7 +12,7 @@ namespace {
 using record::Column;
 using record::ColumnType;
 
-/// That column and those right behind it, all of them numbers of 8 bytes; nullptr: the rows have none.
+/// That column and those right after it, all of them numbers of 8 bytes; nullptr if the rows have none.
 const Column* reals(const record::RecordedStream& stream, const std::string& name, uint32_t count) {
   const Column* column = stream.find(name);
   const bool fits = column != nullptr && column->type == ColumnType::kReal &&
@@ -20,7 +20,7 @@ const Column* reals(const record::RecordedStream& stream, const std::string& nam
   return fits ? column : nullptr;
 }
 
-constexpr int kSettle = 50;     ///< ticks without a hand, in which a body shows itself at rest
+constexpr int kSettle = 50;     ///< ticks without a hand, after which a body shows its rest shape
 constexpr double kTick = 1e-3;  ///< [s] of these
 
 }  // namespace
@@ -87,7 +87,7 @@ void ModelRerun::step() {
   tick(timeOf(next_++));
 }
 
-/// With the probes as they are. Rows of a damaged file may run backward: such a one is left out.
+/// Steps with the probes as they are. Rows of a damaged file may run backward; such a row is left out.
 void ModelRerun::tick(double t) {
   const double dt = begun_ ? t - last_ : 0;
   if (!(dt >= 0)) return;

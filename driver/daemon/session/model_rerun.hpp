@@ -18,7 +18,7 @@ class ModelRerun {
   static constexpr double kMemory = 2;  ///< [s] A body touched longer ago than this has come to rest.
 
   /// [main] @param recording, world outlive it; the world has one model, and a probe for each arm of the recording.
-  /// The error: the rows hold no tip positions
+  /// Fails if the rows hold no tip positions
   static Result<std::unique_ptr<ModelRerun>> prepare(const record::Recording& recording, World& world);
 
   /// [main] Brings the model to the time t [s] of the recording. It steps on from the last call if that is less than

@@ -8,7 +8,7 @@
 
 namespace hapticd::servo {
 
-inline constexpr size_t kMostPrograms = 256;  ///< names that are kept; with more, they are all looked up anew
+inline constexpr size_t kMostPrograms = 256;  ///< most names that are kept; when there are more, all are looked up anew
 
 /// [any] The name of a process for people: that of its file, with the script behind it where an interpreter runs one.
 /// Printable characters alone, 48 of them at most; "?" where the process cannot be looked at.

@@ -16,26 +16,26 @@ namespace hapticd::servo {
 
 class PusherLog {
  public:
-  static constexpr double kSilent = 0.2;  ///< [s] then the log tells of a silence; shorter ones are counted alone
-  static constexpr double kRefusedPeriod = 1.0;  ///< [s] between two words about refused answers of a program
+  static constexpr double kSilent = 0.2;  ///< [s] after which the log reports a silence; shorter ones are only counted
+  static constexpr double kRefusedPeriod = 1.0;  ///< [s] between two reports about refused answers of a program
 
   /// A message for the log. @param level HSP_LOG_INFO, ...
   struct Message {
     int32_t level;
     std::string text;
   };
-  /// How a program ends its push.
+  /// How a program stops pushing.
   enum class End { kUnlead, kLeft };
 
   /// [any] A program begins to push. @param place less than ClientForces::kMost
   Message begins(uint32_t arm, uint32_t place, pid_t pid, const std::string& program);
-  /// [any] It ends. @param client how it was
+  /// [any] A program ends. @param client its counts
   Message ends(uint32_t arm, uint32_t place, End how, const ClientForces::Client& client);
-  /// [any] What is new with the programs on an arm. @param now [s]
+  /// [any] What is new about the programs on an arm. @param now [s]
   std::vector<Message> look(uint32_t arm, const ClientForces& forces, double now);
 
  private:
-  /// What was told of a program.
+  /// What was reported about a program.
   struct Told {
     pid_t pid = 0;  ///< 0: an empty place
     std::string program;
@@ -55,7 +55,7 @@ class PusherLog {
   std::vector<std::array<Told, ClientForces::kMost>> told_;
 };
 
-/// [any] "a number is not finite": why an answer was refused.
+/// [any] Why an answer was refused: "a number is not finite".
 const char* describe(ClientForces::Refusal why);
 
 }  // namespace hapticd::servo

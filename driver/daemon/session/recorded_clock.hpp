@@ -5,7 +5,7 @@
 
 namespace hapticd::servo {
 
-/// Virtual time that waits for the recording: it runs hundreds of times faster than the disk was asked to follow.
+/// Virtual time that waits for the recording, because it runs hundreds of times faster than the disk was planned for.
 class RecordedClock final : public Clock {
  public:
   explicit RecordedClock(const record::Recorder& recorder) : recorder_(recorder) {}

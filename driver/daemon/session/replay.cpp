@@ -18,7 +18,7 @@ namespace {
 using record::Column;
 using record::RecordedStream;
 
-constexpr double kKeptSeconds = 0.1;  ///< of the replay's own black box: rows are compared as they come
+constexpr double kKeptSeconds = 0.1;  ///< seconds of the replay's own black box: rows are compared as they come
 
 /// Measured times are not compared: they differ from run to run.
 bool measured(const std::string& column) {
@@ -52,7 +52,7 @@ bool isLater(const std::string& stream) {
   return std::find(std::begin(kLater), std::end(kLater), stream) != std::end(kLater);
 }
 
-/// What a stream must have for rows to be told apart and fed again.
+/// What a stream must have so that its rows can be told apart and fed again.
 std::string missingIn(const record::Recording& recording, const RecordedRun& run,
                       const std::vector<record::StreamSpec>& wanted) {
   for (const record::StreamSpec& spec : wanted) {
@@ -146,7 +146,7 @@ class Replay::Player final : public Clock {
       std::memcpy(sample.position, row + columns.position->offset, bytes);
       if (columns.velocity != nullptr) std::memcpy(sample.velocity, row + columns.velocity->offset, bytes);
       if (columns.measured != nullptr) std::memcpy(sample.torque, row + columns.measured->offset, bytes);
-      // A fault that held before the tick and that the arm did not find by itself came from outside: a stop, a
+      // A fault that held before the tick and that the arm did not find by itself came from outside: from a stop or a
       // watchdog.
       const auto fault = at<uint32_t>(row, columns.fault_before->offset);
       if (fault != 0) replay_.arms_[i]->limiter().trip(static_cast<Fault>(fault));
@@ -162,7 +162,7 @@ class Replay::Player final : public Clock {
       const bool known = row.model < models && row.order <= 2 && row.probe < replay_.arms_.size() &&
                          replay_.world_->shapes()[row.model]->surfaces() != nullptr &&
                          row.surface < replay_.world_->shapes()[row.model]->surfaces()->surface_count;
-      if (!known) continue;  // a damaged row; the forces will differ and tell
+      if (!known) continue;  // a damaged row; the forces will differ and show it
       const hsp_near near{row.surface, row.probe, {row.u, row.v}, row.distance};
       replay_.world_->link().records.push({row.model, static_cast<link::ActivationRecord::Order>(row.order), near});
     }
@@ -190,7 +190,7 @@ class Replay::Player final : public Clock {
     }
   }
 
-  /// Memory as a leader got it: a new one each time.
+  /// The memory that a leader got; each leader gets a new one.
   const link::PoseSlot* newSlot(uint32_t led, uint32_t target) {
     auto slot = std::make_unique<link::PoseSlot>();
     leads_[{led, target}] = slot.get();
@@ -198,7 +198,7 @@ class Replay::Player final : public Clock {
     return slots_.back().get();
   }
 
-  /// What the servo took of a leader, put where it will find it in the same tick.
+  /// What the servo took from a leader, put where it will find it in the same tick.
   void feedLeads() {
     if (recorded_[kLeads] == nullptr) return;
     for (const RecordedStream& stream = *recorded_[kLeads]; lead_ < stream.rows(); ++lead_) {
@@ -215,7 +215,7 @@ class Replay::Player final : public Clock {
     return push_slots_.back().get();
   }
 
-  /// The answers of programs that the servo took.
+  /// The answers that the servo took from programs.
   void feedPushes() {
     if (recorded_[kPushes] == nullptr) return;
     for (const RecordedStream& stream = *recorded_[kPushes]; push_ < stream.rows(); ++push_) {
@@ -226,7 +226,7 @@ class Replay::Player final : public Clock {
     }
   }
 
-  /// The tick in which a model came or left: what came is not in the recording.
+  /// The tick in which a model was added or removed: added models are not in the recording.
   uint64_t endOfScene() const {
     const RecordedStream& stream = *recorded_[kOrders];
     for (uint64_t i = 0; i < stream.rows(); ++i) {

@@ -17,7 +17,7 @@
 
 namespace hapticd::servo {
 
-/// A number that is not what it was.
+/// A number that differs from the recording.
 struct Difference {
   uint64_t tick = 0;
   double t = 0;      ///< [s]
@@ -28,13 +28,13 @@ struct Difference {
 struct ReplayOutcome {
   uint64_t ticks = 0, recorded_ticks = 0;
   std::optional<Difference> first;
-  double largest_force_error = 0;  ///< [N] of what is sent to a device, over all ticks
+  double largest_force_error = 0;  ///< [N] difference of what is sent to a device, over all ticks
   std::string note;                ///< why it ended before the recording did; "" if it did not
 };
 
 class Replay {
  public:
-  /// [main] Builds the world of the recording. @param run what readAbout gave, changed where a change is to be tried
+  /// [main] Builds the world of the recording. @param run as readAbout gave it, altered where a change is to be tried
   static Result<std::unique_ptr<Replay>> prepare(const record::Recording& recording, RecordedRun run,
                                                  const host::Services::Log& log);
   ~Replay();
@@ -48,7 +48,7 @@ class Replay {
   const record::Recording& recording_;
   RecordedRun run_;
   std::vector<std::unique_ptr<host::Playback>> playbacks_;
-  bool paced_ = false;  ///< then, by the samples of an arm
+  bool paced_ = false;  ///< in the recorded run, by the samples of an arm
   std::unique_ptr<World> world_;
   std::vector<std::unique_ptr<Arm>> arms_;
   std::unique_ptr<Telemetry> telemetry_;

@@ -34,7 +34,7 @@ const hsp_param* parameterOf(const hsp_class& plugin, const std::string& id, uin
   return nullptr;
 }
 
-/// "0 to 3000 N/m", or the words of a choice.
+/// The allowed values: "0 to 3000 N/m", or the words of a choice.
 std::string expectedOf(const hsp_param& param) {
   if (param.kind == HSP_BOOL) return "true or false";
   if (param.kind != HSP_ENUM)
@@ -45,7 +45,7 @@ std::string expectedOf(const hsp_param& param) {
   return "one of " + document::listed(words, 40);
 }
 
-/// The number that a word stands for, if it is one of the parameter's.
+/// The number that a word stands for, if it is a word of the parameter.
 std::optional<double> numberOf(const hsp_param& param, const std::string& word) {
   for (uint32_t i = 0; param.kind == HSP_ENUM && i < param.choice_count; ++i)
     if (word == host::textOf(param.choices[i])) return i;
@@ -86,7 +86,7 @@ control::Reply RequestHandler::answer(const control::Peer& peer, const std::stri
     if (!done) return control::withId(control::refusal(done.error(), code_), id);
     return {control::withId(*done, id), std::move(attached_)};
   } catch (const std::exception& error) {
-    return control::withId(control::refusal(std::string("it failed: ") + error.what(), "failed"), id);
+    return control::withId(control::refusal(std::string("the request failed: ") + error.what(), "failed"), id);
   }
 }
 
@@ -220,9 +220,9 @@ Result<void> RequestHandler::able(const std::string& model, bool enabled) {
   return give(order);
 }
 
-/// A model that waits for a tip to leave it is enabled, and nobody feels it: the answer says so.
+/// A model that waits for a tip to leave it is enabled but not felt, as the answer says.
 Result<std::string> RequestHandler::enable(const std::string& model) {
-  constexpr double kMet = 0.02;  // [s] it was traced all the time
+  constexpr double kMet = 0.02;  // [s] for which it was traced all the time
   if (auto done = able(model, true); !done) return Error{done.error()};
   nlohmann::ordered_json json = {{"ok", true}};
   const auto place = placeOf(model);
@@ -276,8 +276,8 @@ Result<void> RequestHandler::set(const Request& request) {
   return given;
 }
 
-/// Only the servo knows where the model is when it obeys, so the bounds of speed are its own: the answer says what came
-/// of the seconds that were asked for.
+/// Only the servo knows where the model is when it obeys, so it applies the bounds of speed: the answer says what
+/// became of the seconds that were asked for.
 Result<std::string> RequestHandler::move(const Request& request) {
   const auto place = placeOf(request.model);
   if (!place) return Error{place.error()};
@@ -294,14 +294,14 @@ Result<std::string> RequestHandler::move(const Request& request) {
   if (request.turns) std::copy_n(request.orientation.data(), 4, order.orientation);
   order.seconds = request.seconds.value_or(0);
   if (auto given = give(order); !given) return Error{given.error()};
-  // Obeyed, and nobody but this thread gives orders: the servo has no reason to change it.
+  // It obeyed, and only this thread gives orders, so the servo has no reason to change it.
   return lineOf({{"ok", true}, {"seconds", runner_.world().core().models()[*place].glide.seconds()}});
 }
 
 /// A hold that came while this waited for its turn is the newer wish.
 Result<void> RequestHandler::clear(const control::Peer& peer, const std::string& device) {
   if (peer.asked != 0 && peer.asked < held_at_.load())
-    return refuse("held", "a hold came after this request\n  fix: ask again if the force shall come back");
+    return refuse("held", "a hold came after this request\n  fix: ask again if the force is wanted");
   const auto& devices = runner_.scene().devices;
   bool found = false;
   for (uint32_t i = 0; i < devices.size(); ++i) {

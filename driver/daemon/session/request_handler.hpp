@@ -24,42 +24,42 @@ class RequestHandler {
  public:
   /// Loads a scene file with everything it names.
   using LoadScene = std::function<Result<scene::Scene>(const std::string& file)>;
-  /// What to warn of in the models of a scene. @param stiffness [N/m] that each of them claims
+  /// Warnings about the models in a scene. @param stiffness [N/m] that each of them claims
   using Advise =
       std::function<std::vector<std::string>(const scene::Scene& models, const std::vector<double>& stiffness)>;
 
   /// [main] @param dump_folder where black boxes are written
   RequestHandler(Runner& runner, LoadScene load, host::Services::Log log, std::string dump_folder);
 
-  /// [main] Before the first request: what `status` says of where the daemon is found.
+  /// [main] Called before the first request: what `status` says about where the daemon is found.
   void knownAs(const std::string& name, const std::string& socket) { name_ = name, socket_ = socket; }
-  /// [main] Before the first request; nothing: no warnings of models that come.
+  /// [main] Called before the first request; nothing: there are no warnings about added models.
   void adviseBy(Advise advise) { advise_ = std::move(advise); }
 
   /// [any] One thread at a time. A line of JSON for a line of JSON. @param files the descriptors that the line names
   control::Reply answer(const control::Peer& peer, const std::string& line, std::vector<Descriptor> files = {});
-  /// [any] Any thread, at any time: holds arms or ends the run at once, behind no other request.
-  /// @return the answer; nothing: the line is not such a request
+  /// [any] Any thread, at any time: holds arms or ends the run at once, without waiting for other requests.
+  /// @return the answer; nothing if the line is no such request
   std::optional<control::Reply> urgent(const control::Peer& peer, const std::string& line);
-  /// [any] The same thread. What the peer's connection holds.
+  /// [any] The same thread. What the peer's connection keeps alive.
   control::Standing standing(const control::Peer& peer) const { return {stays(peer), listeners_.count(peer.id) > 0}; }
-  /// [any] The same thread. Events for one that subscribed, one line each; "": none.
+  /// [any] The same thread. Events for a subscriber, one line each; "" if there are none.
   std::string news(const control::Peer& peer);
-  /// [any] The same thread. The connection is gone, and with it what it held.
+  /// [any] The same thread. The connection is gone, and so is what it kept alive.
   void left(const control::Peer& peer);
 
   /// [any] The same thread. Writes the black box. @return the file
   Result<std::string> dump(const std::string& why);
 
  private:
-  /// An error with a word for programs.
+  /// An error with one word for programs.
   Error refuse(const char* code, std::string why) const {
     code_ = code;
     return Error{std::move(why)};
   }
   Result<std::string> obey(const control::Peer& peer, const control::Request& request);
   Result<std::string> obeyForModels(const control::Peer& peer, const control::Request& request);
-  /// Requests that ask and change nothing.
+  /// Requests that only ask.
   Result<std::string> tell(const control::Peer& peer, const control::Request& request);
   Session session() const { return {runner_, places_, leads_, scene_file_}; }
   Result<std::string> eventsAfter(double after) const;
@@ -107,19 +107,19 @@ class RequestHandler {
   LoadScene load_;
   Advise advise_;
   std::string name_, socket_;
-  std::vector<double> came_stiffness_;  ///< [N/m] of the models that came last
+  std::vector<double> came_stiffness_;  ///< [N/m] of the models that were added last
   host::Services::Log log_;
   std::string dump_folder_, scene_file_;
   std::vector<ModelPlace> places_;
-  std::vector<std::unique_ptr<ModelState>> prepared_;  ///< given to the servo and not yet taken
+  std::vector<std::unique_ptr<ModelState>> prepared_;  ///< given to the servo but not yet taken
   uint64_t given_ = 0;
   Leads leads_;
-  std::map<uint64_t, uint64_t> listeners_;  ///< by peer: the next event
+  std::map<uint64_t, uint64_t> listeners_;  ///< by peer: the number of the next event
   std::atomic<Nanoseconds> held_at_{0};     ///< CLOCK_MONOTONIC of the last hold
-  bool scene_passed_ = false;               ///< the scene's file came from a program: its name is not to be opened
-  std::vector<Descriptor> given_files_;     ///< along with the request that is answered
-  std::optional<PassedFiles> passed_;       ///< copies of them, while it is answered
-  Descriptor attached_;                     ///< to the answer that is being made
+  bool scene_passed_ = false;               ///< the scene's file came from a program, so its name must not be opened
+  std::vector<Descriptor> given_files_;     ///< received with the request that is answered
+  std::optional<PassedFiles> passed_;       ///< their copies, while it is answered
+  Descriptor attached_;                     ///< for the answer that is being made
   mutable const char* code_ = "failed";     ///< of its error
 };
 

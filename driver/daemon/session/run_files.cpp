@@ -26,13 +26,13 @@ constexpr uint32_t kSpareModels = 64;
 constexpr const char* kGroup = "haptic";
 constexpr const char* kDefaultName = "hapticd";
 
-/// Where black boxes are kept: the state folder, or beside what the run shows.
+/// Where black boxes are kept: in the state folder, or beside the run's own files.
 std::string stateFolder(const std::string& runtime_folder) {
   const std::string folder = watch::stateFolder().string();
   return folder.empty() ? runtime_folder : folder;
 }
 
-/// A run that ended in order removes its black box: one that is still there was left by a crash.
+/// A run that ends in order removes its black box, so one that is still there was left by a crash.
 void keepCrashed(const std::string& file, const std::string& name, const std::string& runtime_folder,
                  const std::string& run = "the last run") {
   std::error_code error;
@@ -49,14 +49,14 @@ void keepCrashed(const std::string& file, const std::string& name, const std::st
   std::filesystem::remove(file, error);
 }
 
-/// "hapticd-123": chosen by a run that found its name taken. No other run will ever have it.
+/// True for "hapticd-123", which a run chose because its name was taken. No other run will ever have it.
 bool isAutomatic(const std::string& name) {
   const std::string begin = std::string(kDefaultName) + "-";
   return name.size() > begin.size() && name.compare(0, begin.size(), begin) == 0 &&
          name.find_first_not_of("0123456789", begin.size()) == std::string::npos;
 }
 
-/// What a run with a name of its own left in memory when it was killed: its black box is kept, the rest goes.
+/// What a killed run with a name of its own left in memory: its black box is kept, the rest is removed.
 void clearDead(const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code error;
@@ -66,7 +66,7 @@ void clearDead(const std::string& folder) {
   for (const fs::path& lock : locks) {
     const int fd = ::open(lock.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
     if (fd < 0) continue;
-    if (flock(fd, LOCK_EX | LOCK_NB) == 0) {  // nobody lives who has it
+    if (flock(fd, LOCK_EX | LOCK_NB) == 0) {  // no living run has it
       const std::string name = lock.stem().string(), base = folder + "/" + name;
       keepCrashed(base + ".blackbox.h5", name, folder, "the run " + name);
       for (const char* ending : {".status", ".sock", ".lock"}) unlink((base + ending).c_str());
@@ -75,7 +75,7 @@ void clearDead(const std::string& folder) {
   }
 }
 
-/// "models teapot, floor on simulated Premium 1.5; programs may push (clients: add)".
+/// Such as "models teapot, floor on simulated Premium 1.5; programs may push (clients: add)".
 std::string contents(const scene::Scene& scene) {
   std::vector<std::string> models, devices;
   for (const scene::Model& model : scene.models) models.push_back(model.name);
@@ -94,7 +94,7 @@ std::string contents(const scene::Scene& scene) {
 
 }  // namespace
 
-/// @return false: a run that lives has it. The lock file goes with its holder, so one that was locked after it went is
+/// @return false if a living run has it. A holder removes the lock file, so a file that was locked after its removal is
 /// not the one that others see, and is taken anew.
 Result<bool> RunFiles::take(const std::string& name) {
   lock_file_ = folder_ + "/" + name + ".lock";
@@ -162,7 +162,7 @@ RunFiles::~RunFiles() {
   const bool began = runner_ != nullptr || ended_;
   end();
   if (lock_ < 0) return;
-  // What the set-up made of a run that was refused: no run would ever end it.
+  // What the set-up made for a run that was refused, which no run would ever remove.
   if (!began)
     for (const char* ending : {".blackbox.h5", ".status"}) unlink((folder_ + "/" + name_ + ending).c_str());
   unlink(lock_file_.c_str());
@@ -173,7 +173,7 @@ void RunFiles::serve(Runner& runner, const std::string& device_file, host::Catal
                      RequestHandler::Advise advise, const host::Services::Log& log) {
   if (folder_.empty()) return;
   runner_ = &runner;
-  // A fork would make every page of the servo's memory one that is copied at the next write: a page fault in a tick.
+  // A fork would make each page of the servo's memory copied at the next write, which is a page fault in a tick.
   catalog.describeBy([](const auto& file) { return host::describeByProgram("/proc/self/exe", file); });
   const auto load = [device_file, &catalog](const std::string& file) -> Result<scene::Scene> {
     catalog.refresh();

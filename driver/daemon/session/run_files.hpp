@@ -14,14 +14,14 @@ namespace hapticd::servo {
 class RunFiles {
  public:
   /// [main] Chooses folder and name, keeps a black box that a crash left, and fills in the options of the run. Without
-  /// a folder that is a warning: the run goes on unseen. @param name "": "hapticd", or one with the process's number
-  /// where that is taken; any other that is taken is an error
+  /// a folder it only warns: the run goes on unseen. @param name "": "hapticd", or one with the process's number where
+  /// that is taken; any other that is taken is an error
   static Result<std::unique_ptr<RunFiles>> open(const std::string& name, RunOptions& how);
   ~RunFiles();  ///< [main] the name is free again
   RunFiles(const RunFiles&) = delete;
   RunFiles& operator=(const RunFiles&) = delete;
 
-  /// [main] Serves the socket. A failure is a warning: the run goes on.
+  /// [main] Serves the socket. If that fails it only warns: the run goes on.
   /// @param device_file replaces the devices of scenes that are loaded meanwhile  @param catalog finds their plugins
   /// @param advise warnings about models that come
   void serve(Runner& runner, const std::string& device_file, host::Catalog& catalog, RequestHandler::Advise advise,
@@ -30,9 +30,9 @@ class RunFiles {
   /// [main] Called now and then: writes the black box once after each new fault.
   void look();
 
-  const std::string& name() const { return name_; }  ///< [main] of the run; "": it has none
+  const std::string& name() const { return name_; }  ///< [main] path of the run's socket; "": it has none
 
-  void end();  ///< [main] after the run: no more requests, no more files
+  void end();  ///< [main] called after the run: ends requests and removes files
 
  private:
   RunFiles() = default;

@@ -27,7 +27,7 @@ namespace {
 
 constexpr Nanoseconds kStatusPeriod = 200'000'000;
 constexpr Nanoseconds kReadyPoll = 1'000'000;
-constexpr uint64_t kReadyTicks = 2;          ///< the servo lives: the service manager may say so
+constexpr uint64_t kReadyTicks = 2;          ///< the servo lives, so the service manager may be told
 constexpr uint64_t kDryCycles = 2000;        ///< with motors off, to judge the machine before a hand relies on it
 constexpr uint64_t kLongestRunUs = 100'000;  ///< of CPU time without sleep; a tick takes a hundredth of it
 
@@ -51,14 +51,14 @@ std::string noFifo(int priority, const std::error_code& code, bool hardware) {
          "  fix: sudo usermod -aG haptic $USER, log in again (limits: rtprio 80, memlock 524288)";
 }
 
-/// Whose code a thread is in that the end of the run waits for.
+/// Whose code is run by a thread for which the end of the run waits.
 const Owner* keepsTheEnd() {
   for (const Worker worker : {Worker::kServo, Worker::kMain, Worker::kSearch, Worker::kControl})
     if (const Owner* owner = calledBy(worker)) return owner;
   return nullptr;
 }
 
-/// [main] A watchdog that names whom a run waits for in vain. @param may_lag late ticks are nobody's fault here
+/// [main] A watchdog that names what a run waits for in vain. @param may_lag late ticks are nobody's fault here
 std::unique_ptr<watch::Watchdog> watchdogOf(watch::Watched& watched, bool may_lag) {
   using watch::Watchdog;
   const auto hung = [&watched] { watch::dieOf("a step that did not come back", watched.inServo()); };
@@ -127,7 +127,7 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
   settings.period_ns = static_cast<Nanoseconds>(std::llround(1e9 / options.rate));
   settings.ticks = options.duration ? static_cast<uint64_t>(std::llround(*options.duration * options.rate)) : 0;
   settings.lockstep = options.virtual_time;
-  if (!options.virtual_time)  // never so much of a tick that it ends late
+  if (!options.virtual_time)  // never so much of a tick that the tick ends late
     settings.answer_time = std::min(static_cast<Nanoseconds>(scene.clients.answer_time * 1e9), settings.period_ns / 4);
   // A simulation at a terminal starts at once: there is no hand, and nobody waits for READY.
   const bool watched = std::getenv("NOTIFY_SOCKET") != nullptr;
@@ -212,7 +212,7 @@ void Runner::stopArms() {
   for (const auto& arm : arms_) arm->stop();
 }
 
-/// Until the loop has ended: feeds the service manager, passes on what the servo has to say, keeps the guard up to
+/// Until the loop has ended: feeds the service manager, passes on messages of the servo, keeps the guard up to
 /// date.
 void Runner::lookAfter(sim::ProximityThread& proximity, bool anyhow, const std::function<void(const Runner&)>& every) {
   RealClock clock(0);
@@ -234,7 +234,7 @@ void Runner::lookAfter(sim::ProximityThread& proximity, bool anyhow, const std::
   }
 }
 
-/// The servo thread's work. @param runs it has the rights that the arms ask for
+/// The servo thread's work. @param runs it has the rights that the arms need
 void Runner::serve(bool runs) {
   const Working working(Worker::kServo);
   if (guard_ && runs) guard_->arm(true);
@@ -253,7 +253,7 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   const auto watchdog = watchdogOf(watched, mayLag());
   if (const auto code = watchdog->start(options_.priority + 1))
     return Error{"cannot start the watchdog thread: " + code.message()};
-  std::vector<std::string> refused;  // the servo thread's until `ready`, then this thread's
+  std::vector<std::string> refused;  // belongs to the servo thread until `ready`, then to this thread
   const bool anyhow = onlySimulated() || options_.allow_non_rt, locked = warnings_.empty();
   if (guard_) tellGuard();
   os::Thread servo;
@@ -289,7 +289,7 @@ void Runner::openEventLog() {
   for (uint32_t place = 0; place < scene_.models.size(); ++place) event_log_->name(place, scene_.models[place].name);
 }
 
-/// Without real-time rights, and where processors are paused one by one, ticks are late for no fault.
+/// Without real-time rights, and where processors are paused one by one, late ticks are nobody's fault.
 bool Runner::mayLag() const {
   return options_.allow_non_rt || os::inVirtualMachine();
 }
@@ -299,7 +299,7 @@ void Runner::suspend() noexcept {
   suspend_ = true;
 }
 
-/// Once nothing is felt any more, and the last command has left.
+/// Called once nothing is felt any more, and the last command has been sent.
 void Runner::stopProcess() {
   constexpr Nanoseconds kMostPatience = 1'000'000'000, kLastCommand = 20'000'000;
   RealClock clock(0);
@@ -331,7 +331,7 @@ std::vector<std::string> Runner::enterRealTime() const {
       refused.push_back("cannot pin the servo thread to CPU " + std::to_string(*options_.cpu) + ": " + code.message());
   if (const auto code = os::setFifo(options_.priority))
     refused.push_back(noFifo(options_.priority, code, !onlySimulated()));
-  (void)os::limitRealTimeRun(kLongestRunUs);  // refused: the limit is lower already
+  (void)os::limitRealTimeRun(kLongestRunUs);  // if this is refused, the limit is lower already
   return refused;
 }
 

@@ -32,31 +32,31 @@ struct RunOptions {
   bool virtual_time = false;
   std::optional<int> cpu;  ///< pins the servo thread
   int priority = os::kServoPriority;
-  uint32_t spare_models = 0;  ///< places for models that come while it runs
+  uint32_t spare_models = 0;  ///< places for models that are added during the run
   std::string status;         ///< file of the status page; empty: none
   std::string record;         ///< file that takes every tick; empty: none
-  std::string black_box;      ///< file in memory that keeps the last seconds; empty: memory of the process
-  std::string state_dir;      ///< for what a crash leaves behind; empty: nothing is written
-  bool allow_non_rt = false;  ///< run real hardware without real-time rights all the same
+  std::string black_box;      ///< file in memory with the last seconds; empty: memory of the process
+  std::string state_dir;      ///< folder for what a crash leaves; empty: nothing is written
+  bool allow_non_rt = false;  ///< runs real hardware even without real-time rights
 };
 
 class Runner {
  public:
-  /// [main] Sets up the models. A failure is the fault of what the scene names: its files and parameters.
+  /// [main] Sets up the models. If it fails, the fault is in what the scene names: its files and parameters.
   static Result<std::unique_ptr<World>> buildWorld(const scene::Scene& scene, const RunOptions& options,
                                                    const host::Services::Log& log);
 
-  /// [main] Takes models and arms down; a module that crashes in it is named and remembered as in a run.
+  /// [main] Takes models and arms down; if a module crashes in it, it is named and remembered as in a run.
   ~Runner();
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
-  /// [main] Opens the devices. A failure is that of the hardware, or of a virtual run that names some.
+  /// [main] Opens the devices. If it fails, the fault is in the hardware, or a virtual run names some hardware.
   static Result<std::unique_ptr<Runner>> prepare(const scene::Scene& scene, const RunOptions& options,
                                                  std::unique_ptr<World> world, const host::Services::Log& log);
 
   /// [main] Runs to the end; `every` is called about five times a second from this thread, and `ended` once the motors
-  /// are off. What keeps `ended` for longer than a second after a stop ends the process.
+  /// are off. If anything delays `ended` for more than a second after a stop, the process ends.
   Result<void> run(const std::function<void(const Runner&)>& every, const std::function<void()>& ended = [] {});
 
   /// [any] Asks for an end: forces ramp to zero first. Async-signal-safe.
@@ -71,7 +71,7 @@ class Runner {
 
   World& world() { return *world_; }
   const World& world() const { return *world_; }
-  /// [any] One thread: an order for the servo.
+  /// [any] Only one thread: an order for the servo.
   bool giveOrder(const Order& order) { return loop_->give(order); }
   Door& door() { return loop_->door(); }
   /// [main] After the run: nothing is left behind.
@@ -82,12 +82,12 @@ class Runner {
   void nameLeader(pid_t pid, const std::string& program) { event_log_->leads(pid, program); }
   /// [any] The same thread: a program pushes on an arm.
   void namePusher(uint32_t arm, uint32_t place, pid_t pid, const std::string& program);
-  /// [any] The same thread: it does no more.
+  /// [any] The same thread: it has stopped pushing.
   void forgetPusher(uint32_t arm, uint32_t place, PusherLog::End how);
-  /// [any] The same thread: what a program was like that pushed, for the report.
+  /// [any] The same thread: counts of a program that pushed, for the report.
   void book(const record::ClientReport& client) { telemetry_->pushed(client); }
 
-  /// Folder of what a crash leaves behind, and of the quarantine; "": none.
+  /// Folder for the quarantine and for what a crash leaves; "": none.
   const std::string& stateDir() const { return options_.state_dir; }
   bool virtualTime() const { return options_.virtual_time; }
   /// [any] One thread: memory that the loop shares with others until it has ended; nullptr until somebody asks.
@@ -97,16 +97,16 @@ class Runner {
   Shared& shared() { return shared_; }
   const Telemetry& telemetry() const { return *telemetry_; }
   const Loop& loop() const { return *loop_; }
-  Nanoseconds wallTime() const { return wall_time_; }       ///< [main] that the loop took
-  size_t residentBytes() const { return resident_bytes_; }  ///< [main] at the end of the loop
+  Nanoseconds wallTime() const { return wall_time_; }       ///< [main] how many the loop took
+  size_t residentBytes() const { return resident_bytes_; }  ///< [main] time at the end of the loop
   const std::vector<std::unique_ptr<Arm>>& arms() const { return arms_; }
   const scene::Scene& scene() const { return scene_; }
   const record::Recorder* recorder() const { return recorder_.get(); }  ///< nullptr: nothing is recorded
 
-  /// Real time could not be had in full: four-part messages for the user.
+  /// Real-time rights could not be had in full: four-part messages for the user.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
-  /// [main] What took the force of an arm away, in words; "": nothing.
+  /// [main] What took the force of an arm away, in words; "": nothing did.
   std::string faultOf(size_t arm) const;
 
   /// [main] After the run: what took a force away for a while, in words.
@@ -145,7 +145,7 @@ class Runner {
   std::unique_ptr<Clock> clock_;
   std::unique_ptr<Loop> loop_;
   std::unique_ptr<record::Recorder> recorder_;
-  std::unique_ptr<watch::GuardProcess> guard_;  ///< nullptr: no arm needs one, or can be switched off from outside
+  std::unique_ptr<watch::GuardProcess> guard_;  ///< nullptr: no arm needs one, or none can be switched off from outside
   uint32_t guards_ended_ = 0;
   std::atomic<bool> suspend_{false};
   std::vector<std::string> warnings_;

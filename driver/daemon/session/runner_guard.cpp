@@ -9,7 +9,7 @@
 
 namespace hapticd::servo {
 
-/// An arm whose hardware does not switch itself off, and which another process can switch off.
+/// True for an arm whose hardware does not switch itself off, and which another process can switch off.
 bool Runner::needsGuard() const {
   if (options_.virtual_time) return false;
   return std::any_of(arms_.begin(), arms_.end(), [](const auto& arm) {
@@ -27,20 +27,20 @@ void Runner::startGuard() {
   loop_->beatOn(guard_->ticks());
 }
 
-/// A guard that was killed, as by a machine short of memory, is one that nobody would miss until it is needed.
+/// A guard that was killed, as on a machine short of memory, would not be missed until it is needed.
 void Runner::keepGuard() {
   constexpr uint32_t kMost = 8;
   if (guards_ended_ > kMost) return;
   if (guard_->alive()) return tellGuard();
   const bool again = ++guards_ended_ <= kMost;
-  const Result<void> begun = again ? guard_->restart() : Error{"it ended again and again"};
+  const Result<void> begun = again ? guard_->restart() : Error{"it ended repeatedly"};
   log::write(begun ? HSP_LOG_WARNING : HSP_LOG_ERROR, "",
              begun ? "the guard process ended; another watches in its place"
                    : "the guard process ended, and there is no other: " + begun.error());
   if (!begun) guards_ended_ = kMost + 1;
 }
 
-/// Arms come and go: each has another way in when it was found anew.
+/// Arms come and go: an arm that was found anew must be reached in another way.
 void Runner::tellGuard() {
   for (uint32_t i = 0; i < arms_.size(); ++i) {
     hdv_silence how{};

@@ -11,7 +11,7 @@ namespace hapticd::servo {
 
 namespace {
 
-/// ", at 1.234 s with 0.42 N at a depth of 0.525 mm": as far as it is known.
+/// Such as ", at 1.234 s with 0.42 N at a depth of 0.525 mm", as far as that is known.
 std::string placeOf(const Pull& pull) {
   if (pull.t < 0) return "";
   std::string text = fmt::format(", at {:.3f} s with {:.3g} N", pull.t, pull.force);
@@ -19,7 +19,7 @@ std::string placeOf(const Pull& pull) {
   return text;
 }
 
-/// ", the largest by 5.85 N at 2.134 s at a depth of 3.9 mm": as far as it is known.
+/// Such as ", the largest by 5.85 N at 2.134 s at a depth of 3.9 mm", as far as that is known.
 std::string sizeOf(const Pull& jump) {
   if (!(jump.force > 0)) return "";
   std::string text = fmt::format(", the largest by {:.3g} N", jump.force);
@@ -28,7 +28,7 @@ std::string sizeOf(const Pull& jump) {
   return text;
 }
 
-/// The cure of jumps that a person wants: the size that was seen, rounded up.
+/// The cure for jumps that are intended: the size that was seen, rounded up.
 std::string onPurpose(const Pull& jump) {
   if (!(jump.force > 0)) return "";
   const double unit = std::pow(10, std::floor(std::log10(jump.force)) - 1);
@@ -36,7 +36,7 @@ std::string onPurpose(const Pull& jump) {
                      unit * std::ceil(jump.force / unit));
 }
 
-/// What is wrong with a shape that pulled: a surface that is told at no depth may be one whose depth was forgotten.
+/// What is wrong with a shape that pulled: if no depth was reported, its author may have forgotten the depth.
 std::string causeOf(const Pull& pull) {
   const std::string sign = "its force has the wrong sign";
   return pull.depth == 0 ? "its depth_m was left at 0 inside, or " + sign : sign;

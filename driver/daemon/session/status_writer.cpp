@@ -87,7 +87,7 @@ void StatusWriter::models(uint64_t tick, const Core& core,
                           std::span<const record::ContactStatistics> books) noexcept HSP_RT {
   status::Page& page = file_->page();
   for (const uint32_t place : core.live()) {
-    if (place >= status::kMaxModels) break;  // in the order of the scene: all others come later
+    if (place >= status::kMaxModels) break;  // in the order of the scene; models that were added come later
     const ModelState& model = core.models()[place];
     status::ModelNow now;
     now.depth = std::numeric_limits<double>::quiet_NaN();

@@ -18,13 +18,13 @@ class StatusWriter {
   StatusWriter(std::unique_ptr<status::PageFile> file, const scene::Scene& scene,
                const std::vector<std::unique_ptr<Arm>>& arms, double rate);
 
-  /// [main] A model takes a place, or "" leaves it.
+  /// [main] A model takes a place, or leaves it (an empty name).
   void name(uint32_t place, const std::string& name, const std::string& plugin);
 
-  /// [main] A program pushes on an arm. @param pid 0: it does no more
+  /// [main] A program pushes on an arm. @param pid 0: it has stopped
   void pusher(uint32_t arm, uint32_t place, uint64_t pid, const std::string& program);
 
-  /// [rt] After a tick. Copies what lives alone: its cost does not grow with models that are far away.
+  /// [rt] After a tick. Copies only what changes, so its cost does not grow with models that are far away.
   /// @param books by the place of a model
   void tick(const status::Now& now, Nanoseconds late, Nanoseconds spent, const Core& core,
             const std::vector<std::unique_ptr<Arm>>& arms,

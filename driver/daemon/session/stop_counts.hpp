@@ -12,12 +12,12 @@ namespace hapticd::servo {
 
 class StopCounts {
  public:
-  static constexpr double kAt = 1e-4;  ///< [rad] or [m] less than this from its stop a joint stands at it
+  static constexpr double kAt = 1e-4;  ///< [rad] or [m] a joint nearer than this to its stop stands at it
 
   /// [rt] One tick with a good sample.
   void add(const hdv_info& info, const hdv_sample& sample) noexcept HSP_RT {
     for (uint32_t i = 0; i < info.joint_count && i < HDV_MAX_JOINTS; ++i) {
-      // A joint without a range, as an arm that tells none has, stands at no stop.
+      // A joint without a range stands at no stop, as on an arm that reports none.
       if (!(info.position_max[i] - info.position_min[i] > 2 * kAt)) continue;
       const double q = sample.position[i];
       if (q <= info.position_min[i] + kAt || q >= info.position_max[i] - kAt) ++ticks_[i];

@@ -150,7 +150,7 @@ void Telemetry::bookModels(double dt, const Core& core, const std::vector<std::u
     }
     models_[index].add(depth > 0 && pushed, depth, force, dt, model.step_ns);
     if (depth > -HUGE_VAL && model.status >= HSP_OK) models_[index].addFoot(held, model.status == HSP_DEGRADED);
-    // What a model in trouble fades out with is no answer of it.
+    // The force with which a model in trouble fades out is not its answer.
     const bool any = odd.untraced + odd.depthless + odd.outside + odd.pull > 0;
     if (any && pushed && model.status >= HSP_OK && !model.guard.quarantined()) bookOdd(index, odd);
     bookArms(index, dt, core, arms);

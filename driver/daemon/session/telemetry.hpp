@@ -37,24 +37,24 @@ class Telemetry final : public TickLog {
   static constexpr size_t kMostLeft = 64;
 
   /// [main] Allocates and touches everything.
-  /// @param places models that there may be; 0: those of the scene
+  /// @param places most models that there may be; 0: those of the scene
   Telemetry(const scene::Scene& scene, double rate, uint32_t places = 0);
 
-  /// [main] A model takes an empty place; before the servo adopts it. What was counted of the one that left stays in
-  /// the report, for the newest `kMostLeft` of them.
+  /// [main] A model takes an empty place; before the servo adopts it. The counts of a model that left stay in the
+  /// report, for the newest `kMostLeft` of them.
   void name(uint32_t place, const std::string& name, const std::string& plugin);
 
-  /// [main] Keeps every tick in a black box, with all that came in and went out; the short rows kept until now are not
-  /// needed any more.
+  /// [main] Keeps every tick in a black box, with all inputs and outputs; then the short rows kept so far are not
+  /// needed.
   void attach(std::unique_ptr<Flight> flight);
-  /// [main] Shows every tick on a page for others too.
+  /// [main] Shows every tick on a page that others can read too.
   void attach(std::unique_ptr<StatusWriter> status) { status_ = std::move(status); }
   StatusWriter* statusWriter() { return status_.get(); }
   const StatusWriter* statusWriter() const { return status_.get(); }
   Flight* flight() { return flight_.get(); }
   const Flight* flight() const { return flight_.get(); }
 
-  /// [main] A program pushed on an arm, and does no more.
+  /// [main] A program pushed on an arm, and has stopped.
   void pushed(const record::ClientReport& client) { record::add(clients_, client); }
 
   /// [rt] Before a tick at time `now`.
@@ -86,7 +86,7 @@ class Telemetry final : public TickLog {
   /// [main] The black box, oldest row first.
   std::vector<BlackBoxRow> blackBox() const;
 
-  /// [any] Newest row, for the status line; may be torn, so for eyes only.
+  /// [any] The newest row, for the status line; it may be torn, so it is only for people to look at.
   const BlackBoxRow& newest() const noexcept { return newest_; }
 
  private:
@@ -96,8 +96,8 @@ class Telemetry final : public TickLog {
   static bool held(const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
   void bookArms(uint32_t index, double dt, const Core& core,
                 const std::vector<std::unique_ptr<Arm>>& arms) noexcept HSP_RT;
-  /// [N] What a model pushed with in a tick, the largest of all probes, though no contact can be told of it; and what
-  /// it pulled in with.
+  /// [N] The force with which a model pushed in a tick, the largest of all probes, although no contact can be reported;
+  /// and its pull.
   struct Odd {
     double untraced = 0, depthless = 0, outside = 0, pull = 0;
   };
@@ -109,7 +109,7 @@ class Telemetry final : public TickLog {
                   BlackBoxRow& row) noexcept HSP_RT;
 
   std::vector<std::string> names_, plugins_;
-  std::vector<record::ModelReport> left_;  ///< models that are not there any more
+  std::vector<record::ModelReport> left_;  ///< models that have left
   std::vector<record::ClientReport> clients_;
   double rate_, simulated_seconds_ = 0;
   record::Histogram lateness_us_, compute_us_, arms_us_;
@@ -117,7 +117,7 @@ class Telemetry final : public TickLog {
   std::vector<record::ContactWork> work_;          ///< [model * arms + arm]
   std::vector<std::string> devices_;               ///< where there are several
   std::vector<record::ContactStatistics> by_arm_;  ///< [model * devices_.size() + arm]
-  std::vector<BlackBoxRow> rows_;                  // where there is no flight
+  std::vector<BlackBoxRow> rows_;                  // used where there is no flight
   std::vector<StopCounts> stops_;                  ///< by arm
   std::vector<std::string> all_devices_;           ///< their names
   BlackBoxRow newest_;

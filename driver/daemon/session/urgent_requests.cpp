@@ -11,7 +11,7 @@ using control::Request;
 
 namespace {
 
-constexpr Nanoseconds kPause = 500'000, kPatience = 100'000'000;  ///< for the servo to obey; a tick is enough
+constexpr Nanoseconds kPause = 500'000, kPatience = 100'000'000;  ///< for the servo to obey; one tick is enough
 
 std::string good() {
   return R"({"ok":true})";
@@ -32,7 +32,7 @@ std::optional<control::Reply> RequestHandler::urgent(const control::Peer&, const
   return control::Reply(control::withId(held ? *held : control::refusal(held.error(), code), id));
 }
 
-/// Any thread. The ring of orders has one writer and may be full: a hold has a way of its own.
+/// Called on any thread. The ring of orders has one writer and may be full, so a hold has a way of its own.
 Result<std::string> RequestHandler::hold(const std::string& device, const char*& code) {
   const auto& devices = runner_.scene().devices;
   uint64_t arms = 0;

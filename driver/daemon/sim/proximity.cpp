@@ -53,7 +53,7 @@ size_t Proximity::modelCount() const {
 }
 
 Searching Proximity::amount() const {
-  constexpr uint64_t kSmallBytes = 512 * 1024;  // a torus has half of that, and is searched in under 20 us
+  constexpr uint64_t kSmallBytes = 512 * 1024;  // a torus has half as many, and is searched in under 20 us
   const std::lock_guard lock(mutex_);
   uint32_t surfaces = 0;
   uint64_t bytes = 0;

@@ -22,20 +22,20 @@ struct ProximitySettings {
 /// How much searching there is to do.
 enum class Searching {
   kNone,   ///< no model has surfaces
-  kSmall,  ///< one small surface: microseconds a search, so that no thread is needed for it
+  kSmall,  ///< one small surface: a search takes microseconds, so it needs no thread
   kLarge
 };
 
 class Proximity {
  public:
-  /// [main] @param models in the order of the scene; those that trace themselves are left alone.
+  /// [main] @param models in the order of the scene; those that trace themselves are not searched.
   Proximity(const std::vector<host::ShapeInstance*>& models, const std::vector<hsp_pose>& poses, uint32_t probe_count,
             const ProximitySettings& settings, link::Link& link);
 
-  /// [main] A model that came while searches go on, in a place of the scene that is empty.
+  /// [main] Adds a model while searches go on, in a place of the scene that is empty.
   void add(uint32_t place, host::ShapeInstance& shape, const hsp_pose& pose, uint32_t probe_count);
 
-  /// [main] The model of a place is searched no more: nothing is sent for it after the return.
+  /// [main] The model of a place is no longer searched: nothing is sent for it after the return.
   void remove(uint32_t place);
 
   /// [sim] One search with the newest state of the arm: starts, offers and stops tracing.
@@ -43,7 +43,7 @@ class Proximity {
 
   /// [any] Models that have surfaces to search.
   size_t modelCount() const;
-  /// [any] What they amount to; changes as models come and leave.
+  /// [any] How much searching they need; it changes as models come and leave.
   Searching amount() const;
 
  private:
@@ -53,7 +53,7 @@ class Proximity {
     const host::ShapeInstance* shape;
     uint32_t surfaces;                 ///< how many it has
     uint64_t bytes;                    ///< of the shape
-    Eigen::Vector3d box_min, box_max;  ///< model frame; empty when unknown: always searched
+    Eigen::Vector3d box_min, box_max;  ///< model frame; empty if it is unknown, so that it is always searched
     bool has_box;
     Eigen::Vector3d position;
     Eigen::Quaterniond orientation;

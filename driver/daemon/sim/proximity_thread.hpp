@@ -28,8 +28,8 @@ class ProximityThread {
     return amount == Searching::kLarge ? startThread() : std::error_code();
   }
 
-  /// [main] Does what there is to do now: a small search, or starting the thread when models have come that need it.
-  /// Where no thread can be had, this one searches on. @return how long to rest until the next turn [ns]: at most
+  /// [main] Does what is due now: a small search, or starting the thread once models need it. If no thread
+  /// can be started, this one keeps searching. @return how long to rest until the next turn [ns]: at most
   /// `rest`
   Nanoseconds turn(Nanoseconds rest) {
     if (thread_.running()) return rest;

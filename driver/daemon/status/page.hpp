@@ -13,7 +13,7 @@ namespace hapticd::status {
 
 constexpr uint64_t kPageMagic = 0x31544154535448;  ///< "HTSTAT1"
 constexpr uint32_t kMaxArms = 8;
-constexpr uint32_t kMaxModels = 96;  ///< that are told of one by one
+constexpr uint32_t kMaxModels = 96;  ///< that are listed one by one
 
 /// record::Histogram for one writing and many reading threads.
 class SharedHistogram {
@@ -66,15 +66,15 @@ struct ArmNow {
 
 struct ModelNow {
   double depth = 0, force = 0, gain = 0;  ///< [m] nan: not traced; [N]
-  uint64_t tick = 0;                      ///< when it was stepped last
+  uint64_t tick = 0;                      ///< tick in which it was last stepped
   int32_t status = 0;
   uint32_t iterations = 0;
   uint32_t trouble = 0;          ///< servo::Trouble: why it is not felt
-  int32_t failed_status = 0;     ///< the first status that was no status of a step
-  uint32_t waits = 0, none = 0;  ///< 1: it came, or was enabled, with a tip in it, and is not felt until none is
+  int32_t failed_status = 0;     ///< the first status that step may not return
+  uint32_t waits = 0, none = 0;  ///< 1: it was added or enabled with a tip in it, and is not felt until none is
 };
 
-/// Ticks since a model came whose foot was proved the nearest, held by a contact, or neither.
+/// Ticks since a model was added whose foot was proved the nearest, or was held by a contact, or neither.
 struct ModelFeet {
   uint64_t nearest = 0, held = 0, degraded = 0;
 };
@@ -86,7 +86,7 @@ struct Pusher {
 };
 struct PusherNow {
   uint64_t answers = 0, in_time = 0, next_tick = 0, silences = 0;
-  double force = 0, largest = 0;  ///< [N] now, and of all
+  double force = 0, largest = 0;  ///< [N] its force now, and that of all programs
 };
 constexpr uint32_t kPushersOfArm = 8;
 
@@ -109,11 +109,11 @@ struct Page {
     Slot<ModelNow> now;
     SharedHistogram step_us;
   } model[kMaxModels];
-  double answer_time = 0;  ///< [s] that the servo listens for programs
+  double answer_time = 0;  ///< [s] for which the servo listens to programs
   struct {
     Slot<Pusher> who;
     Slot<PusherNow> now;
-  } pusher[kMaxArms * kPushersOfArm];  ///< of arm i from i * kPushersOfArm on
+  } pusher[kMaxArms * kPushersOfArm];  ///< places of arm i begin at i * kPushersOfArm
   Slot<ModelFeet> feet[kMaxModels];    ///< by the place of a model
 };
 

@@ -23,7 +23,7 @@ std::string variable(const char* name) {
   return value != nullptr ? value : "";
 }
 
-/// A folder that only its owner writes to; a link or somebody else's folder in its place is refused.
+/// A folder to which only its owner may write; a link, or somebody else's folder in its place, is refused.
 bool ownFolder(const std::string& folder) {
   mkdir(folder.c_str(), 0750);
   struct stat info{};
@@ -31,8 +31,8 @@ bool ownFolder(const std::string& folder) {
          (info.st_mode & S_IWOTH) == 0;
 }
 
-/// The servo writes into what is kept here: on a disk, each page that the kernel writes back faults in a tick, and may
-/// wait for the disk. A session's folder is in memory on most machines, but not in every container.
+/// The servo writes into this memory. On a disk, each page that the kernel writes back faults in a tick, which may wait
+/// for the disk. The folder of a session is in memory on most machines, but not in every container.
 bool inMemory(const std::string& folder) {
   struct statfs info{};
   return statfs(folder.c_str(), &info) == 0 && (info.f_type == TMPFS_MAGIC || info.f_type == RAMFS_MAGIC);

@@ -9,8 +9,8 @@
 
 namespace hapticd::status {
 
-/// The folder of sockets and pages: $RUNTIME_DIRECTORY (given by systemd), $XDG_RUNTIME_DIR/hapticd, /run/hapticd for
-/// those who find the system's daemon, /dev/shm/hapticd-UID.
+/// The folder of sockets and pages: $RUNTIME_DIRECTORY (given by systemd), $XDG_RUNTIME_DIR/hapticd, /run/hapticd if
+/// the system's daemon is there, or /dev/shm/hapticd-UID.
 std::string runtimeFolder(bool create);
 
 class PageFile {

@@ -24,12 +24,12 @@ class Slot {
     const auto words = std::bit_cast<std::array<uint64_t, kWords>>(value);
     const uint64_t sequence = sequence_.load(std::memory_order_relaxed);
     sequence_.store(sequence + 1, std::memory_order_relaxed);
-    // release on each word: whoever sees one of them sees the odd number too
+    // release on each word, so that whoever sees one of them sees the odd number too
     for (size_t i = 0; i < kWords; ++i) words_[i].store(words[i], std::memory_order_release);
     sequence_.store(sequence + 2, std::memory_order_release);
   }
 
-  /// [any] Nothing: the writer was in it each time, or died in it.
+  /// [any] Nothing if the writer was writing it each time, or died while it did.
   std::optional<T> read() const noexcept {
     constexpr int kTries = 1000;
     for (int i = 0; i < kTries; ++i) {

@@ -24,13 +24,13 @@ namespace hapticd::watch {
 
 namespace {
 
-/// Everything the handler needs, prepared while there is still an allocator.
+/// Everything that the handler needs, prepared while memory can still be allocated.
 struct Prepared {
   std::atomic<Watched*> servo{nullptr};
-  std::atomic<int> process{0};       ///< a fork of it is none of our business
-  std::atomic<bool> leaving{false};  ///< the process ends in order: its exit is nobody's fault
+  std::atomic<int> process{0};       ///< a fork of this process is not its business
+  std::atomic<bool> leaving{false};  ///< the process ends in order, so its exit is nobody's fault
   char dir[kLongestPath] = "";       // "": nothing is written
-  /// The C library's last words, where it keeps them: a length, and the text behind it.
+  /// The C library's last words, if it keeps them: a length, and then the text.
   const char* const* last_words = nullptr;
 };
 Prepared prepared;
@@ -39,18 +39,18 @@ bool sentByOther(const siginfo_t& info) noexcept {
   return info.si_code <= 0 && info.si_code != SI_TIMER && info.si_pid != 0 && info.si_pid != getpid();
 }
 
-/// Whose code a signal came from. What another process sent, and what came to the process instead of to a thread, is
-/// nobody's fault that is known: rather no name than a wrong one.
+/// Whose code raised a signal. A signal from another process, or one sent to the process instead of a thread, has no
+/// known culprit: no name is better than a wrong one.
 const Owner* culpritOf(int signal, const siginfo_t& info, const void* context) noexcept {
   const bool own_fault = wordsOfCrash(signal) != nullptr && info.si_code > 0;
   const bool raised = info.si_code == SI_TKILL && info.si_pid == getpid();
   if (!own_fault && !raised) return nullptr;
   if (const Owner* called = calledHere()) return called;
-  return isWorker() ? nullptr : ownerInterrupted(context);  // a thread that a plugin or module began itself
+  return isWorker() ? nullptr : ownerInterrupted(context);  // a thread that a plugin or module started itself
 }
 
-/// True where the allocator found its own records overwritten: whoever did that was there before, and is gone. Code
-/// that does not ship with the daemon is the likeliest to have done it.
+/// True if the allocator found its own records overwritten: whoever did that has returned long ago. Code that does not
+/// ship with the daemon is the likeliest cause.
 bool allocatorAborted() noexcept {
   constexpr const char* kItsWords[] = {"free", "alloc", "corrupt", "chunk"};
   const char* said = prepared.last_words != nullptr ? *prepared.last_words : nullptr;
@@ -70,7 +70,7 @@ Watched* watchedHere() noexcept {
   return prepared.process.load() == getpid() ? prepared.servo.load() : nullptr;
 }
 
-/// As if nobody had handled it.
+/// Ends as if nobody had handled the signal.
 void dieBySystem(int signal) noexcept {
   std::signal(signal, SIG_DFL);
   std::raise(signal);
@@ -93,7 +93,7 @@ void onFatal(int signal, siginfo_t* info, void* context) {
   const Owner* culprit = culpritOf(signal, *info, context);
   const bool own = info->si_code > 0 || (info->si_code == SI_TKILL && info->si_pid == getpid());
   const bool torn = signal == SIGABRT && allocatorAborted();
-  // Code that ships frees what was torn before: what does not ship is the likelier cause.
+  // Shipped code may free what was torn before, so code that does not ship is the likelier cause.
   if (torn && culprit != nullptr && foreignOwner(0) != nullptr && !isForeign(*culprit)) culprit = nullptr;
   const Suspicion suspicion = culprit != nullptr || !own ? Suspicion::kNone
                               : torn                     ? Suspicion::kTorn
@@ -101,7 +101,7 @@ void onFatal(int signal, siginfo_t* info, void* context) {
   die(servo, prepared.dir, {words(signal).text(), culprit, suspicion});
 }
 
-/// Ctrl-C, SIGTERM and their kind. One that a module sent to its own process is no wish of a person.
+/// Ctrl-C, SIGTERM and the like. If a module sent one to its own process, no person wished it.
 void onStop(int signal, siginfo_t* info, void* context) {
   const bool own = info->si_code <= 0 && info->si_code != SI_TIMER && info->si_pid == getpid();
   if (own && watchedHere() != nullptr) dieOf(words(signal).text(), culpritOf(signal, *info, context));
@@ -116,7 +116,7 @@ void onStop(int signal, siginfo_t* info, void* context) {
   dieBySystem(signal);
 }
 
-/// A plugin or library that called exit(): static objects are still there, and other threads still run.
+/// A plugin or library that called exit(): static objects still exist, and other threads still run.
 void dieOfExit(const char* what) noexcept {
   if (prepared.leaving.load() || watchedHere() == nullptr) return;
   const Owner* culprit = calledHere();
@@ -132,7 +132,7 @@ void onExit() {
 
 void guardAgainstCrash(Watched& servo, const std::filesystem::path& dir) {
   static const bool at_exit = std::atexit(&onExit) == 0 && std::at_quick_exit(&onExit) == 0;
-  (void)at_exit;  // refused: out of memory, and the next allocation says so
+  (void)at_exit;  // if this is refused, memory is short, and the next allocation says so
   const std::string text = dir.string();
   prepared.dir[0] = '\0';
   if (text.size() < kLongestPath) std::memcpy(prepared.dir, text.c_str(), text.size() + 1);

@@ -9,20 +9,20 @@
 
 namespace hapticd::watch {
 
-/// [main] Handles every signal that ends a process, exit(), quick_exit() and _exit(), until `forget`. A signal of no
-/// fault that another process sends ends the run in order; SIGTERM and its kind do what they did before, unless this
-/// process sent them itself.
+/// [main] Handles every signal that ends a process, exit(), quick_exit() and _exit(), until `forget`. A harmless signal
+/// from another process ends the run in order; SIGTERM and the like do what they did before, unless this process sent
+/// them itself.
 /// @param dir for the black box and the quarantine file; empty: neither is written
 void guardAgainstCrash(Watched& servo, const std::filesystem::path& dir);
 
-/// [main] The signals do what they did before; the servo may be destroyed.
+/// [main] The signals do what they did before, so the servo may be destroyed.
 void forgetCrash();
 
-/// [main] From here to the end of the process, after the last command: memory that a plugin tore is found by whoever
-/// frees it, and that may be the last object of the program.
+/// [main] From here to the end of the process, after the last command: if a plugin tore memory, whoever frees it finds
+/// that, perhaps the last object of the program.
 void guardTheEnd(const std::filesystem::path& dir);
 
-/// Both in one, as long as it lives; they may nest. The sanitizers have handlers of their own, and keep them.
+/// Does both while the object lives; such objects may nest. The sanitizers have handlers of their own, and keep them.
 class CrashGuard {
  public:
   CrashGuard(Watched& servo, const std::filesystem::path& dir);
@@ -39,7 +39,7 @@ class CrashGuard {
 /// @param culprit whose code did it; nullptr: nobody is blamed
 [[noreturn]] void dieOf(const char* reason, const Owner* culprit) noexcept;
 
-/// [any] Ends the process at once, motors off first, where it was told to end and could not: nobody is put in
+/// [any] Ends the process at once, motors off first, because it was told to end and could not: nobody is put in
 /// quarantine. @param keeps whose code keeps it; nullptr: unknown
 [[noreturn]] void endAnyway(const Owner* keeps) noexcept;
 

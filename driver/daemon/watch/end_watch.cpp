@@ -24,7 +24,7 @@ void EndWatch::watch() {
   while (!stopped_.wait_for(lock, std::chrono::nanoseconds(kLookEvery), [this] { return stop_; })) look(monotonicNow());
 }
 
-/// A run of slow ticks ramps its forces out first, however long that takes; one whose tick does not end never will.
+/// A run of slow ticks ramps its forces out first, however long that takes; one whose tick never ends cannot.
 void EndWatch::look(Nanoseconds now) noexcept {
   const uint64_t ticks = servo_.ticks();
   lookForHang(ticks);
@@ -36,7 +36,7 @@ void EndWatch::look(Nanoseconds now) noexcept {
   if (now - still_since_ >= kEndWithin && !std::exchange(told_, true)) late_();
 }
 
-/// Counted in looks, not in time: a process that a debugger or a laptop's lid has stopped comes back to a good tick.
+/// Counted in looks, not in time, so that a process stopped by a debugger or a closed laptop comes back to a good tick.
 void EndWatch::lookForHang(uint64_t ticks) noexcept {
   const Nanoseconds begun = servo_.tickBegun(), cpu = servo_.cpuTime();
   const bool same = std::exchange(tick_begun_, begun) == begun && begun != 0 && ticks == ticks_;

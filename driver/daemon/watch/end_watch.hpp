@@ -22,8 +22,8 @@ class EndWatch {
   /// [ns] of looks at one tick that waits for something, such as a lock or a file.
   static constexpr Nanoseconds kWaitsAfter = 30'000'000'000;
 
-  /// [main] @param late what ends the process that was asked to end  @param hung what ends one whose tick hangs; it
-  /// comes back where it knows nobody to blame, and is asked again
+  /// [main] @param late what ends the process that was asked to end @param hung what ends one whose tick hangs; it
+  /// returns if it finds nobody to blame, and is asked again
   EndWatch(const Watched& servo, std::function<void()> late, std::function<void()> hung)
       : servo_(servo), late_(std::move(late)), hung_(std::move(hung)) {}
   ~EndWatch();
@@ -43,7 +43,7 @@ class EndWatch {
   uint64_t ticks_ = UINT64_MAX;
   Nanoseconds still_since_ = 0;
   Nanoseconds tick_begun_ = 0;
-  Nanoseconds looked_ = 0, cpu_before_ = 0;  ///< at this tick; of the servo when it was first seen
+  Nanoseconds looked_ = 0, cpu_before_ = 0;  ///< of this tick; of the servo when it was first seen
   bool told_ = false, stop_ = false;
   std::mutex mutex_;
   std::condition_variable stopped_;

@@ -32,7 +32,7 @@ struct Target {
   Descriptor fd;
 };
 
-/// The interface belongs to the daemon as long as that lives; what is left of it there is taken away.
+/// The interface belongs to the daemon while that lives; here its remains are taken away.
 bool claim(int fd, unsigned interface) noexcept {
   if (ioctl(fd, USBDEVFS_CLAIMINTERFACE, &interface) == 0) return true;
   usbdevfs_ioctl disconnect{static_cast<int>(interface), USBDEVFS_DISCONNECT, nullptr};
@@ -67,17 +67,17 @@ class GuardLoop {
   GuardLoop(const Heartbeat& beat, Nanoseconds patience)
       : beat_(beat), patience_(patience), daemon_(getppid()), last_(monotonicNow()) {}
 
-  /// Until the daemon has gone.
+  /// Runs until the daemon has gone.
   void run() {
     while (listen()) look(monotonicNow());
     if (beat_.armed.load() == 0) return;
-    constexpr int kTimes = 3;  // the first may meet a transfer that the kernel is still taking back
+    constexpr int kTimes = 3;  // the first command may meet a transfer that the kernel still takes back
     for (int i = 0; i < kTimes; ++i) silenceAll(true);
     tell("the daemon has gone");
   }
 
  private:
-  /// Waits for a message, a look long at most. False: the other end is closed.
+  /// Waits for a message, for one look at most. False if the other end is closed.
   bool listen() {
     pollfd polled{kGuardSocket, POLLIN, 0};
     if (poll(&polled, 1, static_cast<int>(kLook / 1'000'000)) <= 0) return true;
@@ -97,7 +97,7 @@ class GuardLoop {
     target.fd = std::move(descriptors_.front());
   }
 
-  /// A look that comes late saw nothing of the time before it: the machine may have stood still.
+  /// A late look saw nothing of the time before it, in which the machine may have stood still.
   void look(Nanoseconds now) {
     const Nanoseconds way = now - std::exchange(last_, now);
     const uint64_t ticks = beat_.ticks.load();

@@ -20,21 +20,21 @@ namespace hapticd::watch {
 
 namespace {
 
-constexpr int kBeyond = 16;  ///< descriptors of the guard's own numbers are not overwritten
+constexpr int kBeyond = 16;  ///< so that descriptors with the guard's own numbers are not overwritten
 
 Error cannot(const char* what) {
   return Error{std::string("cannot start the guard process: ") + what + ": " + std::strerror(errno) +
                "\n  where the daemon is killed, the arm keeps its last force"};
 }
 
-/// The same file at a number that the child's own do not touch.
+/// The same file at a number that the child's own descriptors do not use.
 int above(int fd) {
   const int moved = fcntl(fd, F_DUPFD_CLOEXEC, kBeyond);
   close(fd);
   return moved;
 }
 
-/// 0: it is open no more.
+/// 0: it is no longer open.
 uint64_t inodeOf(int fd) {
   struct stat what{};
   return fd >= 0 && fstat(fd, &what) == 0 ? what.st_ino : 0;
@@ -57,7 +57,7 @@ Result<std::unique_ptr<GuardProcess>> GuardProcess::start(int priority, Nanoseco
   return guard;
 }
 
-/// The memory stays: the servo counts its ticks there.
+/// The memory stays, because the servo counts its ticks there.
 Result<void> GuardProcess::restart() {
   errno = EBADF;
   if (inodeOf(memory_.get()) != memory_is_) return cannot("its memory was closed");

@@ -16,13 +16,13 @@ namespace hapticd::watch {
 class GuardProcess {
  public:
   /// [main] @param priority SCHED_FIFO of the guard, as far as it is allowed
-  /// @param patience [ns] without a tick, seen by looks on time, before it silences the arms
+  /// @param patience [ns] without a tick, seen by punctual looks, before it silences the arms
   static Result<std::unique_ptr<GuardProcess>> start(int priority, Nanoseconds patience);
-  ~GuardProcess();  ///< [main] it ends without silencing anything
+  ~GuardProcess();  ///< [main] ends it without silencing anything
   GuardProcess(const GuardProcess&) = delete;
   GuardProcess& operator=(const GuardProcess&) = delete;
 
-  /// [main] How an arm is silenced from now on; nullptr: it cannot be now. Says nothing twice.
+  /// [main] How an arm is silenced from now on; nullptr if that is impossible now. It repeats nothing.
   void tell(uint32_t arm, const hdv_silence* how);
   /// [main] Whether it watches: from the first tick on, and not while the process is stopped on purpose.
   void arm(bool watches) noexcept { beat_->armed.store(watches ? 1 : 0); }
@@ -30,7 +30,7 @@ class GuardProcess {
   std::atomic<uint64_t>& ticks() noexcept { return beat_->ticks; }
   /// [main] It lives.
   bool alive() noexcept;
-  /// [main] Another process in place of one that has ended. It must be told of every arm anew.
+  /// [main] Starts another process in place of one that has ended. It must be told about every arm anew.
   Result<void> restart();
 
  private:
@@ -41,12 +41,12 @@ class GuardProcess {
   Nanoseconds patience_ = 0;
   Heartbeat* beat_ = nullptr;
   Descriptor socket_, memory_;
-  uint64_t memory_is_ = 0;  ///< its inode: somebody else may have closed the descriptor
+  uint64_t memory_is_ = 0;  ///< its inode: another thread may have closed the descriptor
   int process_ = -1;
   std::map<uint32_t, uint64_t> told_;  ///< epoch by arm
 };
 
-/// [main] What the guard process does: never returns. @param arguments as kGuardArgument says
+/// [main] What the guard process does; it never returns. @param arguments as kGuardArgument says
 [[noreturn]] void guardMain(int count, char** arguments);
 
 }  // namespace hapticd::watch

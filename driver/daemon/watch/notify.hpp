@@ -8,11 +8,11 @@
 
 namespace hapticd::watch {
 
-/// [any] Sends a message such as "READY=1". False: nobody asked to be told, or it could not be sent.
+/// [any] Sends a message such as "READY=1". False if nobody asked for it, or it could not be sent.
 bool notify(const std::string& message);
 
-/// [main] How often the service manager wants to be told that all is well (WATCHDOG_USEC, for this process); nothing:
-/// it does not ask.
+/// [main] How often the service manager wants to hear that all is well (WATCHDOG_USEC, for this process); nothing if it
+/// does not ask.
 std::optional<Nanoseconds> watchdogPeriod();
 
 /// Feeds the service manager's watchdog, but only while the servo ticks.

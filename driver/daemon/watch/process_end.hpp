@@ -7,7 +7,7 @@ namespace hapticd::watch {
 /// [main] What _exit() does first, whoever calls it; nullptr: nothing. `heard` must be async-signal-safe.
 void onPlainExit(void (*heard)());
 
-/// [any] The end of the process, heard by nobody. Async-signal-safe.
+/// [any] Ends the process without calling that function. Async-signal-safe.
 [[noreturn]] void endProcess(int code) noexcept;
 
 }  // namespace hapticd::watch

@@ -29,8 +29,8 @@ void endProcess(int code) noexcept {
 }  // namespace hapticd::watch
 
 #ifndef HAPTICD_SANITIZED
-// In the place of the C library's: modules find the program's names before that one's. What it calls itself, as in
-// exit() and posix_spawn(), stays its own. The sanitizers replace these as well.
+// Replaces the C library's functions, because modules find the program's names first. What the library calls itself, as
+// in exit() and posix_spawn(), is not replaced. The sanitizers replace these functions as well.
 extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): these names are the C library's
 __attribute__((visibility("default"))) void _exit(int code) {

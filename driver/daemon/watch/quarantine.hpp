@@ -11,9 +11,9 @@ namespace hapticd::watch {
 
 struct QuarantinedPlugin {
   std::string plugin, reason;
-  std::string file;  ///< identity of the file that ended the run, see host::identityOnDisk; "": not known
+  std::string file;  ///< identity of the file that ended the run, see host::identityOnDisk; "": unknown
 
-  /// A plugin of that name from that file stays out. One that was built anew, and another file of the same name, do
+  /// A plugin of that name from that file is left out. A rebuilt one, and another file of the same name, are
   /// not.
   bool holds(const std::string& name, const std::string& identity) const {
     return name == plugin && (file.empty() || file == identity);
@@ -24,7 +24,7 @@ struct QuarantinedPlugin {
 /// ~/.local/state/hapticd; empty where none is named.
 std::filesystem::path stateFolder();
 
-/// [main] The same, created if it is missing; empty: there is none that can be written.
+/// [main] The same, created if it is missing; empty if none can be written.
 std::filesystem::path stateDir();
 
 /// [main] The list, oldest first; a file stands in it once.
@@ -33,7 +33,7 @@ std::vector<QuarantinedPlugin> quarantined(const std::filesystem::path& dir);
 /// [main] Takes every file of a plugin off the list. False: it was not on it.
 Result<bool> clearQuarantine(const std::filesystem::path& dir, const std::string& plugin);
 
-/// The file under the state folder: one line per file: the plugin's name, a tab, the reason, a tab, the file's
+/// The file in the state folder has one line per file: the plugin's name, a tab, the reason, a tab, the file's
 /// identity.
 constexpr const char* kQuarantineFile = "quarantine";
 

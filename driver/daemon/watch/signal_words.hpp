@@ -5,7 +5,7 @@
 
 namespace hapticd::watch {
 
-/// [any] What went wrong, for a signal that a fault of the code raises; nullptr: it is none of those.
+/// [any] What went wrong, for a signal that a fault of the code raises; nullptr for other signals.
 const char* wordsOfCrash(int signal) noexcept;
 
 /// [any] The same for every signal.

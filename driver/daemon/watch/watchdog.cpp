@@ -9,7 +9,7 @@ namespace hapticd::watch {
 std::error_code Watchdog::start(int priority) {
   stop_ = false;
   return thread_.start("hapticd-watch", [this, priority] {
-    (void)os::setFifo(priority);  // refused: it still watches, as well as the machine lets it
+    (void)os::setFifo(priority);  // if this is refused, it still watches, as well as the machine allows
     RealClock clock(0);
     while (!stop_) {
       clock.waitUntil(clock.now() + kCheckEvery);
@@ -30,13 +30,13 @@ bool Watchdog::check(Nanoseconds now) noexcept {
   const uint64_t tick = servo_.ticks();
   const Nanoseconds begun = servo_.tickBegun(), next = servo_.nextTick();
   if (begun != 0 && now > begun) return judge({tick, false}, now - begun, seen);
-  // A simulation whose ticks come late hurts nobody.
+  // A simulation with late ticks hurts nobody.
   if (begun == 0 && next != 0 && now > next && !servo_.simulated()) return judge({tick, true}, now - next, seen);
   phase_ = {};
   return false;
 }
 
-/// A person who asks for the end waits for no plugin that builds a model, or searches on and on.
+/// Somebody who asks for the end must not wait for a plugin that builds a model, or searches without end.
 void Watchdog::watchEnd() noexcept {
   if (servo_.stopAsked() != 0 && ++checks_since_stop_ == kEndWithin / kCheckEvery && late_) late_();
 }
@@ -63,7 +63,7 @@ bool Watchdog::judge(Phase phase, Nanoseconds overdue, Nanoseconds seen) noexcep
 }
 
 /// Counted in looks, not in time: a machine that was asleep comes back to a tick that is still good. A servo that
-/// merely gets no processor is no thread that hangs.
+/// merely gets no processor does not hang.
 void Watchdog::watchHung(Phase phase) noexcept {
   if (hung_told_ || (phase.waits && servo_.inServo() == nullptr)) return;
   const Nanoseconds looked = ++checks_since_cut_ * kCheckEvery;
@@ -78,7 +78,7 @@ Nanoseconds Watchdog::patience(Phase phase) const noexcept {
   return servo_.simulated() ? std::max(stuck_after_, kStuckSimulated) : stuck_after_;
 }
 
-/// Where no hand can be hurt, a thread that was merely not scheduled is no fault.
+/// Where no hand can be hurt, it is no fault if a thread was merely not scheduled.
 bool Watchdog::mayBePaused(Phase phase, Nanoseconds stuck) const noexcept {
   const bool works = !phase.waits && servo_.cpuTime() - cpu_at_phase_ + kCheckEvery > kStuckSimulated;
   return servo_.simulated() && !works && stuck <= kSimulatedPause;

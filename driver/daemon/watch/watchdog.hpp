@@ -15,22 +15,22 @@ namespace hapticd::watch {
 class Watchdog {
  public:
   static constexpr Nanoseconds kCheckEvery = 500'000;
-  static constexpr Nanoseconds kOnTime = 2'000'000;      ///< a longer way between two looks: it was held up itself
+  static constexpr Nanoseconds kOnTime = 2'000'000;      ///< a longer time between two looks: it was delayed itself
   static constexpr Nanoseconds kLateCounts = 1'000'000;  ///< of such a way
-  /// With the way to the next look 3 ms, in which 8.5 N give a free tip of 75 g 4.3 mJ.
+  /// With the time to the next look 3 ms, in which 8.5 N give a free tip of 75 g an energy of 4.3 mJ.
   static constexpr Nanoseconds kStuckAfter = 2'500'000;
-  /// A virtual machine charges a thread for time that its processor was somewhere else.
+  /// A virtual machine charges a thread for time in which its processor was elsewhere.
   static constexpr Nanoseconds kStuckInVirtualMachine = 10'000'000;
-  /// At least: no hand is hurt by a simulated arm, and a virtual machine that stands still charges the servo with it.
+  /// At least: a simulated arm hurts no hand, and a virtual machine that stands still charges the servo for it.
   static constexpr Nanoseconds kStuckSimulated = 60'000'000;
-  /// The tick to come is so late. A virtual machine has its processors paused one by one.
+  /// The next tick is so late. A virtual machine has its processors paused one by one.
   static constexpr Nanoseconds kMissedAfter = 2'500'000, kMissedInVirtualMachine = 50'000'000;
-  static constexpr Nanoseconds kHungAfter = 500'000'000;  ///< nothing comes back after that
-  /// Nor does a simulation. Until then it may be a servo that gets no processor, which is no module's doing: before,
-  /// only one that had kHungAfter of processor time hangs.
+  static constexpr Nanoseconds kHungAfter = 500'000'000;  ///< nothing returns after that
+  /// Nor does a simulation return. Before that it may be a servo without a processor, which is no module's fault; then
+  /// only one that has used kHungAfter of processor time hangs.
   static constexpr Nanoseconds kHungSimulated = 5'000'000'000;
-  static constexpr Nanoseconds kEndWithin = 900'000'000;       ///< from the moment that the end was asked for
-  static constexpr Nanoseconds kSimulatedPause = 200'000'000;  ///< a busy machine may pause a simulation so long
+  static constexpr Nanoseconds kEndWithin = 900'000'000;       ///< counted from the moment that the end was asked for
+  static constexpr Nanoseconds kSimulatedPause = 200'000'000;  ///< a busy machine may pause a simulation for so long
 
   /// [main] @param hung what ends the process  @param missed_after [ns] that a tick may begin late
   /// @param stuck_after [ns] that it may take
@@ -39,7 +39,7 @@ class Watchdog {
       : servo_(servo), hung_(std::move(hung)), missed_after_(missed_after), stuck_after_(stuck_after) {}
   ~Watchdog() { stop(); }
 
-  /// [main] Before start(): what ends the process where its end was asked for and does not come.
+  /// [main] Before start(): what ends the process if its end was asked for and does not come.
   void onLateEnd(std::function<void()> late) { late_ = std::move(late); }
 
   /// [main] @param priority SCHED_FIFO, above the servo's; without the right it runs as an ordinary thread
@@ -55,7 +55,7 @@ class Watchdog {
   uint64_t cuts() const noexcept { return cuts_.load(); }
 
  private:
-  /// What the servo is at: a tick, or the wait for one.
+  /// What the servo is doing: a tick, or the wait for one.
   struct Phase {
     uint64_t tick = UINT64_MAX;
     bool waits = false;
@@ -71,13 +71,13 @@ class Watchdog {
   std::function<void()> hung_, late_;
   Nanoseconds missed_after_, stuck_after_;
 
-  Phase cut_in_;  ///< that phase was cut, once
+  Phase cut_in_;  ///< the arms were cut in that phase, once
   Phase phase_;
   Nanoseconds checks_since_cut_ = 0, checks_since_stop_ = 0;
   bool hung_told_ = false;
   Nanoseconds cpu_at_phase_ = 0;
   Nanoseconds looked_at_ = 0;  ///< the last time
-  Nanoseconds counted_ = 0;    ///< of the phase, as far as it was watched
+  Nanoseconds counted_ = 0;    ///< time of the phase, as far as it was watched
   std::atomic<uint64_t> cuts_{0};
   std::atomic<bool> stop_{false};
   os::Thread thread_;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kNames[] = {"device.max_force", "max_force"};  ///< of the parameter
 
-/// As the limiter has it: the smaller of the two that are known.
+/// As in the limiter: the smaller of the two that are known.
 double letThrough(double asked, double device) {
   return asked > 0 && device > 0 ? std::min(asked, device) : std::max(asked, device);
 }
@@ -33,7 +33,7 @@ double describedForce(const scene::Device& device) {
   return 0;
 }
 
-/// 0 is no limit: one arm of it is enough.
+/// 0 means no limit; one such arm is enough.
 double largest(const std::vector<double>& forces) {
   if (forces.empty() || *std::min_element(forces.begin(), forces.end()) <= 0) return 0;
   return *std::max_element(forces.begin(), forces.end());

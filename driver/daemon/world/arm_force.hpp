@@ -8,11 +8,11 @@
 
 namespace hapticd::servo {
 
-/// [main] The largest force [N] of any arm, by limits.force and the maximum that its device file or module names; 0: an
-/// arm is among them of which nothing is known.
+/// [main] The largest force [N] of any arm, by limits.force and the maximum that its device file or module names; 0 if
+/// nothing is known about one of them.
 double maxForceOf(const scene::Scene& scene);
 
-/// [any] The same of a run that was recorded. @param devices what the arms said when they were opened
+/// [any] The same for a recorded run. @param devices what the arms said when they were opened
 double maxForceOf(const scene::Scene& scene, const std::vector<hdv_info>& devices);
 
 }  // namespace hapticd::servo

@@ -7,7 +7,7 @@ namespace hapticd::servo {
 
 namespace {
 
-// Read by plugins/kernels, which know nothing of the daemon.
+// plugins/kernels read it, which know nothing of the daemon.
 constexpr const char* kVariable = "HAPTICD_INSTRUCTIONS";
 
 bool portableByEnvironment() {

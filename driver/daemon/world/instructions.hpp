@@ -8,11 +8,11 @@
 
 namespace hapticd::servo {
 
-/// [main] Before the first shape of the process is made: what the scene wants. Plugins look at it once, so all scenes
-/// of a process share the first one's choice.
+/// [main] Sets what the scene wants, before the first shape of the process is made. Plugins look at it once, so all
+/// scenes of a process share the first one's choice.
 void chooseInstructions(const scene::Servo& servo);
 
-/// [main] What shapes take here if the scene is as this one: "portable", "avx2+fma".
+/// [main] Which instructions shapes use here with this scene: "portable", "avx2+fma".
 std::string takenInstructions(const scene::Servo& servo);
 
 }  // namespace hapticd::servo

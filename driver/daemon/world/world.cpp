@@ -19,7 +19,7 @@ hsp_pose startPose(const scene::Model& model) {
 }
 
 uint64_t budgetNs(const scene::Servo& servo, double rate) {
-  constexpr double kShareOfPeriod = 0.8;  // the rest is for the device, limits and the way back to sleep
+  constexpr double kShareOfPeriod = 0.8;  // the rest is for the device, the limits and going back to sleep
   return static_cast<uint64_t>(servo.budget_us > 0 ? servo.budget_us * 1e3 : kShareOfPeriod * 1e9 / rate);
 }
 

@@ -18,12 +18,12 @@ namespace hapticd::servo {
 struct WorldOptions {
   double rate = 1000;  ///< [Hz]
   uint32_t probe_count = 1;
-  uint32_t spare_models = 0;   ///< places for models that come while it runs
-  bool measure = false;        ///< take the CPU time of every step
-  bool budgets = false;        ///< tell every step how much CPU time is left of the tick
-  double evaluation_ns = 0;    ///< > 0: costs are counted, so much an evaluation, instead of measured
-  double max_force = 0;        ///< [N] that any arm lets through to the hand; 0: unknown
-  bool former_claims = false;  ///< as in recordings that know no other, see CoreSettings
+  uint32_t spare_models = 0;   ///< places for models that are added during the run
+  bool measure = false;        ///< measures the CPU time of every step
+  bool budgets = false;        ///< tells every step how much CPU time of the tick is left
+  double evaluation_ns = 0;    ///< > 0: costs are counted, at so much per evaluation, instead of measured
+  double max_force = 0;        ///< [N] most that any arm lets through to the hand; 0: unknown
+  bool former_claims = false;  ///< as in recordings without claims, see CoreSettings
 };
 
 class World {
@@ -38,7 +38,7 @@ class World {
   /// [main] Keeps the shape of an empty place alive, and has it searched from now on.
   void keep(uint32_t place, std::unique_ptr<host::ShapeInstance> shape, const scene::Model& model);
 
-  /// [main] The model of a place is searched no more; before the servo is told to release it.
+  /// [main] The model of a place is no longer searched; called before the servo is told to release it.
   void forget(uint32_t place) { proximity_->remove(place); }
 
   /// [main] Destroys the shape of a place that the servo has released.
@@ -53,10 +53,10 @@ class World {
   }
   const std::vector<std::unique_ptr<host::ShapeInstance>>& shapes() const { return shapes_; }
 
-  /// Models that there may be at a time.
+  /// How many models there may be at a time.
   uint32_t places() const { return static_cast<uint32_t>(core_->models().size()); }
 
-  /// Some shape reads velocities: an estimator must run.
+  /// Some shape reads velocities, so an estimator must run.
   bool needsVelocity() const { return (needs_ & HSP_R_VELOCITY) != 0; }
   /// [N/m] The stiffest contact that the models claim.
   double maxStiffness() const { return max_stiffness_; }

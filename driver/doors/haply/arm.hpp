@@ -15,7 +15,7 @@ namespace hapticd::haply {
 
 class Arm {
  public:
-  static constexpr uint64_t kHoldsNs = 100'000'000;  ///< a force ends so long after the program was heard last
+  static constexpr uint64_t kHoldsNs = 100'000'000;  ///< a force ends this long after the program was last heard
 
   Arm(hapticd_client* client, int device, std::string name)
       : client_(client), device_(device), name_(std::move(name)) {}
@@ -24,11 +24,11 @@ class Arm {
   Arm& operator=(const Arm&) = delete;
 
   const std::string& name() const { return name_; }
-  /// [main] The newest state. False: none comes any more.
+  /// [main] The newest state. False if none comes any more.
   bool look(hapticd_state& state);
-  /// [main] From now on this force [N, world frame] counts. The first one begins to push.
+  /// [main] From now on this force [N, world frame] is applied. The first call begins to push.
   Result<void> push(const double force[3]);
-  /// [main] What counts now [N].
+  /// [main] The force that is applied now [N].
   void wanted(double force[3]) const;
 
  private:

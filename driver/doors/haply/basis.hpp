@@ -9,16 +9,16 @@ namespace hapticd::haply {
 
 class Basis {
  public:
-  /// A permutation as Haply writes it, such as "XZY" or "X-YZ". False: it is none, and nothing changes.
+  /// A permutation in Haply's form, such as "XZY" or "X-YZ". False if it is not one; then nothing changes.
   bool set(const std::string& permutation);
   std::array<double, 3> fromWorld(const double v[3]) const;
   std::array<double, 3> toWorld(const double v[3]) const;
-  /// A unit quaternion w, x, y, z: the axis of a turn is a vector, whose sense a mirrored basis turns round.
+  /// A unit quaternion w, x, y, z: the axis of a turn is a vector, whose direction is reversed by a mirrored basis.
   std::array<double, 4> turnFromWorld(const double q[4]) const;
 
  private:
   bool mirrored() const;
-  std::array<int, 3> axis_{0, 1, 2};  ///< of Haply's frame, for each of theirs
+  std::array<int, 3> axis_{0, 1, 2};  ///< axis of Haply's frame for each of the program's
   std::array<double, 3> sign_{1, 1, 1};
 };
 

@@ -26,20 +26,20 @@ void say(int number, const std::string& what) {
   if (!what.empty()) std::fprintf(stderr, "program %d: %s\n", number, what.c_str());
 }
 
-/// One program, until it leaves, or the daemon does.
+/// Serves one program, until it leaves or the daemon ends.
 void converse(websocket::Channel& channel, const std::string& daemon, int number) {
   constexpr int kSendMs = 2000;
   auto session = haply::Session::open(daemon, number);
   if (!session) return say(number, session.error());
   std::string text = (*session)->inventory();
   while (!text.empty() && !told_to_end && channel.send(text, kSendMs)) {
-    constexpr int kSilentMs = 30'000;  // a program that says nothing for so long has gone
+    constexpr int kSilentMs = 30'000;  // a program that is silent for so long has gone
     const auto message = channel.receive(kSilentMs);
     if (!message) return;
     text = (*session)->answer(*message);
     say(number, (*session)->complaint());
   }
-  if (text.empty()) say(number, "the daemon tells of no tick any more");
+  if (text.empty()) say(number, "the daemon reports no more ticks");
 }
 
 struct Visit {
@@ -64,7 +64,7 @@ void serve(websocket::Listener& listener, const std::string& daemon) {
     ++number;
   }
   std::fflush(nullptr);
-  std::_Exit(0);  // programs that say nothing are not waited for; the daemon ends their forces with the connection
+  std::_Exit(0);  // silent programs are not waited for; the daemon ends their forces with the connection
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ const Json& childOf(const Json& json, const char* key) {
   return it != json.end() ? *it : nothing;
 }
 
-/// Three finite numbers, all of them there.
+/// Reads three finite numbers, if all of them are there.
 bool readVector(const Json& json, double v[3]) {
   const char* axes[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
@@ -45,7 +45,7 @@ Json stateOf(const hapticd_state& state, const double wanted[3], const Basis& ba
           {"control_mode", "force"}};
 }
 
-/// The handle: the orientation of the tip, and buttons.
+/// The handle: the orientation of the tip, and the buttons.
 Json gripOf(const hapticd_state& state, const std::string& id, const Basis& basis) {
   const auto q = basis.turnFromWorld(state.orientation);
   return {{"device_id", id},
@@ -122,7 +122,7 @@ std::string Session::answer(const std::string& message) {
 void Session::obey(const Json& message) {
   const Json& permutation = childOf(childOf(childOf(childOf(message, "session"), "configure"), "basis"), "permutation");
   if (permutation.is_string() && !basis_.set(permutation.get<std::string>()))
-    complain("the basis \"" + permutation.get<std::string>().substr(0, 40) + "\" is no permutation of X, Y and Z");
+    complain("the basis \"" + permutation.get<std::string>().substr(0, 40) + "\" is not a permutation of X, Y and Z");
   for (const Json& device : childOf(message, "inverse3")) {
     const Json& id = childOf(device, "device_id");
     if (!id.is_string()) continue;

@@ -19,11 +19,11 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// [main] The first message. "": the daemon tells nothing any more
+  /// [main] The first message. "" if the daemon reports nothing any more
   std::string inventory();
-  /// [main] The answer to a message. "": the daemon tells nothing any more
+  /// [main] The answer to a message. "" if the daemon reports nothing any more
   std::string answer(const std::string& message);
-  /// [main] What was asked for and cannot be, once; "": nothing new.
+  /// [main] What was asked for but is impossible, reported once; "" if there is nothing new.
   std::string complaint();
 
  private:

@@ -13,7 +13,7 @@ namespace hapticd::hd {
 
 namespace {
 
-constexpr uint64_t kHoldNs = 100'000'000;  ///< a force holds for so long after the frame that set it
+constexpr uint64_t kHoldNs = 100'000'000;  ///< how long a force holds after the frame that set it
 
 constexpr HDenum kCapabilities[] = {HD_FORCE_OUTPUT, HD_MAX_FORCE_CLAMPING, HD_FORCE_RAMPING, HD_SOFTWARE_FORCE_LIMIT,
                                     HD_ONE_FRAME_LIMIT};
@@ -25,7 +25,7 @@ uint32_t bitOf(HDenum capability) {
 
 constexpr uint32_t kNone = 0, kStopped = 8;  ///< hapticd_state.fault: none; the arm is held, or the daemon ends
 
-/// What the daemon's reasons for not letting a force flow are here (hapticd_state.fault). HD_SUCCESS: nothing to tell.
+/// The daemon's reasons for withholding a force (hapticd_state.fault) in the HDAPI. HD_SUCCESS: nothing to report.
 HDerror errorOf(uint32_t fault) {
   constexpr uint32_t kDeviceLost = 2, kStale = 4, kTooFast = 5, kOverheated = 10;
   switch (fault) {
@@ -71,12 +71,12 @@ void scaleTo(double v[3], double most) {
 }  // namespace
 
 void Arm::open(std::shared_ptr<Link> link, Facts facts) {
-  constexpr double kRampTime = 0.05;  // s to the greatest force
+  constexpr double kRampTime = 0.05;  // s until the greatest force
   link_ = std::move(link);
   facts_ = std::move(facts);
   motion_ = {};
   frame_ = last_ = {};
-  ended_ = pushed_ = seen_ = false;  // a frame that is open ends as it would have: the daemon was lost meanwhile
+  ended_ = pushed_ = seen_ = false;  // an open frame ends as it would have ended: the daemon was lost meanwhile
   told_fault_ = 0, stopped_since_ = -1, told_limit_ = false;
   std::fill_n(held_force_, 3, 0.0), std::fill_n(held_torque_, 3, 0.0);
   capabilities_ = bitOf(HD_MAX_FORCE_CLAMPING) | bitOf(HD_FORCE_RAMPING) | bitOf(HD_SOFTWARE_FORCE_LIMIT) |
@@ -87,12 +87,12 @@ void Arm::open(std::shared_ptr<Link> link, Facts facts) {
 }
 
 void Arm::close() {
-  link_.reset();  // the connection ends with the last who holds it, and the force with the connection
+  link_.reset();  // the connection ends with its last owner, and the force ends with the connection
   in_frame_ = false;
   capabilities_ = 0;
 }
 
-/// Another thread may have seen a newer one already.
+/// Another thread may have read a newer one already.
 void Arm::look(const hapticd_state& state) {
   if (seen_ && state.tick <= now_.tick) return;
   seen_ = true;
@@ -111,7 +111,7 @@ void Arm::refresh() {
   if (isOpen() && link_->next(UINT64_MAX, 0, state) == 1) look(state);
 }
 
-/// The force is that of the last frame.
+/// The force is still that of the last frame.
 const Frame& Arm::newest() {
   refresh();
   newest_ = frame_;
@@ -121,7 +121,7 @@ const Frame& Arm::newest() {
 
 void Arm::see(Frame& frame) const {
   frame.state = now_;
-  if (facts_.pushable)  // the daemon estimates it for those who push
+  if (facts_.pushable)  // the daemon estimates it for programs that push
     std::copy_n(now_.velocity, 3, frame.velocity);
   else
     motion_.velocity(frame.velocity);
@@ -144,7 +144,7 @@ void Arm::reportFault() {
   const uint32_t fault = now_.fault;
   if (fault != kStopped) stopped_since_ = -1;
   if (fault == told_fault_) return;
-  // A daemon that ends ramps its forces out as a hold does. That it is gone is told by the scheduler.
+  // A daemon that ends ramps its forces out as a hold does. The scheduler reports that it has gone.
   constexpr double kEnds = 0.25;  // s
   if (fault == kStopped && stopped_since_ < 0) stopped_since_ = now_.t;
   if (fault == kStopped && now_.t - stopped_since_ < kEnds) return;
@@ -189,7 +189,7 @@ void Arm::addJointTorque(double force[3], double torque[3]) const {
   for (int i = 0; i < 3; ++i) force[i] += more_force[i], torque[i] += more_torque[i];
 }
 
-/// Where a force is clamped, the error says so when that begins: what is felt is not what was asked for.
+/// When a force begins to be clamped, an error says so, because what is felt is not what was asked for.
 void Arm::tellOfLimit(const double force[3]) {
   const bool beyond = forceOn() && facts_.max_force > 0 && allFinite(force) && sizeOf(force) > facts_.max_force;
   const bool tells = isEnabled(HD_SOFTWARE_FORCE_LIMIT) && isEnabled(HD_MAX_FORCE_CLAMPING);
@@ -197,7 +197,7 @@ void Arm::tellOfLimit(const double force[3]) {
   told_limit_ = beyond;
 }
 
-/// What the library lets out of what the program asked for. An error: nothing of it.
+/// How much of what the program asked for the library lets through. After an error, nothing.
 HDerror Arm::checked(uint64_t ns, double force[3]) const {
   if (!forceOn()) return HD_SUCCESS;
   if (!allFinite(force)) return hintOnce("a force is not a number: it cannot be felt"), HD_FORCE_ERROR;
@@ -215,7 +215,7 @@ HDerror Arm::checked(uint64_t ns, double force[3]) const {
   return HD_SUCCESS;
 }
 
-/// The servo ignores a second answer to a tick, and one to a tick before it.
+/// The servo ignores a second answer to a tick, and an answer to an earlier tick.
 void Arm::answer(uint64_t tick, const double force[3], const double torque[3], uint64_t ns) {
   if (pushed_ && tick <= pushed_tick_) return;
   hapticd_push push{};

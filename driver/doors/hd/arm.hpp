@@ -11,7 +11,7 @@
 
 namespace hapticd::hd {
 
-/// What a frame saw and said. SI units.
+/// What a frame read and asked for, in SI units.
 struct Frame {
   hapticd_state state{};
   double velocity[3] = {}, angular[3] = {};
@@ -19,7 +19,7 @@ struct Frame {
   double joint_torque[6] = {};           ///< [N m] of turret, thigh, shin and gimbal; added to force and torque
 };
 
-/// Bounds that the library itself checks; the daemon has its own, which nothing here reaches.
+/// Bounds that the library itself checks; the daemon has its own, which do not depend on these.
 struct Bounds {
   double velocity = 0;  ///< [mm/s] 0: not checked
   double impulse = 0;   ///< [N] from one frame to the next; 0: not checked
@@ -39,26 +39,26 @@ class Arm {
 
   /// A tick of the scheduler begins. @param ns CLOCK_MONOTONIC
   void tick(const hapticd_state& state, uint64_t ns);
-  /// It ends: the servo hears that this program lives, and which force holds.
+  /// The tick ends: the servo hears that this program lives, and which force holds.
   void heartbeat(uint64_t ns);
 
-  /// @param scheduler_tick that goes on; UINT64_MAX: the caller is in none
+  /// @param scheduler_tick number of the current tick; UINT64_MAX: the caller is in none
   void begin(uint64_t scheduler_tick);
-  /// @param pushes the scheduler runs, so that somebody goes on with the force
+  /// @param pushes the scheduler runs, so that somebody continues the force
   void end(uint64_t scheduler_tick, uint64_t ns, bool pushes);
   bool inFrame() const { return in_frame_; }
   Frame& frame() { return frame_; }
   const Frame& last() const { return last_; }
-  /// What the daemon tells now, for a reader that is in no frame and no tick.
+  /// The daemon's present state, for a reader that is in no frame and no tick.
   const Frame& newest();
 
   static bool isCapability(HDenum capability);
   bool isEnabled(HDenum capability) const;
-  /// @return false: there is no such capability, or it cannot be had
+  /// @return false if there is no such capability, or it is not available
   bool enable(HDenum capability, bool on, std::string& why);
   Bounds& bounds() { return bounds_; }
   bool forceOn() const { return isEnabled(HD_FORCE_OUTPUT); }
-  bool knowsJacobian() const;                ///< torques of joints can become a force
+  bool knowsJacobian() const;                ///< joint torques can be turned into a force
   double motorTemperature(int joint) const;  ///< 0 cold to 1 as hot as it may get
   bool first = false;                        ///< opened as the default device
   int32_t light = 0;                         ///< HD_USER_STATUS_LIGHT, which no arm has
@@ -86,8 +86,8 @@ class Arm {
   bool pushed_ = false;
   double held_force_[3] = {}, held_torque_[3] = {};
   uint32_t capabilities_ = 0, told_fault_ = 0;
-  double stopped_since_ = -1;  ///< [s] of the daemon; < 0: the arm is not held
-  bool told_limit_ = false;    ///< that the program asks for more than the arm's force
+  double stopped_since_ = -1;  ///< [s] of the daemon's time; < 0: the arm is not held
+  bool told_limit_ = false;    ///< that the program asks for more than the arm's force was reported
   Bounds bounds_;
 };
 

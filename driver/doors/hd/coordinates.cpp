@@ -7,7 +7,7 @@ namespace hapticd::hd {
 
 namespace {
 
-/// Turns what a program says into the world.
+/// Turns a program's vectors into the world frame.
 Eigen::Quaterniond turnOf(const Facts& facts) {
   return {facts.turn[0], facts.turn[1], facts.turn[2], facts.turn[3]};
 }

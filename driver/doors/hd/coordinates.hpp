@@ -7,10 +7,10 @@
 
 namespace hapticd::hd {
 
-/// A state of the daemon as programs see it; still in SI units.
+/// A state of the daemon as programs see it, still in SI units.
 void toProgram(const Facts& facts, hapticd_state& state);
 
-/// A force or a torque of a program in the axes of the world, and back.
+/// A program's force or torque in the axes of the world, and back.
 void toWorld(const Facts& facts, double v[3]);
 void fromWorld(const Facts& facts, double v[3]);
 

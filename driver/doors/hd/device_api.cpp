@@ -12,14 +12,14 @@ namespace hapticd::hd {
 
 namespace {
 
-/// The daemon's name for an arm. Empty: the first.
+/// The daemon's name for an arm. An empty name means the first arm.
 std::string deviceOf(HDstring name) {
   for (const char* usual : {"", "Default Device", "Default PHANToM", "Default PHANTOM"})
     if (name == nullptr || std::strcmp(name, usual) == 0) return "";
   return name;
 }
 
-/// An open arm of this name. nullptr: there is none
+/// An open arm of this name. nullptr if there is none
 Arm* openOf(Library& all, const std::string& name, HHD& handle) {
   for (handle = 0; handle < kMostArms; ++handle) {
     Arm& arm = all.arms()[handle];
@@ -40,12 +40,12 @@ HHD refuse(Library& all, int number, const std::string& why) {
   return HD_INVALID_HANDLE;
 }
 
-/// Puts what was opened into its place: that of an arm whose daemon ended, or a free one.
+/// Puts an opened arm into its place: that of an arm whose daemon ended, or a free one.
 HHD keep(Library& all, const std::string& wanted, std::shared_ptr<Link> link, Facts facts) {
   const Guard guard(all.lock);
   HHD handle = 0;
   const Arm* there = openOf(all, wanted, handle);
-  if (there == nullptr) there = openOf(all, facts.name, handle);  // by its own name and as the default
+  if (there == nullptr) there = openOf(all, facts.name, handle);  // may be open by its own name and as the default
   if (there != nullptr && there->alive())
     return all.errors.push(HD_DEVICE_ALREADY_INITIATED, handle), all.current = handle;
   if (there == nullptr) handle = freeHandle(all);

@@ -9,7 +9,7 @@
 
 namespace hapticd::hd {
 
-/// [any] The newest error comes first; of more than 64 the oldest are dropped.
+/// [any] The newest error comes first; if there are more than 64, the oldest are dropped.
 class ErrorStack {
  public:
   void push(HDerror code, HHD device, int internal = 0);
@@ -25,7 +25,7 @@ class ErrorStack {
 /// [any] Never NULL.
 const char* errorText(HDerror code);
 
-/// [any] A line on stderr, once for each `text`, which stays: what is wrong and how to mend it.
+/// [any] Prints one line on stderr, once for each `text`, which must stay in memory: what is wrong and how to fix it.
 void hintOnce(const char* text);
 void hint(const char* what, const char* text);
 

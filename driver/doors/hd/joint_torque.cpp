@@ -9,7 +9,7 @@ namespace {
 
 constexpr size_t kArm = 3, kAll = 6;  // joints
 
-/// W of least |J^T W - torque|^2 + damping |W|^2.
+/// The W that minimises |J^T W - torque|^2 + damping |W|^2.
 template <int N>
 Eigen::Matrix<double, N, 1> solved(const Eigen::Matrix<double, N, N>& J, const Eigen::Matrix<double, N, 1>& torque) {
   constexpr double kDamping = 1e-9;  // of the mean square of a row: a thousandth of a percent where all is well

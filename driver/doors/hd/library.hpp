@@ -13,25 +13,25 @@
 
 namespace hapticd::hd {
 
-constexpr size_t kMostArms = 16;  // handles 0 to 15: never 260, which some programs take for an error
+constexpr size_t kMostArms = 16;  // handles are 0 to 15, never 260, which some programs take for an error
 
 class Library {
  public:
   Library() : arms_(made(std::make_index_sequence<kMostArms>())) {}
 
-  std::recursive_mutex lock;  ///< of arms and of what is current
+  std::recursive_mutex lock;  ///< guards the arms and which of them is current
   ErrorStack errors;
   HHD current = 0;
 
   std::array<Arm, kMostArms>& arms() { return arms_; }
-  /// nullptr: no open arm has this handle.
+  /// nullptr if no open arm has this handle.
   Arm* find(HHD handle) { return handle < kMostArms && arms_[handle].isOpen() ? &arms_[handle] : nullptr; }
   Scheduler& scheduler() { return scheduler_; }
   double rate() const;  ///< [Hz] of the daemon
 
   /// Puts an error on the stack with the current device.
   void fail(HDerror code) { errors.push(code, current); }
-  /// The current arm. nullptr: there is none, which is an error.
+  /// The current arm. nullptr if there is none, which is an error.
   Arm* currentArm();
 
  private:

@@ -26,14 +26,14 @@ std::string namesOf(hapticd_client* client) {
   return names;
 }
 
-/// Where a column begins in its row; -1: there is none.
+/// The place where a column begins in its row; -1 if there is none.
 long placeOf(const hapticd_column* columns, long count, const char* name) {
   for (long i = 0; i < count; ++i)
     if (std::strcmp(columns[i].name, name) == 0) return columns[i].offset;
   return -1;
 }
 
-/// A program of the HDAPI never calls hapticd_connect.
+/// An HDAPI program never calls hapticd_connect, so the message must not mention it.
 std::string forPrograms(std::string text) {
   constexpr std::string_view kCall = "give hapticd_connect the name of a running one";
   if (const size_t at = text.find(kCall); at != std::string::npos)
@@ -66,7 +66,7 @@ std::shared_ptr<Link> Link::open(const std::string& name, Facts& facts, std::str
   hapticd_state first;
   constexpr int kFirstMs = 1000;
   if (hapticd_next_state(client.get(), device, UINT64_MAX, kFirstMs, &first) != 1)
-    return why = "the daemon tells of no tick for 1 s", nullptr;
+    return why = "the daemon has reported no tick for 1 s", nullptr;
   auto link = std::make_shared<Link>(client.get(), device);
   (void)client.release();
   return link;

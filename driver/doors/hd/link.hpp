@@ -10,11 +10,11 @@
 
 namespace hapticd::hd {
 
-/// Of several threads one may open, lead and close; the others may wait, push and read.
+/// One thread at a time may open, lead and close; others may wait, push and read meanwhile.
 class Link {
  public:
   /// [main] Connects to the daemon of $HAPTICD_NAME. @param name of the arm; empty: the first. @param why becomes the
-  /// reason and its cure @param number becomes errno or 0. nullptr: it cannot
+  /// reason and its cure @param number becomes errno or 0. nullptr if it cannot connect
   static std::shared_ptr<Link> open(const std::string& name, Facts& facts, std::string& why, int& number);
   Link(hapticd_client* client, int device) : client_(client), device_(device) {}
   Link(const Link&) = delete;
@@ -27,17 +27,17 @@ class Link {
   }
   /// [any] As hapticd_listen.
   void listen(unsigned microseconds) const { hapticd_listen(client_, microseconds); }
-  /// [any] The newest Jacobian of the arm. @return false: it is not told
+  /// [any] The newest Jacobian of the arm. @return false if it is unknown
   bool jacobian(hapticd_jacobian& jacobian) const { return hapticd_read_jacobian(client_, device_, &jacobian) == 1; }
-  /// [any] A daemon of this name runs; perhaps not the one that was connected to.
+  /// [any] True if a daemon of this name runs, though perhaps another one than before.
   bool runs() const { return hapticd_alive(client_) == 1; }
-  /// [main] The one that was connected to runs.
+  /// [main] True if the daemon to which it connected still runs.
   bool alive() const {
     return !lost && runs() && hapticd_ask(client_, R"({"do":"snapshot"})", nullptr, 0, nullptr) >= 0;
   }
-  std::atomic<bool> lost{false};  ///< no tick came for long
+  std::atomic<bool> lost{false};  ///< no tick came for a long time
 
-  /// [main] From now on push() counts. @return false: `why` says why not
+  /// [main] From now on push() has an effect. @return false: `why` says why not
   bool lead(std::string& why);
   bool leads() const { return lead_ != nullptr; }
   void push(const hapticd_push& push) const {

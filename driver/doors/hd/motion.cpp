@@ -9,7 +9,7 @@ namespace hapticd::hd {
 void Motion::add(const hapticd_state& state) {
   if (count_ > 0 && state.tick <= at(0).tick) {
     if (state.tick == at(0).tick) return;
-    count_ = 0;  // another daemon, which counts anew
+    count_ = 0;  // another daemon has started, which counts anew
   }
   kept_[next_] = state;
   next_ = (next_ + 1) % kKept;
@@ -32,7 +32,7 @@ void Motion::angularVelocity(double out[3]) const {
   const hapticd_state &newest = at(0), &oldest = at(count_ - 1);
   const double time = newest.t - oldest.t;
   const double *b = newest.orientation, *a = oldest.orientation;
-  // The turn b * conj(a), whose vector part is its axis by the sine of half the angle.
+  // The turn b * conj(a), whose vector part is its axis times the sine of half the angle.
   const double w = b[0] * a[0] + b[1] * a[1] + b[2] * a[2] + b[3] * a[3];
   const double v[3] = {-b[0] * a[1] + b[1] * a[0] - b[2] * a[3] + b[3] * a[2],
                        -b[0] * a[2] + b[1] * a[3] + b[2] * a[0] - b[3] * a[1],

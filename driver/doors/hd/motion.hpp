@@ -10,10 +10,10 @@ namespace hapticd::hd {
 
 class Motion {
  public:
-  void add(const hapticd_state& state);  ///< one newer than the last; others are left out
-  /// [m/s] By least squares over the states that were kept; zeros while there are fewer than two.
+  void add(const hapticd_state& state);  ///< takes a state newer than the last; others are ignored
+  /// [m/s] By least squares over the states that were kept; zeros if there are fewer than two.
   void velocity(double out[3]) const;
-  /// [rad/s] From the oldest orientation that was kept to the newest, world frame.
+  /// [rad/s] From the oldest kept orientation to the newest, world frame.
   void angularVelocity(double out[3]) const;
 
  private:

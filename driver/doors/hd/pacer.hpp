@@ -16,13 +16,13 @@ class Library;
 class Pacer {
  public:
   explicit Pacer(Library& library) : library_(library) {}
-  /// Waits for a tick and shows its states to the arms. One thread after the other. @return CLOCK_MONOTONIC [ns] when
-  /// it began
+  /// Waits for a tick and gives its states to the arms. Only one thread at a time. @return CLOCK_MONOTONIC [ns] when it
+  /// began
   uint64_t wait();
   /// [any] Looks for ticks without sleeping from so many microseconds before they are due; 0: it sleeps
   /// (hapticd_listen)
   void listen(unsigned microseconds) { listen_us_ = microseconds; }
-  void endTick();  ///< [servo] every arm hears that the program lives
+  void endTick();  ///< [servo] tells every arm that the program lives
   double rate() const;
 
  private:
@@ -37,7 +37,7 @@ class Pacer {
 
   Library& library_;
   std::mutex waiting_;
-  std::weak_ptr<Link> followed_;  ///< the arm that the ticks are those of; its device closes it
+  std::weak_ptr<Link> followed_;  ///< the arm whose ticks these are; its device closes it
   uint64_t seen_ = UINT64_MAX, silent_since_ns_ = 0, looked_ns_ = 0;
   bool lost_ = false;  ///< and told so
   std::atomic<unsigned> listen_us_{0};

@@ -10,7 +10,7 @@ namespace hapticd::hd {
 
 namespace {
 
-/// What CURRENT_... means for the caller: the frame that is open, else in a tick the last frame, else what is now.
+/// What CURRENT_... means for the caller: the open frame, else in a tick the last frame, else the present state.
 const Frame& currentFor(Library& all, Arm& arm) {
   if (arm.inFrame() || all.scheduler().tickOfCaller() != UINT64_MAX) return arm.frame();
   return arm.newest();

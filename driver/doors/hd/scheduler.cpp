@@ -26,20 +26,20 @@ namespace {
 constexpr size_t kMostTasks = 512;
 constexpr int kPriority = 70;  ///< below the daemon's servo at 80
 
-thread_local int ticks_of_this_thread = 0;  ///< how deep the thread is in callbacks
+thread_local int ticks_of_this_thread = 0;  ///< how deeply the thread is nested in callbacks
 
 bool becomeRealTime() {
   const sched_param priority{kPriority};
   if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) == 0) return true;
   hintOnce(
-      "no real-time priority for the servo loop: forces may be felt a tick late\n"
+      "no real-time priority for the servo loop: forces may be felt one tick late\n"
       "  fix: join the group haptic (`hapticd doctor` says how)");
   return false;
 }
 
-/// [us] How long before and after a tick is due the servo loop looks for it without sleeping: what $HAPTICD_LISTEN
-/// says; else, with real-time priority, a tenth of the period, 100 us at most. Without that priority a busy loop would
-/// only use up the time that the kernel gives to the thread.
+/// [us] How long before and after a tick is due the servo loop looks for it without sleeping: the value of
+/// $HAPTICD_LISTEN; else, with real-time priority, a tenth of the period, 100 us at most. Without that priority a busy
+/// loop would only use up the time that the kernel gives to the thread.
 unsigned listeningTime(bool real_time, double rate) {
   constexpr double kMost = 100, kShare = 0.1, kUsPerSecond = 1e6;
   if (const char* text = std::getenv("HAPTICD_LISTEN"); text != nullptr && *text != '\0') {
@@ -52,7 +52,7 @@ unsigned listeningTime(bool real_time, double rate) {
   return real_time ? static_cast<unsigned>(std::min(kMost, kShare * kUsPerSecond / rate)) : 0;
 }
 
-/// HD_INVALID_VALUE says that a rate is wrong, and not which ones are right.
+/// HD_INVALID_VALUE says that a rate is wrong, but not which ones are right.
 void tellRates(double wanted, double daemon) {
   constexpr int kShown = 6;
   char text[256];
@@ -72,7 +72,7 @@ void tellRates(double wanted, double daemon) {
 bool Scheduler::start() {
   const std::lock_guard guard(lock_);
   if (running_) return true;
-  if (thread_.joinable()) thread_.detach();  // it was stopped by a callback of its own and is about to end
+  if (thread_.joinable()) thread_.detach();  // a callback of its own stopped it, so it is about to end
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);  // signals are for the program's own threads
@@ -154,7 +154,7 @@ void Scheduler::run(const std::shared_ptr<Task>& task) {
   changed_.notify_all();
 }
 
-/// Highest priority first; of equal ones the one that came first.
+/// Callbacks run by priority, highest first; those of equal priority in the order in which they came.
 std::shared_ptr<Scheduler::Task> Scheduler::add(HDSchedulerCallback function, void* data, HDushort priority) {
   constexpr HDSchedulerHandle kLastHandle = 0x7fffffff;  // programs keep handles in 32 bits
   const std::lock_guard guard(lock_);
@@ -174,7 +174,7 @@ HDSchedulerHandle Scheduler::schedule(HDSchedulerCallback function, void* data, 
   return handle;
 }
 
-/// Ticks of the caller: there is no servo loop, or the caller is in it.
+/// Ticks that the caller counts, because there is no servo loop, or the caller is in it.
 void Scheduler::runHere(HDSchedulerCallback function, void* data) {
   const bool nested = ticks_of_this_thread > 0;
   HDCallbackCode code = HD_CALLBACK_CONTINUE;

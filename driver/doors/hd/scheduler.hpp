@@ -19,22 +19,22 @@ class Scheduler {
   explicit Scheduler(Pacer& pacer) : pacer_(pacer) {}
 
   bool start();  ///< false: no thread can be had
-  void stop();   ///< waits for the tick that goes on, unless the caller is in it
+  void stop();   ///< waits for the end of the current tick, unless the caller is in it
   bool running() const { return running_; }
 
-  /// @return its handle; HD_INVALID_HANDLE: too many
+  /// @return its handle; HD_INVALID_HANDLE: there are too many
   HDSchedulerHandle schedule(HDSchedulerCallback function, void* data, HDushort priority);
-  /// Returns when the callback is done. @return false: too many
+  /// Returns when the callback is done. @return false: there are too many
   bool runToEnd(HDSchedulerCallback function, void* data, HDushort priority);
-  bool unschedule(HDSchedulerHandle handle);  ///< false: it has ended, or never was
+  bool unschedule(HDSchedulerHandle handle);  ///< false if it has ended, or never existed
   bool isScheduled(HDSchedulerHandle handle, bool wait);
 
-  bool setRate(double rate);                    ///< [Hz] false: more than the daemon's, or none
+  bool setRate(double rate);                    ///< [Hz] false if it is more than the daemon's rate, or not a rate
   double rate() const;                          ///< [Hz]
   bool realTime() const { return real_time_; }  ///< the servo loop has real-time priority
   double instantaneousRate() const { return instantaneous_; }
 
-  /// Number of the tick that the calling thread is in; UINT64_MAX: it is in none.
+  /// Number of the tick in which the calling thread is; UINT64_MAX: it is in none.
   uint64_t tickOfCaller() const;
   double secondsInTick() const;
 
@@ -62,7 +62,7 @@ class Scheduler {
   Tasks tasks_;  ///< in the order in which they run
   std::thread thread_;
   std::atomic<bool> running_{false};
-  std::atomic<uint64_t> run_{0};  ///< number of the thread that may run them
+  std::atomic<uint64_t> run_{0};  ///< number of the thread that may run the callbacks
   HDSchedulerHandle next_handle_ = 1;
   std::atomic<double> wanted_rate_{0}, instantaneous_{0};
   std::atomic<uint64_t> tick_{0}, began_ns_{0};

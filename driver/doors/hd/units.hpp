@@ -4,7 +4,7 @@
 
 namespace hapticd::hd {
 
-inline constexpr double kMmPerMetre = 1000;  ///< also mN m of an N m
+inline constexpr double kMmPerMetre = 1000;  ///< also turns N m into mN m
 inline constexpr double kNsPerSecond = 1e9;
 
 }  // namespace hapticd::hd

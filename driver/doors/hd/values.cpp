@@ -19,7 +19,7 @@ void copy(const double* from, int count, double factor, double* out) {
   for (int i = 0; i < count; ++i) out[i] = factor * from[i];
 }
 
-/// A value of a frame: CURRENT_... of the one that is open, LAST_... of the one before.
+/// A value of a frame: CURRENT_... is that of the open frame, LAST_... that of the one before.
 struct OfFrame {
   HDenum current, last;
   int count;
@@ -37,7 +37,7 @@ void safetySwitch(const Arm& arm, const Frame& frame, double* out) {
   out[0] = button < 0 || (frame.state.buttons >> button & 1u) != 0 ? 1 : 0;
 }
 void inkwell(const Arm&, const Frame&, double* out) {
-  out[0] = 1;  // out of the well, which no arm of ours has
+  out[0] = 1;  // the arm is out of the inkwell, which no arm of ours has
 }
 void nothing(const Arm&, const Frame&, double* out) {
   std::fill_n(out, kMostNumbers, 0.0);
@@ -108,14 +108,14 @@ struct OfArm {
   void (*get)(const Asked& asked, double* out);
 };
 
-/// Who answers a tick late feels a wall of a third of the stiffness before it buzzes.
+/// A program that answers one tick late feels a wall of a third of the stiffness before it buzzes.
 double stiffness(const Asked& asked) {
   constexpr double kLate = 3;
   const bool in_time = sysconf(_SC_NPROCESSORS_ONLN) > 1 && asked.scheduler.realTime();
   return asked.arm.facts().max_stiffness / (in_time ? 1 : kLate);
 }
 
-/// What an arm may turn the hand with, in mN m; one of three joints turns nothing.
+/// The torque with which an arm may turn the hand, in mN m; an arm of three joints cannot turn it.
 double torque(const Arm& arm) {
   return arm.facts().output_dof > 3 ? arm.facts().max_torque * kMmPerMetre : 0;
 }
@@ -233,7 +233,7 @@ HDerror set(Arm& arm, HDenum name, const double* numbers) {
     copy(numbers, 3, 1 / kMmPerMetre, joints + kTurnJoints);
   if (name == HD_CURRENT_FORCE) copy(numbers, 3, 1, arm.frame().force);
   if (name == HD_CURRENT_TORQUE) copy(numbers, 3, 1 / kMmPerMetre, arm.frame().torque);
-  return HD_SUCCESS;  // the torque of a gimbal without motors is nobody's
+  return HD_SUCCESS;  // a gimbal without motors has no torque
 }
 
 }  // namespace hapticd::hd

@@ -69,7 +69,7 @@ std::string cookieValue(const std::string& cookies, const std::string& name) {
   return "";
 }
 
-/// The first protocol of the client's list that we speak.
+/// The first protocol of the client's list that this server speaks.
 void choose(const std::string& offered, Admission& admission) {
   for (const std::string& name : split(offered, ',')) {
     if (name == "hapticd.1")

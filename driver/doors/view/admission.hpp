@@ -7,7 +7,7 @@
 
 namespace hapticd::view {
 
-/// What a request says of itself.
+/// What a request says about itself.
 struct RequestHead {
   std::string host, origin, cookie;  ///< header fields, "" where there is none
   std::string target;                ///< "/path?query"
@@ -21,7 +21,7 @@ enum class Subprotocol { kNone, kHapticd, kFoxglove };
 /// What comes of it.
 struct Admission {
   unsigned status = 200;     ///< HTTP status: 200, 400, 401 no token, 403 foreign origin, 421 foreign host
-  bool give_cookie = false;  ///< the token was in the URL: from now on the cookie holds
+  bool give_cookie = false;  ///< the token was in the URL; from now on the cookie is used
   Subprotocol protocol = Subprotocol::kNone;
   std::string protocol_name;  ///< as it is answered
   std::string why;            ///< for the refused
@@ -33,9 +33,9 @@ class Doorkeeper {
   /// [main] Draws the secrets. @param port part of the cookie's name: browsers share cookies between ports
   explicit Doorkeeper(unsigned short port);
 
-  /// [main] Decides. The name of the host is checked first (against DNS rebinding), then the origin, then the secret.
-  /// A page of another origin may open a Foxglove WebSocket alone, which only reads, and only with the token in its
-  /// URL, never by the cookie.
+  /// [main] Decides. It checks the name of the host first (against DNS rebinding), then the origin, then the secret. A
+  /// page of another origin may only open a Foxglove WebSocket, which only reads, and only with the token in its URL,
+  /// never by the cookie.
   Admission judge(const RequestHead& head) const;
 
   const std::string& token() const { return token_; }

@@ -55,7 +55,7 @@ class DaemonImpl final : public Daemon {
     link_ = std::make_shared<Link>(io_);
     link_->owner = this;
     ErrorCode error;
-    link_->socket.connect(Local::endpoint(file_), error);  // of a local socket: at once, or an error
+    link_->socket.connect(Local::endpoint(file_), error);  // for a local socket: it succeeds at once, or fails
     if (error) return;
     link_->socket.non_blocking(true, error);
     connected_ = true;
@@ -64,7 +64,7 @@ class DaemonImpl final : public Daemon {
   }
 
  private:
-  /// What outlives the owner while an operation is under way.
+  /// What outlives the owner while an operation is in progress.
   struct Link {
     explicit Link(asio::io_context& io) : socket(io) {}
     Local::socket socket;
@@ -89,7 +89,7 @@ class DaemonImpl final : public Daemon {
     });
   }
 
-  /// Reads what is there, with the descriptor that may come along. False: the daemon has ended.
+  /// Reads what has arrived, with the descriptor that may come with it. False if the daemon has ended.
   bool take() {
     char buffer[1 << 14];
     std::vector<Descriptor> descriptors;
@@ -115,7 +115,7 @@ class DaemonImpl final : public Daemon {
     in_.erase(0, begin);
   }
 
-  /// Answers of one read may have come before the one that brought memory: that one says "bytes".
+  /// One read may contain answers from before the one that brought memory, which is the one that says "bytes".
   Descriptor takeMemory(const Json& answer) {
     if (memories_.empty() || !answer.contains("bytes")) return {};
     Descriptor memory = std::move(memories_.front());

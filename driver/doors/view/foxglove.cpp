@@ -14,7 +14,7 @@ namespace hapticd::view {
 
 namespace {
 
-constexpr uint64_t kTickBytes = 1u << 20;  ///< of one stream in one tick of the view
+constexpr uint64_t kTickBytes = 1u << 20;  ///< most rows of one stream in one tick of the view
 constexpr char kMessageData = 1;           ///< op code of a message to a subscription
 
 uint64_t wallNow() {
@@ -44,11 +44,11 @@ class Foxglove final : public Conversation {
   ~Foxglove() override { *alive_ = false; }
 
   void onText(std::string_view text) override;
-  void onBinary(std::span<const std::byte>) override {}  // of clients that publish: this server takes nothing
+  void onBinary(std::span<const std::byte>) override {}  // messages of clients that publish: this server ignores them
   void onTick() override;
 
  private:
-  /// A channel: a stream of rows, or one of the two after them.
+  /// A channel: a stream of rows, or one of the two that follow them.
   struct Channel {
     size_t stream = SIZE_MAX;  ///< SIZE_MAX: /tf or /scene
     Json advert;
@@ -79,7 +79,7 @@ class Foxglove final : public Conversation {
 void Foxglove::onTick() {
   if (stage_.rows() == nullptr) return;
   if (run_ != stage_.run()) begin();
-  if (!peer_.idle()) return;  // the rows wait where they are: in the black box
+  if (!peer_.idle()) return;  // the rows wait in the black box
   for (size_t i = 0; i < next_.size(); ++i) sendStream(i);
   sendTransforms();
   sendScene();
@@ -94,7 +94,7 @@ void Foxglove::begin() {
   t_offset_ = 0;
   for (const record::Column& column : columnsOf(stage_.about(), "ticks"))
     if (column.name == "t") t_offset_ = column.offset;
-  start_ = 0;  // with the first tick that is seen
+  start_ = 0;  // sent with the first tick that is seen
   peer_.text(Json({{"op", "serverInfo"},
                    {"name", "hapticd " + stage_.about().value("hapticd", "")},
                    {"capabilities", Json::array()},
@@ -133,7 +133,7 @@ void Foxglove::advertise() {
   peer_.text(Json({{"op", "advertise"}, {"channels", adverts}}).dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-/// 0: nobody has subscribed to the channel. Subscriptions of the client may be any number; ours are one more.
+/// 0: nobody has subscribed to the channel. Subscription numbers of the client may be any; ours are one more.
 uint32_t Foxglove::subscriptionOf(uint32_t channel) const {
   for (const auto& [subscription, of] : subscriptions_)
     if (of == channel) return subscription + 1;
@@ -149,7 +149,7 @@ void Foxglove::sendStream(size_t stream) {
       channel == channels_.end() ? 0 : subscriptionOf(static_cast<uint32_t>(channel - channels_.begin()) + 1);
   const bool followed = what.name == "ticks" || what.name == "poses";
   const uint64_t end = rows.end(stream);
-  if (next_[stream] < rows.begin(stream)) next_[stream] = rows.begin(stream) + 1;  // one that reads too slowly
+  if (next_[stream] < rows.begin(stream)) next_[stream] = rows.begin(stream) + 1;  // the client reads too slowly
   if (subscription == 0 && !followed) next_[stream] = end;
   const uint64_t count = std::min(end - std::min(end, next_[stream]), kTickBytes / what.row_bytes);
   if (count == 0) return;
@@ -163,7 +163,7 @@ void Foxglove::sendStream(size_t stream) {
       double t = 0;
       std::memcpy(&t, row + t_offset_, sizeof t);
       const auto since = static_cast<uint64_t>(std::max(0.0, t) * 1e9);
-      if (start_ == 0) start_ = wallNow() - since;  // once: the wall clock may jump
+      if (start_ == 0) start_ = wallNow() - since;  // taken once, because the wall clock may jump
       newest_ = start_ + since;
     }
     if (subscription != 0)
@@ -184,7 +184,7 @@ void Foxglove::sendTransforms() {
   if (subscription != 0 && newest_ != 0) send(subscription - 1, newest_, "", tfMessage(frames_->all(), newest_));
 }
 
-/// The triangles of every model, when somebody subscribes and when the list of models changes.
+/// Sends the triangles of every model, when somebody subscribes and when the list of models changes.
 void Foxglove::sendScene() {
   const uint32_t subscription = subscriptionOf(sceneChannel());
   if (subscription == 0 || list_number_ == stage_.listNumber() || stage_.list().empty()) return;

@@ -36,7 +36,7 @@ std::unique_ptr<Lead> Lead::ask(boost::asio::io_context& io, const std::string& 
 }
 
 Lead::~Lead() {
-  daemon_.reset();  // first: it may hold the answer that fills in `page_`
+  daemon_.reset();  // read first, because it may hold the answer that fills in `page_`
   if (page_ != nullptr) munmap(page_, HAPTICD_LEAD_BYTES);
 }
 

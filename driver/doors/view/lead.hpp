@@ -24,10 +24,10 @@ class Lead {
   Lead(const Lead&) = delete;
   Lead& operator=(const Lead&) = delete;
 
-  /// [main] Newest wins; nothing waits. @param record the bytes of a hapticd_target. False: of no possible size, or the
-  /// lead is not there (yet)
+  /// [main] Newest wins; nothing waits. @param record the bytes of a hapticd_target. False if its size is impossible,
+  /// or there is no lead (yet)
   bool put(std::span<const std::byte> record);
-  bool refused() const { return refused_; }  ///< [main] the daemon gave none
+  bool refused() const { return refused_; }  ///< [main] the daemon refused the lead
 
  private:
   Lead() = default;

@@ -36,7 +36,7 @@ struct Options {
 /// True as long as a daemon holds the lock on its name.
 bool daemonLives(const std::string& lock_file) {
   const int fd = open(lock_file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
-  if (fd < 0) return errno == EACCES;  // of another user: there at least
+  if (fd < 0) return errno == EACCES;  // it belongs to another user, so it exists at least
   const bool free = flock(fd, LOCK_SH | LOCK_NB) == 0;
   close(fd);
   return !free;
@@ -51,7 +51,7 @@ void openBrowser(const std::string& url) {
     std::fputs("no browser could be started (xdg-open is missing): open the address above yourself\n", stderr);
 }
 
-/// Ticks the conversations 60 times a second while there are any, and looks for the end of the daemon.
+/// Ticks the conversations 60 times per second while there are any, and watches for the end of the daemon.
 class Heart {
  public:
   Heart(boost::asio::io_context& io, Stage& stage, Server& server, std::string lock_file)
@@ -71,7 +71,7 @@ class Heart {
   }
 
  private:
-  static constexpr unsigned kLook = 64;  ///< beats: about a second, in which pages hear of the end
+  static constexpr unsigned kLook = 64;  ///< beats: about one second, in which pages hear of the end
   boost::asio::io_context& io_;
   boost::asio::steady_timer timer_;
   Stage& stage_;

@@ -35,14 +35,14 @@ bool appendAll(std::string& bytes, const Json& list) {
   return true;
 }
 
-constexpr size_t kMost = size_t{1} << 24;  ///< vertices, and triangles: more no page draws
+constexpr size_t kMost = size_t{1} << 24;  ///< most vertices and triangles: no page draws more
 
 struct Counts {
   size_t vertices = 0, triangles = 0;
   bool normals = false;
 };
 
-/// What an answer says of its memory; nothing where it cannot be so.
+/// What an answer says about its memory; nothing if that is impossible.
 Counts countsOf(const Json& answer) {
   const auto count = [&](const char* key) {
     const auto it = answer.find(key);
@@ -53,7 +53,7 @@ Counts countsOf(const Json& answer) {
   return counts.vertices <= kMost && counts.triangles <= kMost ? counts : Counts{};
 }
 
-/// Read, not mapped: memory that somebody makes shorter would end this process. False: it has fewer bytes.
+/// It is read, not mapped, because memory that somebody shortens would end this process. False if it has fewer bytes.
 bool appendFrom(int memory, size_t count, std::string& bytes) {
   struct stat info{};
   if (memory < 0 || fstat(memory, &info) != 0 || info.st_size < static_cast<off_t>(count)) return false;

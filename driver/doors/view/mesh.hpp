@@ -15,13 +15,13 @@ namespace hapticd::view {
 
 constexpr uint32_t kMeshMessage = 0x80000000u, kVerticesMessage = 0x100;
 
-/// [main] From an answer of `geometry` as memory. nullptr: it is none, or the memory is shorter than the answer says.
+/// [main] From an answer of `geometry` as memory. nullptr if it is not one, or the memory is shorter than it says.
 Message meshMessage(const Json& answer, int memory);
 
-/// [main] The vertices alone of such an answer, of a body that deforms. nullptr as there.
+/// [main] Only the vertices of such an answer, for a body that deforms. nullptr in the same cases.
 Message verticesMessage(const Json& answer, int memory, uint32_t model, uint32_t frame);
 
-/// [main] From an answer of `vertices`. nullptr: it has no vertices.
+/// [main] From an answer of `vertices`. nullptr if it has no vertices.
 Message verticesMessage(const Json& answer, uint32_t model);
 
 /// [main] A message that begins with four words.

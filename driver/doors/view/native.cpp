@@ -17,8 +17,8 @@ namespace hapticd::view {
 
 namespace {
 
-constexpr uint64_t kBacklogBytes = 4u << 20;  ///< of rows that a new page gets: 10 s of one arm at 1 kHz
-constexpr uint64_t kMessageBytes = 1u << 20;  ///< of one stream in one message
+constexpr uint64_t kBacklogBytes = 4u << 20;  ///< most rows that a new page gets: 10 s of one arm at 1 kHz
+constexpr uint64_t kMessageBytes = 1u << 20;  ///< most rows of one stream in one message
 constexpr double kBacklogSeconds = 10;
 constexpr std::array<std::string_view, 4> kReads = {"status", "list", "geometry", "feature"};
 constexpr std::array<std::string_view, 14> kControls = {"enable", "disable", "move", "set",  "add", "remove", "reload",
@@ -30,7 +30,7 @@ bool contains(const Words& words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// The oldest row that will still be there when it is copied: the servo goes on overwriting meanwhile.
+/// The oldest row that will still exist when it is copied, because the servo overwrites rows meanwhile.
 uint64_t oldest(const RowSource& rows, size_t stream) {
   constexpr uint64_t kMargin = 64;
   const uint64_t begin = rows.begin(stream);
@@ -67,9 +67,9 @@ class Native final : public Conversation {
   std::vector<uint64_t> next_;  ///< row of each stream
   std::map<std::string, uint64_t> frames_;
   std::unique_ptr<Playback> playback_;
-  /// A body of the recording, as this page has it.
+  /// A body of the recording, as this page knows it.
   struct Body {
-    double time = NAN;  ///< [s] of the shape that was asked for last
+    double time = NAN;  ///< [s] of the shape that was last asked for
     bool asked = false;
   };
   std::map<std::string, Body> bodies_;
@@ -93,7 +93,7 @@ void Native::onTick() {
   if (playback_) askBodies();
 }
 
-/// A run was found: what it is, and where its rows begin for this page.
+/// A run was found: sends what it is, and where its rows begin for this page.
 void Native::begin() {
   run_ = stage_.run();
   const RowSource& rows = *stage_.rows();
@@ -153,7 +153,7 @@ void Native::sendRows() {
   if (ticks < next_.size()) sendRows(ticks, rows.end(ticks));
 }
 
-/// The place in the recording changed by a jump: the page forgets its rows and gets those before the new place.
+/// The place in the recording jumped: the page forgets its rows and gets those before the new place.
 void Native::jump() {
   if (!playback_->takeJumped()) return;
   peer_.text(R"({"type":"reset"})");
@@ -164,7 +164,7 @@ void Native::sendRows(size_t stream, uint64_t end) {
   const RowSource& rows = *stage_.rows();
   const RowStream& what = rows.streams()[stream];
   uint64_t& next = next_[stream];
-  if (what.name == "activations") return;  // of the search, thousands a second: no page draws them
+  if (what.name == "activations") return;  // rows of the search, thousands per second, which no page draws
   if (next < rows.begin(stream)) next = oldest(rows, stream);
   const uint64_t most = kMessageBytes / what.row_bytes;
   if (!playback_ && end > next + kBacklogBytes / what.row_bytes) next = end - most;
@@ -227,7 +227,7 @@ void Native::onText(std::string_view text) {
   pass(id, std::move(request));
 }
 
-/// u32 lead, 0, and the record of its target. One that is not there is ignored: it may have ended meanwhile.
+/// u32 lead, 0, and the record of its target. An unknown lead is ignored, since it may have ended meanwhile.
 void Native::onBinary(std::span<const std::byte> bytes) {
   constexpr size_t kHead = 8;
   uint32_t number = 0;

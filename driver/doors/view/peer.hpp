@@ -18,16 +18,16 @@ using Message = std::shared_ptr<const std::string>;
 class Peer {
  public:
   virtual ~Peer() = default;
-  /// [main] Sends text (JSON) after all that waits. Beyond kMostWaiting bytes the connection ends.
+  /// [main] Sends text (JSON) after everything that waits. If more than kMostWaiting bytes wait, the connection ends.
   virtual void text(std::string json) = 0;
-  virtual void binary(Message bytes) = 0;  ///< [main] the same for bytes
-  /// [main] Nothing waits to be sent: who sends newest values only then skips what a slow reader cannot take.
+  virtual void binary(Message bytes) = 0;  ///< [main] sends bytes in the same way
+  /// [main] True if nothing waits to be sent: newest values sent only then skip what a slow reader cannot take.
   virtual bool idle() const = 0;
 
-  static constexpr size_t kMostWaiting = 64u << 20;  ///< [bytes] the meshes of a large scene
+  static constexpr size_t kMostWaiting = 64u << 20;  ///< [bytes] size of the meshes of a large scene
 };
 
-/// What is said over a connection: made when it opens, destroyed when it has ended.
+/// What is said over a connection: it is made when that opens, and destroyed when it has ended.
 class Conversation {
  public:
   Conversation() = default;
@@ -37,7 +37,7 @@ class Conversation {
 
   virtual void onText(std::string_view text) = 0;               ///< [main] a message came
   virtual void onBinary(std::span<const std::byte> bytes) = 0;  ///< [main] the same
-  virtual void onTick() = 0;                                    ///< [main] 60 times a second: newest values
+  virtual void onTick() = 0;                                    ///< [main] 60 times per second: sends newest values
 };
 
 }  // namespace hapticd::view

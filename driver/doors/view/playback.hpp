@@ -12,7 +12,7 @@ namespace hapticd::view {
 
 class Playback {
  public:
-  /// [main] Stands at the beginning and plays. @param rows outlives it @param about of the recording
+  /// [main] Stands at the beginning and plays. @param rows outlives it @param about describes the recording
   Playback(const RowSource& rows, const Json& about);
 
   static bool knows(const std::string& word);  ///< [any] play, pause, seek
@@ -20,14 +20,14 @@ class Playback {
   /// or ""
   std::string obey(const Json& request);
 
-  void advance();                                              ///< [main] goes on with the time that has passed
+  void advance();                                              ///< [main] advances by the time that has passed
   double time() const { return t_; }                           ///< [s] [main]
-  const std::vector<uint64_t>& ends() const { return ends_; }  ///< [main] rows of each stream that have been
+  const std::vector<uint64_t>& ends() const { return ends_; }  ///< [main] rows of each stream up to the present place
   /// [main] The rows from `seconds` before the present place on.
   std::vector<uint64_t> rowsFrom(double seconds) const;
 
-  bool takeJumped();              ///< [main] the place changed by a jump since the last call: earlier rows are void
-  bool takeChanged();             ///< [main] the state is worth telling again
+  bool takeJumped();              ///< [main] the place jumped since the last call, so earlier rows are void
+  bool takeChanged();             ///< [main] the state should be reported again
   std::string stateJson() const;  ///< [main] {"type": "playback", ...}
 
  private:

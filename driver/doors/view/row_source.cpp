@@ -18,7 +18,7 @@ namespace hapticd::view {
 
 namespace {
 
-/// A file mapped read-only, for as long as the object lives.
+/// A file that is mapped read-only while the object lives.
 class Mapped {
  public:
   explicit Mapped(const std::string& file) {
@@ -134,7 +134,7 @@ class BlackBox final : public RowSource {
   std::vector<Ring> rings_;
 };
 
-/// A file whose rows stay as they are.
+/// A file whose rows do not change.
 class RecordingRows final : public RowSource {
  public:
   explicit RecordingRows(std::unique_ptr<record::Recording> recording) : recording_(std::move(recording)) {

@@ -15,7 +15,7 @@ namespace hapticd::view {
 /// One table of rows.
 struct RowStream {
   std::string name;
-  uint32_t row_bytes = 8;  ///< a multiple of 8; a row begins with its tick, u64
+  uint32_t row_bytes = 8;  ///< a multiple of 8; each row begins with its tick, u64
 };
 
 /// The rows of a run. Row numbers count from the beginning of the run. Not for several threads at once.
@@ -28,7 +28,7 @@ class RowSource {
 
   /// [main] The JSON that describes the run: scene, devices, columns (see recording.md).
   virtual const std::string& aboutJson() const = 0;
-  /// [main] In the order of the file: the index of a stream is its number on the wire.
+  /// [main] The streams in the order of the file: the index of a stream is its number in messages.
   virtual const std::vector<RowStream>& streams() const = 0;
   virtual uint64_t begin(size_t stream) const = 0;  ///< [main] the oldest row that is kept
   virtual uint64_t end(size_t stream) const = 0;    ///< [main] one past the newest
@@ -36,14 +36,14 @@ class RowSource {
   /// [main] Copies up to `count` whole rows from number `first` on. @return how many; 0: `first` is not kept
   virtual uint64_t copy(size_t stream, uint64_t first, uint64_t count, std::byte* rows) const = 0;
 
-  /// [main] The stream of that name, or streams().size().
+  /// [main] The index of the stream of that name, or streams().size().
   size_t find(const std::string& name) const;
 };
 
-/// [main] Maps the black box of a running daemon read-only. Fails where the file is none, or is still being made.
+/// [main] Maps the black box of a running daemon read-only. Fails if the file is not one, or is still being made.
 Result<std::unique_ptr<RowSource>> openBlackBox(const std::string& file);
 
-/// [main] Maps a recording, a dump, or what a crash left.
+/// [main] Maps a recording, a dump, or the file that a crash left.
 Result<std::unique_ptr<RowSource>> openRecording(const std::string& file);
 
 /// [main] The first row of a stream whose tick is not before `tick`: rows are in the order of their ticks.

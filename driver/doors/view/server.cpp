@@ -28,7 +28,7 @@ using ErrorCode = boost::system::error_code;
 constexpr size_t kHeadBytes = 8 * 1024, kRequestBytes = 64 * 1024, kMostUnread = 32;
 constexpr std::chrono::seconds kHeadPatience(10), kIdle(30);
 
-/// Scripts and styles of this server alone: nothing inline, nothing evaluated, nothing from elsewhere.
+/// Only scripts and styles of this server: nothing inline, nothing evaluated, nothing from elsewhere.
 constexpr const char* kPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -54,14 +54,14 @@ RequestHead headOf(const Request& request) {
 class ServerImpl;
 class Socket;
 
-/// Who is connected. Each connection owns a part of it: those that are open at the end outlive the server, since they
-/// end with the io_context that reads for them.
+/// Who is connected. Each connection owns a part of it: connections that are open at the end outlive the server,
+/// because they end with the io_context that reads for them.
 struct Register {
   std::set<Socket*> sockets;
   size_t connections = 0;
 };
 
-/// One WebSocket with its conversation. Messages go out one after the other.
+/// One WebSocket with its conversation. Messages are sent one after the other.
 class Socket final : public Peer, public std::enable_shared_from_this<Socket> {
  public:
   Socket(beast::tcp_stream stream, ServerImpl& server);
@@ -74,7 +74,7 @@ class Socket final : public Peer, public std::enable_shared_from_this<Socket> {
   void tick() {
     if (conversation_) conversation_->onTick();
   }
-  /// What the conversation is about goes now.
+  /// The objects of the conversation are destroyed now.
   void endConversation() { conversation_.reset(); }
 
  private:
@@ -94,7 +94,7 @@ class Socket final : public Peer, public std::enable_shared_from_this<Socket> {
   std::shared_ptr<Register> register_;
   Request request_;
   beast::flat_buffer buffer_;
-  std::deque<Outgoing> waiting_;  ///< the first is on its way
+  std::deque<Outgoing> waiting_;  ///< the first message is on its way
   size_t waiting_bytes_ = 0;
   bool ended_ = false, paused_ = false;
   std::unique_ptr<Conversation> conversation_;
@@ -150,7 +150,7 @@ class ServerImpl final : public Server {
   const std::shared_ptr<Register>& connected() const { return register_; }
 
  private:
-  /// The same port of ::1, for browsers that turn "localhost" into it. A machine without IPv6 does without.
+  /// The same port of ::1, for browsers that resolve "localhost" to it. A machine without IPv6 does without it.
   void bindV6() {
     ErrorCode error;
     const tcp::endpoint endpoint(asio::ip::address_v6::loopback(), v4_.local_endpoint().port());
@@ -167,7 +167,7 @@ class ServerImpl final : public Server {
       if (!error && register_->connections < kMostConnections)
         std::make_shared<Connection>(std::move(socket), *this)->read();
       if (!error) return accept(acceptor);
-      // without a free descriptor: not asked again and again
+      // without a free descriptor it is not tried again and again
       auto timer = std::make_shared<asio::steady_timer>(acceptor.get_executor(), std::chrono::milliseconds(500));
       timer->async_wait([this, &acceptor, timer](ErrorCode) { accept(acceptor); });
     });
@@ -198,11 +198,11 @@ void Connection::read() {
 }
 
 void Connection::onRead(ErrorCode error) {
-  if (error == http::error::header_limit) return refuse(431, "the head of a request has at most 8 KiB");
-  if (error == http::error::body_limit) return refuse(413, "a request has no body");
+  if (error == http::error::header_limit) return refuse(431, "the head of a request may have at most 8 KiB");
+  if (error == http::error::body_limit) return refuse(413, "a request must have no body");
   if (error.category() == make_error_code(http::error::bad_method).category() && error != http::error::end_of_stream)
     return refuse(400, "this is not HTTP");
-  if (error) return;  // gone, or too slow: the socket closes with this object
+  if (error) return;  // the client is gone, or too slow: the socket closes with this object
   const RequestHead head = headOf(parser_->get());
   const Admission admission = server_.doorkeeper().judge(head);
   if (admission.status != 200) return refuse(admission.status, admission.why);
@@ -295,7 +295,7 @@ void Socket::onRead(ErrorCode error) {
   else
     conversation_->onBinary(std::as_bytes(std::span(data, bytes.size())));
   buffer_.consume(buffer_.size());
-  paused_ = waiting_.size() > kMostUnread;  // one that does not read its answers is not asked for more
+  paused_ = waiting_.size() > kMostUnread;  // a client that does not read its answers is asked for no more
   if (!ended_ && !paused_) read();
 }
 
@@ -320,12 +320,12 @@ void Socket::write() {
   });
 }
 
-/// The conversation ends; the object goes with the last operation that is still under way.
+/// The conversation ends; the object is destroyed with its last pending operation.
 void Socket::end() {
   if (std::exchange(ended_, true)) return;
   ErrorCode ignored;
   beast::get_lowest_layer(stream_).socket().close(ignored);
-  // not while it is speaking: this may be called from within it
+  // not while it is speaking, because this may be called from within it
   asio::post(stream_.get_executor(), [self = shared_from_this()] { self->conversation_.reset(); });
 }
 

@@ -19,7 +19,7 @@ struct Asset {
   std::string_view bytes;
 };
 
-/// [main] A file of the page by its path, or nothing of it: `bytes` is empty then.
+/// [main] A file of the page by its path; `bytes` is empty if there is none.
 Asset assetOf(const std::string& path);
 
 class Server {
@@ -29,7 +29,7 @@ class Server {
   /// Makes the conversation of a new WebSocket; `peer` outlives it.
   using Converse = std::function<std::unique_ptr<Conversation>(Subprotocol, Peer& peer)>;
 
-  /// [main] Binds 127.0.0.1 and, where there is one, ::1. @param port 0: one that is free
+  /// [main] Binds 127.0.0.1 and, if it exists, ::1. @param port 0: any free port
   static Result<std::unique_ptr<Server>> listen(boost::asio::io_context& io, unsigned short port, Converse converse);
   virtual ~Server() = default;
   Server() = default;
@@ -37,7 +37,7 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   virtual std::string url() const = 0;  ///< [main] with the token
-  virtual size_t sockets() const = 0;   ///< [main] WebSockets that are open
+  virtual size_t sockets() const = 0;   ///< [main] number of open WebSockets
   virtual void tick() = 0;              ///< [main] ticks every conversation
 };
 

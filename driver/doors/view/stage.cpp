@@ -12,10 +12,10 @@ namespace hapticd::view {
 namespace {
 
 constexpr std::chrono::milliseconds kFindEvery(500), kPollEvery(1000);
-constexpr std::chrono::milliseconds kGeometryEvery(60), kRestless(1500);  ///< a body swings on for a while
+constexpr std::chrono::milliseconds kGeometryEvery(60), kRestless(1500);  ///< s that a body swings on after a touch
 constexpr uint64_t kContactsAtOnce = 512;
 
-/// The models of a list by their place, which is the number that rows name them by.
+/// The models of a list by their place, which is the number that rows use for them.
 template <class Use>
 void eachModel(const Json& list, Use&& use) {
   const auto models = list.find("models");
@@ -27,7 +27,7 @@ void eachModel(const Json& list, Use&& use) {
   }
 }
 
-/// As memory: exact normals, no bound on its size, and nothing turned into text and back.
+/// Sent as memory: it has exact normals and no limit on its size, and needs no conversion to text and back.
 Json geometryOf(const std::string& model) {
   return {{"do", "geometry"}, {"model", model}, {"as", "memory"}};
 }
@@ -63,7 +63,7 @@ void Stage::adopt(std::unique_ptr<RowSource> rows) {
   ++run_, ++list_number_, ++status_number_;
 }
 
-/// A daemon is there once its socket answers; its black box was made before.
+/// A daemon exists once its socket answers; its black box was made before.
 void Stage::find() {
   daemon_->connect();
   if (!daemon_->connected()) return;
@@ -75,7 +75,7 @@ void Stage::find() {
 
 void Stage::tick() {
   const Clock::time_point now = Clock::now();
-  if (was_connected_ && !daemon_->connected()) ++status_number_;  // tell that it has ended
+  if (was_connected_ && !daemon_->connected()) ++status_number_;  // they report that it has ended
   was_connected_ = daemon_->connected();
   if (!recorded() && !daemon_->connected() && now >= next_find_) {
     next_find_ = now + kFindEvery;
@@ -149,7 +149,7 @@ void Stage::askGeometry(const std::string& name) {
   });
 }
 
-/// Which models were touched of late, by the newest contacts.
+/// Which models were touched lately, by the newest contacts.
 void Stage::findTouched() {
   const size_t stream = rows_->find("contacts");
   if (soft_.empty() || stream >= rows_->streams().size()) return;

@@ -24,9 +24,9 @@ struct StageOptions {
   bool control = false;  ///< pages may change the run
 };
 
-/// The triangles of a model or why there are none.
+/// The triangles of a model, or the reason why there are none.
 struct Drawn {
-  Message mesh;  ///< as it goes to a page; see mesh.hpp
+  Message mesh;  ///< in the form in which it goes to a page; see mesh.hpp
   std::string error;
 };
 
@@ -34,33 +34,33 @@ class Stage {
  public:
   Stage(boost::asio::io_context& io, StageOptions options);
 
-  /// [main] Opens the recording. Of a daemon: nothing, it is looked for again and again.
+  /// [main] Opens the recording. A daemon is not opened here: it is looked for again and again.
   Result<void> open();
-  void tick();  ///< [main] 60 times a second while somebody looks
+  void tick();  ///< [main] called 60 times per second while somebody looks
 
   const StageOptions& options() const { return options_; }
   bool recorded() const { return !options_.file.empty(); }
   const RowSource* rows() const { return rows_.get(); }  ///< nullptr: no daemon has been found yet
   const Json& about() const { return about_; }           ///< parsed once
-  uint64_t run() const { return run_; }                  ///< grows with each run that is found
+  uint64_t run() const { return run_; }                  ///< number of runs found so far
   bool alive() const { return recorded() || daemon_->connected(); }
   const Json& list() const { return list_; }            ///< newest answer of `list`
-  uint64_t listNumber() const { return list_number_; }  ///< grows with each change of it
+  uint64_t listNumber() const { return list_number_; }  ///< number of its changes so far
   const Json& status() const { return status_; }        ///< newest answer of `status`
   uint64_t statusNumber() const { return status_number_; }
   Daemon& daemon() { return *daemon_; }
   const std::string& socket() const { return socket_; }  ///< of the daemon
   boost::asio::io_context& io() { return io_; }
 
-  /// [main] The triangles of a model, from the cache where it does not deform.
+  /// [main] The triangles of a model, from the cache if it does not deform.
   void draw(const std::string& model, std::function<void(const Drawn&)> drawn);
 
-  /// [main] The vertices that a body of the recording had at the time t [s]; nullptr: they cannot be had. Not called
-  /// where the run is another by then.
+  /// [main] The vertices that a body of the recording had at the time t [s]; nullptr if they are not available. Not
+  /// called if the run has changed by then.
   void drawAt(const std::string& model, double t, std::function<void(const Message&)> drawn);
   std::vector<std::string> bodies() const;  ///< models that deform
 
-  /// Newest vertices of a model that deforms, as they go to a page; frame 0: none yet.
+  /// The newest vertices of a model that deforms, in the form that goes to a page; frame 0: none yet.
   struct Live {
     uint64_t frame = 0;
     Message vertices;
@@ -73,7 +73,7 @@ class Stage {
   struct Soft {
     uint32_t number = 0;
     bool frames = true;  ///< its steps write vertices
-    bool asked = false;  ///< an answer is under way
+    bool asked = false;  ///< an answer is awaited
     Clock::time_point touched{}, next{};
   };
   void find();

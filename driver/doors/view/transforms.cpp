@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint64_t kNanoseconds = 1'000'000'000;
 
-/// CDR: every number at a multiple of its size, counted from behind the head.
+/// CDR: every number is at a multiple of its size, counted from after the head.
 class Cdr {
  public:
   template <class T>

@@ -22,7 +22,7 @@ struct Frame {
 /// Follows models and tips through the rows of a run.
 class Frames {
  public:
-  /// [main] @param about of the run; models at rest are where its scene puts them
+  /// [main] @param about describes the run; models at rest are where its scene puts them
   explicit Frames(const Json& about);
 
   /// [main] Takes rows of "ticks" or "poses"; others are of no use here.

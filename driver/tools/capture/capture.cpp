@@ -16,7 +16,7 @@ int digitOf(char c) {
   return -1;
 }
 
-/// "01 ff", "01,FF" or "0x01 0xff"; nothing for anything else.
+/// Parses "01 ff", "01,FF" or "0x01 0xff"; nothing for any other text.
 std::optional<std::vector<uint8_t>> bytesIn(const std::string& text) {
   std::vector<uint8_t> bytes;
   for (size_t i = 0; i < text.size();) {
@@ -33,7 +33,7 @@ std::optional<std::vector<uint8_t>> bytesIn(const std::string& text) {
   return bytes;
 }
 
-/// "E: 000012.345678 9 01 ...": hid-recorder gives seconds, a count and the bytes.
+/// Parses "E: 000012.345678 9 01 ...": hid-recorder gives seconds, a count and the bytes.
 bool takeEvent(std::string& line, double& time) {
   if (line.rfind("E:", 0) != 0) return false;
   char* end = nullptr;
@@ -43,7 +43,7 @@ bool takeEvent(std::string& line, double& time) {
   return true;
 }
 
-/// "@0.001234 01 ...": as `hapticd device record` writes it.
+/// Parses "@0.001234 01 ...", as `hapticd device record` writes it.
 void takeTime(std::string& line, double& time) {
   if (line.empty() || line[0] != '@') return;
   char* end = nullptr;
@@ -51,7 +51,7 @@ void takeTime(std::string& line, double& time) {
   line = end;
 }
 
-/// What hid-recorder says of the device before its first event.
+/// What hid-recorder says about the device before its first event.
 bool isHeading(const std::string& line) {
   return line.size() > 1 && line[1] == ':' && std::string("DRNIP").find(line[0]) != std::string::npos;
 }
@@ -60,7 +60,7 @@ bool isPrintable(char c) {
   return (c >= ' ' && c <= '~') || c == '\n' || c == '\r' || c == '\t';
 }
 
-/// The beginning of a line, safe for a terminal whatever it is.
+/// The beginning of a line, made safe for a terminal whatever it contains.
 std::string shown(const std::string& line) {
   constexpr size_t kShown = 40;
   std::string text = line.substr(0, kShown);
@@ -68,10 +68,10 @@ std::string shown(const std::string& line) {
   return text;
 }
 
-/// How to come to such text from what this seems to be.
+/// How to convert what this seems to be into such text.
 std::string otherForm(const std::string& text) {
-  if (!std::all_of(text.begin(), text.end(), isPrintable)) return "; this is no text, leave --hex out";
-  const bool dump = text.rfind("00000000", 0) == 0;  // xxd and hexdump -C begin so
+  if (!std::all_of(text.begin(), text.end(), isPrintable)) return "; this is not text, leave --hex out";
+  const bool dump = text.rfind("00000000", 0) == 0;  // the output of xxd and hexdump -C begins so
   return dump ? "; a dump with addresses: give the file itself, or `xxd -p -c SIZE`" : "";
 }
 

@@ -10,9 +10,9 @@
 namespace hapticd::capture {
 
 enum class Form : uint8_t {
-  kGuess,  ///< text if every line reads as such
+  kGuess,  ///< text if every line can be read as such
   kRaw,    ///< the bytes themselves
-  kHex,    ///< a transfer a line: two hexadecimal digits a byte; # begins a comment. Also hid-recorder's "E:" lines.
+  kHex,    ///< one transfer per line: two hex digits per byte; # begins a comment. Also hid-recorder's "E:" lines.
 };
 
 /// One transfer: a HID report, a packet of an endpoint. A raw capture is one long transfer.

@@ -17,7 +17,7 @@ using codec::Field;
 
 /// Fewer reports than that agree with some method by chance.
 constexpr size_t kFewestDifferent = 3;
-/// Of the reports whose checksum is wrong: some of them are really damaged.
+/// Share of the reports whose checksum is wrong: some of them are really damaged.
 constexpr double kMost = 0.8;
 
 using BadReports = std::vector<const BadReport*>;
@@ -31,13 +31,13 @@ size_t fitting(const Field& field, const BadReports& reports) {
   return count;
 }
 
-/// A checksum, in words, and how many reports agree with it.
+/// A checksum in words, and how many reports agree with it.
 struct Fit {
   std::string words;
   size_t count = 0;
 };
 
-/// A method as the file would name it.
+/// A method as the file would write it.
 struct Method {
   std::string words;
   codec::Check check;
@@ -69,13 +69,13 @@ std::vector<Method> methodsFor(const Field& field) {
   return all;
 }
 
-/// A range of bytes, and how it differs from that of the file, in words.
+/// A range of bytes in words, and how it differs from the file's range.
 struct Range {
   Field field;
   std::string words;
 };
 
-/// The method and byte order that agree with most of them over one range of bytes, also with the report id in front
+/// The method and byte order that agree with most reports over one range of bytes, also with the report id before it
 /// (-1: there is none).
 void tryMethods(const Range& range, const BadReports& reports, int id, Fit& best) {
   Field field = range.field;
@@ -93,7 +93,7 @@ void tryMethods(const Range& range, const BadReports& reports, int id, Fit& best
     }
 }
 
-/// The checksum a byte beside, or a byte more or less at either end of what it covers; nothing: it would cover itself.
+/// The checksum one byte beside, or a byte more or less at either end of its range; nothing if it would cover itself.
 std::optional<Range> otherRange(const codec::Wire& wire, const Field& field, int at, int from, int to) {
   const int end = at + static_cast<int>(field.bytes()), most = static_cast<int>(wire.input.size);
   if (from < 0 || to <= from || to > most || at < 0 || end > most || (at < to && end > from)) return std::nullopt;
@@ -106,7 +106,7 @@ std::optional<Range> otherRange(const codec::Wire& wire, const Field& field, int
   return range;
 }
 
-/// Other places and ranges, first with the method of the file, whose numbers may be its own.
+/// Tries other places and ranges, first with the method of the file, which may be a method by numbers.
 void tryRanges(const codec::Wire& wire, const Field& field, const BadReports& reports, Fit& best) {
   for (const int at : {0, 1, -1})
     for (const int from : {int{field.from}, 0, field.from + 1, field.from - 1})
@@ -120,7 +120,7 @@ void tryRanges(const codec::Wire& wire, const Field& field, const BadReports& re
       }
 }
 
-/// The bad reports, where one checksum is what is wrong with all of them.
+/// The bad reports, if a wrong checksum is the only problem of all of them.
 const Field* onlyChecksum(const Decoded& decoded, BadReports& sums) {
   const Field* field = nullptr;
   std::set<std::string> different;
@@ -137,7 +137,7 @@ const Field* onlyChecksum(const Decoded& decoded, BadReports& sums) {
 }  // namespace
 
 std::string checksumHint(const codec::Wire& wire, const Decoded& decoded) {
-  // A wrong method is right now and then, by chance: one report in 256 where both bytes are equal.
+  // A wrong method is right now and then by chance: for one report in 256 if both bytes are equal.
   if (static_cast<double>(decoded.good()) > (1 - kMost) * static_cast<double>(decoded.reports.size())) return "";
   BadReports sums;
   const Field* field = onlyChecksum(decoded, sums);

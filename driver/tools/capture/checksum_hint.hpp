@@ -7,8 +7,8 @@
 
 namespace hapticd::capture {
 
-/// [main] One line, "" where checksums are not what is wrong with most reports: another method, byte order or range of
-/// bytes, or a checksum that covers the report id.
+/// [main] One line, "" unless checksums are wrong in most reports: another method, byte order or range of bytes, or a
+/// checksum that covers the report id.
 std::string checksumHint(const codec::Wire& wire, const Decoded& decoded);
 
 }  // namespace hapticd::capture

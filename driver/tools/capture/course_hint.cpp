@@ -52,7 +52,7 @@ std::string flags(const codec::Wire& wire, const DecodedReports& reports) {
   return text;
 }
 
-/// A device that starts anew in each report is a counter or a clock.
+/// If the device seems to restart in each report, the field is a counter or a clock.
 std::string starts(const codec::Wire& wire, const DecodedReports& reports) {
   if (fieldOf(wire, Role::kStarts) == nullptr) return "";
   size_t changes = 0;
@@ -82,7 +82,7 @@ std::string counter(const codec::Wire& wire, const Decoded& decoded, const Decod
   return std::string("the counter counts with endian: ") + (field->big_endian ? "little" : "big") + "\n";
 }
 
-/// Of the times of the capture: the median, as a pause in a recording says nothing of the arm.
+/// From the times of the capture: the median, since a pause in a recording says nothing about the arm.
 std::string rate(const codec::Wire& wire, const DecodedReports& reports, double least_rate) {
   std::vector<double> between;
   for (size_t i = 1; i < reports.size(); ++i)
@@ -110,7 +110,7 @@ std::string rate(const codec::Wire& wire, const DecodedReports& reports, double 
   return text;
 }
 
-/// The arm's own clock against wire.rate: one of the two is in other units.
+/// Compares the arm's own clock with wire.rate: one of the two is in other units.
 std::string clock(const codec::Wire& wire, const DecodedReports& reports) {
   if (fieldOf(wire, Role::kTime) == nullptr || wire.exchange == codec::Exchange::kPoll || !(wire.rate > 0)) return "";
   std::vector<double> between;

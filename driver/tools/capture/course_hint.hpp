@@ -8,8 +8,8 @@
 
 namespace hapticd::capture {
 
-/// [main] One line each, "" for nothing. @param least_rate health.least_rate: below this part of wire.rate no torque
-/// goes out
+/// [main] One line per hint, "" if there is none. @param least_rate health.least_rate: below this share of wire.rate no
+/// torque is sent
 std::string courseHints(const codec::Wire& wire, const Decoded& decoded, double least_rate);
 
 }  // namespace hapticd::capture

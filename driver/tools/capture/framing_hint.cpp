@@ -15,10 +15,10 @@ using codec::Escape;
 using codec::Field;
 using codec::Role;
 
-constexpr size_t kFewestGood = 5;         ///< reports: fewer are good by chance
+constexpr size_t kFewestGood = 5;         ///< reports: fewer may be good by chance
 constexpr size_t kTriedBytes = 8 * 1024;  ///< bytes: each of a thousand framings is tried on them
 
-/// The beginning of the capture, which stands for all of it.
+/// The beginning of the capture, which represents all of it.
 Capture beginOf(const Capture& capture) {
   Capture begin;
   begin.text = capture.text;
@@ -33,7 +33,7 @@ Capture beginOf(const Capture& capture) {
   return begin;
 }
 
-/// The same format with other marks: its constants that stand for them go with them.
+/// The same format with other marks: constants that stand for the marks are removed with them.
 codec::Wire withMarks(codec::Wire wire, int start, int end) {
   for (Field& field : wire.input.fields) {
     const bool constant = field.role == Role::kConstant && field.bits == 8 && field.bit_skip == 0;
@@ -45,7 +45,7 @@ codec::Wire withMarks(codec::Wire wire, int start, int end) {
   return wire;
 }
 
-/// Something beyond the marks that a wrong framing would not get right.
+/// A property beyond the marks that a wrong framing would not get right.
 bool judges(const codec::Wire& wire) {
   return std::any_of(wire.input.fields.begin(), wire.input.fields.end(), [&](const Field& field) {
     const bool mark =
@@ -55,7 +55,7 @@ bool judges(const codec::Wire& wire) {
   });
 }
 
-/// Part of the bytes that are in good reports, as far as that can be said.
+/// The share of bytes that are in good reports, as far as that is known.
 double goodWith(const codec::Wire& wire, const Capture& begin) {
   const Decoded decoded = decodeCapture(wire, begin);
   const size_t good = decoded.good();
@@ -83,10 +83,10 @@ bool isMark(const codec::Wire& wire, int byte) {
   return byte == wire.framing.start || byte == wire.framing.end;
 }
 
-/// The best of the framings that were tried; of equal ones the first.
+/// The best of the framings that were tried; the first one among equals.
 struct Best {
   const Capture& begin;
-  double part;  ///< of the bytes, that must be in good reports
+  double part;  ///< share of the bytes that must be in good reports
   std::string words;
   void look(const codec::Wire& wire, const std::string& how) {
     const double good = goodWith(wire, begin);
@@ -94,7 +94,7 @@ struct Best {
   }
 };
 
-/// Other escapes, the usual ones first.
+/// Tries other escapes, the usual ones first.
 void tryEscapes(const codec::Wire& wire, Best& best) {
   const Escape& escape = wire.framing.escape;
   const auto look = [&](int mark, int flip) {
@@ -112,7 +112,7 @@ void tryEscapes(const codec::Wire& wire, Best& best) {
   if (escape.used) best.look(plain, "without framing.escape");
 }
 
-/// Another first byte, and with it another last one where both were the same.
+/// Tries another first byte, and also another last one if both were the same.
 void tryMarks(const codec::Wire& wire, Best& best) {
   const codec::Framing& framing = wire.framing;
   const bool both = framing.start == framing.end;
@@ -126,7 +126,7 @@ void tryMarks(const codec::Wire& wire, Best& best) {
   }
 }
 
-/// How often a byte stands in the capture.
+/// How often a byte occurs in the capture.
 std::array<size_t, 256> countsOf(const Capture& capture) {
   std::array<size_t, 256> counts{};
   for (const Transfer& transfer : capture.transfers)
@@ -150,7 +150,7 @@ std::string framingHint(const codec::Wire& wire, const Capture& capture, const D
   if (!wire.framing.used || bytes == 0 || (decoded.good() == decoded.reports.size() && decoded.lost == 0)) return "";
   const Capture begin = beginOf(capture);
   if (judges(wire)) {
-    constexpr double kBetter = 0.005;  // bytes that must be escaped are rare: without them all is good
+    constexpr double kBetter = 0.005;  // bytes that must be escaped are rare: without them every framing is good
     const double now = goodWith(wire, begin);
     Best best{begin, std::max(kNearlyAll, now + kBetter), ""};
     tryEscapes(wire, best);

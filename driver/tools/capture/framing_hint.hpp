@@ -7,8 +7,8 @@
 
 namespace hapticd::capture {
 
-/// [main] One line, "" where the framing is not what is wrong: of a file with framing, marks and escapes with which
-/// most reports would be good, or what the marks of the file meet in the capture.
+/// [main] One line, "" if the framing is not wrong: for a file with framing, the marks and escapes with which most
+/// reports would be good, or what the file's marks find in the capture.
 std::string framingHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded);
 
 }  // namespace hapticd::capture

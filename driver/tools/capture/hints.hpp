@@ -7,8 +7,8 @@
 
 namespace hapticd::capture {
 
-/// [main] One line each, "" where there is nothing to say: a report id that the file does not give or another one, a
-/// wrong size, several reports in one line, a checksum of another method, byte order or range.
+/// [main] One line per hint, "" if there is none: a report id that the file does not give or another one, a wrong size,
+/// several reports in one line, a checksum of another method, byte order or range.
 std::string hintsOf(const codec::Wire& wire, const Capture& capture, const Decoded& decoded);
 
 }  // namespace hapticd::capture

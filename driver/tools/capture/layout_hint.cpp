@@ -11,14 +11,14 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-constexpr size_t kRepeated = 3;  ///< reports: by chance fewer look alike
+constexpr size_t kRepeated = 3;  ///< reports: fewer may look alike by chance
 
 std::string idLacks(int id) {
   return "each begins with " + hexByte(id) + " and has one byte too many: if this is the report id, give " +
          "wire.input id: " + std::to_string(id) + "; size and offsets do not count it\n";
 }
 
-/// The same of raw bytes, which may be those of a stream without ids.
+/// The same for raw bytes, which may be those of a stream without ids.
 std::string idOrMarkLacks(int id) {
   std::string words = idLacks(id);
   words.pop_back();
@@ -31,7 +31,7 @@ std::string idIsMissing(int id) {
          " in front of each, or leave wire.input id out\n";
 }
 
-/// They do begin with the id, which size does not count.
+/// They do begin with the id, which the size does not include.
 std::string sizeCountsTheId(const codec::Wire& wire) {
   return "each begins with " + hexByte(wire.input.id) +
          ", the report id, and has one byte too few: size does not count "
@@ -48,7 +48,7 @@ bool idWasCounted(const codec::Wire& wire, const Decoded& decoded) {
   return 10 * counted >= 9 * static_cast<std::ptrdiff_t>(decoded.bad.size());
 }
 
-/// Every bad report is of one and the same wrong size.
+/// All bad reports have the same wrong size.
 bool allOfOneSize(const Decoded& decoded) {
   return !decoded.bad.empty() && decoded.good() == 0 &&
          std::all_of(decoded.bad.begin(), decoded.bad.end(), [&](const BadReport& bad) {
@@ -56,10 +56,10 @@ bool allOfOneSize(const Decoded& decoded) {
          });
 }
 
-/// How many of the reports would be good with another id and size; nothing where any would be.
+/// How many of the reports would be good with another id and size; nothing if any report would be.
 std::optional<double> goodWith(codec::Wire wire, int id, size_t size, const Capture& capture);
 
-/// Bytes from `from` on are the same in all reports of this size: nothing is said there.
+/// Bytes from `from` on are the same in all reports of this size, so that they say nothing.
 bool tailStands(const Capture& capture, size_t size, size_t from) {
   const Bytes* first = nullptr;
   size_t reports = 0;
@@ -74,7 +74,7 @@ bool tailStands(const Capture& capture, size_t size, size_t from) {
   return reports >= kRepeated;
 }
 
-/// Reports longer than what the fields take, as HID and bulk endpoints have them: the rest is padding.
+/// Reports longer than the fields need, as with HID and bulk endpoints: the rest is padding.
 std::string paddingHint(const codec::Wire& wire, const Capture& capture, size_t size) {
   const size_t used = wire.input.bytes(), body = size - (used - wire.input.size);
   if (size <= used || !tailStands(capture, size, used)) return "";
@@ -99,7 +99,7 @@ std::string textHint(const codec::Wire& wire, const Capture& capture, const Deco
                                 [&](const BadReport& bad) { return bad.bytes.front() == bytes.front(); });
   if (size == expected + 1 && same && wire.input.id < 0 && bytes.front() != 0) return idLacks(bytes.front());
   if (size + 1 == expected && wire.input.id >= 0) return idIsMissing(wire.input.id);
-  // Of whole reports in one line only those that are filled up with one byte are not reports, too.
+  // If whole reports share a line, those that are filled up with one byte must not count as reports.
   const bool one_byte = size > expected && std::all_of(bytes.begin() + static_cast<long>(expected), bytes.end(),
                                                        [&](uint8_t byte) { return byte == bytes.back(); });
   const std::string padded = size % expected != 0 || one_byte ? paddingHint(wire, capture, size) : "";
@@ -110,7 +110,7 @@ std::string textHint(const codec::Wire& wire, const Capture& capture, const Deco
   return "";
 }
 
-/// The byte that stands at every multiple of `size`; nothing where there are several, or too few.
+/// The byte at every multiple of `size`; nothing if several bytes occur, or the places are too few.
 std::optional<int> everyFirst(const Bytes& bytes, size_t size) {
   if (size == 0 || bytes.size() % size != 0 || bytes.size() / size < kRepeated) return std::nullopt;
   for (size_t at = size; at < bytes.size(); at += size)
@@ -118,8 +118,8 @@ std::optional<int> everyFirst(const Bytes& bytes, size_t size) {
   return bytes[0];
 }
 
-/// How many of the reports would be good with another id and size; nothing where any would be: without a checksum,
-/// firmware number or constant.
+/// How many of the reports would be good with another id and size; nothing if any report would be, because there is no
+/// checksum, firmware number or constant.
 std::optional<double> goodWith(codec::Wire wire, int id, size_t size, const Capture& capture) {
   const auto judges = [](const codec::Field& field) {
     return field.role == codec::Role::kChecksum || field.role == codec::Role::kConstant ||
@@ -153,7 +153,7 @@ std::string withoutAnId(const codec::Wire& wire, const Capture& capture, const B
         goodWith(wire, -1, other, capture).value_or(0) > kNearlyAll)
       return "as reports of " + std::to_string(other) +
              " bytes they are good: give wire.input size: " + std::to_string(other) + "\n";
-  for (const size_t padded : {8, 16, 32, 64, 128, 256, 512})  // what reports and packets of USB are filled up to
+  for (const size_t padded : {8, 16, 32, 64, 128, 256, 512})  // USB fills reports and packets up to this
     if (padded > size)
       if (const std::string told = paddingHint(wire, capture, padded); !told.empty()) return told;
   return "";
@@ -162,7 +162,7 @@ std::string withoutAnId(const codec::Wire& wire, const Capture& capture, const B
 std::string withAnId(const codec::Wire& wire, const Capture& capture, const Bytes& bytes) {
   const int id = wire.input.id;
   const size_t size = wire.input.size;
-  if (everyFirst(bytes, size + 1)) return "";  // theirs, or another that is told as such
+  if (everyFirst(bytes, size + 1)) return "";  // the file's own, or another one that is reported as such
   if (goodWith(wire, -1, size, capture).value_or(0) > kNearlyAll) return idIsMissing(id);
   const size_t whole = sizeWithId(bytes, id);
   if (whole == 0) return "";
@@ -171,7 +171,7 @@ std::string withAnId(const codec::Wire& wire, const Capture& capture, const Byte
          "); size does not count the report id\n";
 }
 
-/// Another id, and none of ours.
+/// Another id, none of the file's own.
 std::string otherIdHint(const codec::Wire& wire, const Decoded& decoded) {
   if (!decoded.reports.empty() || decoded.other_ids.size() != 1 || decoded.others < kRepeated) return "";
   const int id = *decoded.other_ids.begin();

@@ -7,7 +7,7 @@
 
 namespace hapticd::capture {
 
-inline constexpr double kNearlyAll = 0.8;  ///< of the reports: a layout that fits so many is the right one
+inline constexpr double kNearlyAll = 0.8;  ///< share of the reports: a layout that fits so many is right
 
 /// [any] "0x3c".
 std::string hexByte(int byte);

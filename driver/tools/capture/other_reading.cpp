@@ -16,7 +16,7 @@ constexpr double kWholeRange = 0.75;  ///< of the field's range in one step: no 
 /// One way to read the raw numbers of a field: code is turned into another number, then scaled.
 struct Reading {
   enum class Code { kSame, kOtherSign, kAmount } code = Code::kSame;
-  double turn = 1;    ///< -1: the other way round
+  double turn = 1;    ///< -1: reversed
   double offset = 0;  ///< [codes] added before the scale
 };
 
@@ -40,7 +40,7 @@ std::vector<double> allAs(const Field& field, const Reading& reading, const std:
   return all;
 }
 
-/// Steps by more than a part of the field's range.
+/// True if it steps by more than a share of the field's range.
 size_t jumpsOf(const Field& field, const std::vector<double>& positions, double part) {
   const double most = part * spanOf(field) * std::abs(field.scale);
   size_t count = 0;
@@ -59,7 +59,7 @@ std::string typeOf(const Field& field, bool other) {
   return (whole ? "i" : "u") + std::to_string(field.bits);
 }
 
-/// What to write in the file for a reading.
+/// What the file must contain for a reading.
 std::string wordsOf(const Field& field, const Reading& reading) {
   std::string words;
   const auto add = [&words](const std::string& more) { words += (words.empty() ? "" : ", ") + more; };
@@ -69,7 +69,7 @@ std::string wordsOf(const Field& field, const Reading& reading) {
   return words;
 }
 
-/// The likeliest first. A number that is turned about the middle of its range is a complement of its bits.
+/// The likeliest first. A number that is reversed about the middle of its range is a complement of its bits.
 std::vector<Reading> readingsOf(const Field& field) {
   using Code = Reading::Code;
   const double range = spanOf(field);

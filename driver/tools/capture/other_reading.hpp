@@ -11,11 +11,11 @@ namespace hapticd::capture {
 /// Where a joint can be [rad or m].
 struct Stops {
   bool given = false;   ///< false: anywhere
-  bool placed = false;  ///< false: its zero is not known, only the way between them counts
+  bool placed = false;  ///< false: its zero is unknown, so only the range between them counts
   double low = 0, high = 0;
 };
 
-/// [main] True where the positions leave the stops, or go a longer way than between them.
+/// [main] True if the positions leave the stops, or span more than the range between them.
 bool leavesStops(const std::vector<double>& positions, const Stops& stops);
 
 /// [main] One line about positions that jump by nearly the whole range of their field, or that leave the stops where

@@ -16,7 +16,7 @@ struct Course {
   std::vector<double> at;
   double least = HUGE_VAL, most = -HUGE_VAL;
 
-  /// @param round [rad] after which its number begins anew; 0: never
+  /// @param round [rad] after which its number starts again; 0: never
   void add(double q, double round) {
     if (round > 0 && !at.empty()) q += std::round((at.back() - q) / round) * round;
     at.push_back(q);
@@ -41,7 +41,7 @@ Stops stopsOf(const ArmFacts& arm, size_t joint) {
   return {true, !arm.zeroed, arm.limits[2 * joint], arm.limits[2 * joint + 1]};
 }
 
-/// Beyond its stops, or, where its zero is not known yet, over a longer way than between them.
+/// True if it goes beyond its stops, or, if its zero is not known yet, spans more than the range between them.
 std::string beyondStops(const Course& course, const Stops& stops) {
   constexpr double kTurns = 4 * M_PI;  // no joint with stops makes two turns
   const double way = course.most - course.least;
@@ -62,13 +62,13 @@ std::string jumps(const Course& course, const codec::Wire& wire, const ArmFacts&
     return std::abs(to - from) > most;
   });
   if (count < 3 || count * 50 < course.at.size()) return "";
-  // A scale that is too large makes small jumps large, on a way that is larger still.
+  // A scale that is too large makes small jumps large, and the span larger still.
   if (4 * largest < course.most - course.least) return "";
   return "jumps by up to " + number(largest) + " rad from one report to the next, " + std::to_string(count) +
          " times: look at its byte order (endian), its first byte (at), and the sign and width of its type";
 }
 
-/// Positions that wrap have no known zero, but the way between the stops is known.
+/// Positions that wrap have no known zero, but the range between the stops is known.
 std::string tooLongAWay(const Course& course, Stops stops) {
   stops.placed = false;
   if (!stops.given || course.at.empty() || !leavesStops(course.at, stops)) return "";
@@ -79,9 +79,9 @@ std::string tooLongAWay(const Course& course, Stops stops) {
          "joint?";
 }
 
-/// Joints that all moved, and none of them far: a scale that is too small has no other sign.
+/// Joints that all moved, but none of them far: a scale that is too small has no other symptom.
 std::string shortWays(const std::map<size_t, Course>& courses, const ArmFacts& arm) {
-  constexpr double kShort = 0.4, kMoved = 0.01;  // of the way between the stops
+  constexpr double kShort = 0.4, kMoved = 0.01;  // share of the range between the stops
   constexpr size_t kEnough = 100;                // reports
   std::string ways;
   double widest = 0;
@@ -98,7 +98,7 @@ std::string shortWays(const std::map<size_t, Course>& courses, const ArmFacts& a
          number(1 / widest) + " times too small (counts of all edges of an encoder are 4 times its lines)\n";
 }
 
-/// What is wrong with one joint; "" for nothing.
+/// What is wrong with one joint; "" if nothing is.
 std::string oddCourse(const codec::Wire& wire, const codec::Field& field, const ArmFacts& arm, const Course& course) {
   const Stops stops = stopsOf(arm, field.index);
   std::string wrong = otherReading(field, course.at, stops);

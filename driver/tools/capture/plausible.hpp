@@ -8,17 +8,17 @@
 
 namespace hapticd::capture {
 
-/// What the device file says of the arm that sent the reports.
+/// What the device file says about the arm that sent the reports.
 struct ArmFacts {
   size_t joints = 0;
   std::vector<double> limits;      ///< least, greatest [rad] of each joint; empty: not given
-  bool zeroed = false;             ///< positions count from where the arm was switched on: a pose gives their zero
+  bool zeroed = false;             ///< positions count from where the arm was switched on, and a pose gives their zero
   std::vector<double> max_torque;  ///< [N m] of each joint; empty: not given
   double max_speed = 100;          ///< [rad/s] of a joint
-  double least_rate = 0.57;        ///< of wire.rate: with fewer reports no torque goes out
+  double least_rate = 0.57;        ///< share of wire.rate: with fewer reports no torque is sent
 };
 
-/// [main] One line for each joint whose positions leave its limits, or jump faster than it can move; "": none.
+/// [main] One line for each joint that leaves its limits, or jumps faster than it can move; "" if none does.
 std::string implausible(const codec::Wire& wire, const ArmFacts& arm, const Decoded& decoded);
 
 }  // namespace hapticd::capture

@@ -48,7 +48,7 @@ std::string hex(uint64_t value) {
   return text;
 }
 
-/// Why one field made a report a bad one.
+/// Why one field made a report bad.
 std::string whyWrong(const Field& field, std::span<const uint8_t> body) {
   const std::string at = " at byte " + std::to_string(field.at);
   const std::string is = hex(codec::codeAt(field, body));
@@ -80,7 +80,7 @@ class Reader {
     const std::span<const uint8_t> bytes(transfer.bytes);
     if (wire_.framing.used) return stream(transfer, text, index);
     if (text) return report(bytes, transfer.time, index + 1);
-    // Raw bytes without marks: one report after the other.
+    // Raw bytes without marks: one report follows the other.
     const size_t size = wire_.input.bytes();
     for (size_t at = 0; at < bytes.size(); at += size) {
       at = skipOddBytes(wire_, bytes, at, [&](std::span<const uint8_t> odd) { oddBytes(odd, transfer.time, at); });
@@ -91,7 +91,7 @@ class Reader {
   Decoded decoded;
 
  private:
-  /// A report that is too short, or bytes that are none: the rest of one at the begin.
+  /// A report that is too short, or bytes that are no report: at the beginning, the rest of a cut one.
   void oddBytes(std::span<const uint8_t> bytes, double time, size_t at) {
     if (bytes[0] == wire_.input.id && bytes.size() < 2 * wire_.input.bytes())
       return report(bytes, time, at + bytes.size());
@@ -107,8 +107,8 @@ class Reader {
     }
   }
 
-  /// Before the first report is found, byte by byte where packets have no header: what is lost until then is the rest
-  /// of a report whose beginning the capture lacks.
+  /// Before the first report is found, byte by byte where packets have no header: bytes lost until then are the rest of
+  /// a report whose beginning the capture lacks.
   void framed(std::span<const uint8_t> packet, double time, size_t offset) {
     const size_t step = wire_.framing.header == 0 && decoded.reports.empty() ? 1 : packet.size();
     for (size_t at = 0; at < packet.size(); at += step) {
@@ -119,7 +119,7 @@ class Reader {
     }
   }
 
-  /// Turns are counted as the module does, from the first report on.
+  /// Turns are counted as the module counts them, from the first report on.
   void unwrap(codec::State& state) {
     for (const Field& field : wire_.input.fields) {
       if (field.role != Role::kPosition || !field.wraps) continue;
@@ -173,7 +173,7 @@ struct Column {
   size_t index = 0;
 };
 
-/// What a report has, in the order of the table.
+/// The columns of a report, in the order of the table.
 std::vector<Column> columnsOf(const codec::Report& report, size_t joints) {
   std::vector<Column> columns;
   const std::pair<Role, const char*> each[] = {{Role::kPosition, "position"},
@@ -280,7 +280,7 @@ Decoded decodeCapture(const codec::Wire& wire, const Capture& capture) {
   Reader reader(wire);
   for (size_t i = 0; i < capture.transfers.size(); ++i) reader.take(capture.transfers[i], capture.text, i);
   Decoded& decoded = reader.decoded;
-  // More than a report, or no report at all: not the rest of one that was cut.
+  // More bytes than a report has, or no report at all: not the rest of a report that was cut.
   if (decoded.head >= 2 * wire.input.bytes() || decoded.reports.empty()) decoded.lost += std::exchange(decoded.head, 0);
   return std::move(decoded);
 }
@@ -311,7 +311,7 @@ std::string csvOf(const codec::Wire& wire, size_t joints, const Decoded& decoded
   return text;
 }
 
-/// " (0x01, 0x04)"; nothing where there are many, as there are in bytes that are cut at wrong places.
+/// Such as " (0x01, 0x04)"; nothing if there are many, as in bytes that are cut at wrong places.
 static std::string idsOf(const std::set<int>& ids) {
   constexpr size_t kFew = 4;
   std::string text;

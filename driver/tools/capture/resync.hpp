@@ -11,9 +11,9 @@
 
 namespace hapticd::capture {
 
-/// [main] Where the report begins that is to be read next: at `at`, unless it is no good one there, none follows it in
-/// step, and a good one is found at another place. The bytes between go to `odd`. Reports without an id or without a
-/// checksum stay where they are: too many places would look like one.
+/// [main] Where the next report begins: at `at`, unless no good report is there, none follows it in step, and a good
+/// one is found at another place. The bytes between go to `odd`. Reports without an id or a checksum stay where they
+/// are, because too many places would look like one.
 size_t skipOddBytes(const codec::Wire& wire, std::span<const uint8_t> bytes, size_t at,
                     const std::function<void(std::span<const uint8_t>)>& odd);
 

@@ -9,13 +9,13 @@
 
 namespace hapticd::capture {
 
-/// Numbers of many rows that are sent as other numbers, column by column.
+/// Numbers of many rows that had to be sent as other numbers, column by column.
 class Saturation {
  public:
   /// @param motors [N m] greatest torques of the joints; empty: not known
   explicit Saturation(std::vector<double> motors = {}) : motors_(std::move(motors)) {}
 
-  /// [main] One row, as encodeRow() takes it. @param to_arm an order; otherwise as the arm would send it
+  /// [main] One row, as encodeRow() takes it. @param to_arm a command; otherwise as the arm would send it
   void look(const codec::Wire& wire, bool to_arm, const std::vector<std::string>& columns, const double* values,
             int line);
 

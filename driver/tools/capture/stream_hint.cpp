@@ -11,15 +11,15 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-constexpr size_t kFewestAlike = 20;  ///< reports: by chance fewer have one byte in common
+constexpr size_t kFewestAlike = 20;  ///< reports: fewer may have one byte in common by chance
 
-/// A byte that stands once in every report, and hardly anywhere else.
+/// A byte that occurs once in every report, and hardly anywhere else.
 struct Header {
   uint8_t byte = 0;
   size_t at = 0;  ///< of the capture
 };
 
-/// 0 and 0xff are the upper bytes of small numbers, and so is what stands in many places.
+/// 0 and 0xff are the upper bytes of small numbers; a byte that occurs in many places is no mark either.
 std::optional<Header> headerAt(const Bytes& bytes, size_t size, size_t at) {
   const uint8_t byte = bytes[at];
   if (byte == 0 || byte == 0xff) return std::nullopt;
@@ -37,7 +37,7 @@ std::optional<Header> headerOf(const Bytes& bytes, size_t size) {
   return std::nullopt;
 }
 
-/// True where the file says that byte 0 begins a report, or says nothing of it, and has other numbers where the header
+/// True if the file says that byte 0 begins a report, or says nothing about it, and has other numbers where the header
 /// is.
 bool beginsLater(const codec::Report& report, const Header& header) {
   const auto covers = [](const codec::Field& field, size_t byte) {

@@ -7,8 +7,8 @@
 
 namespace hapticd::capture {
 
-/// [main] One line, "" where there is nothing to say: a header byte that the file's size leaves out, or a capture that
-/// begins in the middle of a report.
+/// [main] One line, "" if there is no hint: a header byte that the file's size leaves out, or a capture that begins in
+/// the middle of a report.
 std::string streamHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded);
 
 }  // namespace hapticd::capture

@@ -62,7 +62,7 @@ std::string functionAt(const std::string& file, uint64_t address) {
   return "";
 }
 
-/// As its author wrote it, without arguments.
+/// The name as its author wrote it, without arguments.
 std::string readable(const std::string& name) {
   int status = 0;
   char* words = abi::__cxa_demangle(name.c_str(), nullptr, nullptr, &status);
@@ -70,7 +70,7 @@ std::string readable(const std::string& name) {
   std::free(words);
   const std::string nobody = "(anonymous namespace)::";
   for (size_t at = said.find(nobody); at != std::string::npos; at = said.find(nobody)) said.erase(at, nobody.size());
-  int inside = 0;  // of template arguments, which may have brackets
+  int inside = 0;  // depth of template arguments, which may contain brackets
   for (size_t i = 0; i < said.size(); ++i) {
     inside += said[i] == '<' ? 1 : said[i] == '>' ? -1 : 0;
     if (said[i] == '(' && inside == 0) return said.substr(0, i);
@@ -90,7 +90,7 @@ AllocationWatch::~AllocationWatch() {
 
 void watchAllocations() {
   void* ahead[1];
-  backtrace(ahead, 1);  // its first call loads a library
+  backtrace(ahead, 1);  // the first call loads a library
   watching = true;
 }
 

@@ -5,7 +5,7 @@
 
 namespace hapticd::conformance {
 
-/// Stands around one call of step(); the first allocation within any of them is kept.
+/// Surrounds one call of step(); the first allocation within any of these is kept.
 class AllocationWatch {
  public:
   AllocationWatch() noexcept;
@@ -14,11 +14,11 @@ class AllocationWatch {
   AllocationWatch& operator=(const AllocationWatch&) = delete;
 };
 
-/// [main] From now on an AllocationWatch looks.
+/// [main] From now on AllocationWatch objects take effect.
 void watchAllocations();
 
-/// The function of that file which made the first allocation, and how to find its line: " in NAME (...)". "": none was
-/// seen, or it cannot be told.
+/// The function of that file that made the first allocation, and how to find its line: " in NAME (...)". "" if none was
+/// seen, or it is unknown.
 std::string firstAllocationIn(const std::string& file);
 
 }  // namespace hapticd::conformance

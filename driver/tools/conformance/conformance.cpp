@@ -38,7 +38,7 @@ std::string fuzzOnce(const Recipe& recipe, uint64_t seed) {
     if (c.set((*made)->handle(), i, &value) < 0)
       return std::string(p.id) + " refused " + text(value.number) + ", which is in its range";
   }
-  if (!(*made)->activate()) return "";  // parameters may contradict each other: refusing is right
+  if (!(*made)->activate()) return "";  // parameters may contradict each other, so refusing is right
   const auto [low, high] = (*made)->bounds();
   Vector3d q = onPath(**made, unit(random), unit(random));
   (*made)->measureCost();
@@ -58,7 +58,7 @@ std::string fuzzOnce(const Recipe& recipe, uint64_t seed) {
     if (std::string wrong = wrongStatus((*made)->step({q}, dt, flags)); !wrong.empty())
       return "at step " + std::to_string(i) + ", " + placed(wrong, q);
     if ((*made)->allocations() > 0) return "at step " + std::to_string(i) + ", " + placed("it allocates", q);
-    constexpr uint64_t kLong = 2'000'000;  // [ns] that a step sleeps: others on the machine make no step wait by itself
+    constexpr uint64_t kLong = 2'000'000;  // [ns] that a step may sleep, since other programs do not make a step wait
     const StepCost& cost = (*made)->cost();
     if (cost.waited && cost.wall_ns > cost.cpu_ns + kLong)
       return "at step " + std::to_string(i) + ", " +

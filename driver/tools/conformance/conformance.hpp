@@ -14,19 +14,19 @@ struct ConformanceTest {
   /// "": passed; "skip: why": does not apply; "warn: what": passed with a remark; "note: what": passed, and what was
   /// measured; otherwise what was wrong.
   std::string (*run)(const Recipe& recipe, uint64_t seed);
-  const char* needs = nullptr;  ///< the test without whose success this one would only repeat its failure
+  const char* needs = nullptr;  ///< the test that must succeed, because otherwise this one only repeats its failure
 };
 
 std::vector<ConformanceTest> lifeTests();     ///< descriptors, parameters, creation and activation
 std::vector<ConformanceTest> costTests();     ///< what a step may cost: time, memory, locks, system calls
-std::vector<ConformanceTest> stepTests();     ///< what every step owes: finite and continuous answers
-std::vector<ConformanceTest> contactTests();  ///< what a shape owes where it is touched
-std::vector<ConformanceTest> memoryTests();   ///< what an instance remembers, and what it must not
+std::vector<ConformanceTest> stepTests();     ///< what every step must give: finite and continuous answers
+std::vector<ConformanceTest> contactTests();  ///< what a shape must give where it is touched
+std::vector<ConformanceTest> memoryTests();   ///< what an instance must remember, and what it must not
 
-/// All of them, in the order in which they run.
+/// All tests, in the order in which they run.
 const std::vector<ConformanceTest>& conformanceTests();
 
-/// Random parameters, probes, jumps, resets and bad samples from one seed. "": nothing was wrong.
+/// Random parameters, probes, jumps, resets and bad samples from one seed. "" if nothing was wrong.
 std::string fuzzOnce(const Recipe& recipe, uint64_t seed);
 
 }  // namespace hapticd::conformance

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Every test of contact is empty without one, so that its lack is a failure.
+/// Without a contact every test of contact is empty, so a missing contact is a failure.
 std::string contactFound(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
@@ -28,8 +28,8 @@ std::string contactFound(const Recipe& recipe, uint64_t) {
          "by hsp.geometry/1 (bounds), or give parameters with --set that bring it to the origin";
 }
 
-/// The sign that hurts: by the whole press, since a detent may pull for some of it. The foot tells the way out, not the
-/// normal, which may have the wrong sign as well.
+/// The dangerous sign, judged over the whole press, because a detent may pull for part of it. The foot gives the way
+/// out, not the normal, which may have the wrong sign as well.
 std::string wrongSign(Subject& subject, const Place& place) {
   double outward = 0, most = 0, depth = 0, normal = 0;
   press(subject, place, [&](const Answer& answer, const PressStep&) {
@@ -51,9 +51,9 @@ std::string wrongSign(Subject& subject, const Place& place) {
                      : ", as its normal does: turn the sign of force");
 }
 
-/// What a run would silence, by the same judgement: from some mm outside straight in, and as it is pressed.
+/// Finds what a run would silence, by the same judgement: straight in from some mm outside, and during a press.
 std::string pullsThere(Subject& subject, const Place& place) {
-  constexpr double kFar = 5e-3;  // [m] a magnet would be felt there
+  constexpr double kFar = 5e-3;  // [m] at which a magnet would be felt
   constexpr int kSteps = 100;
   const auto objection = [](const hsp_contact& c, const Vector3d& p) {
     if (!servo::pullsIn(c, p)) return std::string();
@@ -79,12 +79,12 @@ std::string forceOutward(const Recipe& recipe, uint64_t) {
   return atEachPlace(recipe, [](Subject& subject, const Place& place) {
     std::string wrong = wrongSign(subject, place);
     const bool pushes =
-        (subject.report().flags & HSP_R_PUSHES) != 0 && !subject.moves();  // where it is, it tells after
+        (subject.report().flags & HSP_R_PUSHES) != 0 && !subject.moves();  // where it is, later tests report
     return wrong.empty() && pushes ? pullsThere(subject, place) : wrong;
   });
 }
 
-/// "" or what of an answer does not agree with its flags.
+/// "" or how an answer disagrees with its flags.
 std::string flagsOf(const hsp_contact& c) {
   const bool traced = (c.flags & HSP_OUT_TRACED) != 0, contact = (c.flags & HSP_OUT_CONTACT) != 0;
   const bool named = Vector3d(c.normal).norm() > 0 || std::abs(c.depth_m) > 0;
@@ -101,8 +101,8 @@ std::string contactFlags(const Recipe& recipe, uint64_t) {
   return along(*made.subject, [](const Answer& answer, const Vector3d&) { return flagsOf(answer.contacts[0]); });
 }
 
-/// [N/m] The slopes of a press straight in, at rest; in order of size. What a force may jump on purpose is no slope: it
-/// is taken off, over ways so long that it hides little.
+/// [N/m] The slopes of a straight press at rest, sorted by size. A jump on purpose is no slope, so it is subtracted,
+/// over ways so long that this hides little.
 std::vector<double> slopesOf(Subject& subject, const Place& place) {
   const hsp_report& report = subject.report();
   const double jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
@@ -127,10 +127,10 @@ std::vector<double> slopesOf(Subject& subject, const Place& place) {
   return slopes;
 }
 
-/// [N/m] The slopes of a press that waits at each place until what the shape remembers of its way has faded: a filter
+/// [N/m] The slopes of a press that waits at each place until the shape's memory of its way has faded, because a filter
 /// of velocities is no stiffness.
 std::vector<double> slopesAtRest(Subject& subject, const Place& place) {
-  constexpr int kPlaces = 10, kRest = 200;  // ticks: the longest that a hand would take for a delay
+  constexpr int kPlaces = 10, kRest = 200;  // ticks: the longest time that a hand would take for a delay
   const double depth = pressDepth(subject);
   const hsp_report& report = subject.report();
   const double jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
@@ -148,7 +148,7 @@ std::vector<double> slopesAtRest(Subject& subject, const Place& place) {
   return slopes;
 }
 
-/// [N/m] Of nine tenths of a press no more than that; 0 where there is too little of it to say.
+/// [N/m] Nine tenths of a press are no steeper than this; 0 if there is too little of it to say.
 double stiffnessAt(Subject& subject, const Place& place, double claimed) {
   constexpr double kDoubtful = 1.1;
   const std::vector<double> slopes = slopesOf(subject, place);
@@ -159,7 +159,7 @@ double stiffnessAt(Subject& subject, const Place& place, double claimed) {
   return std::min(measured, rested[rested.size() * 9 / 10]);
 }
 
-/// How steep a force is, in words, beside what is claimed of it.
+/// How steep a force is, in words, compared with what is claimed.
 std::string besideClaim(double claimed, double measured) {
   return (claimed > 0 ? "it claims " + text(claimed) + " N/m" : std::string("it claims no stiffness")) +
          ", but its force grows by " + text(measured) +
@@ -172,10 +172,10 @@ double middleOf(std::vector<double> sorted) {
   return sorted.empty() ? 0 : sorted[sorted.size() / 2];
 }
 
-/// "" or how the slope that a contact tells is of the wrong sign, or far too small for a check of stability by it. 0
-/// tells nothing, and one that is too large errs to the safe side.
+/// "" or how the slope that a contact reports has the wrong sign, or is far too small for a check of stability. 0
+/// reports nothing, and a slope that is too large errs to the safe side.
 std::string toldStiffness(Subject& subject, const Place& place) {
-  constexpr double kFar = 3, kNoise = 10;  // a law may be steeper somewhere; [N/m]
+  constexpr double kFar = 3, kNoise = 10;  // a law may be steeper in places; [N/m]
   std::vector<double> told;
   press(subject, place, [&told](const Answer& answer, const PressStep& step) {
     const hsp_contact& c = answer.contacts[0];
@@ -185,7 +185,7 @@ std::string toldStiffness(Subject& subject, const Place& place) {
   const std::vector<double> slopes = slopesOf(subject, place);
   if (told.size() < 10 || slopes.size() < 10) return "";
   const double says = middleOf(told), is = middleOf(slopes);
-  const bool soft = (subject.description().flags & HSP_C_DEFORMS) != 0;  // there it may tell the part that is nearest
+  const bool soft = (subject.description().flags & HSP_C_DEFORMS) != 0;  // there it may report the nearest part
   if (soft ? says >= 0 : kFar * says + kNoise >= is) return "";
   return placed("contact.stiffness tells " + text(says) + " N/m, and the force grows by " + text(is) +
                     " N/m there; expected the local slope of the force over the depth (0: not told)",
@@ -197,7 +197,7 @@ std::string stiffnessClaim(const Recipe& recipe, uint64_t) {
   if (!made.error.empty()) return made.error;
   if (made.subject->moves()) return "skip: it moves, and its force with it";
   const double claimed = made.subject->report().max_stiffness;
-  constexpr double kFails = 1.5, kWarns = 1.1, kNoise = 10;  // a law may be a little steeper somewhere; [N/m]
+  constexpr double kFails = 1.5, kWarns = 1.1, kNoise = 10;  // a law may be a little steeper in places; [N/m]
   double steepest = 0;
   std::string wrong = atEachPlace(recipe, [claimed, &steepest](Subject& subject, const Place& place) {
     const double measured = stiffnessAt(subject, place, claimed);
@@ -209,7 +209,7 @@ std::string stiffnessClaim(const Recipe& recipe, uint64_t) {
   return "note: it claims " + text(claimed) + " N/m, and its force grows by " + text(steepest) + " N/m at most";
 }
 
-/// "" or by how much a torque comes at once where the surface is met.
+/// "" or by how much a torque jumps where the surface is met.
 std::string torqueAtOnce(const Vector3d& before, const Vector3d& now, double explained) {
   constexpr double kRoom = 0.01, kLever = 0.1;  // [N m] not felt as a step; [m] a force so far from the tip turns it
   const double jump = (now - before).norm();
@@ -219,7 +219,7 @@ std::string torqueAtOnce(const Vector3d& before, const Vector3d& now, double exp
          "model's origin";
 }
 
-/// A force that comes at once where the surface is met buzzes, however small its slope is behind it.
+/// A force that jumps where the surface is met buzzes, however small its slope behind it is.
 std::string noStep(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
@@ -248,15 +248,15 @@ std::string noStep(const Recipe& recipe, uint64_t) {
   });
 }
 
-/// A press far below the surface, at rest, as far as the surface above it stays the same one.
+/// A press far below the surface, at rest, as long as the surface above it stays the same.
 struct DeepPress {
   std::vector<double> depth, force;  ///< [m], [N] outward
 };
 
 DeepPress pressDeep(Subject& subject, const Place& place) {
-  constexpr double kStep = 1e-4, kStrongest = 10;  // [m], [N] more than most hands meet
+  constexpr double kStep = 1e-4, kStrongest = 10;  // [m], [N] more than most hands reach
   const double most = deepestPress(subject);
-  constexpr int kRest = 10;  // ticks: a damper has faded then, and a filter of velocities nearly
+  constexpr int kRest = 10;  // ticks: a damper has faded by then, and a filter of velocities nearly
   DeepPress press;
   for (int i = 0; i * kStep <= most; ++i) {
     const Vector3d p = place.foot - place.out * (i * kStep);
@@ -270,11 +270,11 @@ DeepPress pressDeep(Subject& subject, const Place& place) {
   return press;
 }
 
-/// What happens deeper than the other tests go: a law that turns steep, a click that sits there.
+/// What happens deeper than the other tests go: a law that becomes steep, or a click.
 std::string deepPress(const Recipe& recipe, uint64_t) {
   constexpr double kRoom = 0.1;              // [N] not felt as a step
-  constexpr size_t kApart = 10;              // steps between which a slope is taken
-  constexpr double kSteep = 1.5, kJump = 3;  // as at the surface; of the claim, from one step to the next
+  constexpr size_t kApart = 10;              // steps over which a slope is taken
+  constexpr double kSteep = 1.5, kJump = 3;  // as at the surface; share of the claim, from one step to the next
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   const hsp_report& report = made.subject->report();
@@ -283,7 +283,7 @@ std::string deepPress(const Recipe& recipe, uint64_t) {
   const double claimed = report.max_stiffness, jumps = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;
   if (!(claimed > 0)) return "skip: no stiffness is claimed";
   std::string steep;
-  int left = 4;  // places: a slow shape would take too long for all of them
+  int left = 4;  // places: a slow shape would take too long for all
   const std::string wrong = atEachPlace(recipe, [&](Subject& subject, const Place& place) {
     if (left-- <= 0) return std::string();
     const DeepPress press = pressDeep(subject, place);

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr uint64_t kPeriodNs = 1'000'000;  ///< of a servo at 1 kHz
+constexpr uint64_t kPeriodNs = 1'000'000;  ///< budget of a servo at 1 kHz
 
 /// What some steps took.
 struct Spent {
@@ -41,7 +41,7 @@ std::string milliseconds(uint64_t ns) {
   return words;
 }
 
-/// "" or why steps like these keep the servo from its period. A busy machine makes no step wait, nor compute more.
+/// "" or why such steps keep the servo from its period. A busy machine makes no step wait, nor compute more.
 std::string tooSlow(const Spent& spent, const char* where, uint64_t claim_ns) {
   const size_t count = spent.wall_ns.size();
   const std::string of = " (median of " + std::to_string(count) + " steps " + where + ")";
@@ -55,10 +55,10 @@ std::string tooSlow(const Spent& spent, const char* where, uint64_t claim_ns) {
          "claims it: report.worst_ns)";
 }
 
-/// Free steps and touched ones apart: a law of contact may be all that is slow.
+/// Judges free steps and touched ones separately, since only a law of contact may be slow.
 std::string stepsEndInTime(const Recipe& recipe, uint64_t) {
   constexpr Nanoseconds kLong = kNanosecondsPerSecond / 2;  // a hundred steps of 5 ms are enough to judge
-  constexpr size_t kEnough = 50;                            // and so few are, where the machine stood still
+  constexpr size_t kEnough = 50;                            // even so few are enough if the machine stood still
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   made.subject->measureCost();
@@ -119,7 +119,7 @@ std::string noLock(const Recipe& recipe, uint64_t) {
          "; expected none: who holds it may keep the servo waiting";
 }
 
-/// Output to the terminal is the commonest one: without a buffer each line shows.
+/// Output to the terminal is the most common one: without a buffer each line is noticed.
 std::string noSystemCall(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
@@ -139,7 +139,7 @@ std::string noSystemCall(const Recipe& recipe, uint64_t) {
          "; a step only computes: write, read and wait outside of touch() and step()";
 }
 
-/// A claim holds for the author's machine: a slower one is no fault of the shape, a claim that is far off is.
+/// A claim holds for the author's machine: a slower machine is no fault of the shape, but a claim that is far off is.
 std::string stepCost(const Recipe& recipe, uint64_t) {
   constexpr uint64_t kFar = 10;
   const Made made(recipe);

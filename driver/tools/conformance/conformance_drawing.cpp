@@ -17,7 +17,7 @@ constexpr size_t kMostTriangles = 96;
 constexpr double kDrawnChord = 0.0025, kDrawnReach = 0.005,
                  kDrawnTolerance = 0.02;  // parts of the diagonal of the drawing
 
-/// The triangles, copied: they are valid until the next call alone.
+/// A copy of the triangles, which are valid only until the next call.
 struct Drawing {
   std::vector<Vector3d> corners;
   std::vector<std::array<uint32_t, 3>> triangles;
@@ -26,14 +26,14 @@ struct Drawing {
   double diagonal() const { return (high - low).norm(); }
 };
 
-/// How the triangles that were tried compare with the answers there.
+/// How the answers at the triangles that were tried compare with them.
 struct Compared {
   size_t seen = 0, away = 0, outward = 0, inward = 0;
-  double distance = 0;             ///< [m] of the foot point that is farthest away
+  double distance = 0;             ///< [m] distance of the farthest foot point
   Vector3d at = Vector3d::Zero();  ///< the triangle that it belongs to
 };
 
-/// "" or what is wrong with the arrays as such.
+/// "" or what is wrong with the arrays themselves.
 std::string readDrawing(const hsp_mesh& mesh, Drawing& to) {
   if (mesh.vertex_count > 0 && mesh.xyz == nullptr) return "tessellate() counts vertices, and xyz is NULL";
   if (mesh.triangle_count > 0 && mesh.indices == nullptr) return "tessellate() counts triangles, and indices is NULL";
@@ -55,7 +55,7 @@ std::string readDrawing(const hsp_mesh& mesh, Drawing& to) {
   return "";
 }
 
-/// "" or a corner that the box does not hold.
+/// "" or a corner that lies outside the box.
 std::string outsideBounds(const Drawing& drawing, const Vector3d& low, const Vector3d& high) {
   if (!low.allFinite() || !high.allFinite() || (high - low).minCoeff() < 0)
     return "bounds() gives from " + text(low) + " to " + text(high) + "; expected min below max, finite";
@@ -67,19 +67,19 @@ std::string outsideBounds(const Drawing& drawing, const Vector3d& low, const Vec
   return "";
 }
 
-/// Probes close before and behind one triangle: both must find the surface there, and be deeper behind it.
+/// Probes close before and behind one triangle: both must find the surface there, and the one behind must be deeper.
 void compareTriangle(Subject& subject, const Drawing& drawing, size_t triangle, Compared& to) {
   const auto& corner = drawing.triangles[triangle];
   const Vector3d &a = drawing.corners[corner[0]], &b = drawing.corners[corner[1]], &c = drawing.corners[corner[2]];
   const Vector3d across = (b - a).cross(c - a), middle = (a + b + c) / 3;
-  if (!(across.norm() > 1e-12 * drawing.diagonal() * drawing.diagonal())) return;  // no area, such as at a pole
+  if (!(across.norm() > 1e-12 * drawing.diagonal() * drawing.diagonal())) return;  // it has no area, such as at a pole
   const double reach = kDrawnReach * drawing.diagonal();
   const Vector3d step = reach * across.normalized();
   const hsp_contact before = answerAtRest(subject, middle + step), behind = answerAtRest(subject, middle - step);
   double nearest = HUGE_VAL;
   for (const hsp_contact* contact : {&before, &behind})
     if ((contact->flags & HSP_OUT_TRACED) != 0) nearest = std::min(nearest, (Vector3d(contact->point) - middle).norm());
-  if (!std::isfinite(nearest)) return;  // it may say nothing outside of a contact
+  if (!std::isfinite(nearest)) return;  // it may give nothing outside of a contact
   ++to.seen;
   if (nearest > kDrawnTolerance * drawing.diagonal()) {
     ++to.away;
@@ -129,7 +129,7 @@ std::string drawingWhereFelt(const Recipe& recipe, uint64_t) {
   if (subject.moves()) return "skip: it moves, and its surface with it";
   Compared found;
   const size_t tried = std::min(kMostTriangles, drawing.triangles.size());
-  constexpr double kGolden = 0.6180339887498949;  // even steps would meet the same column of a grid again and again
+  constexpr double kGolden = 0.6180339887498949;  // even steps would meet the same column of a grid repeatedly
   for (size_t i = 0; i < tried; ++i) {
     const double part = std::fmod(kGolden * static_cast<double>(i), 1);
     const auto triangle = static_cast<size_t>(part * static_cast<double>(drawing.triangles.size()));

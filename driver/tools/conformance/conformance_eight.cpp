@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 using Positions = std::vector<Vector3d>;  ///< of all probes in one step
 
 constexpr uint32_t kProbes = 8;
-/// [bytes] Behind a single record, which ends 8 bytes before what may be guarded: they are looked at after each step.
+/// [bytes] Room after a single record, which ends 8 bytes before what may be guarded; it is checked after each step.
 constexpr size_t kBehind = 8;
 
 /// One step of the run.
@@ -22,7 +22,7 @@ struct Together {
   uint32_t flags = 0;
 };
 
-/// Each probe on its own part of the path, then all of them pressing, each where the shape can be touched.
+/// First each probe follows its own part of the path, then all press, each where the shape can be touched.
 std::vector<Together> stepsOf(const Subject& subject) {
   constexpr int kAlong = kConformanceSteps / 4;
   std::vector<Together> steps;
@@ -44,7 +44,7 @@ std::vector<Together> stepsOf(const Subject& subject) {
   return steps;
 }
 
-/// A shape of so many probes, whose own memory and whose records are guarded.
+/// A shape for this number of probes, with guarded memory and guarded records.
 std::unique_ptr<Subject> guardedSubject(const Recipe& recipe, uint32_t probes, std::string& error) {
   tellOverruns(probes);
   const GuardedMemory guarded;
@@ -56,7 +56,7 @@ std::unique_ptr<Subject> guardedSubject(const Recipe& recipe, uint32_t probes, s
   return std::move(made.subject);
 }
 
-/// "" or the first probe whose answer another probe has changed.
+/// "" or the first probe whose answer depends on another probe.
 std::string eachAsAlone(const Recipe& recipe, const std::vector<Together>& steps, const std::vector<Answer>& together) {
   for (uint32_t probe = 0; probe < kProbes; ++probe) {
     std::string error;
@@ -94,7 +94,7 @@ std::string eightProbes(const Recipe& recipe, uint64_t) {
     if (std::string wrong = wrongStatus(answers.back()); !wrong.empty()) return "with eight probes: " + wrong;
   }
   const bool coupled = subject->moves() || (subject->description().flags & HSP_C_DEFORMS) != 0;
-  return coupled ? "" : eachAsAlone(recipe, steps, answers);  // what moves or deforms is pushed by all of them
+  return coupled ? "" : eachAsAlone(recipe, steps, answers);  // all of them push what moves or deforms
 }
 
 }  // namespace hapticd::conformance

@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kParts = 4;
 
-/// [bytes] The least and the most of each part of the lives.
+/// [bytes] The least and the most memory in each part of the lives.
 struct Extent {
   double least = 0, most = 0;
 };
@@ -42,14 +42,14 @@ double leakOf(const std::vector<double>& used) {
   return std::max(leak, 0.0) / static_cast<double>(used.size() / kParts);
 }
 
-/// Always as many lives, whatever the machine: only one that takes very long for them is let off.
+/// The number of lives is the same on every machine; only a shape whose lives take very long gets fewer.
 std::string createDestroyLeak(const Recipe& recipe, uint64_t) {
   constexpr int kFirst = 5, kLives = 40;
   constexpr Nanoseconds kLong = 3 * kNanosecondsPerSecond;
   constexpr double kNoLeak = 256;  // [bytes] a life
   const Nanoseconds begun = monotonicNow();
   std::vector<double> used;  // [bytes] after each life
-  used.reserve(kLives);      // or it would count itself
+  used.reserve(kLives);      // or it would count its own memory
   for (int i = 0; i < kFirst + kLives && monotonicNow() - begun < kLong; ++i) {
     {
       const Made made(recipe);

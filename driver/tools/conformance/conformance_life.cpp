@@ -18,7 +18,7 @@ bool blank(const char* words) {
   return words == nullptr || words[0] == '\0';
 }
 
-/// What a scene and a command line can name without quotes.
+/// A name that a scene and a command line can use without quotes.
 bool plainId(const char* id) {
   for (; *id != '\0'; ++id)
     if (std::isalnum(static_cast<unsigned char>(*id)) == 0 && std::strchr("_.-", *id) == nullptr) return false;
@@ -51,7 +51,7 @@ std::string descriptorComplete(const Recipe& recipe, uint64_t) {
   return "";
 }
 
-/// A stiffness that jumps under a hand is felt as a blow.
+/// A hand feels a stiffness that jumps as a blow.
 std::string liveConsent(const Recipe& recipe, uint64_t) {
   const auto objection = [](const hsp_param& p) -> std::string {
     const std::string unit = p.unit != nullptr ? p.unit : "";
@@ -80,7 +80,7 @@ std::string idUnique(const Recipe& recipe, uint64_t) {
   return "";
 }
 
-/// The soonest of three tries: a machine may stand still, or read the file from a slow disk, once.
+/// The fastest of three tries: once the machine may stand still, or read the file from a slow disk.
 std::string scanTimeLimit(const Recipe& recipe, uint64_t) {
   double least = HUGE_VAL;
   for (int i = 0; i < 3 && least >= 1; ++i) {
@@ -126,7 +126,7 @@ std::string setOutOfRange(const Recipe& recipe, uint64_t) {
                                                                   : "";
 }
 
-/// "" or the parameter whose value went when another was set: two lines of a table that name one member.
+/// "" or the parameter whose value was lost when another was set: two lines of a table name one member.
 std::string sharedMember(Subject& subject, const std::vector<double>& values, uint32_t set) {
   const hsp_class& c = subject.description();
   for (uint32_t i = 0; i < set; ++i) {

@@ -13,13 +13,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What a hand got on its way.
+/// What a hand gained on its way.
 struct Work {
-  double given = 0, moved = 0;  ///< [J] in all, and as it went to and fro
-  double aside = 0;             ///< [J] of that which was given, by the part of the force that lies across the normal
+  double given = 0, moved = 0;  ///< [J] in all, and what moved to and fro
+  double aside = 0;             ///< [J] the share of that which the part of the force across the normal gave
 };
 
-/// From outside in, along by twice the depth, out, and back outside; at each corner the probe rests.
+/// From outside in, along by twice the depth, out, and back outside; the probe rests at each corner.
 std::vector<Vector3d> loopAt(const Place& place, const Vector3d& aside, double depth) {
   constexpr int kLeg = 40, kRest = 10;
   const Vector3d out = depth * place.out, way = 2 * depth * aside;
@@ -51,13 +51,13 @@ Work walk(Subject& subject, const std::vector<Vector3d>& points) {
 /// Both ways round; a spring gives back what it took, and friction keeps some of it. What a force across the normal did
 /// not give is no circulation: a shape that is softer in places, and pushes along its normal alone, gives a little too.
 std::string gives(Subject& subject, const Place& place, const Vector3d& aside) {
-  constexpr double kRounding = 0.02, kLeast = 1e-8;  // of the work that went to and fro; [J]
+  constexpr double kRounding = 0.02, kLeast = 1e-8;  // share of the work that went to and fro; [J]
   const hsp_report& report = subject.report();
   const double depth = pressDepth(subject);
-  const double jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;  // a pulse on purpose works too
+  const double jump = (report.flags & HSP_R_JUMPS) != 0 ? report.max_jump : 0;  // a pulse on purpose does work too
   std::vector<Vector3d> points = loopAt(place, aside, depth);
   for (int sense = 0; sense < 2; ++sense) {
-    subject.reset();  // what a soft shape has stored on the way before is no energy of this one
+    subject.reset();  // what a soft shape stored before is not energy from this loop
     const double before = subject.energy();
     const Work work = walk(subject, points);
     const double gained = std::isnan(before) ? 0 : subject.energy() - before;
@@ -78,14 +78,14 @@ std::string loopsGiveNoEnergy(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
   if (made.subject->moves()) return "skip: it moves, and gravity works on it as well as the hand";
-  int left = 6;  // places: a slow shape would take too long for all of them
+  int left = 6;  // places: a slow shape would take too long for all
   const std::string wrong = atEachPlace(recipe, [&left](Subject& subject, const Place& place) {
     if (left-- <= 0) return std::string();
     const Vector3d u = place.out.unitOrthogonal(), v = place.out.cross(u);
     std::string given = gives(subject, place, u);
     return given.empty() ? gives(subject, place, v) : given;
   });
-  // A body that gives way answers by what it is made of near the probe, which is no potential of its place.
+  // A soft body answers by its material near the probe, which is not a potential of its place.
   const bool soft = (made.subject->description().flags & HSP_C_DEFORMS) != 0;
   return soft && !wrong.empty() && wrong.rfind("skip: ", 0) != 0 ? "note: " + wrong : wrong;
 }

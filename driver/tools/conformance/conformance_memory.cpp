@@ -37,7 +37,7 @@ std::string resetEqualsFresh(const Recipe& recipe, uint64_t) {
   if (!used.error.empty()) return used.error;
   if (used.subject->moves()) return "skip: it moves, and reset() does not forget its pose";
   size_t steps = answersOf(*used.subject, kConformanceSteps / 2, 0.7).size();
-  constexpr size_t kRounds = 2 * 3 * 5 * 7;  // a phase that is kept shows, unless whole turns have gone by
+  constexpr size_t kRounds = 2 * 3 * 5 * 7;  // a phase that is kept shows, unless whole turns have passed
   for (; steps % kRounds != 1; ++steps) used.subject->step({onPath(*used.subject, 0.5)}, kConformanceDt);
   used.subject->reset();
   const auto a = answersOf(*used.subject, kConformanceSteps / 4), b = answersOf(*fresh.subject, kConformanceSteps / 4);
@@ -92,9 +92,9 @@ std::string searchesAfterJump(const Recipe& recipe, Subject& subject, uint64_t s
   return "";
 }
 
-/// [N] After some steps where the probe stays at each of `way` for a while, and a jump to `to`.
+/// [N] The force after some steps in which the probe stays at each of `way` for a while, and a jump to `to`.
 Vector3d forceAfterJump(Subject& subject, const std::vector<Vector3d>& way, const Vector3d& to) {
-  constexpr int kStay = 200;  // ticks: what is filtered has faded
+  constexpr int kStay = 200;  // ticks: what is filtered has faded by then
   for (size_t i = 0; i < way.size(); ++i)
     for (int k = 0; k < kStay; ++k)
       subject.step({way[i]}, kConformanceDt, i + static_cast<size_t>(k) == 0 ? uint32_t{HSP_IN_JUMP} : 0);

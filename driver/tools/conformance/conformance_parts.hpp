@@ -19,7 +19,7 @@ constexpr const char *kInTime = "steps-end-in-time", *kFinite = "finite-outputs"
 /// How an objection begins that names an overrun which did not end the process.
 constexpr const char* kBeyond = "it writes behind its hsp_contact";
 
-/// Gives an active instance, or is why there is none.
+/// Gives an active instance, or the reason why there is none.
 struct Made {
   std::unique_ptr<Subject> subject;
   std::string error;
@@ -29,19 +29,19 @@ struct Made {
 std::string text(double value);
 std::string text(const Eigen::Vector3d& p);  ///< "X, Y, Z m"
 
-/// An objection with the place where it was found in front: what follows is often an advice.
+/// An objection that begins with the place where it was found, because advice often follows.
 std::string placed(const std::string& objection, const Eigen::Vector3d& p);
 
 /// A smooth closed path through and around the shape, from a corner outside its box and back to it.
 Eigen::Vector3d onPath(const Subject& subject, double part, double phase = 0);
 
-/// Runs along the path, then presses wherever the shape can be touched, and hands every answer to `look`; its first
+/// Runs along the path, then presses wherever the shape can be touched, and gives every answer to `look`; the first
 /// objection ends the run.
 std::string along(Subject& subject, const std::function<std::string(const Answer&, const Eigen::Vector3d&)>& look,
                   int steps = kConformanceSteps);
 
-/// The same, and then straight in at each place, as deep as `deepestPress`, and out again: what sits there, such as a
-/// click or a second layer, may allocate, lock or print too.
+/// The same, and then straight in at each place, as deep as `deepestPress`, and out again: a click or a second layer
+/// there may allocate, lock or print too.
 std::string alongAndDeep(Subject& subject,
                          const std::function<std::string(const Answer&, const Eigen::Vector3d&)>& look);
 
@@ -52,16 +52,16 @@ std::string atEachPlace(const Recipe& recipe, const std::function<std::string(Su
 /// Why a shape whose force has no surface is not tested.
 constexpr const char* kField = "skip: it names no surface (HSP_OUT_TRACED): a force without a surface has no sign";
 
-/// The answer to a probe that comes to p by a jump and rests there; zero where there is none to judge.
+/// The answer to a probe that jumps to p and rests there; zero if there is none to judge.
 hsp_contact answerAtRest(Subject& subject, const Eigen::Vector3d& p);
 
 /// "" or why point, normal and depth do not belong to one surface.
 std::string footAndNormal(const Recipe& recipe, uint64_t);
 
-/// "" or how far the force of a shape that only pushes lies off its normal.
+/// "" or by how much the force of a shape that only pushes deviates from its normal.
 std::string forceAlongNormal(const Recipe& recipe, uint64_t);
 
-/// "" or the energy that a hand gets which goes in, along below the surface, and out again.
+/// "" or the energy that a hand gains when it goes in, along below the surface, and out again.
 std::string loopsGiveNoEnergy(const Recipe& recipe, uint64_t);
 
 /// "warn: ..." for parameters whose units are not SI.
@@ -75,18 +75,18 @@ double leakOf(const std::vector<double>& used);
 /// "" or what create() to destroy() leaks.
 std::string createDestroyLeak(const Recipe& recipe, uint64_t);
 
-/// "" or why what it draws by hsp.geometry/1 is not where it is felt; "skip: why" where it draws nothing.
+/// "" or why what it draws by hsp.geometry/1 is not where it is felt; "skip: why" if it draws nothing.
 std::string drawingWhereFelt(const Recipe& recipe, uint64_t);
 
 /// "" or what goes wrong with as many probes as a run may have, in guarded memory.
 std::string eightProbes(const Recipe& recipe, uint64_t);
 
-/// "": a status that a step may have, and an answer that is finite.
+/// "" for a status that a step may return, and an answer that is finite.
 std::string wrongStatus(const Answer& answer);
 
 const hsp_param& paramAt(const hsp_class& c, uint32_t i);
 
-/// "" or a warning: what `objection` says of each parameter of the plugin, apart by `between`, and then `advice`.
+/// "" or a warning: what `objection` says of each parameter, separated by `between`, and then `advice`.
 std::string warningOfParams(const Recipe& recipe, const std::function<std::string(const hsp_param&)>& objection,
                             const std::string& between, const std::string& advice);
 

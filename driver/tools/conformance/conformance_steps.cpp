@@ -28,7 +28,7 @@ std::string finiteOutputs(const Recipe& recipe, uint64_t seed) {
   return "";
 }
 
-/// Asks in contact, where a shape that does not look at the flag pushes on.
+/// Asks for bad samples in contact, where a shape that ignores the flag goes on pushing.
 std::string badSample(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
@@ -81,7 +81,7 @@ std::string forceContinuous(const Recipe& recipe, uint64_t) {
     step.out = contact.flags;
     step.in = answer.jumped ? HSP_IN_JUMP : 0;
     if (answer.jumped) step.velocity.setZero();
-    step.former = true;  // nothing is searched here: after a jump a shape has its surface at once
+    step.former = true;  // nothing searches here, so a shape must have its surface at once after a jump
     last = p, force = step.force;
     bool held = false;
     claim.judge(step, bounds, kConformanceDt, held);
@@ -108,7 +108,7 @@ double medianOf(std::vector<double> values) {
   return *middle;
 }
 
-/// Both are lengths in m: depth changes by as much as the probe moves along the normal, and the foot is a depth away.
+/// Both are lengths in m: depth changes as much as the probe moves along the normal, and the foot is one depth away.
 class LengthsInMetres {
  public:
   void add(const hsp_contact& c, const Vector3d& p, const Vector3d& before, double depth_before) {
@@ -117,13 +117,13 @@ class LengthsInMetres {
       ++outside_;
       if (c.depth_m == 0) ++flat_;
     }
-    constexpr double kLeast = 1e-7, kFar = 1e-5;  // [m] of a step, of a foot
+    constexpr double kLeast = 1e-7, kFar = 1e-5;  // [m] of a step, and of a foot
     const double out = Vector3d(c.normal).dot(p - before);
     if (std::abs(out) > std::max(kLeast, 0.5 * (p - before).norm())) rates_.push_back((depth_before - c.depth_m) / out);
     if (std::abs(c.depth_m) > kFar) feet_.push_back((p - Vector3d(c.point)).norm() / std::abs(c.depth_m));
   }
   std::string wrong() const {
-    constexpr double kFar = 3;  // a law may measure its depth another way, but in m
+    constexpr double kFar = 3;  // a law may measure its depth differently, but in m
     if (2 * flat_ > outside_)
       return "depth_m is 0 outside of the shape, where HSP_OUT_TRACED is set; expected minus the distance to the "
              "surface";
@@ -140,11 +140,11 @@ class LengthsInMetres {
 
  private:
   std::vector<double> rates_, feet_;
-  size_t outside_ = 0, flat_ = 0;  ///< steps outside; those of them that say a depth of 0
+  size_t outside_ = 0, flat_ = 0;  ///< steps outside, and those of them that report a depth of 0
 };
 
-/// Where the probe moves along the normal, depth falls by as much: else depth or normal has the wrong sign, and with it
-/// the force that is made of them.
+/// If the probe moves along the normal, depth must fall by as much; otherwise depth or normal has the wrong sign, and
+/// so has the force.
 std::string depthOutward(const Recipe& recipe, uint64_t) {
   const Made made(recipe);
   if (!made.error.empty()) return made.error;
@@ -189,9 +189,9 @@ std::string energyNonIncreasing(const Recipe& recipe, uint64_t) {
         return "";
       },
       kSlow);
-  if (made.subject->moves()) return "";  // gravity and the hand both work on it: bounded by the test of its own energy
+  if (made.subject->moves()) return "";  // gravity and the hand both work on it: the test of its own energy bounds it
   const double gained = std::isnan(before) ? 0 : made.subject->energy() - before;
-  constexpr double kRounding = 0.02;  // of the work that went to and fro: the path is walked in steps
+  constexpr double kRounding = 0.02;  // share of the work that went to and fro, because the path is walked in steps
   const double allowed = kRounding * moved + 1e-6 - gained;
   return given <= allowed ? "" : "a closed path gave " + text(given) + " J to the hand of " + text(moved) + " J moved";
 }

@@ -19,19 +19,19 @@ namespace hapticd::conformance {
 /// What every instance of a check is made from.
 struct Recipe {
   std::string file, class_name;
-  std::vector<scene::Value> set;  ///< parameters that were checked against the table; the rest keeps its default
-  Touch touch;                    ///< where it can be touched; empty until it was looked for
+  std::vector<scene::Value> set;  ///< parameters that were checked against the table; others keep their defaults
+  Touch touch;                    ///< where it can be touched; empty until a place was looked for
 
   /// The value of a parameter, or nullptr.
   const scene::Value* find(const char* id) const;
 };
 
-/// The answer to one step; compared bit for bit where a test says so.
+/// The answer to one step; some tests compare it bit for bit.
 struct Answer {
   hsp_status status = HSP_OK;
   std::vector<hsp_contact> contacts;
   hsp_pose pose{};
-  bool jumped = false;  ///< the probe came there by a jump: nothing is to be compared with the answer before
+  bool jumped = false;  ///< the probe jumped there, so nothing may be compared with the answer before
 };
 bool sameBits(const Answer& a, const Answer& b);
 bool finite(const Answer& answer);
@@ -39,12 +39,12 @@ bool finite(const Answer& answer);
 /// What one step took.
 struct StepCost {
   uint64_t wall_ns = 0, cpu_ns = 0;
-  bool waited = false;  ///< it gave the processor away by itself
+  bool waited = false;  ///< it released the processor by itself
 };
 
 class Subject {
  public:
-  /// Loads, creates, sets; the error is in the plugin's own words.
+  /// Loads, creates and sets; the error is in the plugin's own words.
   static Result<std::unique_ptr<Subject>> make(const Recipe& recipe);
   ~Subject();
   Subject(const Subject&) = delete;
@@ -54,36 +54,36 @@ class Subject {
   hsp_status activateRaw(uint32_t probes, hsp_report& report);
   void deactivate();
 
-  /// Moves every probe to a position within dt; velocities follow from the last. Searches every fifth step as the
-  /// host does.
+  /// Moves every probe to a position within dt; velocities follow from the last position. It searches every fifth step
+  /// as the host does.
   const Answer& step(const std::vector<Eigen::Vector3d>& positions, double dt, uint32_t flags = 0);
-  /// As `step` with one probe, exactly as given.
+  /// The same as `step` with one probe, exactly as given.
   const Answer& stepRaw(const hsp_probe& probe, double dt);
-  /// From now on the steps get what these flags ask for, HSP_R_VELOCITY and HSP_R_ORIENTATION, asked for or not.
+  /// From now on the steps contain what these flags ask for, HSP_R_VELOCITY and HSP_R_ORIENTATION, requested or not.
   void give(uint32_t flags) { given_ = flags; }
-  /// From now on `cost` is that of the last step.
+  /// From now on `cost` is the cost of the last step.
   void measureCost() { measured_ = true; }
   const StepCost& cost() const { return cost_; }
-  /// Room between the records of a step, to see that the strides are used.
+  /// Room between the records of a step, which shows whether the strides are used.
   void widen(size_t bytes) { room_ = bytes; }
   bool roomUntouched() const;
-  /// Takes the memory of the records of a step now, in that of who asks for it.
+  /// Allocates the records of a step now, in memory of the caller's kind.
   void reserve(size_t probes);
   void reset();
 
   const hsp_class& description() const { return *class_; }
   const hsp_report& report() const { return report_; }
-  const std::vector<Place>& places() const { return places_; }  ///< where it can be touched
+  const std::vector<Place>& places() const { return places_; }  ///< the place where it can be touched
   hsp_shape* handle() const { return shape_; }
   const void* extension(const char* name) const;
   bool moves() const { return (report_.flags & HSP_R_MOVES) != 0; }
-  double damping() const { return damping_; }  ///< [N s/m] the largest that its parameters ask for
-  double energy() const;                       ///< [J] stored, NaN: it does not say
+  double damping() const { return damping_; }  ///< [N s/m] the largest damping that its parameters ask for
+  double energy() const;                       ///< [J] stored energy, NaN: it does not say
   /// Box of the shape in its own frame, or a guess of 0.1 m about the origin.
   std::pair<Eigen::Vector3d, Eigen::Vector3d> bounds() const;
   uint64_t stepNs() const { return step_ns_; }           ///< of the last step, wall clock
   uint64_t allocations() const { return allocations_; }  ///< in all steps since activate
-  uint64_t locks() const { return locks_; }              ///< the same, once countLocksOf() has begun
+  uint64_t locks() const { return locks_; }              ///< the same, since countLocksOf() was called
 
  private:
   Subject() = default;

@@ -12,11 +12,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kOffPart = 0.01;   ///< of a length: a foot that is followed is not exact
+constexpr double kOffPart = 0.01;   ///< share of a length: a foot that is followed is not exact
 constexpr double kOffLeast = 1e-6;  ///< [m]
 constexpr double kOffAngle = 0.02;  ///< [rad] a little more than a degree
 
-/// What the answer to a probe at rest says of the surface.
+/// What the answer to a resting probe says about the surface.
 struct Foot {
   bool known = false;
   Vector3d p = Vector3d::Zero(), point = Vector3d::Zero(), normal = Vector3d::Zero();
@@ -24,7 +24,7 @@ struct Foot {
   bool edge = false;
 
   double away() const { return (p - point).norm(); }
-  /// [m] How far lengths like these may be off.
+  /// [m] By how much such lengths may be wrong.
   double room() const { return kOffLeast + kOffPart * away() + std::abs(residual); }
 };
 
@@ -38,8 +38,8 @@ Foot footFor(Subject& subject, const Vector3d& p) {
   return foot;
 }
 
-/// A probe at the foot is on the surface: its depth is 0. And the foot is as far away as an outer depth says; inside, a
-/// law may measure its depth another way.
+/// A probe at the foot is on the surface, so its depth is 0. And the foot is as far away as an outer depth says;
+/// inside, a law may measure its depth differently.
 std::string offTheSurface(Subject& subject, const Foot& foot) {
   const Foot there = footFor(subject, foot.point);
   if (there.known && std::abs(there.depth) > foot.room() + std::abs(there.residual))
@@ -53,10 +53,10 @@ std::string offTheSurface(Subject& subject, const Foot& foot) {
   return "";
 }
 
-/// Where the foot stays while the probe goes aside, it lies on an edge, and many normals are right; where it leaps,
-/// another part of the surface is nearer.
+/// If the foot stays while the probe goes aside, it lies on an edge, and many normals are right; if it leaps, another
+/// part of the surface is nearer.
 bool staysOrLeaps(const Foot& before, const Foot& after) {
-  constexpr double kStays = 0.2, kLeaps = 5;  // of the way of the probe
+  constexpr double kStays = 0.2, kLeaps = 5;  // share of the probe's way
   const double foot = (after.point - before.point).norm(), probe = (after.p - before.p).norm();
   return foot < kStays * probe || foot > kLeaps * probe;
 }
@@ -113,7 +113,7 @@ std::string forceAlongNormal(const Recipe& recipe, uint64_t) {
     return "skip: it does not report to push only and without friction (HSP_R_PUSHES)";
   return atEachPlace(recipe, [](Subject& subject, const Place& place) {
     return press(subject, place, [](const Answer& answer, const PressStep& step) {
-      constexpr double kLeast = 0.02;  // [N] of a force whose direction is told
+      constexpr double kLeast = 0.02;  // [N] above which a force has a direction
       const hsp_contact& c = answer.contacts[0];
       const Vector3d force(c.force), normal(c.normal);
       if (!step.settled || (c.flags & HSP_OUT_EDGE) != 0 || force.norm() < kLeast) return std::string();

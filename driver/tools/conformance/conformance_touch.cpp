@@ -23,7 +23,7 @@ struct Around {
   Vector3d middle, half;
 };
 
-/// The box that the shape names, if it does; then cubes of all sizes about the origin, the likeliest first.
+/// First the box that the shape gives, if it does; then cubes of all sizes about the origin, the likeliest first.
 std::vector<Around> sizes(const Subject& subject) {
   const auto [low, high] = subject.bounds();
   std::vector<Around> all{{(low + high) / 2, 0.6 * (high - low).cwiseMax(1e-3)}};
@@ -66,7 +66,7 @@ struct Search {
     return inside;
   }
 
-  /// Looks where the surface is from p on. @return true if it can be touched there, and could not be before
+  /// Looks for the surface from p on. @return true if it can be touched there, and could not be before
   bool lookFrom(const Vector3d& p, double size) {
     const Answer& answer = subject.step({p}, kConformanceDt, HSP_IN_JUMP);
     if (answer.status != HSP_OK && answer.status != HSP_DEGRADED) return false;
@@ -137,7 +137,7 @@ Touch findTouch(const Recipe& recipe) {
       here += search.lookFrom(around.middle + around.half.cwiseProduct(side), around.half.maxCoeff()) ? 1 : 0;
     }
   }
-  std::mt19937_64 random(1);  // a shape that says nothing outside of its contact is met by chance
+  std::mt19937_64 random(1);  // a shape that reports nothing outside of its contact is found by chance
   std::uniform_real_distribution<double> unit(-1, 1);
   for (const Around& around : from)
     for (int i = 0; i < 400 && search.found.places.empty() && !search.found.traced; ++i)

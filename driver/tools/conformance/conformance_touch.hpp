@@ -18,31 +18,31 @@ struct Place {
   Eigen::Vector3d out = Eigen::Vector3d::Zero();   ///< unit vector from the solid to the free side, model frame
 };
 
-/// What a search over several sides and sizes, from 1 mm to 1 m, met.
+/// What a search over several sides and sizes, from 1 mm to 1 m, found.
 struct Touch {
   std::vector<Place> places;
   bool traced = false;  ///< the shape named a foot point somewhere
   bool felt = false;    ///< it gave a force or a torque somewhere
 };
 
-/// Follows the foot points that the shape names, and tries each by pressing there. @throws nothing; a shape that cannot
-/// be made gives an empty answer
+/// Follows the foot points that the shape gives, and tries each by pressing there. It throws nothing; a shape that
+/// cannot be made gives an empty answer
 Touch findTouch(const Recipe& recipe);
 
-/// A Touch as text, to hand it from a child process to its parent, and back.
+/// Writes a Touch as text, to pass it from a child process to its parent, and reads it back.
 std::string toText(const Touch& touch);
 Touch touchFromText(const std::string& text);
 
 /// One position of a press.
 struct PressStep {
   Eigen::Vector3d p = Eigen::Vector3d::Zero();  ///< [m]
-  bool settled = false;                         ///< the probe rests and has come straight in: no damping, no friction
+  bool settled = false;                         ///< the probe rests and came straight in: no damping, no friction
 };
 
-/// [m] How deep a press goes, as far as it begins outside: 1 mm, and less for a small shape.
+/// [m] How deep a press goes, if it begins outside: 1 mm, and less for a small shape.
 double pressDepth(const Subject& subject);
 
-/// [m] How deep a shape is pressed where its depths are looked at: 10 mm, and less for a small shape.
+/// [m] How deep a shape is pressed when its depths are examined: 10 mm, and less for a small shape.
 double deepestPress(const Subject& subject);
 
 /// From outside straight in, once round on a small circle, and out again, without a jump.
@@ -50,7 +50,7 @@ std::vector<PressStep> pressAt(const Place& place, double depth);
 
 using PressLook = std::function<std::string(const Answer&, const PressStep&)>;
 
-/// Presses at one place; the first step is a jump. The first objection of `look` ends it.
+/// Presses at one place; the first step is a jump. The first objection of `look` ends the press.
 std::string press(Subject& subject, const Place& place, const PressLook& look);
 
 }  // namespace hapticd::conformance

@@ -23,7 +23,7 @@ constexpr Foreign kForeign[] = {
     {"mA", "A"},       {"%", "a part of 1"}, {"mJ", "J"},    {"mW", "W"},
 };
 
-/// The first part of a unit, such as "mm" of "N/mm", that is not SI; nullptr: none is known to be.
+/// The first part of a unit, such as "mm" of "N/mm", that is not SI; nullptr if none is known to be.
 const Foreign* foreignPart(std::string_view unit) {
   const auto letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '%' || c < 0; };
   for (size_t i = 0; i < unit.size();) {

@@ -5,28 +5,28 @@
 
 namespace hapticd::conformance {
 
-/// While it lives, the blocks that this thread allocates are guarded ones, as far as there is room for them. They stay
-/// guarded when it has gone, and after they were freed nobody can read them.
+/// While the object lives, blocks that this thread allocates are guarded, as long as there is room. They stay guarded
+/// afterwards, and once they were freed nobody can read them.
 class GuardedMemory {
  public:
   GuardedMemory() noexcept;
   ~GuardedMemory();
   GuardedMemory(const GuardedMemory&) = delete;
   GuardedMemory& operator=(const GuardedMemory&) = delete;
-  bool works() const noexcept { return works_; }  ///< false in builds whose allocator is not ours
+  bool works() const noexcept { return works_; }  ///< false in builds whose allocator is not hapticd's own
 
  private:
   bool works_;
 };
 
-/// What an access to a guarded page went beyond.
+/// The block beyond which an access to a guarded page went.
 struct Overrun {
-  size_t block = 0;  ///< [bytes] that were asked for; 0: the address is in no guarded memory
-  size_t at = 0;     ///< [bytes] from its begin to the address
+  size_t block = 0;  ///< [bytes] size that was asked for; 0: the address is not in guarded memory
+  size_t at = 0;     ///< [bytes] from its beginning to the address
   bool freed = false;
 };
 
-/// [any] What lies in front of an address that could not be read. Allocates nothing: a signal handler asks.
+/// [any] The block before an address that could not be read. It allocates nothing, because a signal handler calls it.
 Overrun overrunAt(const void* address) noexcept;
 
 }  // namespace hapticd::conformance

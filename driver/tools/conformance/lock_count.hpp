@@ -6,10 +6,10 @@
 
 namespace hapticd::conformance {
 
-/// [main] From now on, calls of lock functions by that library are counted. False: it imports none.
+/// [main] From now on, calls of lock functions by that library are counted. False if it imports none.
 bool countLocksOf(const std::string& file);
 
-/// [any] So far, in all threads.
+/// [any] The count so far, in all threads.
 uint64_t locksCounted();
 
 }  // namespace hapticd::conformance

@@ -20,16 +20,16 @@ namespace {
 LastStep unshared{};
 LastStep* last_step = &unshared;
 
-// "Syscall user dispatch": while the gate is shut, each system call of the thread becomes a SIGSYS instead.
+// "Syscall user dispatch": while it is enabled, each system call of the thread becomes a SIGSYS instead.
 constexpr char kOpen = 0, kShut = 1;
 volatile char gate = kOpen;
 bool watches_calls = false;
 SystemCalls seen;
 
 #if defined(__x86_64__) && defined(PR_SET_SYSCALL_USER_DISPATCH)
-/// Counts the call, makes it, and hands its result to the code that asked.
+/// Counts the call, makes it, and gives its result to the code that made it.
 void onSystemCall(int, siginfo_t* info, void* context) {
-  gate = kOpen;  // for the rest of this step: the return from this handler is a system call as well
+  gate = kOpen;  // disabled for the rest of this step, because the return from this handler is a system call as well
   greg_t* r = static_cast<ucontext_t*>(context)->uc_mcontext.gregs;
   ++seen.steps;
   seen.number = info->si_syscall;
@@ -84,14 +84,14 @@ const Named kNames[] = {
 
 uint32_t probes_of_step = 0;
 
-/// Keeps what was overrun; then the same access, without a handler, ends the process.
+/// Notes what was overrun; then the same access, without a handler, ends the process.
 void onFault(int signal, siginfo_t* info, void*) {
   last_step->overrun = overrunAt(info->si_addr);
   if (last_step->overrun.block > 0) last_step->probes = probes_of_step;
   ::signal(signal, SIG_DFL);
 }
 
-/// ", in step() with the probe at X, Y, Z m"; nobody knows which of several it was.
+/// ", in step() with the probe at X, Y, Z m"; with several probes nobody knows which it was.
 std::string placesOfStep() {
   std::string places;
   const uint32_t count = std::min(last_step->count, LastStep::kMost);

@@ -51,7 +51,7 @@ Finding opens(const scene::Device& device) {
   return Finding::passed(fmt::format("\"{}\", {} joints, {:g} Hz", info.product, info.joint_count, info.rate_hz));
 }
 
-/// A number of hdv_info that no arm has was meant in other units.
+/// A number of hdv_info that no arm has: it was meant in other units.
 std::string unlikely(const hdv_info& info) {
   const std::tuple<double, double, const char*, const char*> numbers[] = {
       {info.rate_hz, 1e5, "rate_hz", "Hz"},

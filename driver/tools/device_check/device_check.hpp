@@ -18,7 +18,7 @@ struct Test {
   Finding (*run)(const scene::Device& device);  ///< in a child process
 };
 
-/// All of them, in the order in which they run.
+/// All tests, in the order in which they run.
 const std::vector<Test>& tests();
 
 /// [main] Runs one in a child process of its own. A crash or a hang names the call in which it came, and ends the

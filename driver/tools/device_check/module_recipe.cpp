@@ -7,7 +7,7 @@
 namespace hapticd::device_check {
 
 Result<std::vector<scene::Device>> devicesIn(const std::filesystem::path& file) {
-  const auto absolute = std::filesystem::absolute(file);  // a bare name would be looked for in the system's folders
+  const auto absolute = std::filesystem::absolute(file);  // a bare name would be looked up in the system's folders
   const auto classes = host::describeInChild(absolute);
   if (!classes) return Error{file.string() + ": " + classes.error()};
   std::vector<scene::Device> devices;

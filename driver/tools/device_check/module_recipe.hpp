@@ -9,7 +9,7 @@
 
 namespace hapticd::device_check {
 
-/// [main] One for each device class of the file, which is described in a child process.
+/// [main] One recipe for each device class of the file, which a child process describes.
 Result<std::vector<scene::Device>> devicesIn(const std::filesystem::path& file);
 
 }  // namespace hapticd::device_check

@@ -16,13 +16,13 @@ constexpr size_t kPage = 4096;
 struct Note {
   conformance::Overrun block;
   bool beyond_sample;
-  size_t at;  ///< [bytes] from the begin of the sample
+  size_t at;  ///< [bytes] from the beginning of the sample
 };
 Note unshared{};
 Note* note = &unshared;
 char* sample_end = nullptr;
 
-/// Keeps what was overrun; then the same access, without a handler, ends the process.
+/// Notes what was overrun; then the same access, without a handler, ends the process.
 void onFault(int signal, siginfo_t* info, void*) {
   const auto* at = static_cast<const char*>(info->si_addr);
   note->beyond_sample = sample_end != nullptr && at >= sample_end && at < sample_end + kPage;

@@ -9,7 +9,7 @@
 
 namespace hapticd::device_check {
 
-/// What open() claims, asked without the host. The arm is closed again.
+/// What open() claims, read without the host. The arm is closed again.
 static uint32_t claimsOf(const host::DeviceInstance& arm) {
   hdv_info info{};
   info.struct_size = sizeof info;

@@ -10,7 +10,7 @@
 
 namespace hapticd::device_check {
 
-/// An arm that is open, or why it is not.
+/// An arm that is open, or the reason why it is not.
 struct Opened {
   std::unique_ptr<host::DeviceInstance> arm;
   std::string why;
@@ -19,7 +19,7 @@ struct Opened {
 };
 Opened openArm(const scene::Device& device);
 
-/// One call of read() and the command after it: motors off.
+/// One call of read() and the command after it, with the motors off.
 struct Reading {
   uint64_t now_ns = 0;
   hsp_status read = HSP_OK, write = HSP_OK;

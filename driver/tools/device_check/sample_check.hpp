@@ -11,7 +11,7 @@ namespace hapticd::device_check {
 class SampleCheck {
  public:
   explicit SampleCheck(const hdv_info& info) : info_(info) {}
-  /// @return what is wrong with one; "": nothing
+  /// @return what is wrong with one sample; "" if nothing is
   std::string look(const Reading& reading);
   /// Of all of them: fails by what a run faults on, and warns of the rest.
   Finding sum() const;

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What becomes of the force of one arm when there is no daemon any more.
+/// What happens to the force of one arm when the daemon has gone.
 Finding silenced(const ArmControls& found, const std::string& file) {
   if (found.watchdog)
     return {found.arm, Verdict::kOk,
@@ -32,7 +32,7 @@ Finding silenced(const ArmControls& found, const std::string& file) {
           "keep a switch of its power within reach; all of its controls: hapticd device controls " + file};
 }
 
-/// An arm that is not there is no fault of the machine, but nothing of it was tried.
+/// An absent arm is no fault of the machine, but nothing about it was tried.
 std::optional<Finding> missing(const ArmControls& found) {
   if (found.opened) return std::nullopt;
   return Finding{found.arm, Verdict::kWarn, "cannot be opened: " + found.why.substr(0, found.why.find('\n')),

@@ -9,8 +9,8 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Whether the arm of a device file is there, who may open it, what becomes of its force when there is no daemon
-/// any more, and whether old reports are noticed. Opens the arm if it is plugged in; moves nothing.
+/// [main] Whether the arm of a device file is present, who may open it, what happens to its force when the daemon has
+/// gone, and whether old reports are noticed. It opens the arm if that is plugged in, and moves nothing.
 std::vector<Finding> checkArm(const std::string& file, host::Catalog& catalog);
 
 }  // namespace hapticd::diagnostics

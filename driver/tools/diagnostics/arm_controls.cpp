@@ -25,13 +25,13 @@ ControlState onIf(bool has) {
   return has ? ControlState::kOn : ControlState::kOff;
 }
 
-/// A bound of the device file. @param without what it takes
+/// A bound of the device file. @param without what happens without it
 Control bound(const char* hazards, const char* name, double value, const char* unit, const std::string& without) {
   return {hazards, name, onIf(value > 0), value > 0 ? numberText(value) + " " + unit : without};
 }
 
-/// What the hardware does by itself when commands stop, and for how long a sample is believed: the arm says it once it
-/// is open, its wire format before.
+/// What the hardware does by itself when commands stop, and for how long a sample is trusted: an open arm says it, its
+/// wire format says it before.
 void addTimes(const host::DeviceInstance& device, bool opened, const std::optional<codec::Wire>& wire,
               std::vector<Control>& to) {
   const hdv_info& info = device.info();
@@ -60,7 +60,7 @@ void addTimes(const host::DeviceInstance& device, bool opened, const std::option
                                   : "all of its force; below 358 Hz of the servo less"});
 }
 
-/// What a report carries so that a wrong or an old one is seen.
+/// What in a report shows that it is wrong or old.
 void addReports(const std::optional<codec::Wire>& wire, std::vector<Control>& to) {
   if (!wire) return;
   const auto has = [&wire](codec::Role role) {
@@ -147,7 +147,7 @@ std::vector<Control> controlsOf(const scene::Device& description, const host::De
   return controls;
 }
 
-/// An arm that is not plugged in is not an error here: the facts that only the arm can give stay unknown.
+/// An arm that is not plugged in is no error here: facts that only the arm can give stay unknown.
 static void logNothing(int, const std::string&, const std::string&) {}
 
 std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog& catalog,

@@ -20,27 +20,27 @@ struct Control {
   std::string hazards;  ///< of hazards.md, "H1 H2"
   std::string name;
   ControlState state = ControlState::kUnknown;
-  std::string text;  ///< how far it goes; where it is off, what it takes to have it
+  std::string text;  ///< how far it goes; if it is off, how to enable it
 };
 
-/// [main] @param device created from the description; opened, if the arm is there
+/// [main] @param device created from the description, and opened if the arm is present
 std::vector<Control> controlsOf(const scene::Device& description, const host::DeviceInstance& device, bool opened);
 
-/// What one device file is found to have.
+/// What was found for one device file.
 struct ArmControls {
   std::string arm;
-  bool opened = false;  ///< it is plugged in; otherwise what it alone can say is unknown
+  bool opened = false;  ///< it is plugged in; otherwise facts that only it can give are unknown
   std::vector<Control> controls;
   bool silenced_after_us = false;  ///< something switches its motors off when the daemon has gone
   bool simulated = false;          ///< it has no motors
   bool watchdog = false;           ///< its own hardware does so when commands stop, as far as is known
-  std::string why;                 ///< it could not be opened; "" where it was
-  std::string slow;                ///< why it pushes less than its limits say; "": it does not
+  std::string why;                 ///< why it could not be opened; "" if it could
+  std::string slow;                ///< why it pushes less than its limits allow; "" if it does not
   std::string usb_id;              ///< "1209:0006"; "" for an arm on another bus
-  bool repeats_pass = false;       ///< the same report again and again would not be noticed
+  bool repeats_pass = false;       ///< the same report, sent repeatedly, would not be noticed
 };
 
-/// [main] Loads the file, and opens the arm if it is there; moves nothing. Nothing: `problems` say why.
+/// [main] Loads the file, and opens the arm if it is present; moves nothing. Nothing: `problems` say why.
 std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog& catalog,
                                           document::Problems& problems);
 

@@ -13,12 +13,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// [m] From a tip to the model in one of its poses; a box is nearer than what it holds.
+/// [m] From a tip to the model in one of its poses; its box is nearer than the model itself.
 double awayFrom(const Eigen::AlignedBox3d& box, const scene::Pose& pose, const Vector3d& tip) {
   return box.exteriorDistance(Vector3d(pose.orientation.conjugate() * (tip - pose.position)));
 }
 
-/// [m] Over all poses of its path; nothing where nobody knows.
+/// [m] The least over all poses of its path; nothing if it is unknown.
 std::optional<double> distanceTo(const scene::Model& model, const host::ShapeInstance& shape,
                                  const servo::Contact& contact, const Vector3d& tip) {
   Eigen::AlignedBox3d box;

@@ -10,8 +10,8 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] [m] The farthest that the joints bring the tip away from where it is, within arm.limits if they are given;
-/// generous where they are not.
+/// [main] [m] The farthest that the joints move the tip away from where it is, within arm.limits if they are given;
+/// generous if they are not.
 double reachOf(const scene::Device& device, const host::DeviceInstance& arm, const Eigen::Vector3d& tip_device);
 
 /// The model that is nearest to a tip.

@@ -24,7 +24,7 @@ std::string textOf(const char (&text)[Size]) {
   return {text, strnlen(text, Size)};
 }
 
-/// A thread of the process has real-time priority.
+/// True if a thread of the process has real-time priority.
 bool hasFifo(int pid) {
   std::error_code error;
   for (const auto& thread : fs::directory_iterator("/proc/" + std::to_string(pid) + "/task", error)) {
@@ -59,7 +59,7 @@ Finding judge(const std::vector<ClientNow>& clients, double answer_time, Finding
     if (late && before.verdict == Verdict::kOk) before = {before.name, Verdict::kWarn, "", "", ""};
     before.state += (before.state.empty() ? "" : "; ") + stateOf(client.report);
     if (!late) continue;
-    before.consequence = "a tick of delay cuts the stiffest stable wall to a third";
+    before.consequence = "one tick of delay cuts the stiffest stable wall to a third";
     if (before.fix.empty()) before.fix = fixOf(client.report, answer_time);
   }
   return before;
@@ -97,7 +97,7 @@ Finding checkClients(const std::string& runtime_folder) {
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
     const auto opened = status::PageFile::open(file.string());
-    if (!opened) continue;  // of another version, or of somebody else
+    if (!opened) continue;  // a page of another version, or of another program
     const status::Page& page = std::as_const(**opened).page();
     if (lives(page)) finding = judge(clientsOf(page), page.answer_time, std::move(finding));
   }

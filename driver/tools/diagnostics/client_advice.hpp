@@ -19,7 +19,7 @@ struct ClientNow {
 /// [any] The programs of a status page.
 std::vector<ClientNow> clientsOf(const status::Page& page);
 
-/// [main] One check of the programs of all daemons whose status pages are in a folder.
+/// [main] Checks the programs of all daemons whose status pages are in a folder.
 Finding checkClients(const std::string& runtime_folder);
 
 }  // namespace hapticd::diagnostics

@@ -29,7 +29,7 @@ namespace {
 
 using document::Node;
 
-/// Encoders count: without a scale each count would be a whole radian.
+/// Encoders count, so without a scale each count would be a whole radian.
 void countsWithoutScale(const Node& root, const std::string& file, document::Problems& warnings) {
   const Node* fields = find(root, {"parameters", "wire", "input", "fields"});
   if (fields == nullptr || !fields->isSequence()) return;
@@ -44,7 +44,7 @@ void countsWithoutScale(const Node& root, const std::string& file, document::Pro
   }
 }
 
-/// An arm of other lengths than the built-in one's, whose weight is taken for that one's: it would be pushed up, or
+/// An arm whose lengths differ from the built-in one's, while that one's weight is used: it would be pushed up, or
 /// sag.
 void massesOfAnotherArm(const Node& root, const std::string& file, document::Problems& warnings) {
   const Node *lengths = find(root, {"parameters", "arm", "lengths"}), *kind = find(root, {"parameters", "arm", "kind"});
@@ -57,7 +57,7 @@ void massesOfAnotherArm(const Node& root, const std::string& file, document::Pro
                                delta ? "a Falcon" : "a Premium 1.5", delta ? "0, 0, 0" : "0, 0, 0, 0"));
 }
 
-/// Masses at the far ends of their links weigh about twice as much about the joints: the arm would be pushed up.
+/// Masses at the far ends of their links weigh about twice as much about the joints, so the arm would be pushed up.
 void massesAtTheEnds(const Node& root, const std::string& file, document::Problems& warnings) {
   const Node *masses = find(root, {"parameters", "arm", "masses"}), *kind = find(root, {"parameters", "arm", "kind"});
   if (kind == nullptr || kind->scalar != "chain" || masses == nullptr || !masses->isSequence()) return;

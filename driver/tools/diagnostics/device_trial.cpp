@@ -18,7 +18,7 @@ namespace {
 
 using document::Node;
 
-/// The node of a path such as "wire.input.fields[3].at", or the last one on the way that is there.
+/// The node of a path such as "wire.input.fields[3].at", or the last existing one on the way.
 const Node* walk(const Node* at, const std::string& path) {
   for (size_t i = 0; i < path.size();) {
     const size_t end = std::min(path.find_first_of(".[", i + 1), path.size());
@@ -36,7 +36,7 @@ const Node* walk(const Node* at, const std::string& path) {
   return at;
 }
 
-/// The key that a message begins with: "wire.rate: ..." after what names the device.
+/// The key with which a message begins: "wire.rate: ..." after the name of the device.
 std::string keyIn(const std::string& message, const Node& parameters, size_t& begin) {
   for (begin = 0; begin < message.size();) {
     const size_t end = message.find(": ", begin);
@@ -49,7 +49,7 @@ std::string keyIn(const std::string& message, const Node& parameters, size_t& be
   return "";
 }
 
-/// True for what the module says of a value that it did not get because it was wrong or missing.
+/// True for what the module says about a value that it did not get because it was wrong or missing.
 bool follows(const std::string& key, const document::Problems& known) {
   if (key.empty()) return !known.empty();
   return std::any_of(known.begin(), known.end(), [&](const document::Problem& problem) {
@@ -59,7 +59,7 @@ bool follows(const std::string& key, const document::Problems& known) {
   });
 }
 
-/// A module tells all that is wrong with its parameters, one line each.
+/// A module reports all that is wrong with its parameters, one line each.
 std::vector<std::string> linesOf(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream in(text);
@@ -67,17 +67,17 @@ std::vector<std::string> linesOf(const std::string& text) {
   return lines;
 }
 
-/// As DeviceInstance speaks of what its module is, and not of what it was given.
+/// As DeviceInstance describes what its module is, not what was given to it.
 constexpr const char* kOfModule = "module '";
 
-/// An error of the module itself names nothing of the file: it stands where the file names the module.
+/// An error of the module itself names nothing in the file, so it is placed where the file names the module.
 void placeAtModule(const std::string& error, const Node& root, const std::string& file, document::Problems& problems) {
   const Node* module = root.find("module");
   const Node& at = module != nullptr ? *module : root;
   for (const std::string& line : linesOf(error)) document::report(problems, file, at.line, at.column, "module", line);
 }
 
-/// What a module says of its parameters, each where it stands in the file.
+/// What a module says about its parameters, each placed where it stands in the file.
 void placeComplaints(const std::string& error, const Node& parameters, const Node& root, const std::string& file,
                      const document::Problems& known, document::Problems& problems) {
   for (const std::string& message : linesOf(error)) {
@@ -94,7 +94,7 @@ void placeComplaints(const std::string& error, const Node& parameters, const Nod
   }
 }
 
-/// What a child said that made the instance: "+", then a line for each doubt; "-", then the error.
+/// The report of a child that made the instance: "+", then a line for each doubt; or "-", then the error.
 constexpr char kMade = '+', kNotMade = '-';
 
 std::string madeInChild(const scene::Device& device, host::Trail& trail) {
@@ -129,9 +129,9 @@ document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& c
                              document::Problems* warnings) {
   document::Problems problems;
   const auto draft = scene::deviceDraft(file, catalog);
-  if (!draft) return problems;  // a scene, or its module is not known
+  if (!draft) return problems;  // this is a scene, or its module is unknown
   const ModuleTrial trial = tryModule(*draft);
-  document::Problems unread;  // told by who loaded the file
+  document::Problems unread;  // the loader of the file reports it
   const auto root = document::parseFile(file, unread);
   if (!root) return problems;
   const Node* parameters = root->find("parameters");

@@ -11,10 +11,10 @@
 
 namespace hapticd::diagnostics {
 
-/// What was found of a module that was given its parameters.
+/// What was found when a module got its parameters.
 struct ModuleTrial {
   std::string error;                ///< "": an instance can be made; otherwise a line for each thing that is wrong
-  std::vector<std::string> doubts;  ///< what no run faults on, and yet nobody means
+  std::vector<std::string> doubts;  ///< what causes no fault in a run, but is hardly intended
 };
 
 /// [main] Makes an instance in a child process, and tries its kinematics there: a module that crashes or hangs is

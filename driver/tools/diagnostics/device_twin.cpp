@@ -30,7 +30,7 @@ bool listed(const std::array<std::string_view, N>& keys, const std::string& key)
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
-/// A map without some of its keys, in one line of YAML.
+/// A map without some of its keys, as one line of YAML.
 template <size_t N>
 std::string jsonWithout(Node map, const std::array<std::string_view, N>& keys) {
   std::erase_if(map.entries, [&](const document::Entry& entry) { return listed(keys, entry.key.scalar); });
@@ -43,7 +43,7 @@ std::vector<double> numbersOf(const Node& list, size_t count) {
   return numbers.size() == count ? numbers : std::vector<double>();
 }
 
-/// The block `arm`. What the simulated arm calls otherwise, or does not have, is told apart.
+/// The block `arm`. What the simulated arm names differently, or lacks, is handled separately.
 std::string armOfTwin(const Node& arm, bool chain) {
   static constexpr std::array<std::string_view, 9> kSame{
       "kind", "lengths", "masses", "limits", "max_torque", "dh", "centers", "base_orientation", "tool_position"};
@@ -56,7 +56,7 @@ std::string armOfTwin(const Node& arm, bool chain) {
   return text;
 }
 
-/// Encoder counts of one turn of each joint, as the scales of the positions say; none where they do not.
+/// Encoder counts per turn of each joint, as the scales of the positions say; none if they do not.
 std::vector<double> countsOf(const Node& parameters) {
   std::vector<double> counts;
   for (const Node& field : below(below(below(parameters, "wire"), "input"), "fields").items) {
@@ -90,28 +90,28 @@ Eigen::Vector3d originOf(const Node& mount) {
   return -(Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().conjugate() * position);
 }
 
-constexpr double kHandBegins = 0.07;  ///< [m] from the world's origin: the hand's radius and approach
+constexpr double kHandBegins = 0.07;  ///< [m] the hand's radius and approach from the world's origin
 
-/// Where the twin stands, and which way its hand presses.
+/// Where the twin stands, and in which direction its hand presses.
 struct Stand {
-  std::string mount, hand;  ///< as lines of YAML, "" where nothing is said; hand: what follows its center
-  bool pressing = true;     ///< false: the tip has no straight line to press along
+  std::string mount, hand;  ///< as lines of YAML, "" if nothing is needed; hand: what follows its center
+  bool pressing = true;     ///< false: the tip has no straight line along which to press
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
 };
 
 std::string listOf(const Eigen::Vector3d& v) {
-  // All digits, as the arm's tip must begin on its plane; what rounding left of a 0 is none.
+  // All digits, because the arm's tip must begin on its plane; a remainder of rounding counts as 0.
   const auto digits = [](double x) { return fmt::format("{}", std::abs(x) < 1e-14 ? 0.0 : x); };
   return "[" + digits(v.x()) + ", " + digits(v.y()) + ", " + digits(v.z()) + "]";
 }
 
-/// "joints 0.3, -1.2 rad" or "joints in the middle of arm.limits".
+/// Such as "joints 0.3, -1.2 rad" or "joints in the middle of arm.limits".
 std::string poseOf(const RestPose& rest, bool limits) {
   if (rest.middle) return limits ? "each joint in the middle of arm.limits" : "each joint at 0";
   return fmt::format("joints at {:g} rad", fmt::join(rest.joints, ", "));
 }
 
-/// A flat arm, or one of less than three joints, is pushed along its plane, from the very point at which it rests.
+/// A flat arm, or one of fewer than three joints, is pushed along its plane, from the very point at which it rests.
 Stand standOfFlat(const RestPose& rest, const std::string& pose) {
   Stand stand;
   stand.center = rest.tip - kHandBegins * rest.push;
@@ -125,7 +125,7 @@ Stand standOfFlat(const RestPose& rest, const std::string& pose) {
   return stand;
 }
 
-/// As its arm does, or, of a chain that does not say, with its tip where scenes expect a hand.
+/// It stands as its arm does, or, for a chain that does not say, with its tip where scenes expect a hand.
 Stand standOf(const Node& mount, const Node& arm, bool chain) {
   Stand stand;
   stand.center = originOf(mount);
@@ -144,7 +144,7 @@ Stand standOf(const Node& mount, const Node& arm, bool chain) {
   return stand;
 }
 
-/// The block `joint`. A joint that can move while the tip stands still would have no inertia at all without masses.
+/// The block `joint`. Without masses, a joint that can move while the tip stands still would have no inertia.
 std::string jointOf(const Node& parameters, const Node& arm, bool chain) {
   const std::vector<double> counts = countsOf(parameters);
   const bool spare = chain && below(arm, "dh").items.size() > static_cast<size_t>(restPoseOf(arm).freedom);

@@ -32,11 +32,11 @@ Finding ok(std::string name, std::string state) {
   return {std::move(name), Verdict::kOk, std::move(state), "", ""};
 }
 
-/// From a checkout, as the packages do it.
+/// The commands for a checkout; the packages do the same.
 constexpr const char* kInstallLimits =
     "sudo install -m 644 config/systemd/70-hapticd.limits /etc/security/limits.d/70-hapticd.conf";
 
-/// Real-time rights are found out by asking for them, never by reading what should be.
+/// Real-time rights are found by asking for them, never by reading what they should be.
 Finding checkScheduler() {
   std::error_code code;
   std::thread([&code] { code = os::setFifo(os::kServoPriority); }).join();
@@ -47,7 +47,7 @@ Finding checkScheduler() {
           "sudo usermod -aG haptic $USER, then log in again (limits.d/70-hapticd.conf grants rtprio 80)"};
 }
 
-/// With RT_GROUP_SCHED a cgroup of runtime 0 refuses FIFO even to root.
+/// With RT_GROUP_SCHED a cgroup with runtime 0 refuses FIFO even to root.
 Finding checkGroupScheduling() {
   std::string path = firstLine("/proc/self/cgroup");
   std::ifstream in("/proc/self/cgroup");
@@ -67,7 +67,7 @@ Finding checkGroupScheduling() {
 
 Finding checkMemory() {
   std::error_code code;
-  {  // in a child thread's time the whole process is locked; undone below
+  {  // while a child thread runs, the whole process is locked; undone below
     code = os::lockMemory();
     if (!code) os::unlockMemory();
   }
@@ -80,7 +80,7 @@ Finding checkMemory() {
 Finding checkThrottling() {
   const std::string runtime = firstLine("/proc/sys/kernel/sched_rt_runtime_us"),
                     period = firstLine("/proc/sys/kernel/sched_rt_period_us");
-  constexpr double kServoShare = 0.9;  // of a processor at most: the wait sleeps, it does not only spin
+  constexpr double kServoShare = 0.9;  // share of a processor at most: the wait sleeps, it does not only spin
   const std::string state = "real-time threads may use " + runtime + " of every " + period + " us";
   const double share = std::strtod(runtime.c_str(), nullptr) / std::max(1.0, std::strtod(period.c_str(), nullptr));
   if (runtime.empty() || runtime == "-1" || share >= kServoShare)
@@ -95,7 +95,7 @@ bool inGroup(gid_t group) {
   return getegid() == group || std::find(groups, groups + std::max(count, 0), group) != groups + std::max(count, 0);
 }
 
-/// Also root is told: the rights that its users need hang on the group.
+/// Root is told too, because the rights of its users depend on the group.
 Finding checkGroup() {
   const struct group* haptic = getgrnam("haptic");
   if (haptic == nullptr)
@@ -198,7 +198,7 @@ Finding checkDmaLatency() {
           "sudo chgrp haptic /dev/cpu_dma_latency && sudo chmod 660 /dev/cpu_dma_latency"};
 }
 
-/// Every plugin and module of the search path loads and says who it is.
+/// Every plugin and module of the search path must load and name itself.
 Finding checkModules(host::Catalog& catalog, host::Kind kind) {
   const bool shapes = kind == host::Kind::kShape;
   const std::string name = shapes ? "plugins" : "modules";

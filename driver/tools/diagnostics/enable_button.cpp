@@ -13,7 +13,7 @@ namespace {
 
 using document::Node;
 
-/// Buttons of the reports, as they count: from 1. Nothing where the file gives no reports.
+/// Buttons of the reports, counted from 1. Nothing if the file describes no reports.
 std::optional<std::set<int>> buttonsIn(const Node& root) {
   const Node* fields = find(root, {"parameters", "wire", "input", "fields"});
   if (fields == nullptr || !fields->isSequence()) return std::nullopt;

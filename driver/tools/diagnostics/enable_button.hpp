@@ -7,8 +7,8 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Notes limits.enable.button where no field of parameters.wire.input is that button. A file without a wire
-/// format says nothing of its buttons: `run` finds out.
+/// [main] Notes limits.enable.button if no field of parameters.wire.input is that button. A file without a wire format
+/// says nothing about its buttons, so `run` finds out.
 void checkEnableButton(const document::Node& root, const std::string& file, document::Problems& problems);
 
 /// [any] What to press: "button 0 (counted from 0; button: 1 of a wire format)".

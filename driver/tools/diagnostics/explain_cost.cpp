@@ -22,14 +22,14 @@
 namespace hapticd::diagnostics {
 namespace {
 
-/// Every set-up here gives its error back as well, and the same models are set up again and again.
+/// Every set-up here returns its error as well, and the same models are set up many times.
 void quiet(int, const std::string&, const std::string&) {}
 
 std::string where(const document::Place& place, const std::string& key) {
   return place.line > 0 ? fmt::format("{}:{} {}", place.file, place.line, key) : place.file + " " + key;
 }
 
-/// Mean of all but the longest hundredth of the times: what interrupted those is no cost of the part.
+/// Mean of all times but the longest hundredth: what interrupted those is no cost of the part.
 double meanOf(std::vector<double>& times) {
   if (times.empty()) return 0;
   std::sort(times.begin(), times.end());
@@ -39,7 +39,7 @@ double meanOf(std::vector<double>& times) {
   return sum / static_cast<double>(kept);
 }
 
-/// [ns] What taking the time itself adds to a measured step.
+/// [ns] How much reading the clock adds to a measured step.
 double clockOverhead() {
   std::vector<double> times;
   for (int i = 0; i < 1000; ++i) {
@@ -65,7 +65,7 @@ Result<Measured> pass(const scene::Scene& scene, const tune::Motion& motion) {
   auto world = servo::World::build(scene, {.rate = 1 / motion.period, .measure = true}, quiet);
   if (!world) return Error{world.error()};
   servo::Core& core = (*world)->core();
-  core.serve({false, false});  // arms of three joints without a passivity controller; others ask for more
+  core.serve({false, false});  // for arms of three joints without a passivity controller; others need more
   servo::Lockstep lockstep = (*world)->lockstep();
   const double overhead = clockOverhead();
   std::vector<std::vector<double>> steps(scene.models.size());
@@ -95,7 +95,7 @@ Result<Measured> pass(const scene::Scene& scene, const tune::Motion& motion) {
   return measured;
 }
 
-/// The quietest of three passes, part by part.
+/// The least disturbed of three passes, part by part.
 Result<Measured> measure(const scene::Scene& scene, const tune::Motion& motion) {
   auto best = pass(scene, motion);
   for (int i = 0; i < 2 && best; ++i) {
@@ -134,7 +134,7 @@ const scene::Value* reasonFor(const scene::Scene& scene, const scene::Model& mod
 
 /// Resident bytes of a library, and of nothing else.
 uint64_t residentOf(const std::filesystem::path& library) {
-  const auto loaded = host::Library::open(library);  // a module goes when its device closes
+  const auto loaded = host::Library::open(library);  // a module is unloaded when its device closes
   std::error_code error;
   const std::string file = std::filesystem::canonical(library, error).string();
   std::ifstream maps("/proc/self/smaps");
@@ -191,7 +191,7 @@ class Costs {
         placed ? "probe in, foot and normal out" : "it stands at the world's origin", placed ? transformCost() : 0, 0);
   }
 
-  /// A kinematic model is moved: along its path, or by a program.
+  /// True for a kinematic model that moves: along its path, or by a program.
   void addPath(size_t index) {
     const scene::Model& model = scene_.models[index];
     const std::string key = fmt::format("models[{}]", index), part = "model " + model.name + ": motion";
@@ -207,7 +207,7 @@ class Costs {
         less ? measured_.resting_ns() - less->resting_ns() : 0, model.path.size() * sizeof(scene::PathPoint));
   }
 
-  /// What a parameter asked for: costs are those of the model with it, less those without it.
+  /// What a parameter caused: the cost of the model with it, less the cost without it.
   void addAsked(size_t index, const host::ShapeInstance& shape, uint32_t flag, const char* part, const char* why,
                 const char* why_not) {
     const scene::Model& model = scene_.models[index];
@@ -238,7 +238,7 @@ class Costs {
       p = 0.5 * (frame.pointToWorld(p) + frame.vectorToWorld(p));
     }
     const double each = static_cast<double>(monotonicNow() - begun) / kTimes;
-    return p.allFinite() ? each : 0;  // p is looked at, so that the loop is not dropped
+    return p.allFinite() ? each : 0;  // p is read, so that the compiler keeps the loop
   }
 
   void addEstimator(const servo::World& world) {
@@ -288,7 +288,7 @@ class Costs {
   std::vector<CostRow> rows_;
 };
 
-/// The hand's motion where one is simulated; otherwise a stroke along the first model's front.
+/// The hand's motion if one is simulated; otherwise a stroke along the first model's front.
 tune::Motion motionFor(const scene::Scene& scene) {
   if (auto motion = tune::motionOfHand(scene, 1, quiet)) return *motion;
   std::vector<Eigen::Vector3d> position;

@@ -11,10 +11,10 @@
 
 namespace hapticd::diagnostics {
 
-/// One part of what runs. Its cost is what leaving it out saves.
+/// One part of what runs. Its cost is what leaving it out would save.
 struct CostRow {
   std::string part;      ///< "model teapot", "velocity estimator"
-  std::string asked_by;  ///< "file:line key"; empty: nothing asked, and it is not there
+  std::string asked_by;  ///< "file:line key"; empty: nothing asked for it, so it does not exist
   std::string why;       ///< or why not
   double tick_ns = 0;    ///< mean over a stroke of the hand
   uint64_t bytes = 0;

@@ -23,7 +23,7 @@ const scene::Value* given(const scene::Device& device, const char* id) {
   return nullptr;
 }
 
-/// The file that the hand follows; "": it follows none.
+/// The file that the hand follows; "" if it follows none.
 std::string pathOf(const scene::Device& device) {
   constexpr double kFollows = 5;  // the script `path`
   const scene::Value *script = given(device, "hand.script"), *path = given(device, "hand.path");
@@ -31,7 +31,7 @@ std::string pathOf(const scene::Device& device) {
   return follows && path != nullptr ? path->text : "";
 }
 
-/// What keeps the arm from a place, searched from the joints of the row before; "": it gets there.
+/// What keeps the arm from a place, searched from the joints of the row before; "" if it gets there.
 std::string obstacle(const host::DeviceInstance& arm, const double* place, std::array<double, HDV_MAX_JOINTS>& joints) {
   const hdv_ext_kinematics& kinematics = arm.kinematics();
   if (kinematics.inverse == nullptr) return "";
@@ -47,7 +47,7 @@ std::string obstacle(const host::DeviceInstance& arm, const double* place, std::
   return "";
 }
 
-/// Of the first row that the arm cannot follow: its line and why, and how many there are; "=": it follows all.
+/// The line of the first row that the arm cannot follow, why, and how many there are; "=" if it follows all.
 std::string tryRows(const scene::Device& device, const std::string& file) {
   document::Problems told_by_who_opens;
   const auto table =

@@ -6,7 +6,7 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warns of rows where the arm cannot follow: it ends before, or a joint stands at its stop there.
+/// [main] Warns of rows that the arm cannot follow: its reach ends before, or a joint stands at its stop there.
 document::Problems unreachableRows(const scene::Scene& scene);
 
 }  // namespace hapticd::diagnostics

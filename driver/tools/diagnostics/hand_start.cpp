@@ -24,10 +24,10 @@
 namespace hapticd::diagnostics {
 namespace {
 
-constexpr size_t kMostModels = 100;  ///< more take long to set up a second time
+constexpr size_t kMostModels = 100;  ///< more models take too long to set up a second time
 constexpr int kHandLimitMs = 60'000;
 
-/// Joints at the first tick.
+/// The joints at the first tick.
 std::optional<std::array<double, HDV_MAX_JOINTS>> firstJoints(const scene::Scene& scene, const scene::Device& device,
                                                               host::DeviceInstance& arm) {
   if (device.module != "simulated") {
@@ -154,7 +154,7 @@ std::string tryTips(const scene::Scene& scene, bool may_walk) {
   return found.take();
 }
 
-/// Where the file says what the hand wants.
+/// The place where the file says what the hand wants.
 document::Place placeOfHand(const scene::Device& device) {
   for (const char* id : {"hand.path", "hand.center", "hand.radius", "hand.script"})
     for (const scene::Value& value : device.parameters)

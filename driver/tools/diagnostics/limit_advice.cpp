@@ -25,7 +25,7 @@ const scene::Value* valueOf(const scene::Device& device, std::initializer_list<c
   return nullptr;
 }
 
-/// A device whose force may be larger than its arm can give. Nothing is known of an arm that gives 0.
+/// A device whose force may be larger than its arm can give. For an arm that gives 0, nothing is known.
 void forceBeyondArm(const scene::Device& device, document::Problems& warnings) {
   const scene::Value* most = valueOf(device, {"device.max_force", "max_force"});
   if (most == nullptr || most->number <= 0 || device.limits.force <= most->number) return;
@@ -43,8 +43,8 @@ std::optional<Eigen::Matrix3Xd> jacobianAtRest(const Node& root, const host::Dev
   return all.middleRows<3>(first);
 }
 
-/// A force that the motors cannot make at rest in any direction: it was meant in other units, or its limit does
-/// nothing.
+/// A force that the motors cannot make at rest in any direction: it was meant in other units, or its limit has no
+/// effect.
 void beyondMotors(const Node* at, const char* key, double given, double reach, const char* unit,
                   const std::string& file, document::Problems& warnings) {
   constexpr double kBeyond = 1.5;  // elsewhere in its workspace an arm may give somewhat more
@@ -55,7 +55,7 @@ void beyondMotors(const Node* at, const char* key, double given, double reach, c
                                given, unit, reach, unit));
 }
 
-/// Motors that push a thousand times harder than they are let: N mm were meant.
+/// Motors that push a thousand times harder than allowed: N mm were meant.
 void motorsBeyondAll(const Node& root, const scene::Device& device, double reach, document::Problems& warnings) {
   constexpr double kMost = 1000, kTimes = 100;  // N; of limits.force
   const Node* at = find(root, {"parameters", "arm", "max_torque"});
@@ -121,7 +121,7 @@ void adviseLimits(const Node& root, const scene::Device& device, const host::Dev
     beyondMotors(find(root, {"parameters", "device", "max_force"}), "parameters.device.max_force",
                  claimed == nullptr ? 0 : claimed->number, *reach, "N", file, warnings);
   }
-  // A direction that no motor turns is carried by the joints: the motors together are a bound of all others.
+  // In a direction that no motor turns, the joints carry the load: the motors together bound all other directions.
   const double together = std::accumulate(motors.begin(), motors.end(), 0.0);
   beyondMotors(find(root, {"limits", "torque"}), "limits.torque", device.limits.torque,
                farthestReach(*angular, motors).value_or(together), "N m", file, warnings);

@@ -14,10 +14,10 @@ namespace hapticd::diagnostics {
 /// [main] Joints of the arm at rest [rad]: in the pose of its calibration, else at zero or the stop nearest to it.
 std::array<double, HDV_MAX_JOINTS> restJoints(const document::Node& root, uint32_t joints);
 
-/// [main] arm.max_torque of each joint [N m]; empty: not known of all of them.
+/// [main] arm.max_torque of each joint [N m]; empty if it is not known for all of them.
 std::vector<double> motorsOf(const scene::Device& device, size_t joints);
 
-/// [main] [N] What the motors give at rest in the arm's strongest direction; nothing where that is not known.
+/// [main] [N] The force that the motors give at rest in the arm's strongest direction; nothing if it is unknown.
 std::optional<double> forceOfMotors(const document::Node& root, const scene::Device& device,
                                     const host::DeviceInstance& arm);
 

@@ -27,7 +27,7 @@ hsp_activation activationOf(const scene::Scene& scene, const scene::Model& model
   return activation;
 }
 
-/// The value that a plugin's words begin with, as "stiffness: has no effect"; `text` keeps the rest. nullptr: none.
+/// The value with which a plugin's words begin, as "stiffness: has no effect"; `text` keeps the rest. nullptr: none.
 const scene::Value* valueNamed(const scene::Model& model, std::string& text) {
   const std::string before = "model '" + model.name + "': cannot be set up: ";
   const size_t begin = text.rfind(before, 0) == 0 ? before.size() : 0, colon = text.find(": ", begin);
@@ -40,7 +40,7 @@ const scene::Value* valueNamed(const scene::Model& model, std::string& text) {
   return nullptr;
 }
 
-/// Texts about models, each with the number of its model, as they travel from the child.
+/// Texts about models, each with the number of its model, packed so that they can come from the child.
 class Remarks {
  public:
   void add(size_t model, const std::string& text) {
@@ -73,7 +73,7 @@ class Remarks {
   host::Packer list_;
 };
 
-/// What moves a body is given to one that does not move: a person waits for it to give way.
+/// A body that does not move has a parameter for moving ones: somebody waits for it to give way.
 void adviseMotion(const scene::Model& model, size_t index, document::Problems& warnings) {
   for (const scene::Value& value : model.parameters)
     for (const char* id : {"mass", "inertia", "gravity", "drag", "angular_drag", "joint", "tether", "velocity"})

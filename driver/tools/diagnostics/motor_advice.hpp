@@ -7,7 +7,7 @@
 
 namespace hapticd::diagnostics {
 
-/// [main] Warns of motors whose heat at arm.max_torque no winding has.
+/// [main] Warns of motors that would make more heat at arm.max_torque than any winding bears.
 void adviseMotors(const document::Node& root, const scene::Device& device, size_t joints, document::Problems& warnings);
 
 }  // namespace hapticd::diagnostics

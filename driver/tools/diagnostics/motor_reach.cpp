@@ -9,7 +9,7 @@
 namespace hapticd::diagnostics {
 namespace {
 
-constexpr double kSlack = 1e-9;  ///< relative: a corner lies on its own bounds
+constexpr double kSlack = 1e-9;  ///< relative, because a corner lies on its own bounds
 
 bool within(const Eigen::Matrix3Xd& jacobian, const std::vector<double>& torque, const Eigen::Vector3d& x) {
   for (Eigen::Index i = 0; i < jacobian.cols(); ++i)
@@ -17,7 +17,7 @@ bool within(const Eigen::Matrix3Xd& jacobian, const std::vector<double>& torque,
   return true;
 }
 
-/// The farthest of the eight corners at which three motors give all they have and no other has to give more.
+/// The farthest of the eight corners at which three motors give their full torque and no other needs more.
 double farthestCorner(const Eigen::Matrix3Xd& jacobian, const std::vector<double>& torque, const Eigen::Vector3i& of) {
   constexpr double kParallel = 1e-14;  // volume of the three columns, relative to their lengths
   const Eigen::Vector3d a = jacobian.col(of[0]), b = jacobian.col(of[1]), c = jacobian.col(of[2]);
@@ -39,7 +39,7 @@ double farthestCorner(const Eigen::Matrix3Xd& jacobian, const std::vector<double
 }  // namespace
 
 std::optional<double> farthestReach(const Eigen::Matrix3Xd& jacobian, const std::vector<double>& torque) {
-  constexpr double kFlat = 1e-2;  // of the longest: a direction that the joints hardly move along is not bounded
+  constexpr double kFlat = 1e-2;  // share of the longest: a direction in which the joints hardly move is not bounded
   const auto joints = static_cast<int>(jacobian.cols());
   if (joints < 3 || torque.size() != static_cast<size_t>(joints) || !jacobian.allFinite()) return std::nullopt;
   // The eigenvalues of J J^T, in ascending order, are the squares of the singular values of J.

@@ -13,7 +13,7 @@ using document::Node;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Numbers of a list of this length; none of any other.
+/// The numbers of a list of this length; none for any other list.
 std::vector<double> numbersOf(const Node* list, size_t count) {
   std::vector<double> numbers;
   if (list == nullptr || list->items.size() != count) return numbers;
@@ -23,10 +23,10 @@ std::vector<double> numbersOf(const Node* list, size_t count) {
 
 struct Link {
   double a, alpha, d, theta;
-  double low = -M_PI / 2, high = M_PI / 2;  // [rad]; without limits half of what a joint usually turns
+  double low = -M_PI / 2, high = M_PI / 2;  // [rad]; without limits, half of a joint's usual range
 };
 
-/// Standard Denavit-Hartenberg, read leniently: whatever is wrong in the file was told before.
+/// Standard Denavit-Hartenberg, read leniently, because what is wrong in the file was reported before.
 struct Links {
   std::vector<Link> rows;
   Eigen::Isometry3d base = Eigen::Isometry3d::Identity();
@@ -52,7 +52,7 @@ Links linksOf(const Node& arm) {
   return links;
 }
 
-/// The tip and how it moves with each joint, as singular values: the greatest first.
+/// The tip and how it moves with each joint, as singular values, the largest first.
 struct Motion {
   Vector3d tip, values = Vector3d::Zero();
   Matrix3d directions;
@@ -84,7 +84,7 @@ Motion motionAt(const Links& links, const std::vector<double>& q) {
   return motion;
 }
 
-/// A pose to choose from: how far the tip moves in the direction in which it moves least, and how far it is from the
+/// A pose to choose: how far the tip moves in its worst direction, and how far the pose is from the
 /// middle.
 struct Candidate {
   std::vector<double> q;
@@ -98,10 +98,10 @@ std::vector<double> middleOf(const Links& links) {
   return q;
 }
 
-/// The middle first, then poses at random, the same in every run.
+/// The middle comes first, then random poses, which are the same in every run.
 std::vector<Candidate> candidatesFor(const Links& links) {
   constexpr int kPoses = 3000;
-  constexpr double kInside = 0.8;  // of the way between the stops
+  constexpr double kInside = 0.8;  // share of the range between the stops
   std::mt19937_64 random(1);
   const std::vector<double> middle = middleOf(links);
   std::vector<Candidate> all{{middle, motionAt(links, middle)}};
@@ -119,9 +119,9 @@ std::vector<Candidate> candidatesFor(const Links& links) {
   return all;
 }
 
-/// Directions in which the tip moves anywhere.
+/// Directions in which the tip moves at some pose.
 int freedomOf(const std::vector<Candidate>& all) {
-  constexpr double kMoves = 1e-3;  // of the way of the direction in which it moves most
+  constexpr double kMoves = 1e-3;  // share of the motion in the best direction
   Vector3d most = Vector3d::Zero();
   for (const Candidate& one : all) most = most.cwiseMax(one.motion.values);
   int freedom = 0;
@@ -129,14 +129,14 @@ int freedomOf(const std::vector<Candidate>& all) {
   return freedom;
 }
 
-/// The tip is in one plane wherever the joints are, and not on the surface of a ball.
+/// True if the tip stays in one plane whatever the joints are, and not on the surface of a ball.
 bool staysInPlane(const std::vector<Candidate>& all, const Motion& motion) {
   const Vector3d across = motion.directions.col(2);
   return std::all_of(all.begin(), all.end(),
                      [&](const Candidate& one) { return std::abs(across.dot(one.motion.tip - motion.tip)) < 1e-9; });
 }
 
-/// z as far as the tip can move so, or y, or x.
+/// z if the tip can move along it, or y, or x.
 Vector3d pushOf(const Motion& motion, int freedom) {
   if (freedom == 3 || freedom == 0) return Vector3d::UnitZ();
   const auto moves = motion.directions.leftCols(freedom);

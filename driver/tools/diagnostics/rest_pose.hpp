@@ -14,11 +14,11 @@ struct RestPose {
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();    ///< [m] device frame
   Eigen::Vector3d push = Eigen::Vector3d::UnitZ();  ///< a direction in which the tip can move: z where it can
   int freedom = 3;                                  ///< directions in which the tip moves: 2 of a flat arm
-  bool flat = false;                                ///< of two of them: the tip stays in a plane
-  bool middle = true;                               ///< each joint is in the middle of its limits, or at 0 without
+  bool flat = false;                                ///< of two of them, so that the tip stays in a plane
+  bool middle = true;                               ///< each joint is in the middle of its limits, or at 0 without any
 };
 
-/// [main] Three numbers below a key, 0 where there are none.
+/// [main] Three numbers below a key, 0 if there are none.
 Eigen::Vector3d vectorBelow(const document::Node& map, std::string_view key);
 
 /// [main] The middle of arm.limits (0 without) where the tip moves well from there; otherwise the bent pose next to it

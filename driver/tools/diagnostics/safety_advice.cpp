@@ -20,7 +20,7 @@ using codec::Field;
 using codec::Role;
 using document::Node;
 
-/// What all warnings of one file need.
+/// What all warnings about one file need.
 struct File {
   const Node& root;
   const scene::Device& device;
@@ -63,7 +63,7 @@ void noTorqueLimit(const File& file, const codec::Wire& wire, const host::Device
                      : ", such as 0.05 N m to begin with"));
 }
 
-/// Forces of an arm that is described so draw the hand in where they should push it out.
+/// Forces of an arm described in this way draw the hand in where they should push it out.
 void oppositeSigns(const File& file, const codec::Wire& wire) {
   if (file.number("loader") > 0) return;  // a Falcon's board turns the signs of all three
   const Node* fields = find(file.root, {"parameters", "wire", "output", "fields"});
@@ -88,7 +88,7 @@ void slowWatchdog(const File& file, const codec::Wire& wire) {
                         wire.watchdog));
 }
 
-/// Only the arm is judged: the scene has the rate of the servo.
+/// Only the arm is judged, because the scene has the rate of the servo.
 void slowSamples(const File& file, const codec::Wire& wire) {
   constexpr double kServoAtItsBest = 1e4;  // Hz
   const Node* rate = find(file.root, {"parameters", "wire", "rate"});
@@ -96,7 +96,7 @@ void slowSamples(const File& file, const codec::Wire& wire) {
     file.warn(*rate, "parameters.wire.rate", fmt::format("{:g} Hz: ", wire.rate) + slow);
 }
 
-/// Encoders that count through and wrap are at zero wherever the arm was switched on.
+/// Encoders that wrap are at zero wherever the arm was switched on.
 void noCalibration(const File& file, const codec::Wire& wire) {
   const bool wraps = std::any_of(wire.input.fields.begin(), wire.input.fields.end(),
                                  [](const Field& field) { return field.role == Role::kPosition && field.wraps; });
@@ -126,7 +126,7 @@ void tooHeavy(const File& file, const host::DeviceInstance& arm) {
                       i + 1, std::abs(tau[i]), motors[i]));
 }
 
-/// Keys that a field of this kind reads, beside those of every field.
+/// Keys that a field of this kind reads, besides those of every field.
 std::set<std::string> keysOf(Role role) {
   std::set<std::string> keys{"is", "at", "type", "endian", "bit_offset"};
   const auto add = [&keys](std::initializer_list<const char*> more) { keys.insert(more.begin(), more.end()); };

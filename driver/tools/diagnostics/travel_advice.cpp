@@ -27,7 +27,7 @@ struct Way {
   double length() const { return high - low; }
 };
 
-/// What a field can say; nothing for one that goes on past its end.
+/// The range of a field; nothing for one that continues past its end.
 std::optional<Way> sayable(const Field& field) {
   if (field.role != Role::kPosition || field.wraps || field.type == codec::Type::kFloat) return std::nullopt;
   const auto [least, most] = codec::rangeOf(field.type, field.bits);
@@ -41,15 +41,15 @@ std::vector<double> limitsOf(const scene::Device& device) {
   return {};
 }
 
-/// Its zero is where the arm was held when it was calibrated: only the length of a way is known.
+/// Its zero is where the arm was held during calibration, so only the length of a range is known.
 bool zeroedByPose(const scene::Device& device) {
   return std::any_of(device.parameters.begin(), device.parameters.end(),
                      [](const scene::Value& value) { return value.id == "calibration.method" && value.number > 1; });
 }
 
-/// "" or what of the way between the stops a field cannot say.
+/// "" or which part of the range between the stops a field cannot express.
 std::string tooShort(const Field& field, const Way& said, const Way& stops, bool placed) {
-  const double room = 0.02 * stops.length();  // stops are measured to no better
+  const double room = 0.02 * stops.length();  // stops are not measured more accurately
   const bool covers =
       placed ? said.low <= stops.low + room && said.high >= stops.high - room : said.length() >= stops.length() - room;
   if (covers || !(stops.length() > 0)) return "";
@@ -63,7 +63,7 @@ std::string tooShort(const Field& field, const Way& said, const Way& stops, bool
       times > 1.05 ? fmt::format("a scale that is {:.3g} times as large, ", times) : std::string());
 }
 
-/// The box of all places of the tip, each joint in three positions.
+/// The box around all places of the tip, with each joint in three positions.
 Eigen::AlignedBox3d placesOf(const host::DeviceInstance& arm, const std::vector<Way>& ways) {
   Eigen::AlignedBox3d box;
   size_t count = 1;
@@ -80,7 +80,7 @@ Eigen::AlignedBox3d placesOf(const host::DeviceInstance& arm, const std::vector<
   return box;
 }
 
-/// [m] From corner to corner of that box.
+/// [m] The diagonal of that box.
 double extentOf(const host::DeviceInstance& arm, const std::vector<Way>& ways) {
   const Eigen::AlignedBox3d box = placesOf(arm, ways);
   return box.isEmpty() ? 0 : box.diagonal().norm();
@@ -108,7 +108,7 @@ void workspaceBeyondReach(const Node& root, const scene::Device& device, const h
                   device.limits.workspace, reach, device.limits.workspace, device.limits.workspace / 1000));
 }
 
-/// Without stops in the file its workspace is all that tells how far the arm was meant to move.
+/// Without stops in the file, only its workspace shows how far the arm was meant to move.
 void narrowWorkspace(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                      const codec::Wire& wire, document::Problems& warnings) {
   constexpr size_t kMostJoints = 6;  // 729 poses

@@ -60,9 +60,9 @@ void twistInDegrees(const Node* rows, const std::string& file, document::Problem
   }
 }
 
-/// Lengths are in metres, and their decimals may slip: what limits and masses are told follows from it.
+/// Lengths are in metres, and their decimals may be wrong; limits and masses depend on them.
 void linkTooLong(const Node* lengths, const std::string& file, document::Problems& warnings) {
-  constexpr double kLong = 2;  // m: longer than the arm of a person, and of what a person leads
+  constexpr double kLong = 2;  // m: longer than a person's arm, and than any device for one
   const double most = largest(numbersIn(lengths));
   if (most <= kLong) return;
   document::report(warnings, file, lengths->line, lengths->column, "parameters.arm.lengths",
@@ -70,7 +70,7 @@ void linkTooLong(const Node* lengths, const std::string& file, document::Problem
                                most, most, most / 1000));
 }
 
-/// A link that points the other way is turned, not shorter than nothing.
+/// A link that points the other way has a twist, not a negative length.
 void lengthBelowZero(const Node* lengths, const std::string& file, document::Problems& warnings) {
   for (const double length : numbersIn(lengths))
     if (length < 0)
@@ -113,7 +113,7 @@ void quaternionTurnedRound(const Node* orientation, const std::string& file, doc
                    "is w, x, y, z, so this is a half turn about z; expected [1, 0, 0, 0] where no turn was meant");
 }
 
-/// "05", "-0800": a number with a zero in front that says nothing.
+/// "05", "-0800": a number with a meaningless leading zero.
 bool idleZero(const std::string& text) {
   const size_t first = text.find_first_not_of("+-");
   return first != std::string::npos && first + 1 < text.size() && text[first] == '0' &&

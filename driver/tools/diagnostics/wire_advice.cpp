@@ -31,20 +31,20 @@ double maxTorque(const scene::Device& device, size_t joint) {
   return value->numbers.size() == 1 ? value->numbers[0] : joint < value->numbers.size() ? value->numbers[joint] : 0;
 }
 
-/// What is odd about the torque that a field can carry, and the key that makes it so; "" for nothing.
+/// What is odd about the torque that a field can carry, and the key that causes it; "" if nothing is.
 struct Odd {
   const char* key = "scale";
   std::string what;
 };
 
-/// The N m of the greatest raw number to either side.
+/// The N m of the greatest raw number in either direction.
 double rangeOf(const Field& field, double least, double most) {
   const double a = least * field.scale + field.offset, b = most * field.scale + field.offset;
   return std::min(std::abs(a), std::abs(b));
 }
 
 Odd tooCoarse(const Field& field, double most, bool scaled) {
-  constexpr double kSteps = 8, kFewSteps = 200;  // fewer than 8, and the hand feels each
+  constexpr double kSteps = 8, kFewSteps = 200;  // with fewer than 8 steps, the hand feels each
   constexpr double kIdle = 50;                   // times more than the motor has: N mm were meant, or counts
   const double range = rangeOf(field, field.least, field.most), step = std::abs(field.scale);
   if (step * kSteps > most)
@@ -89,7 +89,7 @@ void adviseTorques(const Node& fields, const codec::Report& report, const scene:
   }
 }
 
-/// A number that no checksum covers is believed as it comes.
+/// A number that no checksum covers is trusted as it comes.
 void adviseChecksum(const Node& fields, const codec::Report& report, const char* side, const scene::Device& device,
                     document::Problems& warnings) {
   std::string outside;
@@ -111,7 +111,7 @@ void adviseChecksum(const Node& fields, const codec::Report& report, const char*
   }
 }
 
-/// "i16 in a slot of an i24" reads well while angles are small: a byte between two joints' numbers that no field has.
+/// "i16 in the place of an i24" seems right while angles are small: a byte between two joints' numbers is in no field.
 void adviseGaps(const Node& fields, const codec::Report& report, const scene::Device& device,
                 document::Problems& warnings) {
   for (size_t i = 0; i + 1 < report.fields.size() && i + 1 < fields.items.size(); ++i) {
@@ -133,7 +133,7 @@ void adviseGaps(const Node& fields, const codec::Report& report, const scene::De
   }
 }
 
-/// The start-up sequence goes out before every limit, and while forces are off: as a command it must not push.
+/// The start-up sequence is sent before every limit, and while forces are off, so no command in it may push.
 void adviseStartup(const Node& steps, const codec::Wire& wire, const scene::Device& device,
                    document::Problems& warnings) {
   codec::Report torques = wire.output;
@@ -144,7 +144,7 @@ void adviseStartup(const Node& steps, const codec::Wire& wire, const scene::Devi
     if (bytes.size() != torques.bytes() || decode(torques, bytes, sent) != codec::Verdict::kGood) continue;
     for (const Field& field : torques.fields) {
       const double torque = sent.torque[field.index];
-      if (std::abs(torque) <= std::abs(field.scale)) continue;  // as near to none as it can be sent
+      if (std::abs(torque) <= std::abs(field.scale)) continue;  // as close to zero as it can be sent
       document::report(
           warnings, device.file.string(), steps.items[i].line, steps.items[i].column,
           fmt::format("parameters.wire.startup[{}].send", i),

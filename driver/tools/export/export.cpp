@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kNanoseconds = 1e9;
 
-/// [ns] since 1970 when the run started; 0 where the recording does not say it.
+/// [ns] since 1970 when the run started; 0 if the recording does not say.
 uint64_t startOf(const Recording& recording) {
   const auto about = nlohmann::json::parse(recording.aboutJson(), nullptr, false);
   if (!about.is_object() || !about.contains("started") || !about["started"].is_string()) return 0;
@@ -39,7 +39,7 @@ uint64_t tickOf(const RecordedStream& stream, uint64_t row) {
   return tick;
 }
 
-/// One stream on its way out.
+/// One stream that is being exported.
 struct Outgoing {
   const RecordedStream* stream;
   uint16_t channel;
@@ -57,7 +57,7 @@ void send(McapWriter& out, Outgoing& from, uint64_t tick, uint64_t time) {
 void appendNumber(std::string& line, const RecordedStream& stream, uint64_t row, const Column& column) {
   const std::byte* at = stream.row(row) + column.offset;
   uint64_t count = 0;
-  if (column.type == ColumnType::kCount) {  // not through a double: it may have more than 53 bits
+  if (column.type == ColumnType::kCount) {  // not through a double, because it may have more than 53 bits
     std::memcpy(&count, at, sizeof count);
     fmt::format_to(std::back_inserter(line), "{}", count);
     return;

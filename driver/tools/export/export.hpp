@@ -15,10 +15,10 @@ struct Exported {
 };
 
 /// [main] Every row of every stream as a message of its channel, /hapticd/STREAM, in the order of their ticks; the
-/// description as an attachment. Times are those of the run's start plus the tick's own.
+/// description as an attachment. Times are the run's start plus the tick's own time.
 Result<Exported> exportMcap(const Recording& recording, const std::string& file);
 
-/// [main] One stream as a table with a header, 17 digits a number.
+/// [main] Writes one stream as a table with a header, with 17 digits per number.
 Result<Exported> exportCsv(const RecordedStream& stream, const std::string& file);
 
 }  // namespace hapticd::record

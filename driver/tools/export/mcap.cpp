@@ -16,7 +16,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are stored as they lie in memory");
 
 constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
-constexpr size_t kChunkBytes = 1u << 20;  ///< before compression: a reader unpacks one to seek
+constexpr size_t kChunkBytes = 1u << 20;  ///< size before compression: a reader unpacks one chunk to seek
 constexpr int kLevel = 3;                 ///< of zstd, its default
 
 /// Op codes of records.
@@ -113,7 +113,7 @@ uint16_t McapWriter::addChannel(const std::string& topic, const std::string& typ
   return static_cast<uint16_t>(channels_.size());
 }
 
-/// Schemas and channels, which stand before the messages and again in the summary.
+/// Schemas and channels, which are before the messages and again in the summary.
 std::string McapWriter::schemas() const {
   std::string records;
   for (size_t i = 0; i < channels_.size(); ++i) {
@@ -187,7 +187,7 @@ std::string McapWriter::statistics() const {
   return body.record(kStatistics);
 }
 
-/// Everything a reader needs to find its way, at the end of the file.
+/// Everything that a reader needs to find its way, at the end of the file.
 void McapWriter::summary() {
   const uint64_t start = offset_;
   std::string bytes = schemas() + statistics();
@@ -212,7 +212,7 @@ void McapWriter::summary() {
 Result<void> McapWriter::close() {
   if (chunks_.empty() && chunk_.empty()) write(schemas());
   endChunk();
-  write(Body().n(uint32_t{0}).record(kDataEnd));  // 0: no checksum of the whole
+  write(Body().n(uint32_t{0}).record(kDataEnd));  // 0: there is no checksum of the whole
   summary();
   write(kMagic);
   if (std::fclose(std::exchange(out_, nullptr)) != 0 && error_ == 0) error_ = errno;

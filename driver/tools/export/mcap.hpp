@@ -28,10 +28,10 @@ class McapWriter {
   /// [main] Appends a message: `head` and `body` are one after the other. Times of one channel may not fall.
   void message(uint16_t channel, uint64_t time_ns, std::string_view head, std::string_view body);
 
-  /// [main] A text that goes with the messages.
+  /// [main] Adds a text that belongs to the messages.
   void attach(const std::string& name, const std::string& media_type, const std::string& text, uint64_t time_ns);
 
-  /// [main] Writes what waits, the index and the end.
+  /// [main] Writes the messages that wait, the index and the end.
   Result<void> close();
 
   uint64_t messages() const { return messages_; }

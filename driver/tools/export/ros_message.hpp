@@ -11,16 +11,16 @@
 
 namespace hapticd::record {
 
-/// In front of a row: plain CDR, little-endian, no options.
+/// The head before a row: plain CDR, little-endian, no options.
 constexpr std::array<char, 4> kCdrHead = {0, 1, 0, 0};
 
 /// [any] "hapticd_msgs/msg/Ticks" for "ticks".
 std::string rosType(const std::string& stream);
 
-/// [any] The .msg text: a field for each column, with its unit and meaning as a comment.
+/// [any] The .msg text: one field per column, with its unit and meaning as a comment.
 std::string rosDefinition(const std::vector<Column>& columns);
 
-/// [any] Rows of these columns lie as CDR would put them. Not so: they need another reader than a ROS one.
+/// [any] True if rows of these columns have the layout of CDR. Otherwise no ROS reader can read them.
 bool liesAsCdr(const std::vector<Column>& columns);
 
 }  // namespace hapticd::record

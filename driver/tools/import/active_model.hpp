@@ -12,8 +12,8 @@
 
 namespace hapticd::importing {
 
-/// [main] An active model of `plugin` with this geometry for so many probes. `more`: further parameters, each after a
-/// comma, as in a scene file.
+/// [main] An active model of `plugin` with this geometry for this number of probes. `more` has further parameters, each
+/// after a comma, as in a scene file.
 Result<std::unique_ptr<host::ShapeInstance>> activated(const char* plugin, const std::filesystem::path& geometry,
                                                        host::Catalog& catalog, const std::string& more = "",
                                                        uint32_t probes = 1);

@@ -18,7 +18,7 @@ constexpr int kMaxDegree = 15;
 constexpr int kMaxPatches = 100'000;
 constexpr size_t kCleanDigits = 9;  ///< of a coordinate: a nanometre on a metre; hides the dust of scaling
 
-/// The numbers of a file with their places, comments taken out.
+/// The numbers of a file with their places, without comments.
 class Numbers {
  public:
   Numbers(const std::string& text, std::string file, std::vector<std::string>& comments) : file_(std::move(file)) {
@@ -196,7 +196,7 @@ double signedVolume(const BezierModel& model) {
   constexpr std::array<double, 4> kAt{0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970263};
   constexpr std::array<double, 4> kWeight{
       0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
-      0.17392742256872693};  // Gauss-Legendre on [0, 1]: the sign is all that counts
+      0.17392742256872693};  // Gauss-Legendre on [0, 1]: only the sign matters
   double volume = 0;
   std::vector<double> bu, du, bv, dv;
   for (const BezierPatch& patch : model.patches)

@@ -16,7 +16,7 @@ struct BezierPatch {
 };
 
 struct BezierModel {
-  std::vector<std::string> comments;  ///< lines that began with #: credit and licence go with the data
+  std::vector<std::string> comments;  ///< lines that began with #: credit and licence stay with the data
   std::vector<BezierPatch> patches;
   bool reversed = false;  ///< Su x Sv points inward
 };
@@ -29,17 +29,17 @@ struct Placement {
   char up = 'y';        ///< axis of the file that points up; the world's is y
 };
 
-/// [main] Reads patches: a count, then for each two degrees and its points; # begins a comment line.
+/// [main] Reads patches: a count, then for each patch two degrees and its points; # begins a comment line.
 Result<BezierModel> parseBpt(const std::string& text, const std::string& file);
 
 /// [main] Turns, scales and centres all points.
 void placeModel(BezierModel& model, const Placement& placement);
 
-/// [main] The same for the points of triangles; the box is that of the corners that are used.
+/// [main] The same for the points of triangles; the box holds only the corners that are used.
 void placePoints(std::vector<Eigen::Vector3d>& points, const std::vector<std::array<std::uint32_t, 3>>& used,
                  const Placement& placement);
 
-/// [main] Volume under the signed surface, by the divergence theorem; below zero where Su x Sv points inward.
+/// [main] Volume under the signed surface, by the divergence theorem; negative if Su x Sv points inward.
 double signedVolume(const BezierModel& model);
 
 /// [main] The model as YAML, or as JSON.

@@ -21,12 +21,12 @@ using document::Node;
 using Eigen::Vector3d;
 
 constexpr int kRounds = 300;          ///< of the fit
-constexpr double kFitted = 1e-4;      ///< relative error that ends it
-constexpr double kGood = 0.05;        ///< relative error beyond which a place is told of
+constexpr double kFitted = 1e-4;      ///< relative error at which the fit ends
+constexpr double kGood = 0.05;        ///< relative error above which a place is reported
 constexpr double kReach = 0.7;        ///< of the distance of neighbouring points: how far a place counts
-constexpr double kFarthestReach = 2;  ///< of that distance: the largest shear reach that is tried
-constexpr double kNoReach = 0.05;     ///< likewise: as good as none
-constexpr double kStiffest = 1e6;     ///< [N/m] that a body may have
+constexpr double kFarthestReach = 2;  ///< share of that distance: the largest shear reach that is tried
+constexpr double kNoReach = 0.05;     ///< share of it that has practically no effect
+constexpr double kStiffest = 1e6;     ///< [N/m] stiffness that a body may have
 
 struct Answer {
   Vector3d place;
@@ -37,14 +37,14 @@ struct Answer {
 struct Body {
   Node root;
   std::vector<Vector3d> points;
-  std::size_t columns = 0;  ///< of a grid; 0: vertices
+  std::size_t columns = 0;  ///< counts of a grid; 0: it has vertices
 };
 
 /// What is fitted.
 struct Fitted {
   std::vector<double> stiffness;  ///< [N/m] one a point
-  double reach = -1;              ///< [m] of the shear; < 0: as the body's file has it
-  bool still = false;             ///< for measuring: without mass and damping
+  double reach = -1;              ///< [m] reach of the shear; < 0: as in the body's file
+  bool still = false;             ///< for measuring, without mass and damping
 };
 
 Error first(const document::Problems& problems, const std::string& file) {
@@ -68,7 +68,7 @@ Result<std::vector<Answer>> readAnswers(const std::string& file) {
   return answers;
 }
 
-/// A point or vertex; false where it has no three numbers.
+/// Reads a point or vertex; false if it does not have three numbers.
 bool addPoint(const Node& node, Body& body) {
   Vector3d p;
   if (!node.isSequence() || node.items.size() < 3) return false;
@@ -151,7 +151,7 @@ double spacingOf(const Body& body) {
   return spacing;
 }
 
-/// Share of each answer in each point: that of the nearest answer is the largest.
+/// The share of each answer in each point: that of the nearest answer is the largest.
 Eigen::MatrixXd sharesOf(const Body& body, const std::vector<Answer>& answers) {
   const auto count = static_cast<Eigen::Index>(body.points.size()), places = static_cast<Eigen::Index>(answers.size());
   const double width = std::pow(kReach * spacingOf(body), 2);
@@ -168,7 +168,7 @@ Eigen::MatrixXd sharesOf(const Body& body, const std::vector<Answer>& answers) {
   return shares;
 }
 
-/// Force [N] of the written body at each answer.
+/// The force [N] of the written body at each answer.
 Result<std::vector<double>> feltForces(const Calibration& options, const std::vector<Answer>& answers,
                                        host::Catalog& catalog) {
   const auto body = activated("mat_deformable", options.out, catalog);
@@ -177,7 +177,7 @@ Result<std::vector<double>> feltForces(const Calibration& options, const std::ve
   if ((*body)->surfaces()->activate((*body)->handle(), &near) < 0) return Error{"the body cannot be traced"};
   std::vector<double> forces;
   for (const Answer& answer : answers) {
-    (*body)->reset();                                 // no dent of the press before
+    (*body)->reset();                                 // the press before has left no dent
     const auto foot = touched(**body, answer.place);  // the surface of the body, near that of the solid
     if (!foot) return Error{foot.error()};
     const Vector3d normal(foot->normal);
@@ -209,7 +209,7 @@ void tell(const std::vector<Answer>& answers, const std::vector<double>& forces,
               100 * std::sqrt(squares));
 }
 
-/// Makes `fitted.stiffness` right. @returns the forces [N] of the body at the answers
+/// Fits `fitted.stiffness`. @returns the forces [N] of the body at the answers
 Result<std::vector<double>> fitStiffness(const Body& body, const std::vector<Answer>& answers,
                                          const Calibration& options, host::Catalog& catalog, Fitted& fitted) {
   const Eigen::MatrixXd shares = sharesOf(body, answers);
@@ -234,7 +234,7 @@ Result<std::vector<double>> fitStiffness(const Body& body, const std::vector<Ans
   return forces;
 }
 
-/// Makes `fitted.reach` right, and tells how well the dents are met.
+/// Fits `fitted.reach`, and reports how well the dents are met.
 Result<void> fitShear(const Body& body, const std::vector<Dent>& dents, const Calibration& options,
                       host::Catalog& catalog, Fitted& fitted) {
   Fitted tried{fitted.stiffness, 0, true};

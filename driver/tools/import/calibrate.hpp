@@ -10,14 +10,14 @@ namespace hapticd::importing {
 
 struct Calibration {
   std::string body;     ///< model file with points or vertices
-  std::string answers;  ///< CSV x,y,z,depth,force: a place of the surface [m], how deep it was pressed [m], force [N]
-  std::string dents;  ///< CSV x,y,z,x2,y2,z2,dent: share of a press's depth by which a second place goes down; "": none
-  std::string out;    ///< the same body with a stiffness at each point (.yaml), hapticd-model/2: what it says is felt
+  std::string answers;  ///< CSV x,y,z,depth,force: place on the surface [m], depth of the press [m], force [N]
+  std::string dents;  ///< CSV x,y,z,x2,y2,z2,dent: share of a press's depth by which a second place sinks; "": none
+  std::string out;    ///< the same body with a stiffness per point (.yaml), hapticd-model/2: it is felt as it says
 };
 
 /// [main] Fits the stiffness of each point so that the plugin gives the forces of all answers, writes the body and
-/// prints how well it does. Presses should be small: the spring of a place is linear. With dents, fits the shear reach
-/// of a grid to them as well.
+/// prints how well it fits. Presses should be small, because the spring of a place is linear. With dents, fits the
+/// shear reach of a grid to them as well.
 Result<void> calibrate(const Calibration& options, host::Catalog& catalog);
 
 }  // namespace hapticd::importing

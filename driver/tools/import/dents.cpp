@@ -17,10 +17,10 @@ using Eigen::Vector3d;
 
 constexpr double kPress = 1e-4;    ///< [m] deep, both probes
 constexpr double kTick = 1e-3;     ///< [s]
-constexpr int kMostTicks = 4000;   ///< for both forces to settle
+constexpr int kMostTicks = 4000;   ///< ticks until both forces settle
 constexpr int kQuiet = 20;         ///< ticks without a change
 constexpr double kSettled = 1e-7;  ///< relative change of a force
-constexpr int kLooks = 12;         ///< reaches that are tried before the best is refined
+constexpr int kLooks = 12;         ///< reaches that are tried before the best one is refined
 constexpr int kRefinements = 14;   ///< of the golden section
 constexpr double kGolden = 0.61803398874989485;
 
@@ -28,7 +28,7 @@ double along(const hsp_contact& contact) {
   return Vector3d(contact.force).dot(Vector3d(contact.normal));
 }
 
-/// Both probes from the first tick to rest.
+/// Both probes, from the first tick until they rest.
 Result<std::array<hsp_contact, 2>> heldTogether(host::ShapeInstance& body, const std::array<Vector3d, 2>& at) {
   std::array<hsp_probe, 2> probes{};
   std::array<hsp_contact, 2> contacts{};
@@ -61,7 +61,7 @@ Result<std::array<hsp_contact, 2>> heldTogether(host::ShapeInstance& body, const
   return contacts;
 }
 
-/// One probe alone has the stiffness of its place; of two, each goes down by what the other does as well.
+/// One probe alone has the stiffness of its place; of two, each also sinks by what the other one does.
 Result<double> dentOf(host::ShapeInstance& body, const Dent& dent) {
   std::array<Vector3d, 2> at;
   std::array<double, 2> stiffness{};

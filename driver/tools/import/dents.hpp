@@ -14,10 +14,10 @@ namespace hapticd::importing {
 
 inline constexpr std::size_t kMostTableBytes = std::size_t{1} << 26;  ///< of a CSV file of presses or dents
 
-/// A press at one place and what another does.
+/// A press at one place and its effect at another.
 struct Dent {
   Eigen::Vector3d pressed, beside;  ///< [m] places of the surface
-  double share;                     ///< of the depth of the press by which `beside` goes down
+  double share;                     ///< share of the press's depth by which `beside` sinks
 };
 
 /// [main] CSV x,y,z,x2,y2,z2,dent.
@@ -28,7 +28,7 @@ Result<std::vector<double>> dentsOf(const std::string& body, const std::vector<D
 
 struct ReachFit {
   double reach = 0;            ///< [m]
-  std::vector<double> shares;  ///< of the body that has it
+  std::vector<double> shares;  ///< error of the body that has this reach
 };
 
 /// [main] The shear reach from 0 to `most` [m] with the least squares. `write(reach)` writes such a body to `file`.

@@ -16,11 +16,11 @@ using Eigen::Vector3d;
 using Eigen::Vector4d;
 
 constexpr int kMostShrinks = 50;
-constexpr double kShrunk = 1e-9;               ///< relative change of a radius at which a ball is done
+constexpr double kShrunk = 1e-9;               ///< relative change of a radius below which a ball is done
 constexpr std::size_t kMostCandidates = 6000;  ///< balls that may be kept
-constexpr std::size_t kMostCovered = 12000;    ///< samples that are to be covered
+constexpr std::size_t kMostCovered = 12000;    ///< samples that must be covered
 constexpr std::size_t kTold = 10000;           ///< balls or candidates between two messages
-constexpr int kChecks = 8;                     ///< spheres looked at along an edge
+constexpr int kChecks = 8;                     ///< spheres that are checked along an edge
 constexpr double kFlatCosine = 0.94;  ///< of 20 degrees: triangles that meet flatter stand for a smooth surface
 
 using Progress = std::function<void(const std::string&)>;
@@ -35,13 +35,13 @@ struct Ball {
 };
 
 /// The ball that touches the surface at sample i from inside and holds no sample that is seen from its middle farther
-/// than `least_angle` from it. Nearer ones are the surface going on, with the ripples of its triangles.
+/// than `least_angle` from it. Nearer ones are the continuing surface, with the ripples of its triangles.
 Ball shrink(const SurfaceSamples& samples, const NearestPoints& nearest, uint32_t i, double start, double least_angle) {
   const Vector3d &p = samples.points[i], &n = samples.normals[i];
   const NearestPoints::Beyond opposite{p, -n, std::sin(least_angle / 2)};
   Ball ball{p - start * n, start};
   for (int k = 0; k < kMostShrinks; ++k) {
-    // What is not inside the ball is not asked for: on a flat face thousands of points are nearly as near.
+    // Points outside the ball are not asked for, because on a flat face thousands of points are nearly as near.
     const uint32_t j = nearest.nearest(ball.center, &opposite, ball.radius * (1 - kShrunk));
     if (j == UINT32_MAX) break;
     const Vector3d between = p - samples.points[j];
@@ -55,7 +55,7 @@ Ball shrink(const SurfaceSamples& samples, const NearestPoints& nearest, uint32_
   return ball;
 }
 
-/// Every k-th, so that at most `most` are left.
+/// Every k-th sample, so that at most `most` are left.
 template <class T>
 std::vector<T> thinned(const std::vector<T>& all, std::size_t most) {
   const std::size_t stride = (all.size() + most - 1) / most;
@@ -64,7 +64,7 @@ std::vector<T> thinned(const std::vector<T>& all, std::size_t most) {
   return some;
 }
 
-/// Takes the ball that covers most of what is still bare, again and again.
+/// Repeatedly takes the ball that covers most of the samples that are not covered yet.
 std::vector<Ball> cover(const std::vector<Ball>& candidates, const std::vector<Vector3d>& points,
                         const MedialOptions& options, double& covered) {
   std::vector<std::vector<uint32_t>> covers(candidates.size());
@@ -79,7 +79,7 @@ std::vector<Ball> cover(const std::vector<Ball>& candidates, const std::vector<V
   const auto gain = [&](std::size_t b) {
     return std::count_if(covers[b].begin(), covers[b].end(), [&](uint32_t i) { return bare[i]; });
   };
-  // What a ball covers of the rest never grows: one whose old count is not the greatest needs no new one.
+  // What a ball covers of the rest never grows, so a ball whose old count is not the greatest needs no new count.
   std::vector<std::pair<std::ptrdiff_t, std::size_t>> heap;
   for (std::size_t b = 0; b < candidates.size(); ++b) heap.emplace_back(gain(b), b);
   std::make_heap(heap.begin(), heap.end());
@@ -104,7 +104,7 @@ std::vector<Ball> cover(const std::vector<Ball>& candidates, const std::vector<V
   return kept;
 }
 
-/// Whether a sphere stands out of the body by more than the tolerance.
+/// True if a sphere extends out of the body by more than the tolerance.
 bool standsOut(const Vector3d& center, double radius, const SurfaceSamples& samples, const NearestPoints& nearest,
                double tolerance) {
   const uint32_t i = nearest.nearest(center);
@@ -206,7 +206,7 @@ class Soundness {
 
 using Edges = std::set<std::array<int, 2>>;
 
-/// Where samples were too few to tell, the shortest edge inside the body joins two parts.
+/// Where samples were too few to decide, the shortest edge inside the body joins two parts.
 void bridgeGaps(const std::vector<Ball>& kept, const Soundness& sound, Parts& parts, Edges& edges) {
   std::vector<std::pair<double, std::array<int, 2>>> gaps;
   const int count = static_cast<int>(kept.size());
@@ -224,7 +224,7 @@ void bridgeGaps(const std::vector<Ball>& kept, const Soundness& sound, Parts& pa
   }
 }
 
-/// Edges and triangles between the balls that are nearest to the same witness, where they stay inside the body.
+/// Edges and triangles between the balls nearest to the same witness, if they stay inside the body.
 void join(const std::vector<Ball>& kept, const std::vector<Ball>& witnesses, const Soundness& sound, MedialAxis& axis) {
   Edges edges, refused;
   std::set<std::array<int, 3>> triangles;

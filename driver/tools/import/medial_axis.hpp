@@ -23,7 +23,7 @@ struct SurfaceSamples {
 };
 
 struct MedialOptions {
-  double tolerance = 1e-3;  ///< [m] by which spheres may be too small or stand out
+  double tolerance = 1e-3;  ///< [m] by which spheres may be too small or extend too far
   int most_spheres = 2000;  ///< at which covering ends
   double least_angle = 60;  ///< [degrees] between the two feet of a medial point: fewer are ripples of the surface
 };
@@ -36,10 +36,10 @@ struct MedialAxis {
   int parts = 0;       ///< that are not joined
 };
 
-/// [main] About `count` points spread evenly over the triangles, always the same ones.
+/// [main] About `count` points spread evenly over the triangles, always the same points.
 SurfaceSamples sampleSurface(const Triangles& mesh, std::size_t count);
 
-/// [main] `progress` is told what is being done. Fails where nothing is inside.
+/// [main] `progress` is told what is being done. Fails if nothing is inside.
 Result<MedialAxis> medialAxis(const SurfaceSamples& samples, const MedialOptions& options,
                               const std::function<void(const std::string&)>& progress);
 

@@ -23,8 +23,8 @@ using Eigen::Vector3d;
 namespace fs = std::filesystem;
 
 constexpr double kToleranceShare = 0.01;  ///< of the body's size
-constexpr double kLarge = 1.0;            ///< [m] no hand reaches round a larger body
-constexpr double kChordShare = 0.002;     ///< of a NURBS model's size: chord error of its triangles
+constexpr double kLarge = 1.0;            ///< [m] no hand reaches around a larger body
+constexpr double kChordShare = 0.002;     ///< share of a NURBS model's size: chord error of its triangles
 constexpr std::size_t kMostFileBytes = std::size_t{1} << 30;
 
 bool endsWith(const std::string& name, const char* end) {
@@ -71,7 +71,7 @@ struct Deviation {
   double most = 0, mean = 0;
 };
 
-/// How far the given surface is from that of the body, by the plugin that will be felt.
+/// The distance of the given surface from the body's, as the plugin that will be felt gives it.
 Result<Deviation> deviationFrom(host::ShapeInstance& body, const std::vector<Vector3d>& points) {
   const hsp_near near{};
   if (body.surfaces()->activate(body.handle(), &near) < 0) return Error{"the body cannot be traced"};
@@ -85,7 +85,7 @@ Result<Deviation> deviationFrom(host::ShapeInstance& body, const std::vector<Vec
   return deviation;
 }
 
-/// Measures the file that was written both ways and tells of it.
+/// Measures the written file in both directions and reports it.
 Result<void> report(const MedialImport& options, const MedialOptions& settings, const MedialAxis& axis,
                     const SurfaceSamples& samples, host::Catalog& catalog) {
   std::fprintf(stderr, "measuring the written body\n");
@@ -93,7 +93,7 @@ Result<void> report(const MedialImport& options, const MedialOptions& settings, 
   if (!body) return Error{body.error()};
   const auto there = deviationFrom(**body, samples.points);
   if (!there) return Error{there.error()};
-  // Creases are rounded by a cell: finer ones than the tolerance tell no more, and cost its square.
+  // Creases are rounded by a cell. Cells finer than the tolerance give no more information, and cost its square.
   const double chord = 0.5 * settings.tolerance / (*body)->report().size_m;
   const auto drawn = tessellated(**body, std::clamp(chord, kChordShare, kToleranceShare));
   if (!drawn) return Error{drawn.error()};
@@ -122,7 +122,7 @@ Result<void> report(const MedialImport& options, const MedialOptions& settings, 
   return {};
 }
 
-/// A file in millimetres that is read as metres makes a house of a hand.
+/// A file in millimetres that is read as metres makes a hand as large as a house.
 void tellSize(const Eigen::AlignedBox3d& box, const std::string& file) {
   const Vector3d size = box.sizes();
   std::printf("%s: %.4g x %.4g x %.4g m\n", file.c_str(), size.x(), size.y(), size.z());
@@ -142,7 +142,7 @@ Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalo
   if (endsWith(options.file, ".yaml") || endsWith(options.file, ".yml") || endsWith(options.file, ".json")) {
     const auto shape = activated("nurbs_rigid", options.file, catalog);
     if (!shape) return Error{shape.error()};
-    constexpr double kOfTolerance = 0.25;  // the triangles are not to be what keeps the body from it
+    constexpr double kOfTolerance = 0.25;  // so that the triangles do not keep the body from it
     const double wanted = options.tolerance > 0 ? kOfTolerance * options.tolerance / (*shape)->report().size_m : 1;
     return tessellated(**shape, std::min(kChordShare, wanted));
   }

@@ -19,11 +19,11 @@ struct MedialImport {
   double stiffness = 300, damping = 0.5, mass = 0.01;
 };
 
-/// [main] The closed surface of `options.file`. The error is the fault of the file or of the names.
+/// [main] The closed surface of `options.file`. An error is the fault of the file or of the names.
 Result<Triangles> readSurface(const MedialImport& options, host::Catalog& catalog);
 
-/// [main] Finds the medial axis, writes `options.out` and measures the body that was written. Tells progress on
-/// standard error and the result on standard output.
+/// [main] Finds the medial axis, writes `options.out` and measures the written body. Reports progress on standard error
+/// and the result on standard output.
 Result<void> importMedial(const MedialImport& options, const Triangles& mesh, host::Catalog& catalog);
 
 }  // namespace hapticd::importing

@@ -11,7 +11,7 @@ namespace hapticd::importing {
 class NearestPoints {
  public:
   explicit NearestPoints(const std::vector<Eigen::Vector3d>& points);  ///< [main] points must outlive it
-  /// Points that count: seen from `from`, they lie deeper along `inward` than `sine` of their distance.
+  /// Restricts which points count: seen from `from`, they lie deeper along `inward` than `sine` of their distance.
   struct Beyond {
     Eigen::Vector3d from, inward;
     double sine;
@@ -26,7 +26,7 @@ class NearestPoints {
 
   const std::vector<Eigen::Vector3d>& points_;
   std::vector<uint32_t> order_;  ///< the middle of each range is its root
-  std::vector<uint8_t> axis_;    ///< by which a root divides its range
+  std::vector<uint8_t> axis_;    ///< axis by which a root divides its range
 };
 
 }  // namespace hapticd::importing

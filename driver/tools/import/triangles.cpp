@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 constexpr std::size_t kMostTriangles = 20'000'000;
 constexpr std::size_t kStlHead = 84, kStlTriangle = 50;  ///< [bytes]
 
-/// One index for each distinct point.
+/// Gives one index to each distinct point.
 class Weld {
  public:
   explicit Weld(std::vector<Vector3d>& points) : points_(points) {}
@@ -120,7 +120,7 @@ Result<Triangles> parseStl(const std::string& bytes, const std::string& file) {
     corners.clear();
   }
   if (mesh.corners.empty())
-    return Error{file + ": no triangles, expected an STL of text (solid, facet, vertex x y z) or a whole binary one"};
+    return Error{file + ": has no triangles, expected a text STL (solid, facet, vertex x y z) or a whole binary one"};
   return mesh;
 }
 

@@ -16,12 +16,12 @@ struct Triangles {
 };
 
 /// [main] Reads an OBJ (v and f; polygons are cut into triangles) or an STL (text or binary; equal points become one).
-/// Errors say the line where there are lines.
+/// Errors give the line if there are lines.
 Result<Triangles> parseObj(const std::string& text, const std::string& file);
 Result<Triangles> parseStl(const std::string& bytes, const std::string& file);
 
-/// [main] Makes the outside outward. Fails for a surface with a hole or an edge of more than two triangles, or without
-/// volume: nobody could say which points are inside.
+/// [main] Turns the outside outward. Fails for a surface with a hole, with an edge of more than two triangles, or
+/// without volume, since then nobody could say which points are inside.
 Result<void> orientClosed(Triangles& mesh, const std::string& file);
 
 }  // namespace hapticd::importing

@@ -13,7 +13,7 @@
 namespace hapticd::tune {
 namespace {
 
-/// Decades about the default, inside the range, with the value that the scene has.
+/// Decades about the default within the range, plus the scene's own value.
 std::vector<double> ladderOfReal(const host::ParamInfo& param, double present) {
   std::set<double> values{present};
   for (int decade = -3; decade <= 3; ++decade) {
@@ -23,7 +23,7 @@ std::vector<double> ladderOfReal(const host::ParamInfo& param, double present) {
   return {values.begin(), values.end()};
 }
 
-/// Every whole number of a short range; doubling steps of a long one.
+/// Every whole number of a short range; doubling steps for a long range.
 std::vector<double> ladderOfInteger(const host::ParamInfo& param, double present) {
   constexpr double kFew = 5;
   std::set<double> values{present, param.def};
@@ -36,7 +36,7 @@ std::vector<double> ladderOfInteger(const host::ParamInfo& param, double present
   return {values.begin(), values.end()};
 }
 
-/// A list of counts, all alike: one to the default, which is "[4, 4]".
+/// A list of equal counts, from one to the default, which is "[4, 4]".
 std::vector<double> ladderOfList(const host::ParamInfo& param, double present) {
   std::set<double> values{present};
   const double most = param.def_text ? std::strtod(param.def_text->c_str() + 1, nullptr) : present;
@@ -88,7 +88,7 @@ void addPluginKnobs(const scene::Scene& scene, const host::ClassInfo& info, std:
       if (model.plugin != info.name) continue;
       for (const scene::Value& value : model.parameters)
         if (value.index == i) present = value.numbers.empty() ? value.number : value.numbers.front();
-      break;  // the first model speaks for all
+      break;  // the first model represents all
     }
     Knob knob = knobOf(info, i, present);
     if (knob.numbers.size() > 1) knobs.push_back(std::move(knob));

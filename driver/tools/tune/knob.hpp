@@ -15,16 +15,16 @@ struct Knob {
   std::string plugin;  ///< "nurbs_rigid"
   std::string key;     ///< "tolerance"
   std::string unit;
-  uint32_t index = 0, kind = 0;     ///< of the parameter in the plugin's table
-  std::vector<double> numbers;      ///< what set() takes, a value each; of a list, all of its members
-  std::vector<std::string> values;  ///< the same for people and files: "1e-09", "newton"
+  uint32_t index = 0, kind = 0;     ///< index of the parameter in the plugin's table
+  std::vector<double> numbers;      ///< values for set(); for a list, all its members
+  std::vector<std::string> values;  ///< the same values for people and files: "1e-09", "newton"
   size_t current = 0;               ///< the value that the scene has
   size_t finest = 0;                ///< the value of the converged reference
 
   std::string name() const { return plugin + "." + key; }
 };
 
-/// One value a knob, in the order of the knobs.
+/// One value per knob, in the order of the knobs.
 using Choice = std::vector<size_t>;
 
 /// [main] The knobs of a scene. The reference takes the smallest of a real parameter (a tolerance), the largest of a

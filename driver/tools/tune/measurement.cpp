@@ -34,7 +34,7 @@ double quantile(std::vector<double>& times, double share) {
   return *at;
 }
 
-/// One pass over the motion; keeps the answers where asked for.
+/// Passes over the motion once; keeps the answers if asked to.
 Result<Cost> pass(const scene::Scene& scene, const Motion& motion, VelocityFrom from, std::vector<Answer>* answers,
                   const host::Services::Log& log) {
   auto world = servo::World::build(scene, {.rate = 1 / motion.period}, log);
@@ -70,10 +70,10 @@ Result<Cost> pass(const scene::Scene& scene, const Motion& motion, VelocityFrom 
   return cost;
 }
 
-/// Feet a millimetre apart and equally near: the motion crossed the medial axis there. A foot that is wrong by so much
-/// on one and the same face is farther away by hundreds of times more, as the distance grows with the square.
+/// Feet a millimetre apart and equally near: there the motion crossed the medial axis. A foot that is wrong by so much
+/// on the same face is hundreds of times farther away, since the distance grows with the square.
 bool ambiguous(const Answer& a, const Answer& b) {
-  constexpr double kApart = 1e-3, kShare = 1e-3;  // [m]; of the way between the feet
+  constexpr double kApart = 1e-3, kShare = 1e-3;  // [m]; share of the way between the feet
   const double foot = (a.point - b.point).norm();
   return a.traced && b.traced && foot > kApart && std::abs(a.depth - b.depth) < kShare * foot;
 }

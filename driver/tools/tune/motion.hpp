@@ -12,12 +12,12 @@ namespace hapticd::tune {
 
 struct Motion {
   double period = 1e-3;                   ///< [s]
-  std::vector<Eigen::Vector3d> position;  ///< [m] world, a sample each period
-  /// [m/s] by least squares over samples before and after: what no estimator in a servo can know.
+  std::vector<Eigen::Vector3d> position;  ///< [m] world, one sample per period
+  /// [m/s] by least squares over samples before and after, which no estimator in a servo can know.
   std::vector<Eigen::Vector3d> velocity;
 };
 
-/// [main] What the scene's simulated hand does in the closed loop, over at most ten seconds.
+/// [main] What the scene's simulated hand does in the closed loop, for at most ten seconds.
 Result<Motion> motionOfHand(const scene::Scene& scene, double seconds, const host::Services::Log& log);
 
 /// [main] A motion through given positions.

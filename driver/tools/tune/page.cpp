@@ -13,7 +13,7 @@ std::string escaped(const std::string& words) {
   return safe;
 }
 
-/// Cells of a row of a table. @param tag td or th
+/// The cells of one row of a table. @param tag td or th
 std::string row(const std::vector<std::string>& cells, const char* tag = "td", const std::string& kind = "") {
   std::string text = kind.empty() ? "<tr>" : "<tr class=\"" + kind + "\">";
   for (const std::string& cell : cells) text += fmt::format("<{0}>{1}</{0}>", tag, escaped(cell));

@@ -11,8 +11,8 @@ namespace hapticd::tune {
 namespace {
 
 constexpr int kPasses = 3;
-constexpr size_t kFewTogether = 256;  ///< combinations that are all tried
-constexpr double kMargin = 0.5;       ///< of a tolerance: what one motion shows, another exceeds
+constexpr size_t kFewTogether = 256;  ///< so many combinations are all tried
+constexpr double kMargin = 0.5;       ///< share of a tolerance, because another motion may exceed what one motion shows
 
 double geometryOf(const Candidate& c) {
   return std::max(c.error.geometry(), kErrorNoise);
@@ -21,7 +21,7 @@ double forceOf(const Candidate& c) {
   return std::max(c.error.force_n, kForceNoise);
 }
 
-/// Better in one thing at least, and in none worse.
+/// True if it is better in at least one respect, and worse in none.
 bool beats(const Candidate& a, const Candidate& b) {
   const bool cheaper = clearlyCheaper(a, b), no_dearer = a.cost.p50_ns <= b.cost.p50_ns;
   const bool no_worse = geometryOf(a) <= geometryOf(b) && forceOf(a) <= forceOf(b);
@@ -34,7 +34,7 @@ bool meets(const Candidate& c, const Goal& goal) {
   return c.error.geometry() <= kMargin * goal.tolerance_m && c.error.force_n <= kMargin * goal.force_tolerance_n;
 }
 
-/// Of two that both meet the goal, or both do not.
+/// Compares two that both meet the goal, or that both do not.
 bool preferred(const Candidate& a, const Candidate& b, const Goal& goal, bool met) {
   const bool by_cost = goal.budget_ns ? !met : met;
   if (by_cost) return clearlyCheaper(a, b);
@@ -58,8 +58,8 @@ class Search {
     if (!met)
       return Error{
           "the motion comes near no model, so there is no error to measure\n"
-          "  expected: a tip that touches what the scene is about\n"
-          "  fix: give one with --probe FILE, or one that a hand made with --motion RECORDING"};
+          "  expected: a tip that touches the models of the scene\n"
+          "  fix: give such a motion with --probe FILE, or a recorded one with --motion RECORDING"};
     plan();
     for (size_t i = 0; i < planned_.size() && going_; ++i)
       if (auto tried = attempt(planned_[i]); !tried) return Error{tried.error()};
@@ -104,8 +104,8 @@ class Search {
     return choice;
   }
 
-  /// Measures a choice once. The first is the scene's own. Another that a model refuses, such as a method that its kind
-  /// of geometry does not have, is no candidate.
+  /// Measures a choice once. The first one is the scene's own. A choice that a model refuses, such as a method that its
+  /// geometry does not support, is no candidate.
   Result<void> attempt(const Choice& choice) {
     if (!going_ || !seen_.insert(choice).second) return {};
     const bool own = candidates_.empty();
@@ -133,7 +133,7 @@ class Search {
 
   /// The first setting is the scene's own, which every other is held against; a machine that was busy or had its
   /// processor slow at the start would make all the others look cheaper. So each of the front is measured once more,
-  /// and the first beside it: what the times of one differ by is the noise that is told.
+  /// and the first one with it; the difference between the times of one setting is the noise that is reported.
   Result<void> measureAgain() {
     constexpr int kMost = 12;
     if (auto done = measureAgain(candidates_[0]); !done) return done;
@@ -157,14 +157,14 @@ class Search {
 
   double secondsSpent() const { return static_cast<double>(monotonicNow() - begun_) * kSecondsPerNanosecond; }
 
-  /// Settings to try, as far as it is known that no model refuses them.
+  /// The settings to try, as far as no model is known to refuse them.
   size_t distinct() const {
     std::set<Choice> choices(planned_.begin(), planned_.end());
     for (const Choice& choice : refused_) choices.erase(choice);
     return choices.size();
   }
 
-  /// From the best so far, one knob at a time, until no knob helps.
+  /// Starts from the best so far and changes one knob at a time, until no knob helps.
   Result<void> descend() {
     constexpr int kRounds = 3;
     for (int round = 0; round < kRounds && going_; ++round) {

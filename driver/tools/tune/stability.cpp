@@ -12,7 +12,7 @@
 namespace hapticd::tune {
 namespace {
 
-constexpr double kBuzz = 0.1;  ///< [N] a step of force between neighbouring counts that a hand feels
+constexpr double kBuzz = 0.1;  ///< [N] a force step between neighbouring counts that a hand feels
 
 std::string text(double value) {
   char buffer[32];
@@ -20,7 +20,7 @@ std::string text(double value) {
   return buffer;
 }
 
-/// Two digits, rounded down: a setting that a person would write.
+/// Two digits, rounded down, as a person would write a setting.
 double roundedDown(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
   return std::floor(value / unit) * unit;
@@ -55,7 +55,7 @@ void judgeModel(const scene::Scene& scene, size_t index, const scene::Device& de
          " N, which a hand feels as buzz; nearest: " + text(roundedDown(kBuzz / info.resolution_m)) + " N/m");
 }
 
-/// Motors of an arm that is simulated do not burn.
+/// The motors of a simulated arm do not burn.
 void judgeHeat(const scene::Device& device, const hdv_info& info, document::Problems& problems) {
   const double most = device.limits.force > 0 ? device.limits.force : info.max_force;
   const bool guarded = !device.limits.motors.empty() || (info.capabilities & HDV_C_SIMULATED) != 0;
@@ -67,7 +67,7 @@ void judgeHeat(const scene::Device& device, const hdv_info& info, document::Prob
           text(info.continuous_force) + " N");
 }
 
-/// Samples against ticks: who drives the loop, and how often.
+/// Compares samples and ticks: who drives the loop, and how often.
 void judgeRate(const scene::Scene& scene, const scene::Device& device, const hdv_info& info,
                document::Problems& problems) {
   constexpr double kSlack = 1.001;
@@ -91,7 +91,7 @@ void judgeRate(const scene::Scene& scene, const scene::Device& device, const hdv
         rates + " is faster than the samples of " + device.name + own + ": some ticks get no new sample" + nearest);
 }
 
-/// Where a model's path is named; the model's own place if its file has it no more.
+/// The place where a model's path is named, or the model's own place if its file no longer has it.
 document::Place placeOfPath(const scene::Model& model) {
   document::Problems unread;
   const auto root = document::parseFile(model.place.file, unread);
@@ -106,11 +106,11 @@ document::Place placeOfPath(const scene::Model& model) {
   return model.place;
 }
 
-/// The largest of some rates, and when it was.
+/// The largest of some rates, and its time.
 struct Fastest {
   double rate = 0, at = 0;
   void take(double now, double t) {
-    if (now <= rate * (1 + 1e-9)) return;  // of equal ones the first
+    if (now <= rate * (1 + 1e-9)) return;  // the first among equals
     rate = now;
     at = t;
   }

@@ -13,7 +13,7 @@ namespace hapticd::tune {
 /// [main] What to warn of: a stiffness beyond what the device was found to bear, or beyond what its mass bears by
 /// itself at this rate and with this window of the velocity estimator (Colgate & Schenkel 1997 give the bound with
 /// damping); a force step of one count that a hand feels as buzz; a budget beyond the period; a rate that is not the
-/// device's own; a device that shall drive the loop and cannot; a force that the arm cannot sustain and that no model
+/// device's own; a device that should drive the loop but cannot; a force that the arm cannot sustain and that no model
 /// of its motors' heat ends. Each names the bound and the nearest setting that keeps it.
 /// @param device the arm, with what it said of itself when opened
 /// @param stiffness [N/m] that each model claims, in scene order

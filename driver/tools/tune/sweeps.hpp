@@ -11,8 +11,8 @@ namespace hapticd::tune {
 
 struct RateRow {
   double rate = 0;          ///< [Hz]
-  double load = 0;          ///< share of one processor: median tick times rate
-  double hold_error_n = 0;  ///< [N] p99 of the change of force that a held output misses, against 10 kHz
+  double load = 0;          ///< share of one processor: median tick time multiplied by the rate
+  double hold_error_n = 0;  ///< [N] p99 of the force change that a held output misses, compared with 10 kHz
   bool current = false;
 };
 
@@ -33,13 +33,13 @@ Result<std::vector<RadiusRow>> measureRadii(const scene::Scene& scene, const Mot
 
 struct EstimatorRow {
   std::string estimator;   ///< "window 3"
-  double tick_ns = 0;      ///< median of a tick with it
-  double force_p99_n = 0;  ///< [N] error of the force, against the velocity that the motion really has
-  double force_max_n = 0;  ///< the same at its worst, which is an impact
+  double tick_ns = 0;      ///< median time of a tick with it
+  double force_p99_n = 0;  ///< [N] error of the force, compared with that of the true velocity
+  double force_max_n = 0;  ///< the same in the worst case, which is an impact
   bool current = false;
 };
 
-/// [main] The estimators over the same motion; none where no model reads a velocity.
+/// [main] The estimators over the same motion; none if no model reads a velocity.
 Result<std::vector<EstimatorRow>> measureEstimators(const scene::Scene& scene, const Motion& motion,
                                                     const host::Services::Log& log);
 

@@ -14,7 +14,7 @@ namespace {
 void writeModels(YAML::Node models, const Knob& knob, size_t value) {
   for (auto model : models)
     if (model["plugin"].as<std::string>("") == knob.plugin) {
-      // Real numbers in full, so that what was measured is what is run.
+      // Real numbers with all digits, so that the run uses what was measured.
       if (knob.kind == HSP_REAL)
         model["parameters"][knob.key] = knob.numbers[value];
       else if (knob.kind == HSP_ARRAY)

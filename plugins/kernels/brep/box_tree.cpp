@@ -12,7 +12,7 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
 constexpr int kBins = 16;
-constexpr int kTooDeep = 20;  // from there on rows are halved by count, so that the depth stays bounded
+constexpr int kTooDeep = 20;  // from this depth on, rows are halved by count, so that the depth stays bounded
 
 double areaOf(const AlignedBox3d& box) {
   if (box.isEmpty()) return 0;
@@ -45,7 +45,7 @@ struct BoxTree::Builder {
   }
 
   /// Where the surface area heuristic splits (Wald 2007, "On fast construction of SAH-based bounding volume
-  /// hierarchies"): elements below the returned place go left.
+  /// hierarchies"): elements before the returned place go left.
   std::size_t split(const Range& range, int depth) const {
     AlignedBox3d centers;
     for (std::size_t i = range.first; i < range.first + range.count; ++i)
@@ -104,7 +104,7 @@ struct BoxTree::Builder {
     return best;
   }
 
-  /// Up to four ranges: the larger ones are split first.
+  /// Makes up to four ranges: the larger ones are split first.
   int cut(const Range& whole, int depth, std::array<Range, 4>& ranges) const {
     int count = 1;
     ranges[0] = whole;
@@ -174,7 +174,7 @@ void BoxTree::build(std::span<const AlignedBox3d> boxes, int row) {
   }
   if (boxes.empty()) return;
   origin_ = bounds_.center();
-  // A probe up to twice the extent away is rounded by less than this; see kBoundShare for those farther away.
+  // For a probe up to twice the extent away, rounding is less than this; see kBoundShare for those farther away.
   margin_ = static_cast<float>(bounds_.diagonal().norm() * std::ldexp(1.0, -21));
   Builder builder{*this, boxes, static_cast<std::size_t>(std::clamp(row, 1, kMaxRow))};
   builder.build(builder.rangeOf(0, boxes.size()), 0);

@@ -22,10 +22,10 @@ struct alignas(64) BoxNode {
   Float4 lo[3], hi[3];
   /// A node (0 or more), or ~(8 * first + count - 1): elements first to first + count - 1 of the tree's order.
   std::array<std::int32_t, 4> child{};
-  std::array<std::int32_t, 4> row{};  ///< of a child that is a row: its number among all rows
+  std::array<std::int32_t, 4> row{};  ///< for a child that is a row: its number among all rows
 };
 
-/// Elements that a child of a node stands for.
+/// The elements for which a child of a node stands.
 struct ElementRow {
   std::uint32_t first, count;
 };
@@ -61,7 +61,7 @@ class BoxTree {
   /// [any] The middle of all boxes; the nodes hold coordinates relative to it.
   const Eigen::Vector3d& origin() const noexcept { return origin_; }
   const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }
-  /// [any] What the boxes are larger by, so that a probe in single precision is nowhere farther from them [m].
+  /// [any] How much larger the boxes are, so that a probe in single precision is never farther from them [m].
   double margin() const noexcept { return static_cast<double>(margin_); }
   std::int32_t rowCount() const noexcept { return row_count_; }
   std::size_t bytes() const noexcept { return nodes_.size() * sizeof(BoxNode) + order_.size() * sizeof order_[0]; }
@@ -88,7 +88,7 @@ class BoxTree {
 
 /// A probe as the nodes of one tree see it.
 struct BoxProbe {
-  /// [any] `p` in the frame of the boxes that the tree was built from.
+  /// [any] `p` in the frame of the boxes from which the tree was built.
   BoxProbe(const BoxTree& tree, const Eigen::Vector3d& p) noexcept {
     const Eigen::Vector3d q = p - tree.origin();
     for (int axis = 0; axis < 3; ++axis) {

@@ -16,15 +16,15 @@ using contact::Foot;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// [m] Nearer to an edge than this, the direction from the foot to the probe is rounding; the force there is nothing.
+/// [m] Nearer to an edge, the direction from the foot to the probe is a rounding error, and the force is nearly zero.
 constexpr double kTouching = 1e-7;
 
 /// What a nearest point says about the outside around it.
 struct Around {
-  Vector3d normal{0, 0, 1};  ///< outward; on edges and corners the pseudonormal (Baerentzen & Aanaes 2005)
+  Vector3d normal{0, 0, 1};  ///< outward; on edges and corners it is the pseudonormal (Baerentzen & Aanaes 2005)
   Vector3d felt{0, 0, 0};    ///< interpolated normal of a smoothed mesh; 0: none
   double u = 0, v = 0;       ///< of the face
-  bool inside = true;        ///< in the inside of a face: normal is exact
+  bool inside = true;        ///< in the interior of a face, so that the normal is exact
   bool open = false;         ///< the surface ends there
   bool sharp = false;        ///< the normal turns there
 };
@@ -99,7 +99,7 @@ Vector3d smoothed(const Model& model, std::uint32_t triangle, double s, double t
   return n.squaredNorm() > 0 ? Vector3d(n.normalized()) : n;
 }
 
-/// Whether two triangles go on into each other: normals are interpolated over their edge, or agree.
+/// True if two triangles continue into each other: normals are interpolated over their edge, or agree.
 bool isSmooth(const Model& model, std::uint32_t triangle, std::uint32_t k) noexcept {
   const Part& part = model.part();
   const std::uint32_t code = part.triangles[triangle].across[k];

@@ -13,12 +13,12 @@
 namespace hapticd::brep {
 
 enum class ElementKind : std::uint32_t {
-  kFace = 0,      ///< index in faces: plane, cylinder, cone, sphere or torus, trimmed
+  kFace = 0,      ///< index in faces: a trimmed plane, cylinder, cone, sphere or torus
   kLeaf = 1,      ///< index in leaves
   kLine = 2,      ///< index in edges
   kCircle = 3,    ///< index in edges
   kPiece = 4,     ///< index in pieces
-  kPole = 5,      ///< index in edges: one that is a single point
+  kPole = 5,      ///< index in edges: an edge that is a single point
   kTriangle = 6,  ///< index in triangles
   kNothing = 7
 };
@@ -55,7 +55,7 @@ struct FaceShape {
   double per_x = 1,
          per_y = 1;    ///< plane: parameters per metre; others: per_y is v per metre of z, or of the slant line
   double nappe = 1;    ///< -1: the face is where the radius is negative (far nappe, inside of a spindle torus)
-  double outward = 1;  ///< sign of the outward normal against the radial one, of planes against x cross y
+  double outward = 1;  ///< sign of the outward normal relative to the radial one, or for planes to x cross y
   Eigen::Array2d middle{0, 0};  ///< of [lo, hi]
   Eigen::Array2d period{0, 0};  ///< 0: none
   SurfaceKind kind = SurfaceKind::kPlane;
@@ -70,7 +70,7 @@ struct EdgeShape {
   std::uint32_t guise = std::numeric_limits<std::uint32_t>::max();  ///< of a spline: which of the model's guised edges
 };
 
-/// A piece of a face without a closed-form foot, so flat that Newton goes straight to the foot on it.
+/// A piece of a face without a closed-form foot, flat enough that Newton's method converges directly to its foot.
 struct Leaf {
   Eigen::Array2d lo, hi;  ///< of (u, v)
   float bend_front = 0;   ///< [1/m] the piece curves toward its outward normal by at most this; 0: not at all

@@ -12,12 +12,12 @@ namespace {
 using Eigen::Array2d;
 using Eigen::Vector3d;
 
-/// A parameter moved by whole periods into the window about the middle of the face.
+/// Moves a parameter by whole periods into the window about the middle of the face.
 double wrapped(double u, double middle, double period) noexcept {
   return period > 0 ? u - period * std::floor((u - middle) / period + 0.5) : u;
 }
 
-/// A probe in cylinder coordinates about the axis of a face.
+/// A probe in cylindrical coordinates about the axis of a face.
 struct AboutAxis {
   double a, b, height, radius;
   AboutAxis(const FaceShape& f, const Vector3d& p) noexcept {
@@ -27,7 +27,7 @@ struct AboutAxis {
     height = w.dot(f.z);
     radius = std::sqrt(a * a + b * b);
   }
-  /// Unit radial direction; on the axis, where all are alike, that of the face's middle.
+  /// Unit radial direction; on the axis, where all directions are alike, that of the face's middle.
   Vector3d radial(const FaceShape& f) const noexcept {
     if (radius > 0) return (a * f.x + b * f.y) / radius;
     return f.nappe * (std::cos(f.middle[0]) * f.x + std::sin(f.middle[0]) * f.y);
@@ -104,7 +104,7 @@ double torusFoot(const FaceShape& f, const Vector3d& p, Hit& hit) noexcept {
   return take(f, at.angle(f), v, d * d, point, hit);
 }
 
-/// Whether the middle of a face lies where the radius is negative.
+/// True if the middle of a face lies where the radius is negative.
 double nappeOf(const Surface& s, const Array2d& middle) {
   if (s.kind == SurfaceKind::kCone) return s.r[0] + middle[1] * s.r[1] < 0 ? -1 : 1;
   if (s.kind == SurfaceKind::kTorus) return s.r[0] + s.r[1] * std::cos(middle[1]) < 0 ? -1 : 1;
@@ -203,7 +203,7 @@ double circleFoot(const EdgeShape& e, const Vector3d& p, Hit& hit) noexcept {
   Vector3d direction = std::cos(t) * e.x + std::sin(t) * e.y;
   if (radius > 0) {
     const double angle = std::atan2(b, a);
-    t = angle + kTurn * std::ceil((e.t0 - angle) / kTurn);  // the first one at or after t0
+    t = angle + kTurn * std::ceil((e.t0 - angle) / kTurn);  // the first angle at or after t0
     if (t <= e.t1) {
       direction = (a * e.x + b * e.y) / radius;
     } else {
@@ -225,7 +225,7 @@ double circleFoot(const EdgeShape& e, const Vector3d& p, Hit& hit) noexcept {
 Vector3d faceNormal(const FaceShape& f, const Vector3d& q) noexcept {
   if (f.kind == SurfaceKind::kPlane) return f.outward * f.z;
   const AboutAxis at(f, q);
-  const Vector3d radial = f.nappe * at.radial(f);  // grows with the signed radius
+  const Vector3d radial = f.nappe * at.radial(f);  // it grows with the signed radius
   switch (f.kind) {
     case SurfaceKind::kCone:
       return f.outward * f.nappe * (f.rise * radial - f.r1 * f.z);

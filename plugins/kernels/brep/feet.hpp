@@ -11,10 +11,10 @@ FaceShape faceShape(const Geometry& geometry, std::uint32_t face);
 EdgeShape edgeShape(const Part& part, const Edge& edge);
 
 /// All of them replace `hit` where they are nearer, and return a lower bound of the squared distance [m^2] of the
-/// element: the distance itself where it was computed, infinity where the element says nothing.
+/// element: the distance itself where it was computed, infinity if the element does not contain the foot.
 
 /// [rt] Foot of p on the base surface of a face, in closed form. The base surface has one local minimum of the distance
-/// alone, so a foot outside the trim says nothing: the nearest point of the face is then on its edges.
+/// alone, so a foot outside the trim can be ignored: the nearest point of the face is then on its edges.
 double faceFoot(const FaceShape& face, const Eigen::Vector3d& p, Hit& hit) noexcept;
 /// [rt] Nearest point of a straight edge.
 double lineFoot(const EdgeShape& edge, const Eigen::Vector3d& p, Hit& hit) noexcept;

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 using spline::CurvePoint;
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kOff = 5e-13;  ///< [m] by which the points may miss the shape
+constexpr double kOff = 5e-13;  ///< [m] by which the points may deviate from the shape
 /// The square of a rational cubic's distance from a centre has degree 6: what is right at so many points of a span is
 /// right between them.
 constexpr int kInSpan = 9;

@@ -18,9 +18,9 @@ using contact::Foot;
 using contact::Sides;
 using Eigen::Vector3d;
 
-constexpr int kMaxCrossings = 6;       ///< of edges between faces in one tick
-constexpr int kMaxTriangles = 256;     ///< that a foot goes over in one tick
-constexpr double kNearer = 1 - 1e-12;  ///< of a squared distance: less is rounding
+constexpr int kMaxCrossings = 6;       ///< most changes of faces over edges in one tick
+constexpr int kMaxTriangles = 256;     ///< most triangles that a foot crosses in one tick
+constexpr double kNearer = 1 - 1e-12;  ///< share of a squared distance: a smaller difference is a rounding error
 
 bool isEdge(const Hit& hit) noexcept {
   return hit.element.kind() >= ElementKind::kLine && hit.element.kind() <= ElementKind::kPole;
@@ -54,8 +54,8 @@ void takeNearer(const Hit& hit, Hit& best) noexcept {
   if (hit.d2 < best.d2) best = hit;
 }
 
-/// Looks at the triangles about a corner, beginning over edge k of `first`. The edge to go on over follows the one that
-/// was come over (`after` 1: turning toward it from the corner's outgoing edge), or goes before it (0).
+/// Looks at the triangles about a corner, beginning over edge k of `first`. The next edge to cross follows the one that
+/// was crossed (`after` 1: turning toward it from the corner's outgoing edge), or goes before it (0).
 void turnAbout(const Part& part, std::uint32_t first, std::uint32_t k, std::uint32_t after, const Vector3d& p,
                Hit& best) noexcept {
   constexpr int kMostAround = 64;
@@ -69,7 +69,7 @@ void turnAbout(const Part& part, std::uint32_t first, std::uint32_t k, std::uint
   }
 }
 
-/// Whether the probe has gone over the convex edge k of the held triangle, in front of the next one.
+/// True if the probe has crossed the convex edge k of the held triangle and is in front of the next one.
 bool isReleased(const Part& part, std::uint32_t triangle, const Vector3d& foot, std::uint32_t k, double side,
                 const Vector3d& p) noexcept {
   const Triangle& t = part.triangles[triangle];
@@ -94,7 +94,7 @@ Followed Tracer::follow(double side, const Vector3d& p, Foot& foot) noexcept {
   return Followed::kOn;
 }
 
-/// The nearest point of the held face, or of a neighbour where that goes on nearer to the probe.
+/// The nearest point of the held face, or of a neighbour that continues nearer to the probe.
 Followed Tracer::followFace(double side, const Vector3d& p) noexcept {
   for (int i = 0; i < kMaxCrossings; ++i) {
     if (held_.hit.element.kind() == ElementKind::kFace) {
@@ -139,7 +139,7 @@ Followed Tracer::slideOver(std::uint32_t edge, double t, double side, const Vect
   const Coedge* own = nullptr;
   for (std::uint32_t c = part.edges[edge].first_coedge; c != kNone; c = part.coedges[c].next)
     if (part.coedges[c].face == held_.face) own = &part.coedges[c];
-  if (own == nullptr) return Followed::kOn;  // an edge at the same vertex, but of other faces
+  if (own == nullptr) return Followed::kOn;  // the edge meets the same vertex, but belongs to other faces
   const Vector3d r = model().placements()[held_.place].toBody(p) - held_.hit.point;
   const Vector3d here = coedgeNormal(geometry, *own, t);
   const Vector3d out = outOf(geometry, *own, t, here);
@@ -155,7 +155,7 @@ Followed Tracer::slideOver(std::uint32_t edge, double t, double side, const Vect
   return Followed::kOn;
 }
 
-/// Triangle by triangle downhill, until none beside the foot is nearer.
+/// Goes downhill from triangle to triangle, until no triangle beside the foot is nearer.
 Followed Tracer::followTriangles(double side, const Vector3d& p_model) noexcept {
   const Vector3d p = model().placements()[held_.place].toBody(p_model);
   held_.hit = footOn(model().part(), held_.face, p);

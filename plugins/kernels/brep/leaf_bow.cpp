@@ -15,11 +15,11 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using spline::SurfacePoint;
 
-constexpr int kBowIntervals = 6;       ///< between samples along an axis
-constexpr double kBowBetween = 1.25;   ///< what is measured at samples may be larger by this between them
-constexpr double kSagBetween = 1.5;    ///< the same of second derivatives
-constexpr double kBowRounding = 1e-9;  ///< of the terms that are compared
-constexpr double kSmoothKink = 1e-6;   ///< [rad] normals that differ by less across a border are one
+constexpr int kBowIntervals = 6;       ///< steps between samples along an axis
+constexpr double kBowBetween = 1.25;   ///< factor by which values between the samples may be larger
+constexpr double kSagBetween = 1.5;    ///< the same factor for second derivatives
+constexpr double kBowRounding = 1e-9;  ///< share of the terms that are compared
+constexpr double kSmoothKink = 1e-6;   ///< [rad] two normals across a border that differ by less than this count as one
 
 /// Derivatives along the two directions of a leaf, in its frame.
 struct LeafSample {
@@ -133,8 +133,8 @@ void keepTerms(const MeasuredBow& measured, LeafBow& bow) {
   bow.twist = widened(measured.twist);
 }
 
-/// What holds a leaf: a box in its frame, and cylinders about the centres of curvature of the direction along which it
-/// is deeper.
+/// What encloses a leaf: a box in its frame, and cylinders about the centres of curvature of the direction along which
+/// it is deeper.
 class LeafHull {
  public:
   /// @param corner [m] of the leaf, in the frame of the bow
@@ -178,7 +178,7 @@ class LeafHull {
   double inner_ = LeafBow::kEndless, outer_ = 0;
 };
 
-/// Whether the normal turns nowhere on a border, from one side of it to the other.
+/// True if the normal does not turn on a border, from one side of it to the other.
 bool isSmoothAcross(const Geometry& geometry, std::uint32_t surface, const Array2d& lo, const Array2d& hi, int axis,
                     bool at_high) {
   constexpr int kPlaces = 5;
@@ -197,7 +197,7 @@ bool isSmoothAcross(const Geometry& geometry, std::uint32_t surface, const Array
   return true;
 }
 
-/// The same for all borders but those where the surface ends.
+/// The same for all borders except those where the surface ends.
 bool goesOnSmoothly(const Geometry& geometry, std::uint32_t surface, const Array2d& lo, const Array2d& hi,
                     std::uint32_t ends) {
   for (int axis = 0; axis < 2; ++axis)

@@ -52,13 +52,13 @@ enum class FeetOfLeaf : std::uint8_t {
   kUnknown
 };
 
-/// What a probe sees of a leaf.
+/// How a probe sees a leaf.
 struct LeafSight {
   FeetOfLeaf feet = FeetOfLeaf::kUnknown;
-  double least_bend = 0;  ///< of kOne: the least second derivative of half the squared distance, in any direction
+  double least_bend = 0;  ///< for kOne: the least second derivative of half the squared distance, in any direction
 };
 
-/// [rt] What a probe sees of the leaf. @param q [m] the probe in the frame of the leaf
+/// [rt] How a probe sees the leaf. @param q [m] the probe in the frame of the leaf
 LeafSight feetSeenFrom(const LeafBow& bow, const Eigen::Vector3d& q) noexcept;
 
 /// [rt] (u, v) near the foot; may lie outside the leaf. @param middle (u, v) in the middle of the leaf

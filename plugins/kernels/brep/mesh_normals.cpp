@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Angle of a triangle at a corner.
+/// The angle of a triangle at a corner.
 double angleAt(const Part& part, const Triangle& t, std::size_t corner) {
   const Vector3d a = vec(part.points[t.corner[corner]]);
   const Vector3d b = vec(part.points[t.corner[(corner + 1) % 3]]) - a;
@@ -34,7 +34,7 @@ class Groups {
   std::vector<std::uint32_t> parent_;
 };
 
-/// The angle to smooth over in the body of each triangle.
+/// The angle over which the body of each triangle is smoothed.
 std::vector<float> anglesOf(const Part& part) {
   std::vector<float> angles(part.triangles.size(), 0);
   for (const Body& body : part.bodies)
@@ -53,7 +53,7 @@ void joinOverFlatEdges(const Part& part, const std::vector<float>& angles, Group
       const std::uint32_t other = t.across[k] / 4, m = t.across[k] % 4;
       const Triangle& o = part.triangles[other];
       if (other <= i || o.across[m] != 4 * i + k) continue;  // seen from the other side already, or non-manifold
-      if (o.corner[m] != t.corner[(k + 1) % 3]) continue;    // the two disagree about the outside
+      if (o.corner[m] != t.corner[(k + 1) % 3]) continue;    // the two triangles disagree about the outside
       const Vector3d no = triangleNormal(part, o);
       if (!(std::atan2(n.cross(no).norm(), n.dot(no)) <= static_cast<double>(angles[i]))) continue;
       groups.join(3 * i + k, 3 * other + (m + 1) % 3);

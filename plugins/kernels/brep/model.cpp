@@ -158,7 +158,7 @@ class ModelBuilder {
     }
   }
 
-  /// Faces that a look at an element concerns.
+  /// Faces that are concerned when an element is examined.
   template <class F>
   void forEachFaceOf(Element element, F&& use) const {
     const auto of_edge = [&](std::uint32_t edge) {
@@ -270,9 +270,9 @@ class ModelBuilder {
   Model& model_;
   Part& part_;
   const ModelOptions& options_;
-  std::vector<Element> elements_;  ///< of the body whose tree is being planted
+  std::vector<Element> elements_;  ///< of the body whose tree is being built
   std::vector<AlignedBox3d> boxes_;
-  std::vector<TurnedBox> turned_;  ///< closer boxes of the same
+  std::vector<TurnedBox> turned_;  ///< closer boxes for the same elements
 };
 
 Model::Model(Part part, const ModelOptions& options) : part_(std::move(part)) {

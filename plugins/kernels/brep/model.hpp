@@ -32,7 +32,7 @@ struct Placement {
   std::uint32_t instance = 0;       ///< in the part
   std::uint32_t first_feature = 0;  ///< feature number of the body's first face or triangle
   bool moved = false;               ///< the pose is not the identity
-  bool solid = false;               ///< bounds a volume: it has an inside
+  bool solid = false;               ///< it bounds a volume, so it has an inside
 
   Eigen::Vector3d toBody(const Eigen::Vector3d& p) const noexcept {
     return moved ? Eigen::Vector3d(rotation.transpose() * (p - position)) : p;
@@ -55,7 +55,7 @@ struct BodyTree {
   std::vector<RowBox> rows;       ///< by the number of the row; all but meshes
   std::vector<RowSlab> slabs;     ///< the same of meshes
 
-  /// [rt] Asks for the memory of a child of a node that will be looked at soon.
+  /// [rt] Prefetches the memory of a child of a node that will be examined soon.
   void fetchAhead(std::int32_t child, std::int32_t row) const noexcept {
     const auto at = static_cast<std::size_t>(row);
     if (child >= 0) {
@@ -78,7 +78,7 @@ struct BodyTree {
   }
 };
 
-/// Built once, then constant: every const function may run in any thread.
+/// It is built once and then constant: every const function may run in any thread.
 class Model {
  public:
   /// [main] @throws std::invalid_argument for the user, if `options.instance` names nothing or the part has no faces.
@@ -116,13 +116,13 @@ class Model {
   std::int32_t rootOfFace(std::uint32_t index) const noexcept { return face_roots_[index]; }
   /// [any] Boxes of the placements in the model's frame; only if there are several.
   const BoxTree& placementTree() const noexcept { return placement_tree_; }
-  /// [any] Faces and triangles over all placements.
+  /// [any] The number of faces and triangles over all placements.
   std::uint32_t featureCount() const noexcept { return feature_count_; }
   /// [main] Instance and face of a feature, in words: "bolt: face 3 'head'".
   std::string featureName(std::uint32_t feature) const;
 
   const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }
-  /// [any] Whether any body bounds no volume.
+  /// [any] True if some body bounds no volume.
   bool open() const noexcept { return open_; }
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }
   std::size_t bytes() const noexcept;

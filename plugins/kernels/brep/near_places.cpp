@@ -15,7 +15,7 @@ int NearPlaces::rows() const noexcept {
   return rows;
 }
 
-/// The elements of one placement. No distance changes between its frame and the model's.
+/// The elements of one placement. Distances are the same in its frame and in the model's.
 bool NearPlaces::add(const Model& model, std::uint32_t place, const Vector3d& p, double reach) noexcept {
   const Placement& at = model.placements()[place];
   const BodyTree& body = model.body(at.body);

@@ -14,26 +14,26 @@ class NearPlaces {
   static constexpr int kMostPlaces = 4;
   static constexpr int kMostRows = kMostPlaces * NearElements::kMostRows;
   using Limits = ElementLimits;
-  /// Boxes of four: a search of the whole model that takes fewer is as good as these elements, and gathering them costs
+  /// Boxes of four: if a search of the whole model examines fewer, it is as good as these elements, and gathering costs
   /// more.
   static constexpr int kDear = 24;
 
-  /// What is near in one placement.
+  /// The elements near the probe in one placement.
   struct Near {
     std::uint32_t place = 0;
     NearElements elements;
   };
 
-  /// [rt] Takes what may be within `reach` [m] of p (frame of the model). False, and then nothing is known: there are
-  /// too many placements or elements there, or one is a mesh.
+  /// [rt] Collects what may be within `reach` [m] of p (frame of the model). False means that nothing is known: there
+  /// are too many placements or elements there, or one is a mesh.
   bool gather(const Model& model, const Eigen::Vector3d& p, double reach) noexcept;
-  /// [rt] The probe has gone this far [m].
+  /// [rt] The probe has moved by this way [m].
   void go(double way) noexcept {
     for (int i = 0; i < count_; ++i) places_[static_cast<std::size_t>(i)].elements.go(way);
   }
-  /// [rt] Nothing is known any longer.
+  /// [rt] From now on nothing is known.
   void forget() noexcept { count_ = 0, beyond_ = -1; }
-  /// [rt] Nothing else is nearer to p than this [m]. Below 0: nothing is known.
+  /// [rt] Nothing else is nearer to p than this [m]. Below 0 nothing is known.
   double beyond(const Eigen::Vector3d& p) const noexcept { return beyond_ - (p - center_).norm(); }
   /// [any] Of all placements.
   int rows() const noexcept;

@@ -10,17 +10,17 @@
 
 namespace hapticd::brep {
 
-/// What bounds the rows of elements, and how many are worth a look in one tick. A look at a spline leaf is dear.
+/// What bounds the rows of elements, and how many are worth a look in one tick. Examining a spline leaf is expensive.
 struct ElementLimits {
   using Shape = RowBox;
   static constexpr int kMostFours = 8;         ///< of rows
   static constexpr int kMostCandidates = 128;  ///< rows within reach, of which the nearest are taken
-  static constexpr int kMostNodes = 32;        ///< of the tree, looked at in one gathering
+  static constexpr int kMostNodes = 32;        ///< nodes of the tree that one gathering examines
   static constexpr int kFew = 8, kMany = 20;
-  static constexpr double kWorthIt = 1.5;  ///< ways of a tick, below which gathering costs more than it spares
-  static constexpr bool kLearns = true;    ///< a distance that was measured bounds a row closer than its shape
+  static constexpr double kWorthIt = 1.5;  ///< times the way of a tick: below this, gathering costs more than it saves
+  static constexpr bool kLearns = true;    ///< a measured distance bounds a row more closely than its shape
 };
-/// The same of triangles, where it is cheap.
+/// The same for triangles, which are cheap.
 struct TriangleLimits {
   using Shape = RowSlab;
   static constexpr int kMostFours = 24, kMostCandidates = 96, kMostNodes = 128, kFew = 16, kMany = 32;
@@ -40,15 +40,15 @@ class NearRows {
   static constexpr int kMostRows = 4 * Limits::kMostFours;
 
   /// [rt] Takes the rows of a body that may be within `reach` [m] of p (frame of the body), the nearest ones if they
-  /// are many. False, and then nothing is known: they are far too many.
+  /// are many. False means that nothing is known, because there are far too many.
   bool gather(const BodyTree& body, const Eigen::Vector3d& p, double reach) noexcept;
-  /// [rt] The probe has gone this far [m].
+  /// [rt] The probe has moved by this way [m].
   void go(double way) noexcept { gone_ += way; }
-  /// [rt] Nothing is known any longer.
+  /// [rt] From now on nothing is known.
   void forget() noexcept { beyond_ = -1; }
-  /// [rt] No element of other rows is nearer to p than this [m]. Below 0: nothing is known.
+  /// [rt] No element of other rows is nearer to p than this [m]. Below 0 nothing is known.
   double beyond(const Eigen::Vector3d& p) const noexcept { return beyond_ - (p - center_).norm(); }
-  /// [rt] No element of a row is nearer to the probe of now than the square root of this [m].
+  /// [rt] No element of a row is nearer to the present probe than the square root of this [m].
   void learn(int four, int lane, double distance2) noexcept {
     if constexpr (!Limits::kLearns) return;
     constexpr double kRoundedDown = 1 - 1e-6;
@@ -57,7 +57,7 @@ class NearRows {
 
   int rows() const noexcept { return rows_; }
   int fours() const noexcept { return (rows_ + 3) / 4; }
-  /// [rt] Lower bounds of the squared distances [m^2] to the rows of a four.
+  /// [rt] Lower bounds of the squared distances [m^2] to four rows.
   Float4 distances(int four, const BoxProbe& probe) const noexcept {
     constexpr Float4 kZero{};
     const Float4 boxes = rowDistances(fours_[static_cast<std::size_t>(four)], probe);
@@ -79,7 +79,7 @@ class NearRows {
   void add(const Shape& shape, std::int32_t child) noexcept;
 
   std::array<Four, Limits::kMostFours> fours_;
-  std::array<Float4, Limits::kMostFours> known_{};  ///< [m] distances that were measured, and the way until then
+  std::array<Float4, Limits::kMostFours> known_{};  ///< [m] measured distances, and the way until then
   std::array<std::int32_t, kMostRows> children_{};
   Eigen::Vector3d center_{0, 0, 0};
   double beyond_ = -1;

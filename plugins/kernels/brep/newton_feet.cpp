@@ -15,7 +15,7 @@ using spline::CurvePoint;
 using spline::SurfacePoint;
 
 constexpr int kMostSteps = 16;
-/// [m] A Newton step as short as this leaves an error of its square times the curvature: nothing.
+/// [m] A Newton step this short leaves an error of its square times the curvature, which is negligible.
 constexpr double kShortStep = 1e-8;
 /// The Hessian may fall to this share of the first-order one before the step is no longer Newton's.
 constexpr double kFlattest = 1e-5;
@@ -28,11 +28,11 @@ struct LeafState {
   double f;    ///< |r|^2
 };
 
-/// What is asked of a leaf.
+/// What is to be found on a leaf.
 struct LeafTask {
   const Geometry& geometry;
   const Leaf& leaf;
-  std::uint32_t surface;  ///< of an offset: its basis, whose feet have the same parameters
+  std::uint32_t surface;  ///< for an offset: its basis, whose feet have the same parameters
   const Vector3d& p;
   int evaluations = 0;
   bool arrived = true;  ///< the last descent ended at a minimum
@@ -67,7 +67,7 @@ Vector2d stepFrom(const LeafTask& task, const LeafState& s) noexcept {
   return {(h01 * g[1] - h11 * g[0]) / det, (h01 * g[0] - h00 * g[1]) / det};
 }
 
-/// Newton from s on; the distance never grows. Leaves the last short step to the caller.
+/// Newton's method from s on; the distance never grows. It leaves the last short step to the caller.
 Vector2d descend(LeafTask& task, LeafState& s) noexcept {
   constexpr double kStuck = 1e-7;  // of the distance: a step that rounding of its square may make useless
   Vector2d d = stepFrom(task, s);
@@ -92,7 +92,7 @@ Vector2d descend(LeafTask& task, LeafState& s) noexcept {
   return ((s.uv + d.array()).max(task.leaf.lo).min(task.leaf.hi) - s.uv).matrix();
 }
 
-/// Whether the surface ends where the foot presses against its border.
+/// True if the surface ends where the foot presses against its border.
 bool pressesOutward(const Leaf& leaf, const LeafState& s, const Array2d& uv) noexcept {
   constexpr double kStationary = 1e-9;  // cosine between the way to the probe and the tangent
   for (int axis = 0; axis < 2; ++axis) {
@@ -127,7 +127,7 @@ double take(const LeafTask& task, const FaceShape& face, const LeafState& s, con
   return d2;
 }
 
-/// Whether the probe is nearer to its foot than the leaf's centres of curvature on its side.
+/// True if the probe is nearer to its foot than the leaf's centres of curvature on its side.
 bool isWithinFocus(const Leaf& leaf, const FaceShape& face, const LeafState& s, double offset) noexcept {
   const double side = -face.outward * s.r.dot(s.E.Su.cross(s.E.Sv));
   return (std::sqrt(s.f) + offset) * static_cast<double>(side > 0 ? leaf.bend_front : leaf.bend_back) < 1;
@@ -169,7 +169,7 @@ PieceAnswer leafFoot(const Geometry& geometry, const Leaf& leaf, const FaceShape
   answer.d2 = take(task, face, s, d, offset, answer.region2, hit);
   answer.alone =
       task.arrived && (start.sight.feet != FeetOfLeaf::kUnknown || isWithinFocus(leaf, face, s, std::abs(offset)));
-  // Beyond a centre of curvature there may be several feet: look from elsewhere too.
+  // Beyond a centre of curvature there may be several feet, so it starts from elsewhere too.
   for (int corner = 0; corner < 4 && !answer.alone && start.elsewhere; ++corner) {
     const Array2d share(corner % 2 == 0 ? 0.1 : 0.9, corner < 2 ? 0.1 : 0.9);
     task.at(leaf.lo + share * (leaf.hi - leaf.lo), s);
@@ -244,7 +244,7 @@ double take(const CurveTask& task, const CurveState& s, double d, Hit& hit) noex
   return d2;
 }
 
-/// Lower bound of the squared distance to a piece along which it bends up everywhere; 0: it may not.
+/// Lower bound of the squared distance to a piece along which it curves upward everywhere; 0: it may not.
 double leastFrom(const CurveTask& task, const CurveState& s) noexcept {
   const double bend = leastBendSeenFrom(task.piece.shape, task.p);
   const double speed2 = s.C.C1.squaredNorm(), slope = s.r.dot(s.C.C1);
@@ -268,7 +268,7 @@ PieceAnswer pieceFoot(const Geometry& geometry, const CurvePiece& piece, const V
     }
   double d = task.descend(s);
   answer.d2 = take(task, s, d, hit);
-  // Beyond a centre of curvature there may be several feet, or none but the ends.
+  // Beyond a centre of curvature there may be several feet, or only the ends.
   const FeetOfPiece feet = std::sqrt(s.f) * piece.bend < 1 ? FeetOfPiece::kOne : feetSeenFrom(piece.shape, p);
   answer.alone = feet != FeetOfPiece::kUnknown;
   if (feet != FeetOfPiece::kOne)

@@ -12,7 +12,7 @@ namespace hapticd::brep {
 
 /// An index that points to nothing.
 inline constexpr std::uint32_t kNone = 0xffffffffu;
-/// Farthest coordinate, largest radius [m].
+/// Limits of coordinates and of radii [m].
 inline constexpr double kFarthestPart = 1e6;
 
 using Vector = std::array<double, 3>;
@@ -84,9 +84,9 @@ struct Vertex {
 };
 
 enum class EdgeKind : std::uint32_t {
-  kUnknown = 0,      ///< not classified: whoever loads the part does it
+  kUnknown = 0,      ///< not classified yet: the loader of the part does it
   kSmooth = 1,       ///< the normals of both faces agree within 0.1 degrees everywhere
-  kConvex = 2,       ///< the solid takes less than half of the room around it
+  kConvex = 2,       ///< the solid takes less than half of the space around it
   kConcave = 3,      ///< more than half
   kMixed = 4,        ///< convex in some places, concave in others
   kFree = 5,         ///< one face alone
@@ -96,9 +96,9 @@ enum class EdgeKind : std::uint32_t {
 
 /// A curve in space between two vertices, and the coedges that bound faces with it.
 struct Edge {
-  std::uint32_t curve = kNone;                              ///< in curves3; kNone: kPole alone
+  std::uint32_t curve = kNone;                              ///< in curves3; kNone: only for kPole
   std::uint32_t first_vertex = kNone, last_vertex = kNone;  ///< at t0 and t1; kNone: unknown
-  std::uint32_t first_coedge = kNone, coedge_count = 0;     ///< the list goes on in Coedge::next
+  std::uint32_t first_coedge = kNone, coedge_count = 0;     ///< the list continues in Coedge::next
   EdgeKind kind = EdgeKind::kUnknown;
   double t0 = 0, t1 = 0;  ///< parameters of the curve, t0 < t1
   double angle = 0;       ///< [rad] largest angle between the normals of the two faces
@@ -123,7 +123,7 @@ struct Loop {
   std::uint32_t first = 0, count = 0;  ///< coedges
 };
 
-/// The part of a surface inside its loops. Without loops: all of [lo, hi].
+/// The part of a surface inside its loops; without loops, all of [lo, hi].
 struct Face {
   std::uint32_t surface = kNone;
   std::uint32_t first_loop = 0, loop_count = 0;
@@ -158,10 +158,10 @@ struct Body {
   double smooth_angle = 0;  ///< [rad] meshes: normals are interpolated over edges that bend by less
 };
 
-/// A body where it stands, or (body = kNone) an assembly that others name as their parent.
+/// A body in its place, or (body = kNone) an assembly that others name as their parent.
 struct Instance {
   std::uint32_t body = kNone;
-  std::uint32_t parent = kNone;  ///< a lower index, an assembly
+  std::uint32_t parent = kNone;  ///< a lower index, of an assembly
   std::uint32_t name = kNone, colour = 0;
   /// Rows of (rotation | position [m]) from the body's frame to the part's, whatever the parent. A proper rotation.
   std::array<double, 12> pose{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
@@ -189,7 +189,7 @@ struct Loss {
 struct Source {
   std::string file;    ///< its name, without folders
   std::string sha256;  ///< of its bytes, hexadecimal
-  std::string unit;    ///< of its lengths: "mm", "in"
+  std::string unit;    ///< unit of its lengths: "mm", "in"
 };
 
 struct Part {

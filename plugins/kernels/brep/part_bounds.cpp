@@ -12,7 +12,7 @@ using Eigen::AlignedBox3d;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Least and largest value of a cos t + b sin t on [t0, t1].
+/// The least and largest values of a cos t + b sin t on [t0, t1].
 struct Range {
   double least, most;
 };

@@ -31,7 +31,7 @@ Vector cross(const Vector& a, const Vector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// All records of a kind belong to one body each.
+/// Every record of a kind must belong to exactly one body.
 void heldOnce(std::uint64_t held, std::size_t all, const char* what) {
   if (held == all) return;
   throw PartError("bodies: they hold " + std::to_string(held) + " " + what + ", expected all " + std::to_string(all) +
@@ -56,7 +56,7 @@ struct Where {
   void index_or_none(std::uint32_t value, std::size_t count, const char* what) const {
     if (value != kNone) index_in(value, count, what);
   }
-  /// A row of records inside an array.
+  /// Checks a range of records inside an array.
   void range_in(std::uint64_t first, std::uint64_t length, std::size_t count, const char* what) const {
     if (first > count || length > count - first)
       fail(std::string(what) + " " + std::to_string(first) + " to " + std::to_string(first + length) +
@@ -193,7 +193,7 @@ class Checker {
   /// Points of `dimension` coordinates, then weights.
   void net(const Where& at, std::uint64_t place, std::uint64_t points, std::uint64_t dimension, bool rational,
            double farthest) const {
-    if (points > part_.reals.size()) at.fail("more control points than numbers");
+    if (points > part_.reals.size()) at.fail("it has more control points than numbers");
     at.range_in(place, points * (dimension + (rational ? 1 : 0)), part_.reals.size(), "points");
     for (double value : real(place, points * dimension))
       at.finite(std::array{value}, farthest, "a coordinate of a control point");
@@ -311,7 +311,7 @@ class Checker {
     if (b.kind != BodyKind::kMesh) at.need(b.triangle_count == 0, "triangles, expected those of meshes alone");
     for (std::uint32_t i = 0; i < b.triangle_count; ++i)
       for (std::uint32_t corner : part_.triangles[b.first_triangle + i].corner)
-        if (corner - b.first_point >= b.point_count)  // unsigned: also false below the first
+        if (corner - b.first_point >= b.point_count)  // unsigned, so it is also false below the first
           Where{"triangle", b.first_triangle + i}.fail("corner " + std::to_string(corner) + " is not of its body");
   }
 
@@ -358,7 +358,7 @@ class Checker {
       triangles += body.triangle_count;
       for (std::uint32_t i = 0; i < body.face_count; ++i)
         if (part_.faces[body.first_face + i].body != b)
-          Where{"body", b}.fail("face " + std::to_string(body.first_face + i) + " is of another body");
+          Where{"body", b}.fail("face " + std::to_string(body.first_face + i) + " belongs to another body");
     }
     heldOnce(faces, part_.faces.size(), "faces");
     heldOnce(triangles, part_.triangles.size(), "triangles");

@@ -7,7 +7,7 @@
 
 namespace hapticd::brep {
 
-/// What is wrong with a part, in words for the user: which record, what it holds, what was expected.
+/// What is wrong with a part, in words for the user: which record, its value, and what was expected.
 class PartError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -14,10 +14,10 @@ namespace hapticd::brep {
 /// First line of a part file.
 inline constexpr char kPartMagic[] = "hapticd-part/1\n";
 
-/// [any] Whether bytes begin as those of a part file of any version do.
+/// [any] True if bytes begin as those of a part file of any version do.
 bool looksLikePart(std::span<const std::byte> bytes) noexcept;
 
-/// [main] Reads and checks a part, whatever the bytes are. `name` opens the messages.
+/// [main] Reads and checks a part, whatever the bytes are. Messages begin with `name`.
 /// @throws PartError that says where the file is wrong and what was expected.
 Part readPart(std::span<const std::byte> bytes, const std::string& name);
 

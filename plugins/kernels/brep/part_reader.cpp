@@ -42,7 +42,7 @@ std::vector<std::string> textsAt(const Json& object, const char* key) {
   if (found == object.end()) return texts;
   if (!found->is_array()) throw PartError(std::string("header: ") + key + " is not a list, expected texts");
   for (const Json& text : *found) {
-    if (!text.is_string()) throw PartError(std::string("header: ") + key + " holds something else than texts");
+    if (!text.is_string()) throw PartError(std::string("header: ") + key + " holds something other than texts");
     texts.push_back(plainText(text.get<std::string>()));
   }
   return texts;
@@ -58,7 +58,7 @@ void readLosses(const Json& header, Part& part) {
   if (losses == header.end()) return;
   if (!losses->is_array()) throw PartError("header: losses is not a list, expected {what, reason, size_m}");
   for (const Json& entry : *losses) {
-    if (!entry.is_object()) throw PartError("header: losses holds something else than {what, reason, size_m}");
+    if (!entry.is_object()) throw PartError("header: losses holds something other than {what, reason, size_m}");
     Loss loss{textAt(entry, "what"), textAt(entry, "reason"), numberAt(entry, "size_m"), kNone};
     if (const auto face = entry.find("face"); face != entry.end() && face->is_number_unsigned())
       loss.face = static_cast<std::uint32_t>(std::min<std::uint64_t>(face->get<std::uint64_t>(), kNone));
@@ -81,7 +81,7 @@ std::vector<Section> readSections(const Json& header) {
   return sections;
 }
 
-/// The bytes of a section, known to be what was written.
+/// The bytes of a section, checked to be those that were written.
 std::span<const std::byte> bytesOf(const Section& section, std::span<const std::byte> data) {
   const std::string what = "section " + section.name;
   if (section.count > data.size() / section.record)
@@ -97,7 +97,7 @@ std::span<const std::byte> bytesOf(const Section& section, std::span<const std::
   return bytes;
 }
 
-/// Records of a file of an older version are shorter: what they lack keeps its default.
+/// Records in a file of an older version are shorter: members that they lack keep their defaults.
 template <class Record>
 void readRecords(const Section& section, std::span<const std::byte> data, std::vector<Record>& records) {
   if (section.record > sizeof(Record))
@@ -146,7 +146,7 @@ Part readBytes(std::span<const std::byte> bytes) {
     const Section* wanted = nullptr;
     for (const Section& section : sections) {
       if (section.name != name) continue;
-      if (wanted != nullptr) throw PartError("section " + section.name + ": is there twice, expected once");
+      if (wanted != nullptr) throw PartError("section " + section.name + ": occurs twice, expected once");
       wanted = &section;
     }
     if (wanted != nullptr) readRecords(*wanted, bytes.subspan(begin), records);

@@ -17,7 +17,7 @@ inline constexpr double kBetweenSamples = 1.5;
 struct PieceBow {
   Eigen::Vector3d centre{0, 0, 0};             ///< o [m]
   Eigen::Vector3d bow{0, 0, 0};                ///< K in the middle [1/m]
-  Eigen::Vector3d along{1, 0, 0};              ///< T in the middle, unit
+  Eigen::Vector3d along{1, 0, 0};              ///< T x K, unit; K and T hardly have a part along it
   Eigen::Vector3d across{0, 0, 1};             ///< T x K, unit: K and T hardly change along it
   double bow_off = 0, bow_off_across = 0;      ///< [1/m] largest difference of K from that in the middle
   double along_off = 0, along_off_across = 0;  ///< the same of T
@@ -29,16 +29,16 @@ struct PieceBow {
 PieceBow bowOf(const Geometry& geometry, std::uint32_t curve, double t0, double t1);
 
 enum class FeetOfPiece : std::uint8_t {
-  kOne,      ///< one minimum of the distance, or it grows from one end to the other
-  kAtAnEnd,  ///< no minimum but the ends
+  kOne,      ///< the distance has one minimum, or grows from one end to the other
+  kAtAnEnd,  ///< the only minima are the ends
   kUnknown
 };
 
-/// [rt] The least second derivative along the arc that half of the squared distance to p has on the piece; where it is
-/// not above 0, nothing is known.
+/// [rt] The least second derivative along the arc that half of the squared distance to p has on the piece; if it is not
+/// above 0, nothing is known.
 double leastBendSeenFrom(const PieceBow& bow, const Eigen::Vector3d& p) noexcept;
 
-/// [any] What p sees of the piece.
+/// [any] How p sees the piece.
 FeetOfPiece feetSeenFrom(const PieceBow& bow, const Eigen::Vector3d& p) noexcept;
 
 }  // namespace hapticd::brep

@@ -20,10 +20,10 @@ using Eigen::Vector3d;
 using spline::CurvePoint;
 using spline::SurfacePoint;
 
-constexpr double kMostTurn = 0.44;  ///< [rad] of the normals of a leaf, 25 degrees; of the tangents of a curve's piece
+constexpr double kLeafTurn = 0.44;  ///< [rad] of the normals of a leaf, 25 degrees; of the tangents of a curve's piece
 constexpr int kMostHalvings = 2;    ///< of a leaf that bends unevenly
 
-/// Principal curvatures at a point, toward Su x Sv positive; false where the tangents vanish.
+/// Principal curvatures at a point, positive toward Su x Sv; false if the tangents vanish.
 bool curvatures(const SurfacePoint& E, double& least, double& most) {
   const Vector3d N = E.Su.cross(E.Sv);
   const double E1 = E.Su.squaredNorm(), F1 = E.Su.dot(E.Sv), G1 = E.Sv.squaredNorm(), det = E1 * G1 - F1 * F1;
@@ -55,11 +55,11 @@ class FaceCutter {
   }
 
  private:
-  /// The nets of the Bezier pieces give boxes that hold them for certain.
+  /// The nets of the Bezier pieces give boxes that are certain to contain them.
   void cutSpline() {
     const spline::SurfaceData data = splineOf(geometry_.part(), surface_);
     trace::BoxTree pieces;
-    pieces.add(data, 0, 1 - std::cos(kMostTurn));
+    pieces.add(data, 0, 1 - std::cos(kLeafTurn));
     const Array2d lo(data.domain(0)[0], data.domain(1)[0]), hi(data.domain(0)[1], data.domain(1)[1]);
     for (int i = 0; i < pieces.leafCount(); ++i) {
       const trace::Leaf& piece = pieces.leaf(i);
@@ -67,7 +67,7 @@ class FaceCutter {
     }
   }
 
-  /// Rows and columns of one turn each, with boxes from samples: for the few surfaces of other kinds.
+  /// Rows and columns of one turn each, with boxes from samples, for the few surfaces of other kinds.
   void cutEvenly() {
     const Array2d lo = vec(face_.lo).array(), hi = vec(face_.hi).array();
     const std::array<int, 2> count{turnsAlong(0, lo, hi), turnsAlong(1, lo, hi)};
@@ -98,10 +98,10 @@ class FaceCutter {
       }
       widest = std::max(widest, turn);
     }
-    return std::clamp(static_cast<int>(std::ceil(widest / kMostTurn)) + 1, 2, kMost);
+    return std::clamp(static_cast<int>(std::ceil(widest / kLeafTurn)) + 1, 2, kMost);
   }
 
-  /// A chord over a cell is off by an eighth of its second differences.
+  /// A chord over a cell deviates by an eighth of its second differences.
   AlignedBox3d sampledBox(const Array2d& lo, const Array2d& hi) const {
     constexpr int kSamples = 6;
     AlignedBox3d box;
@@ -191,7 +191,7 @@ class FaceCutter {
   std::vector<BoxedLeaf>& leaves_;
 };
 
-/// The box of an elliptic arc along the rows of `frame`: where it turns along each.
+/// The box of an elliptic arc along the rows of `frame`, from the places where it turns along each.
 AlignedBox3d arcBox(const Curve3& c, double t0, double t1, const Matrix3d& frame) {
   const Vector3d o = frame * vec(c.o), x = frame * vec(c.x), y = frame * vec(c.y);
   const auto at = [&](double t) { return Vector3d(o + std::cos(t) * x + std::sin(t) * y); };
@@ -240,7 +240,7 @@ class EdgeCutter {
       turn = std::max(turn, std::atan2(C.C1.cross(first).norm(), C.C1.dot(first)));
       bend = std::max(bend, C.C1.cross(C.C2).norm() / (speed * speed * speed));
     }
-    if (turn > kMostTurn && depth < kDeepest) {
+    if (turn > kLeafTurn && depth < kDeepest) {
       halve(t0, 0.5 * (t0 + t1), depth + 1);
       halve(0.5 * (t0 + t1), t1, depth + 1);
       return;
@@ -253,7 +253,7 @@ class EdgeCutter {
     made.piece = {t0, t1, bend, edge_index_, (t0 <= edge_.t0 ? 1u : 0u) | (t1 >= edge_.t1 ? 2u : 0u), {}};
     made.piece.shape = bowOf(geometry_, edge_.curve, t0, t1);
     const PieceBow& bow = made.piece.shape;
-    if (bow.along.squaredNorm() > 0.5) {  // else the curve stands still in the middle
+    if (bow.along.squaredNorm() > 0.5) {  // otherwise the curve has no speed in the middle
       made.turned.frame.row(0) = bow.along;
       made.turned.frame.row(1) = bow.across;
       made.turned.frame.row(2) = bow.along.cross(bow.across);
@@ -287,7 +287,7 @@ class EdgeCutter {
     turned.outer = outer + sag;
   }
 
-  /// The net of a piece holds it.
+  /// The net of a piece contains it.
   void netBoxes(double t0, double t1, BoxedPiece& made) const {
     const spline::CurveData data = splineOf(geometry_.part(), curve_);
     const auto domain = data.domain();

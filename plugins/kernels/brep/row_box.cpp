@@ -25,8 +25,8 @@ RowBox rowBox(const TurnedBox& turned, const BoxTree& tree) {
     // Along a rounded axis the other two add a little; the margin is for the rounded center and the rounded probe.
     row.half[i] = static_cast<float>(half[i] * (1 + 1e-6) + 1e-6 * half.sum() + tree.margin());
   }
-  constexpr double kLeastRadii = 30;  // radii of half the box: what is as flat as
-                                      // this, the box holds as closely
+  constexpr double kLeastRadii = 30;  // radii of half the box: a shape as flat as
+                                      // this is enclosed as closely by the box
   if (!(turned.outer < kLeastRadii * half.maxCoeff())) return row;
   const Vector3d middle = turned.box.center();
   row.focus[0] = static_cast<float>(turned.focus[0] - middle[0]);

@@ -11,30 +11,30 @@
 
 namespace hapticd::brep {
 
-/// A box in a frame of its own, as it is measured. What bends like an arc about a line along axis 1 is thinner than its
-/// box: it keeps between two cylinders about that line.
+/// A box in a frame of its own, as it is measured. A shape that bends like an arc about a line along axis 1 is thinner
+/// than its box: it lies between two cylinders about that line.
 struct TurnedBox {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: unit axes at right angles
-  Eigen::AlignedBox3d box;                              ///< of frame * x, for every x that it holds
+  Eigen::AlignedBox3d box;                              ///< range of frame * x, for every x inside
   Eigen::Vector2d focus{0, 0};                          ///< where the line is, along axes 0 and 2
   double inner = 0;                                     ///< [m] radii of the cylinders
   double outer = std::numeric_limits<double>::infinity();
 
-  /// [main] The axes' box about it.
+  /// [main] The box along the axes around it.
   Eigen::AlignedBox3d upright() const;
 };
 
 /// The same as a search sees it: in single precision, in the coordinates of its tree's nodes [m].
 struct RowBox {
   float center[3]{}, axis[3][3]{};
-  float half[3]{};   ///< what it holds is no farther than this from the center along each axis
+  float half[3]{};   ///< no point inside is farther than this from the center along each axis
   float focus[2]{};  ///< of the cylinders, from the center along axes 0 and 2
   float inner = -kWhole, outer = kWhole;
 
   static constexpr float kWhole = 1e18F;  ///< its square is a float
 };
 
-/// Four of them that are compared at once.
+/// Four of them, which are compared at once.
 struct alignas(64) FourRowBoxes {
   Float4 center[3], axis[3][3];
   Float4 half[3];
@@ -61,7 +61,7 @@ inline void put(const RowBox& box, int lane, FourRowBoxes& to) noexcept {
   to.outer[lane] = box.outer;
 }
 
-/// [main] What single precision leaves of the axes is what the result holds the box along.
+/// [main] The axes after rounding to single precision, along which the result encloses the box.
 RowBox rowBox(const TurnedBox& turned, const BoxTree& tree);
 
 /// Rounding of the axes, and of the way to a probe, moves the bound by less than this share.
@@ -87,7 +87,7 @@ inline Float4 rowDistances(const FourRowBoxes& boxes, const BoxProbe& probe) noe
   return ((bent > flat ? bent : flat) + square[1]) * kRowShare;
 }
 
-/// [rt] The same for one.
+/// [rt] The same for one box.
 inline float rowDistance(const RowBox& box, const BoxProbe& probe) noexcept {
   const float way[3] = {probe.at[0][0] - box.center[0], probe.at[1][0] - box.center[1], probe.at[2][0] - box.center[2]};
   float along[3], square[3];

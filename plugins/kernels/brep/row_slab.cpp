@@ -20,8 +20,8 @@ RowSlab rowSlab(const Part& part, std::span<const std::uint32_t> triangles, cons
     normal += (b - a).cross(c - a);
     for (const Vector3d& p : {a, b, c}) box.extend(p);
   }
-  normal = normal.stableNormalized();  // zero where the triangles have no area or face each other: then a ball
-  // What single precision leaves of the disc is what holds the triangles.
+  normal = normal.stableNormalized();  // zero if the triangles have no area or face each other: then it is a ball
+  // The disc after rounding to single precision must enclose the triangles.
   RowSlab slab;
   Vector3d center, n;
   for (int axis = 0; axis < 3; ++axis) {

@@ -10,14 +10,14 @@
 
 namespace hapticd::brep {
 
-/// A disc about `center` (in the coordinates of its tree's nodes): what it holds is no farther than `half` from its
+/// A disc about `center` (in the coordinates of its tree's nodes): no point inside is farther than `half` from its
 /// plane and `radius` from its axis [m].
 struct RowSlab {
   float center[3]{}, normal[3]{};
   float half = 0, radius = 0;
 };
 
-/// Four of them that are compared at once.
+/// Four of them, which are compared at once.
 struct alignas(64) FourSlabs {
   Float4 center[3], normal[3];
   Float4 half, radius;
@@ -65,7 +65,7 @@ inline Float4 rowDistances(const FourSlabs& slabs, const BoxProbe& probe) noexce
   return (high * high + across * across) * kSlabShare;
 }
 
-/// [rt] The same for one.
+/// [rt] The same for one disc.
 inline float rowDistance(const RowSlab& slab, const BoxProbe& probe) noexcept {
   float off = 0, whole = 0;
   for (int axis = 0; axis < 3; ++axis) {

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostRestarts = 8;  ///< leaves that Newton looks at from several places in one search
+constexpr int kMostRestarts = 8;  ///< leaves per search on which Newton's method starts from several places
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A vertex at which an edge has no length. Returns the squared distance; `hit` is replaced where it is nearer.
@@ -42,7 +42,7 @@ inline double meshFoot(const Part& part, std::uint32_t triangle, const Vector3d&
   return d2;
 }
 
-/// [m^2] to a point that is known to be on the part.
+/// [m^2] squared distance to a point that is known to be on the part.
 double limitOf(const Vector3d& p, const Hit& known) noexcept {
   return (p - known.point).squaredNorm() * (1 + 1e-9);
 }
@@ -69,7 +69,7 @@ double Search::edgeFoot(Element element, const Vector3d& p, Hit& hit) const noex
   return d2;
 }
 
-/// Foot on a leaf. Where the last one is known, what the probe sees of the leaf is not.
+/// Foot on a leaf. If the last foot is known, it is not known how the probe sees the leaf.
 double Search::leafOf(Element element, const Vector3d& p, Look& look, Hit& hit) const noexcept {
   const Leaf& leaf = model_.leaf(element.index());
   LeafStart start{look.uv, look.sight, look.elsewhere, look.limit2};
@@ -122,7 +122,7 @@ bool Search::mayHold(Element element, const Vector3d& p, Look& look) const noexc
   return true;
 }
 
-/// Whether an element that is not nearer than `d2` is just as near: of a face, its foot may be outside the trim.
+/// True if an element that is not nearer than `d2` is equally near: for a face, its foot may be outside the trim.
 bool Search::isAsNear(Element element, const Vector3d& p, double d2) const noexcept {
   if (element.kind() != ElementKind::kFace) return true;
   Hit hit;
@@ -130,13 +130,13 @@ bool Search::isAsNear(Element element, const Vector3d& p, double d2) const noexc
   return hit.d2 == d2;
 }
 
-/// What a look tells of the squared distance to all of the element, also of where its trim leaves out.
+/// What the examination shows about the squared distance to all of the element, including what its trim leaves out.
 double Search::leastOf(double d2, const Look& look) noexcept {
   if (look.least2 >= 0) return look.least2;
   return look.alone && d2 < kInfinity ? d2 : 0;
 }
 
-/// Looks at one element, whose box is at least bound2 away. Returns what is known of its squared distance then.
+/// Examines one element, whose box is at least bound2 away. Returns what is then known of its squared distance.
 double Search::look(std::uint32_t place, Element element, const Vector3d& p, double bound2, Run& run) noexcept {
   Nearest& best = run.best;
   const double before = best.hit.d2;
@@ -168,7 +168,7 @@ void Search::searchTree(const BodyTree& body, std::int32_t root, std::uint32_t p
                         Run& run) noexcept {
   if (body.tree.empty() || root == BodyTree::kNoRoot) return;
   Nearest& best = run.best;
-  const Element first = run.first_place == place ? run.first : Element();  // has been looked at already
+  const Element first = run.first_place == place ? run.first : Element();  // it was examined already
   const BoxProbe probe(body.tree, p);
   std::array<DescentEntry, BoxTree::kMaxStack> stack;
   std::array<DescentEntry, 4> children;
@@ -204,7 +204,7 @@ void Search::searchTree(const BodyTree& body, std::int32_t root, std::uint32_t p
   }
 }
 
-/// The same over the boxes of the placements.
+/// The same for the boxes of the placements.
 void Search::searchPlaces(const Vector3d& p, Run& run) noexcept {
   const BoxTree& tree = model_.placementTree();
   const BoxProbe probe(tree, p);
@@ -254,8 +254,8 @@ void Search::searchWithin(Run& run, const Whole& whole) noexcept {
   whole();
 }
 
-/// Every distance changes by at most the way of the probe: while the last element is nearer than the others can have
-/// come, it holds the nearest point.
+/// Every distance changes by at most the way of the probe: while the last element is nearer than the others can be by
+/// now, it has the nearest point.
 bool Search::goesOn(const Vector3d& p, const Run& run) noexcept {
   if (!last_.proved || run.first_place == kNone) return false;
   const double others = last_.others - (p - last_p_).norm();
@@ -268,8 +268,8 @@ bool Search::goesOn(const Vector3d& p, const Run& run) noexcept {
   return true;
 }
 
-/// Looks at the last element: a near start spares most of the search. Its foot may have left it, but its last point
-/// stays.
+/// Examines the last element first: a near start saves most of the search. Its foot may have left it, but its last
+/// point stays.
 void Search::begin(const Vector3d& p, Run& run) noexcept {
   if (!last_.found()) return;
   Look look;

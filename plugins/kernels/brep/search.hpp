@@ -14,7 +14,7 @@
 
 namespace hapticd::brep {
 
-/// Bounds of the work of one search.
+/// Limits of the work of one search.
 struct SearchBudget {
   int nodes = 2048;    ///< boxes of four
   int elements = 256;  ///< feet
@@ -27,23 +27,23 @@ struct Nearest {
   /// [m] No other element is nearer to the probe than this. With `proved`, none but this one is nearer than `hit`.
   double others = 0;
   bool proved = false;     ///< hit is the nearest point of all
-  bool exhausted = false;  ///< the budget ran out first
+  bool exhausted = false;  ///< the budget ended first
   int nodes = 0, elements = 0;
 
   bool found() const noexcept { return place != kNone; }
   double distance() const noexcept;
 };
 
-/// Finds nearest points for one probe. The Model is shared.
+/// Finds nearest points for one probe. Several share the Model.
 class Search {
  public:
-  /// [main] Allocates all that searching needs.
+  /// [main] Allocates everything that searching needs.
   explicit Search(const Model& model);
 
   /// [rt] Nearest point of all placements to p (model frame).
   const Nearest& nearest(const Eigen::Vector3d& p, const SearchBudget& budget = {}) noexcept;
   /// [rt] Nearest point of one placement, from `start` on. Elements of other faces than `face` (an index in the part;
-  /// kNone: all) are passed over; edges belong to all their faces.
+  /// kNone: all) are ignored; edges belong to all their faces.
   Nearest nearestOf(std::uint32_t place, std::uint32_t face, const Eigen::Vector3d& p, const Hit& start,
                     const SearchBudget& budget = {}) noexcept;
   /// [rt] The nearest point of one element from its last one on; d2 stays infinite if it has none.
@@ -63,28 +63,28 @@ class Search {
   struct Run {
     Nearest best;
     SearchBudget budget;
-    Element first;                                            ///< was looked at before all others
+    Element first;                                            ///< the element that was examined before all others
     std::uint32_t first_place = kNone;                        ///< where it is
     double first_least2 = 0;                                  ///< leastOf() it
     double limit2 = std::numeric_limits<double>::infinity();  ///< [m^2] to a point of the part: none farther is nearest
-    double others2 = std::numeric_limits<double>::infinity();  ///< nearest bound of anything but the best
+    double others2 = std::numeric_limits<double>::infinity();  ///< nearest bound of anything except the best
     double open2 = std::numeric_limits<double>::infinity();    ///< nearest bound of what may hide a nearer foot
-    bool tied = false;  ///< another element than the best is just as near, and neither was looked at first
-    int restarts = 0;   ///< leaves that Newton may yet look at from several places
+    bool tied = false;  ///< another element than the best is equally near, and neither was examined first
+    int restarts = 0;   ///< leaves on which Newton's method may still start from several places
 
     /// [m^2] What is farther cannot be the nearest.
     double within2() const noexcept { return std::min(best.hit.d2, limit2); }
   };
-  /// A look at one element.
+  /// One examination of an element.
   struct Look {
     const Hit* start = nullptr;  ///< the last foot; null: none is known
     LeafSight sight;
     Eigen::Array2d uv{0, 0};                                  ///< of a leaf: where to start
     bool elsewhere = true;                                    ///< LeafStart::elsewhere
     double limit2 = std::numeric_limits<double>::infinity();  ///< LeafStart::limit2
-    bool alone = true;                                        ///< out: nothing nearer hides in the element
+    bool alone = true;                                        ///< out: no nearer point is hidden in the element
     int starts = 1;                                           ///< out
-    double least2 = -1;                                       ///< out: of a leaf, what leastOf() tells
+    double least2 = -1;                                       ///< out: for a leaf, the result of leastOf()
   };
 
   void begin(const Eigen::Vector3d& p, Run& run) noexcept;
@@ -123,7 +123,7 @@ class Search {
   NearTriangles nearby_;    ///< the same of one mesh
   NearPlaces near_places_;  ///< of several placements, in the frame of the model
   int whole_nodes_ = 0;     ///< of the last search of the whole model
-  double reach_ = 0;        ///< [m] by which their rows reach beyond the nearest point
+  double reach_ = 0;        ///< [m] by which their rows extend beyond the nearest point
 };
 
 }  // namespace hapticd::brep

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kTaken = std::numeric_limits<float>::infinity();
 
-/// Bounds of the squared distances to the rows about a probe. What was looked at is taken out.
+/// Bounds of the squared distances to the rows around a probe. Rows that were examined are removed.
 template <class Near>
 class RowBounds {
  public:
@@ -31,7 +31,7 @@ class RowBounds {
     const auto within = four <= limit;
     return (within[0] | within[1] | within[2] | within[3]) != 0;
   }
-  /// The least of what is left.
+  /// The least bound among the remaining rows.
   double least() const noexcept {
     Float4 least = Float4{} + kTaken;
     for (int k = 0; k < count_; ++k) {
@@ -40,7 +40,7 @@ class RowBounds {
     }
     return static_cast<double>(std::min(std::min(least[0], least[1]), std::min(least[2], least[3])));
   }
-  /// Takes the row with the least bound out; 4 times its four and its lane.
+  /// Removes the row with the least bound; gives 4 times its four plus its lane.
   int takeNearest() noexcept {
     taken_ = least();
     const auto value = static_cast<float>(taken_);
@@ -74,7 +74,7 @@ bool gatherFrom(const Model& model, NearPlaces& near, const Vector3d& p, double 
 
 }  // namespace
 
-/// Gathers the rows about p again. What they left of the reach says how far to reach the next time.
+/// Gathers the rows around p again. How much of the reach they left unused decides how far to reach next time.
 template <class Near>
 bool Search::gatherNear(Near& near, const Vector3d& p, double way, double distance) noexcept {
   using Limits = typename Near::Limits;
@@ -95,7 +95,7 @@ bool Search::gatherNear(Near& near, const Vector3d& p, double way, double distan
   return true;
 }
 
-/// Looks at the rows of one placement about the probe, at the nearest one first.
+/// Examines the rows of one placement around the probe, the nearest one first.
 template <class Near>
 void Search::lookAtRows(Near& near, std::uint32_t place, const Vector3d& p, Run& run) noexcept {
   const BodyTree& body = model_.body(model_.placements()[place].body);
@@ -130,7 +130,7 @@ void Search::lookAtAll(Near& near, const Vector3d& p, Run& run) noexcept {
   lookAtRows(near, 0, p, run);
 }
 
-/// The placement of the last point first: the nearest one is most likely there.
+/// The placement of the last point comes first, because the nearest one is most likely there.
 template <>
 void Search::lookAtAll(NearPlaces& near, const Vector3d& p, Run& run) noexcept {
   for (const bool again : {false, true})
@@ -139,7 +139,7 @@ void Search::lookAtAll(NearPlaces& near, const Vector3d& p, Run& run) noexcept {
         lookAtRows(near[i].elements, place, model_.placements()[place].toBody(p), run);
 }
 
-/// Looks at what is about the probe. False: something else may be nearer, or just as near.
+/// Examines what is around the probe. False if something else may be nearer, or equally near.
 template <class Near>
 bool Search::lookAtNear(Near& near, const Vector3d& p, Run& run) noexcept {
   lookAtAll(near, p, run);
@@ -176,7 +176,7 @@ bool Search::searchNear(const Vector3d& p_model, Run& run) noexcept {
   return run.budget.elements > NearTriangles::kMostRows * BodyTree::kMeshRow && searchNear(nearby_, p, way, run);
 }
 
-/// The probe goes to p.
+/// The probe moves to p.
 void Search::moveNear(const Vector3d& p) noexcept {
   if (last_.found()) {
     const double way = (p - last_p_).norm();

@@ -18,7 +18,7 @@ double angleBetween(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// What the two faces of an edge do at one point.
+/// How the two faces of an edge meet at one point.
 struct Meeting {
   double angle = 0;
   bool convex = false;
@@ -64,7 +64,7 @@ void classify(const Geometry& geometry, Edge& edge) {
 /// Direction of a coedge in space at one of its ends, along its loop.
 Vector3d tangentAt(const Geometry& geometry, const Coedge& c, bool at_end) {
   const bool reversed = (c.flags & kReversed) != 0;
-  const double inward = 1e-6 * (c.t1 - c.t0);  // splines may stand still at their very ends
+  const double inward = 1e-6 * (c.t1 - c.t0);  // splines may have no speed at their very ends
   const double t = at_end != reversed ? c.t1 - inward : c.t0 + inward;
   spline::CurvePoint C;
   geometry.curve(geometry.part().edges[c.edge].curve, t, C);
@@ -126,7 +126,7 @@ class VertexSums {
     if (std::isfinite(angle)) sums_[vertex] += angle * n;
   }
 
-  /// Around a pole the normals turn: those along the collapsed side, alike in weight, sum up to its axis.
+  /// Around a pole the normals turn: those along the collapsed side, equally weighted, add up to its axis.
   void addPole(const Coedge& c, std::uint32_t vertex) {
     constexpr int kRays = 16;
     for (int i = 0; i < kRays; ++i)

@@ -13,7 +13,7 @@ void classifyEdges(const Geometry& geometry, std::vector<Edge>& edges);
 /// [main] Normals about the vertices: the faces around each, weighted by their angle there.
 std::vector<CornerNormal> vertexNormals(const Geometry& geometry);
 
-/// [main] The same about the points of meshes.
+/// [main] The same for the points of meshes.
 std::vector<CornerNormal> pointNormals(const Part& part);
 
 /// [main] For meshes with a smooth_angle: which normal each corner of each triangle has (kNone: none is smoothed), and

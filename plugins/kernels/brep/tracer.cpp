@@ -11,10 +11,10 @@ using Eigen::Vector3d;
 
 namespace {
 constexpr double kFarthest = 1e150;  ///< [m] squares of coordinates beyond overflow
-constexpr int kMostAround = 8;       ///< bodies whose boxes hold the probe, looked at in one tick
+constexpr int kMostAround = 8;       ///< most bodies whose boxes contain the probe that one tick examines
 }  // namespace
 
-/// What contact::ContactState sees of the part at the probe of this tick.
+/// How contact::ContactState sees the part at the probe of this tick.
 class Tracer::Faces {
  public:
   Faces(Tracer& tracer, const Vector3d& p) : tracer_(tracer), p_(p) {}
@@ -56,7 +56,7 @@ Tracer::Held Tracer::heldAt(const Nearest& nearest) const noexcept {
 }
 
 /// The nearest foot of all bodies. A probe in front of the nearest one may be inside another, whose surface is farther:
-/// then that holds the foot, the deepest if there are several.
+/// then that body has the foot, the deepest if there are several.
 Foot Tracer::nearestFelt(const Vector3d& p) noexcept {
   const Nearest& found = search_.nearest(p, budget_);
   Foot foot;

@@ -10,7 +10,7 @@
 
 namespace hapticd::brep {
 
-/// What a tracer has counted since it was made or counts were cleared.
+/// What a tracer has counted since it was made or its counts were cleared.
 struct TraceCounts {
   std::uint64_t nearest = 0;   ///< ticks whose foot is proved the nearest
   std::uint64_t held = 0;      ///< ticks with a held contact whose foot is not the nearest, or may not be
@@ -26,12 +26,12 @@ class Tracer {
   void reset() noexcept;
   /// [rt] Forgets where the probe was: a contact begins on the nearest face.
   void forgetContact() noexcept;
-  /// [rt] A shell gives way: from now on it is felt from its other side.
+  /// [rt] A shell gives way: from now on its other side is felt.
   void popThrough() noexcept;
   /// [rt] Foot of probe p (model frame) as it is felt. A probe that is no finite position leaves everything unchanged.
   contact::Foot step(const Eigen::Vector3d& p, const contact::ContactRule& rule,
                      const SearchBudget& budget = {}) noexcept;
-  /// [rt] Nearest foot of all, seen by its outward normal; nothing is held.
+  /// [rt] The nearest foot of all, with its outward normal; no contact is held.
   contact::Foot nearest(const Eigen::Vector3d& p, const SearchBudget& budget = {}) noexcept;
 
   const TraceCounts& counts() const noexcept { return counts_; }
@@ -59,7 +59,7 @@ class Tracer {
   Search search_;
   contact::ContactState contact_;
   Held held_;
-  Held nearest_;  ///< what nearestFelt() found in this tick
+  Held nearest_;  ///< result of nearestFelt() in this tick
   SearchBudget budget_;
   Eigen::Vector3d last_p_{0, 0, 0};
   bool has_last_ = false;

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Array2d;
 
-/// Half-open, so that a way through the joint of two pieces crosses one of them.
+/// Half-open, so that a way through the joint of two pieces crosses exactly one of them.
 bool spans(double a, double b, double at) noexcept {
   return (a <= at) != (b <= at);
 }
@@ -49,7 +49,7 @@ double Trim::crossing(const TrimPiece& piece, int axis, double at) const noexcep
 }
 
 /// Whether the other coordinate of that crossing is above `than`. It lies between those of the ends of the bracket, so
-/// few points of the curve tell.
+/// few points of the curve suffice.
 bool Trim::crossesBeyond(const TrimPiece& piece, int axis, double at, double than) const noexcept {
   if (piece.kind == TrimPiece::Kind::kCircle) return crossing(piece, axis, at) > than;
   constexpr int kMostSteps = 60;
@@ -70,7 +70,7 @@ bool Trim::crossesBeyond(const TrimPiece& piece, int axis, double at, double tha
     if (than < std::min(beside[0], beside[1])) return true;
     if (than >= std::max(beside[0], beside[1])) return false;
     const double step = -off / where.c1[axis];
-    double next = t + (end == last ? 2 * step : step);  // twice as far from the same side: over to the other
+    double next = t + (end == last ? 2 * step : step);  // it was twice as far from the same side, so try the other side
     if (!(next > ends[0] && next < ends[1])) next = 0.5 * (ends[0] + ends[1]);
     if (next <= ends[0] || next >= ends[1]) return here > than;
     last = end;
@@ -79,7 +79,7 @@ bool Trim::crossesBeyond(const TrimPiece& piece, int axis, double at, double tha
   return 0.5 * (beside[0] + beside[1]) > than;
 }
 
-/// Whether a piece that crosses the height v does so to the right of u.
+/// True if a piece that crosses the height v does so to the right of u.
 bool Trim::crossesRight(const TrimPiece& piece, double v, double u) const noexcept {
   if (u < std::min(piece.a[0], piece.b[0])) return true;
   if (u >= std::max(piece.a[0], piece.b[0])) return false;
@@ -89,7 +89,7 @@ bool Trim::crossesRight(const TrimPiece& piece, double v, double u) const noexce
   return crossesBeyond(piece, 1, v, u);
 }
 
-/// Whether a piece that crosses the line u = const does so above v.
+/// True if a piece that crosses the line u = const does so above v.
 bool Trim::crossesAbove(const TrimPiece& piece, double u, double v) const noexcept {
   if (v < std::min(piece.a[1], piece.b[1])) return true;
   if (v >= std::max(piece.a[1], piece.b[1])) return false;

@@ -9,10 +9,10 @@
 
 namespace hapticd::brep {
 
-/// A piece of a pcurve along which u and v both only grow or only fall.
+/// A piece of a pcurve along which each of u and v either only grows or only falls.
 struct TrimPiece {
   enum class Kind : std::uint32_t { kLine, kCircle, kOther };
-  Eigen::Vector2d a, b;  ///< at t0 and t1; shared bit for bit with the neighbours, so that no way slips between
+  Eigen::Vector2d a, b;  ///< at t0 and t1; neighbours share them bit for bit, so that no way slips between
   float off_u, off_v;    ///< the curve keeps within these of the chord, seen along u and along v
   std::uint32_t curve;   ///< in curves2
   Kind kind;
@@ -23,7 +23,7 @@ struct TrimPiece {
 /// Where the curves of a face's loops do not meet.
 struct LoopGaps {
   int count = 0;
-  double widest = 0;  ///< [m] in space, between the end of a curve and the start of the next
+  double widest = 0;  ///< [m] in space, between the end of one curve and the start of the next
 };
 
 class Trim {
@@ -39,11 +39,11 @@ class Trim {
   }
   /// [any] The loops are just the box.
   bool rectangle() const noexcept { return cells_.empty(); }
-  /// [any] Whether a box of parameters has points inside the loops; true in doubt.
+  /// [any] True if a box of parameters has points inside the loops, or may have some.
   bool mayTouch(const Eigen::Array2d& lo, const Eigen::Array2d& hi) const noexcept;
   const Eigen::Array2d& lo() const noexcept { return lo_; }
   const Eigen::Array2d& hi() const noexcept { return hi_; }
-  /// [any] Gaps that had to be closed.
+  /// [any] The gaps that had to be closed.
   const LoopGaps& gaps() const noexcept { return gaps_; }
   std::size_t bytes() const noexcept;
 

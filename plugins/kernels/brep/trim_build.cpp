@@ -34,7 +34,7 @@ class TrimBuilder {
   }
 
  private:
-  /// Whether every piece runs along a side of [lo, hi], or there is none.
+  /// True if every piece runs along a side of [lo, hi], or there is none.
   bool isBox() const {
     if (face_.loop_count > 1) return false;
     const Array2d slack = 1e-12 * (trim_.hi_ - trim_.lo_);

@@ -63,7 +63,7 @@ class Cutter {
     }
   }
 
-  /// A spline that runs straight from end to end, forward all the way.
+  /// A spline that is straight from end to end and always goes forward.
   bool isStraight(const Coedge& c, const Vector2d& a, const Vector2d& b) const {
     if (part_.curves2[c.pcurve].kind != CurveKind::kSpline || a == b) return false;
     constexpr int kProbes = 33;
@@ -171,7 +171,7 @@ class Cutter {
            std::abs(c.x[0] * c.y[0] + c.x[1] * c.y[1]) <= kRound * x * y;
   }
 
-  /// How far a piece leaves its chord along u and along v, with half as much again for what lies between the samples.
+  /// How far a piece deviates from its chord along u and along v, plus half of that for what lies between the samples.
   Vector2d offChord(const Coedge& c, double t0, double t1, const Vector2d& a, const Vector2d& b) const {
     constexpr int kSamples = 9;
     Vector2d most(0, 0);

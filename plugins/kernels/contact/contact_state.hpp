@@ -25,9 +25,9 @@ struct ContactRule {
 
 /// What became of a held foot that was followed to the probe.
 enum class Followed : std::uint8_t {
-  kOn,        ///< it is on the surface; whether the probe is still inside is for its depth to say
-  kReleased,  ///< it went over a convex edge, with the probe in front of the next face
-  kLost       ///< the kernel does not follow it any longer
+  kOn,        ///< it is on the surface; its depth shows whether the probe is still inside
+  kReleased,  ///< it crossed a convex edge, and the probe is in front of the next face
+  kLost       ///< the kernel no longer follows it
 };
 
 /// The contact of one probe with one solid. `Faces` is the kernel at the probe p of this tick. It has, all [rt]:
@@ -60,8 +60,8 @@ class ContactState {
     return true;
   }
 
-  /// [rt] The same where the probe may have met the face of its foot since the last tick, but no other face, and was
-  /// outside and nearest to it then: it has gone by, however near. @param last the probe of the last tick
+  /// [rt] The same if since the last tick the probe may have met only the face of its foot, and was outside and nearest
+  /// to that face then: it has passed by, however near. @param last the probe of the last tick
   bool passesBy(double height, double distance, const Eigen::Vector3d& last, const Eigen::Vector3d& p,
                 const ContactRule& rule) noexcept {
     const double side = rule.sides == Sides::kBoth ? side_ : (rule.sides == Sides::kFront ? 1 : -1);
@@ -73,13 +73,13 @@ class ContactState {
 
   bool held() const noexcept { return phase_ == Phase::kHeld; }  ///< [rt]
   double side() const noexcept { return side_; }                 ///< [rt] +1: the front is felt, -1: the back
-  /// [rt] Where the probe came from is no longer known: a jump, or a lost sample.
+  /// [rt] It is no longer known where the probe came from: a jump, or a lost sample.
   void forget() noexcept { phase_ = Phase::kUnknown; }
-  /// [rt] step() was left out, as the probe was surely outside: the next way begins at the probe of the last tick.
+  /// [rt] step() was skipped because the probe was surely outside: the next way begins at the probe of the last tick.
   void pass() noexcept {
     if (phase_ != Phase::kUnknown) phase_ = Phase::kPassed;
   }
-  /// [rt] A shell gives way: the probe, at p, is on its other side now.
+  /// [rt] A shell gives way: the probe, at p, is now on its other side.
   void popThrough(const Eigen::Vector3d& p) noexcept {
     side_ = -side_;
     beOutside(p, 0);
@@ -87,8 +87,8 @@ class ContactState {
 
  private:
   enum class Phase : std::uint8_t { kUnknown, kPassed, kOutside, kHeld };
-  static constexpr double kTouching = 1e-9;  ///< [m] so near to a face, the side that the probe is on is rounding
-  static constexpr double kSure = 0.999;     ///< of a distance: a way so long meets no face
+  static constexpr double kTouching = 1e-9;  ///< [m] so near to a face, rounding decides the probe's side
+  static constexpr double kSure = 0.999;     ///< share of a distance: so short a way meets no face
 
   template <class Faces>
   bool stays(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule, Foot& foot) noexcept;
@@ -108,7 +108,7 @@ class ContactState {
   Phase phase_ = Phase::kUnknown;
   double side_ = 1;
   double clearance_ = 0;           ///< [m] no face is nearer to from_
-  Eigen::Vector3d from_{0, 0, 0};  ///< [m] where the probe was outside last
+  Eigen::Vector3d from_{0, 0, 0};  ///< [m] where the probe was last outside
 };
 
 template <class Faces>
@@ -126,7 +126,7 @@ Foot ContactState::step(Faces& faces, const Eigen::Vector3d& last, const Eigen::
   return atNearest(faces, p, rule);
 }
 
-/// Follows the held contact. False if it has ended: then what is known of the way is noted.
+/// Follows the held contact. False if it has ended; then what is known of the way is noted.
 template <class Faces>
 bool ContactState::stays(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule, Foot& foot) noexcept {
   const Followed how = faces.follow(side_, foot);
@@ -141,7 +141,7 @@ bool ContactState::stays(Faces& faces, const Eigen::Vector3d& p, const ContactRu
   return false;
 }
 
-/// Whether another face is nearer by more than the hysteresis. Notes in the held foot whether it is the nearest.
+/// True if another face is nearer by more than the hysteresis. Notes in the held foot whether it is the nearest.
 template <class Faces>
 bool ContactState::isLeft(Faces& faces, const ContactRule& rule, Foot& foot) noexcept {
   constexpr double kSame = 1e-9;  // [m] of two distances
@@ -170,7 +170,7 @@ bool ContactState::begins(Faces& faces, const Eigen::Vector3d& p, const ContactR
   return false;
 }
 
-/// Nothing is held: the nearest foot, and a contact there if the probe is inside all the same.
+/// No contact is held: the nearest foot, and a contact there if the probe is inside after all.
 template <class Faces>
 Foot ContactState::atNearest(Faces& faces, const Eigen::Vector3d& p, const ContactRule& rule) noexcept {
   const Foot nearest = faces.nearest();
@@ -183,7 +183,7 @@ Foot ContactState::atNearest(Faces& faces, const Eigen::Vector3d& p, const Conta
   Foot foot = seenFrom(nearest, side_);
   if (rule.sides != Sides::kBoth && foot.depth > 0) {
     phase_ = Phase::kUnknown;
-    if (foot.status != FootStatus::kNearest) return foot;  // felt, but what is not proved is not held
+    if (foot.status != FootStatus::kNearest) return foot;  // it is felt, but a foot that is not proved is not held
     faces.holdNearest();
     phase_ = Phase::kHeld;
     foot.begins = true;
@@ -194,7 +194,7 @@ Foot ContactState::atNearest(Faces& faces, const Eigen::Vector3d& p, const Conta
   return foot;
 }
 
-/// Without a hysteresis. A shell keeps the side that the probe came from until it has gone round a free edge.
+/// Without a hysteresis. A shell keeps the side that the probe came from until the probe has gone round a free edge.
 inline Foot ContactState::nearestAlways(const Foot& nearest, const Eigen::Vector3d& p, Sides sides) noexcept {
   if (!found(nearest)) {
     phase_ = Phase::kUnknown;

@@ -11,7 +11,7 @@ namespace hapticd::contact {
 enum class EdgeKind : std::uint8_t {
   kSmooth,  ///< their normals agree
   kConvex,  ///< the next face falls away: the edge of a table
-  kConcave  ///< the next face rises: where a wall stands on the floor
+  kConcave  ///< the next face rises, as a wall does from the floor
 };
 
 /// [rad] Faces whose normals differ by less are one smooth surface: 0.1 degrees, as CAD files need it.
@@ -26,12 +26,12 @@ inline EdgeKind edgeKind(const Eigen::Vector3d& here, const Eigen::Vector3d& nex
 }
 
 enum class AtEdge : std::uint8_t {
-  kSlide,   ///< goes on to the next face where that is nearer to the probe, else stays: both faces push
-  kRelease  ///< the probe is in front of the next face: it has gone over the edge, and the contact ends
+  kSlide,   ///< continues on the next face if that is nearer to the probe, else stays: both faces push
+  kRelease  ///< the probe is in front of the next face: it crossed the edge, and the contact ends
 };
 
-/// [any] A held foot is on an edge and would go on beyond it. The paper's rule (Thompson et al. 1999, 5.2.4) says which
-/// face comes next; this says whether the probe is still in contact there. @param r from the foot to the probe
+/// [any] A held foot is on an edge and would continue beyond it. The paper's rule (Thompson et al. 1999, 5.2.4) says
+/// which face comes next; this says whether the probe is still in contact there. @param r from the foot to the probe
 inline AtEdge atEdge(EdgeKind kind, const Eigen::Vector3d& next, const Eigen::Vector3d& r) noexcept {
   return kind == EdgeKind::kConvex && r.dot(next) >= 0 ? AtEdge::kRelease : AtEdge::kSlide;
 }

@@ -6,13 +6,13 @@
 
 namespace hapticd::contact {
 
-/// What a tick can say for its foot.
+/// How much a tick guarantees about its foot.
 enum class FootStatus : std::uint8_t {
   kNearest,   ///< the nearest point of all surfaces that are followed, to the tolerance
-  kHeld,      ///< followed from where the probe came in; another surface is nearer, or may be
-  kDegraded,  ///< the evaluations ran out first: the residual says how good the foot is, or another one is nearer
-  kIdle,      ///< nothing is followed: the foot says nothing
-  kInvalid    ///< the probe is not a finite position; what is followed was kept as it was
+  kHeld,      ///< followed from where the probe entered; another surface is nearer, or may be
+  kDegraded,  ///< the evaluations were used up: the residual is the foot's error, or another foot is nearer
+  kIdle,      ///< nothing is followed: the foot has no meaning
+  kInvalid    ///< the probe's position is not finite; what is followed was kept as it was
 };
 
 /// Which side of a surface has the solid behind it.
@@ -36,10 +36,10 @@ struct Foot {
   int evaluations = 0;              ///< of surfaces, in this tick
   FootStatus status = FootStatus::kIdle;
   bool on_edge = false;  ///< the foot is on an edge or a corner
-  bool begins = false;   ///< the contact began in this tick, or went over to another place: the foot may have jumped
+  bool begins = false;   ///< the contact began in this tick, or moved to another place, so the foot may have jumped
 };
 
-/// [any] Whether a foot was found at all.
+/// [any] True if a foot was found at all.
 inline bool found(const Foot& foot) noexcept {
   return foot.status < FootStatus::kIdle;
 }

@@ -23,7 +23,7 @@ class Friction {
  public:
   /// [rt] Force [N] on the probe along the surface: dry friction of at most mu * normal_force, and the drag.
   /// @param foot nearest point of the surface [m], model frame  @param normal outward unit normal there
-  /// @param normal_force [N] of the wall, >= 0; 0 or not-a-number forgets the stuck point
+  /// @param normal_force [N] of the wall, >= 0; 0 or NaN forgets the stuck point
   /// @param velocity of the probe relative to the model [m/s]; only its part along the surface counts
   Eigen::Vector3d step(const FrictionLaw& law, const Eigen::Vector3d& foot, const Eigen::Vector3d& normal,
                        double normal_force, const Eigen::Vector3d& velocity) noexcept;
@@ -31,7 +31,7 @@ class Friction {
   /// [rt] The probe left the surface, or jumped.
   void reset() noexcept { stuck_ = slipping_ = false; }
 
-  bool slipping() const noexcept { return slipping_; }    ///< [rt] in the last step
+  bool slipping() const noexcept { return slipping_; }    ///< [rt] for the last step
   double energy(const FrictionLaw& law) const noexcept {  ///< [rt] stored in the spring [J]
     return stuck_ ? 0.5 * law.stiffness * stretch_.squaredNorm() : 0;
   }

@@ -20,7 +20,7 @@ double shape(const WallLaw& law, double depth) noexcept {
 
 WallForce wallForce(const WallLaw& law, double depth, double closing_speed) noexcept {
   if (!(depth > 0)) return {};
-  if (!std::isfinite(closing_speed)) closing_speed = 0;  // the spring alone is known
+  if (!std::isfinite(closing_speed)) closing_speed = 0;  // only the spring is known
   const double at_scale = law.stiffness * law.depth_scale + law.damping * closing_speed;
   const double share = shape(law, depth);
   const double force = at_scale * share;

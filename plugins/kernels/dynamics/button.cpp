@@ -81,12 +81,12 @@ Equilibria buttonEquilibria(double k1, const DetentCurve& detent, double travel)
     all.count = 1;
     return all;
   }
-  const double rounding = 1e-14 * travel;  // at a knot two lines meet: neither may miss the solution there
+  const double rounding = 1e-14 * travel;  // two lines meet at a knot, and neither may miss the solution there
   for (int piece = 0; piece < detent.pieces(); ++piece) {
     const DetentCurve::Knot& knot = detent.knot(piece);
     const double slope = detent.slope(piece);
     const double sum = k1 + slope;
-    if (sum == 0) continue;  // a line of equilibria or none; its ends belong to the neighbours
+    if (sum == 0) continue;  // a line of equilibria or none; its ends belong to the neighbouring pieces
     const double way = (k1 * (travel - knot.travel) - knot.force) / sum;  // x2 beyond the knot
     const double x2 = knot.travel + way;
     const bool first = all.count == 0 || x2 > all.at[static_cast<size_t>(all.count) - 1].x2 + 2 * rounding;

@@ -20,7 +20,7 @@ class DetentCurve {
   /// @throws std::invalid_argument that says which knot is wrong.
   DetentCurve(std::span<const Knot> knots, double end_stiffness);
 
-  double force(double travel) const noexcept;   ///< [rt] below 0 the first line goes on
+  double force(double travel) const noexcept;   ///< [rt] below 0 the first line continues
   double energy(double travel) const noexcept;  ///< [rt] [J] stored, travel >= 0
   int pieces() const noexcept { return static_cast<int>(knots_.size()); }
   const Knot& knot(int piece) const noexcept { return knots_[static_cast<size_t>(piece)]; }
@@ -32,7 +32,7 @@ class DetentCurve {
   std::vector<double> slopes_;
 };
 
-/// One way to share the travel: x1 into the surface, x2 of the button; the force F is the same in both springs.
+/// One division of the travel: x1 into the surface, x2 of the button; the force F is the same in both springs.
 struct Equilibrium {
   double x1 = 0, x2 = 0, force = 0;
   int piece = 0;
@@ -48,12 +48,12 @@ struct Equilibria {
 /// falls faster than k1: that is the snap.
 Equilibria buttonEquilibria(double k1, const DetentCurve& detent, double travel) noexcept;
 
-/// [rt] Follows the branch the button is on: it leaves it only where it ends (snap-through, with hysteresis).
+/// [rt] Follows the branch of the button, and leaves it only where it ends (snap-through, with hysteresis).
 class ButtonState {
  public:
   struct Step {
     Equilibrium at;
-    bool clicked = false;  ///< it passed the top of the detent going in, or came back over its foot
+    bool clicked = false;  ///< it passed the top of the detent going in, or its foot coming back
     bool snapped = false;  ///< it jumped from one branch to another
   };
   /// [rt] @param travel [m] of the probe from the button's rest; <= 0: no contact, the button is at rest

@@ -5,7 +5,7 @@
 
 namespace hapticd::dynamics {
 
-/// Of a solid of 1 kg.
+/// Properties of a solid of 1 kg.
 struct MassProperties {
   Eigen::Vector3d center{0, 0, 0};                        ///< of mass [m]
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< about the centre [m^2]; times the mass: [kg m^2]
@@ -17,7 +17,7 @@ MassProperties boxProperties(const Eigen::AlignedBox3d& box) noexcept;
 /// The volume integrals of a closed surface, by the divergence theorem.
 class SolidIntegral {
  public:
-  /// [any] @param origin near the solid [m]: nothing cancels that lies far from the frame's origin
+  /// [any] @param origin near the solid [m], so that a solid far from the frame's origin loses no digits
   explicit SolidIntegral(const Eigen::Vector3d& origin) noexcept : origin_(origin) {}
   /// [any] A piece of the surface: a point [m] and its outward area vector [m^2].
   void add(const Eigen::Vector3d& point, const Eigen::Vector3d& area) noexcept;
@@ -36,7 +36,7 @@ class SolidIntegral {
 /// @throws std::invalid_argument unless it is symmetric and positive definite.
 Eigen::Vector3d principalMoments(const Eigen::Matrix3d& inertia);
 
-/// [any] Whether a body whose mass is above 0 everywhere can have this inertia about its centre: besides the above, no
+/// [any] True if a body of positive mass everywhere can have this inertia about its centre: besides the above, no
 /// principal moment exceeds the sum of the others. @throws std::invalid_argument with the moments.
 void validateSolid(const Eigen::Matrix3d& inertia);
 

@@ -15,7 +15,7 @@ struct OscillatorStep {
 /// @throws std::invalid_argument unless mass > 0, damping >= 0, stiffness >= 0, dt >= 0 and all are finite.
 OscillatorStep oscillatorStep(double mass, double damping, double stiffness, double dt);
 
-/// [rt] The same without a check, for a dt that varies; the caller vouches for the arguments.
+/// [rt] The same without a check, for a dt that varies; the caller is responsible for the arguments.
 OscillatorStep oscillatorStepUnchecked(double mass, double damping, double stiffness, double dt) noexcept;
 
 /// [rt] Free motion about 0. With a constant force f shift by the equilibrium: advance(step, x - f/k, v).

@@ -11,12 +11,12 @@
 namespace hapticd::dynamics {
 namespace {
 
-constexpr double kLargestPhase = 0.1;         // [rad] of the linear swing in a substep of freeStep
+constexpr double kLargestPhase = 0.1;         // [rad] of the linear swing per substep of freeStep
 constexpr double kLargestDampedPhase = 0.02;  // of the other two
-constexpr int kPendulumSubsteps = 32;         // bounds the time of a tick
-constexpr double kWeak = 0.05;                // damping times substep, up to which Runge and Kutta resolve the decay
+constexpr int kPendulumSubsteps = 32;         // most substeps, which bounds the time of a tick
+constexpr double kWeak = 0.05;                // damping times substep, up to which Runge-Kutta resolves the decay
 
-/// Without damping: its energy errs by a bounded amount, however long it swings.
+/// Without damping: the error of its energy stays bounded, however long it swings.
 PendulumState freeStep(double w2, double drive, PendulumState s, double h) noexcept {
   Splitting::step(
       h, [&](double time) { s.angle += time * s.rate; },
@@ -92,7 +92,7 @@ double energy(const PendulumLaw& law, const PendulumState& state) noexcept {
 
 double period(const PendulumLaw& law, double amplitude) noexcept {
   double a = 1, b = std::fabs(std::cos(amplitude / 2));
-  constexpr int kRounds = 40;  // converges quadratically; the rest is for amplitudes next to pi
+  constexpr int kRounds = 40;  // converges quadratically; more steps are needed only for amplitudes near pi
   for (int i = 0; i < kRounds && std::fabs(a - b) > 1e-16 * a; ++i) {
     const double mean = (a + b) / 2;
     b = std::sqrt(a * b);

@@ -9,7 +9,7 @@ struct PendulumLaw {
   double inertia = 1;     ///< about the pivot [kg m^2]
   double length = 1;      ///< pivot to centre of mass [m]
   double damping = 0;     ///< [N m s/rad]
-  double gravity = 9.81;  ///< part of it that acts in the plane of motion [m/s^2]
+  double gravity = 9.81;  ///< part of gravity that acts in the plane of motion [m/s^2]
 
   double frequencySquared() const noexcept { return mass * gravity * length / inertia; }  ///< [1/s^2]
 };
@@ -42,7 +42,7 @@ double energy(const PendulumLaw& law, const PendulumState& state) noexcept;
 /// [any] Period [s] of free swinging from rest at `amplitude` [rad], by the arithmetic-geometric mean.
 double period(const PendulumLaw& law, double amplitude) noexcept;
 
-/// [any] Rate at the bottom [rad/s] above which it goes round.
+/// [any] Rate at the bottom [rad/s] above which it goes all the way round.
 double separatrixRate(const PendulumLaw& law) noexcept;
 
 }  // namespace hapticd::dynamics

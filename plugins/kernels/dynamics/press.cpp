@@ -14,9 +14,9 @@ Press foresee(const Pressing& last, const Vector3d& probe_now, double closing_sp
   Press press;
   press.point = last.point;
   press.outward = last.normal;
-  const Vector3d slide = probe_now - last.probe - dt * point_velocity;  // of the probe against the body
+  const Vector3d slide = probe_now - last.probe - dt * point_velocity;  // speed of the probe relative to the body
   const double depth = last.depth - last.normal.dot(slide);
-  // Where the body leaves by itself, its change of velocity may bring it back: the line goes on below no force.
+  // If the body leaves by itself, its change of velocity may bring it back, so the line continues below zero force.
   const double deepest = std::max(depth, last.depth - last.normal.dot(probe_now - last.probe));
   const contact::WallForce wall = contact::wallForce(last.law, deepest, closing_speed);
   if (!(wall.force > 0)) return press;

@@ -14,8 +14,8 @@ struct Pressing {
   Eigen::Vector3d normal{0, 0, 1};  ///< outward, unit
   Eigen::Vector3d along{0, 0, 0};   ///< friction on the probe, along the surface [N]
   contact::WallLaw law;
-  double depth = 0;            ///< [m] > 0 inside; a probe just outside is foreseen to touch
-  double along_limit = 0;      ///< the friction does not grow beyond [N]
+  double depth = 0;            ///< [m] > 0 inside; the touch of a probe just outside is foreseen
+  double along_limit = 0;      ///< [N] the friction does not grow beyond this
   double along_stiffness = 0;  ///< [N/m] of the friction while it sticks
   double along_damping = 0;    ///< [N s/m]
 };
@@ -25,7 +25,7 @@ struct Pressing {
 /// end is taken, and what the body's own change of velocity takes off it.
 struct Press {
   Eigen::Vector3d point{0, 0, 0};                  ///< [m]
-  Eigen::Vector3d outward{0, 0, 1};                ///< unit: the body is never pulled this way
+  Eigen::Vector3d outward{0, 0, 1};                ///< unit: no force ever pulls the body in this direction
   Eigen::Vector3d force{0, 0, 0};                  ///< on the body at the end of the step, if it keeps its velocity [N]
   Eigen::Matrix3d give = Eigen::Matrix3d::Zero();  ///< [N s/m] what a change of the point's velocity takes off
 };
@@ -36,7 +36,7 @@ struct Press {
 Press foresee(const Pressing& last, const Eigen::Vector3d& probe_now, double closing_speed,
               const Eigen::Vector3d& point_velocity, double dt) noexcept;
 
-/// [rt] The force on the body when the point's velocity changes by `change` [m/s] in the step: a wall does not pull.
+/// [rt] The force on the body if the point's velocity changes by `change` [m/s] in the step: a wall does not pull.
 Eigen::Vector3d forceAfter(const Press& press, const Eigen::Vector3d& change) noexcept;
 
 }  // namespace hapticd::dynamics

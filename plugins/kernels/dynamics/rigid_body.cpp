@@ -84,7 +84,7 @@ void RigidBody::step(const Vector3d& force, const Vector3d& torque, double dt) n
 
 namespace {
 
-/// Velocity of a point from (velocity of the centre, angular velocity); its transpose makes wrenches of forces.
+/// Velocity of a point from (velocity of the centre, angular velocity); its transpose turns forces into wrenches.
 Eigen::Matrix<double, 3, 6> pointRows(const Vector3d& lever) noexcept {
   Eigen::Matrix<double, 3, 6> rows;
   rows << Matrix3d::Identity(),
@@ -154,7 +154,7 @@ void RigidBody::step(std::span<const Press> presses, double dt) noexcept {
     own_impulse.tail<3>() -= dt * dt * facing(press, lever) * (rate + change.tail<3>());
   }
   if (law_.joint != Joint::kFree) return drift(changeUnder(own, own_impulse), dt);
-  Vector6d alone;  // by itself a body moves and turns independently
+  Vector6d alone;  // without contacts a body moves and turns independently
   alone << own_impulse.head<3>() / own(0, 0), own.bottomRightCorner<3, 3>().llt().solve(own_impulse.tail<3>());
   drift(alone, dt);
 }
@@ -172,7 +172,7 @@ void RigidBody::drift(const Vector6d& change, double dt) noexcept {
   if (law_.joint == Joint::kSlider) return;
   const Matrix3d axes = turn_.matrix();
   l_ += axes * principal_.cwiseProduct(axes.transpose() * change.tail<3>());
-  // Backward Euler is of first order, so a finer turn would add time and no digit.
+  // Backward Euler is of first order, so a finer turn would cost time without gaining accuracy.
   turn_.turnBody(top_.roughBodyTurn(turn_.quaternion().conjugate() * l_, dt));
   turn_.turnWorld(dt * top_.worldRate() * l_);
 }
@@ -221,8 +221,8 @@ void RigidBody::swing(const Vector3d& force, const Vector3d& torque, double dt) 
 }
 
 void RigidBody::poseHinge(double angle) noexcept {
-  hinge_angle_ = std::remainder(angle, 2 * M_PI);  // one that goes round keeps its digits
-  // turned by an angle from the start, never by steps: the pose has the angle's error only
+  hinge_angle_ = std::remainder(angle, 2 * M_PI);  // a body that goes round keeps its digits
+  // turned by an angle from the start, never by steps, so that the pose has only the angle's error
   const Quaterniond turn = rotationBy(hinge_angle_ * axis_world_);
   turn_.set(turn * start_turn_);
   x_ = pivot_world_ + turn * (start_ - pivot_world_);
@@ -237,7 +237,7 @@ void RigidBody::hang() noexcept {
   const Vector3d axis = law_.axis.normalized();
   hinge_.inertia = axis.dot(law_.inertia * axis) + law_.mass * out.squaredNorm();
   hinge_.mass = hinge_.length = 1;
-  hinge_.gravity = std::hypot(down, aside);  // of which the law makes a torque: [N m]
+  hinge_.gravity = std::hypot(down, aside);  // spring from which the law makes a torque: [N m]
   hinge_.damping = law_.angular_damping + law_.damping * out.squaredNorm();
   hinge_rest_ = hinge_.gravity > 0 ? std::atan2(aside, down) : 0;
 }

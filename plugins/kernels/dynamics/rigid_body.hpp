@@ -15,10 +15,10 @@ namespace hapticd::dynamics {
 enum class Joint {
   kFree,
   kHinge,  ///< turns about an axis through a pivot
-  kSlider  ///< moves along an axis, does not turn
+  kSlider  ///< moves along an axis but does not turn
 };
 
-/// What a body is. Centre, inertia, pivot and axis are in the model's frame.
+/// The properties of a body. Centre, inertia, pivot and axis are in the model's frame.
 struct RigidBodyLaw {
   double mass = 1;                                               ///< [kg]
   Eigen::Vector3d center{0, 0, 0};                               ///< of mass [m]
@@ -43,7 +43,7 @@ class RigidBody {
             const Eigen::Vector3d& gravity);
 
   /// [rt] One step of dt [s] under a force [N] and a torque about the centre of mass [N m], world frame, both constant
-  /// in the step. Not-a-number counts as nothing.
+  /// in the step. NaN counts as zero.
   void step(const Eigen::Vector3d& force, const Eigen::Vector3d& torque, double dt) noexcept;
 
   /// [rt] One step of dt [s] under contacts, by backward Euler: all forces are those of its end. Bounded for every mass
@@ -51,7 +51,7 @@ class RigidBody {
   /// and a mass above B dt/2 (test Coupling.HeldForcesAreStableOnlyAboveTheirBounds).
   void step(std::span<const Press> presses, double dt) noexcept;
 
-  /// [rt] Velocity [m/s] of the body's point that is at `point` [m], world.
+  /// [rt] Velocity [m/s] of the point of the body that is at `point` [m], world.
   Eigen::Vector3d velocityAt(const Eigen::Vector3d& point) const noexcept;
 
   Eigen::Vector3d position() const noexcept;                       ///< [rt] of the model's frame, world [m]
@@ -66,7 +66,7 @@ class RigidBody {
   /// kLargestSwing rad of it is not stable (pendulum.hpp).
   double swingRate() const noexcept { return std::sqrt(law_.joint == Joint::kHinge ? hinge_.frequencySquared() : 0); }
 
-  /// [rt] Velocity of the centre (world) and angular velocity (model's frame); a joint keeps what it lets through.
+  /// [rt] Velocity of the centre (world) and angular velocity (model's frame); a joint keeps only what it allows.
   void setVelocity(const Eigen::Vector3d& center_velocity, const Eigen::Vector3d& body_rate) noexcept;
 
  private:

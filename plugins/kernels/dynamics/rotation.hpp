@@ -5,7 +5,7 @@
 
 namespace hapticd::dynamics {
 
-/// [rt] The rotation by `turn` [rad]: axis times angle. Exact for every angle, small ones too.
+/// [rt] The rotation by `turn` [rad], which is axis times angle. Exact for every angle, also for small ones.
 Eigen::Quaterniond rotationBy(const Eigen::Vector3d& turn) noexcept;
 
 /// A unit quaternion near 1 that keeps the digits of its difference from 1: (1 + less, vector).

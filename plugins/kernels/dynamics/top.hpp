@@ -25,8 +25,8 @@ class Top {
   SmallTurn roughBodyTurn(Eigen::Vector3d momentum, double h) const noexcept;
   double worldRate() const noexcept {
     return world_rate_;
-  }  ///< [rt] 1/I_r: turn about the momentum over momentum and time
-  /// [rt] Whether bodyTurn() is exact for every step.
+  }  ///< [rt] True if bodyTurn() is exact for every step.
+  /// [rt] True if bodyTurn() is exact for every step.
   bool symmetric() const noexcept { return rate_a_ == 0 || rate_b_ == 0; }
   double bodyRate() const noexcept { return fastest_; }  ///< [rt] bound of |bodyTurn|/h over |momentum|
 

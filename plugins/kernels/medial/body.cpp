@@ -10,11 +10,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kChecksPerInterval = 2;  ///< of the monotonicity check, each way
+constexpr int kChecksPerInterval = 2;  ///< samples of the monotonicity check in each direction
 constexpr double kSameValue = 1e-300;
 constexpr double kSideways = 2;  ///< over this is the cosine to a sheet's normal from which a direction is on its side
 
-/// Samples of a curve stand for both rows of its surface.
+/// The samples of a curve are used for both rows of its surface.
 ScalarField fieldOf(const Skeleton& skeleton, std::vector<double> samples, const SkeletonGrid& grid, const char* what) {
   if (samples.size() != grid.points.size())
     throw std::invalid_argument(std::string(what) + ": " + std::to_string(samples.size()) + " values, expected " +
@@ -69,7 +69,7 @@ void Body::placeOf(const Vector3d& p, const SkeletonFoot& foot, const Vector3d& 
   place.turn = motion.turn;
 }
 
-/// The material of a control point is that of the body where it acts most.
+/// The material of a control point is the body's material where the point acts most.
 std::vector<Oscillator> Body::materialOf(const BodyData& data) const {
   const ScalarField mass = fieldOf(skeleton_, orZeros(data.mass, data.grid.points.size()), data.grid, "mass");
   if (mass.constant() && damping_.constant() && stiffness_.constant())
@@ -91,14 +91,14 @@ std::array<double, 2> Body::offsetsAt(const SkeletonFoot& foot) const noexcept {
     const double whole = range.back() - range.front();
     offsets[axis] = options_.shear_offset * whole;
     if (!turns()) continue;
-    const double metres = (axis == 0 ? s.Su : s.Sv).norm();  // a parameter; none at a pole
+    const double metres = (axis == 0 ? s.Su : s.Sv).norm();  // one unit of a parameter; none at a pole
     offsets[axis] = metres * whole > options_.shear_distance ? options_.shear_distance / metres : whole;
   }
   return offsets;
 }
 
 /// Four points of the contour at rest, beside the contact. Their normal turns from the contact's as the skeleton's
-/// does. Toward the rim the springs fade out, so that the force does not jump there.
+/// does. The springs fade out toward the rim, so that the force does not jump there.
 Body::Neighbours Body::neighboursOf(const SkeletonFoot& foot, const Vector3d& normal) const noexcept {
   Neighbours neighbours;
   const std::array<double, 2> offsets = offsetsAt(foot);
@@ -156,7 +156,7 @@ BodyForce Body::press(const Vector3d& p, const SkeletonFoot& foot, const Vector3
   return result;
 }
 
-/// A spring whose far end lies below the surface is shortened while the contact comes down to its height, and pushes
+/// A spring whose far end lies below the surface gets shorter while the contact comes down to its height, and pushes
 /// inward: at worst with its stiffness times (rest length / least length - 1) per metre, against the normal spring.
 void Body::judgeMonotonicity(const SkeletonFoot& at, const Vector3d& normal, MonotonicityReport& report) const {
   const double k = stiffness_.evaluate(at.u, at.v).f;

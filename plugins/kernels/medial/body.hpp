@@ -13,21 +13,21 @@
 
 namespace hapticd::medial {
 
-/// What a model file says of a body; index = i * count[1] + j.
+/// What a model file says about a body; index = i * count[1] + j.
 struct BodyData {
   SkeletonGrid grid;
   std::vector<double> stiffness;  ///< [N/m] one a point
-  std::vector<double> damping;    ///< [N s/m] one a point; empty: none
-  std::vector<double> mass;       ///< [kg] one a point; empty: none, so that control points creep
+  std::vector<double> damping;    ///< [N s/m] one per point; empty: none
+  std::vector<double> mass;       ///< [kg] one per point; empty: none, so that control points creep
   double shear_reach = 0;         ///< [m] along the skeleton; makes the dent of a felt body wider than its points alone
 };
 
-/// How a surface with dynamics of its own is felt.
+/// How a surface with its own dynamics is felt.
 struct FeltOptions {
   bool on = false;
   double contact_ratio = 3;                          ///< contact spring over the stiffness of a fast press
   double relaxation_share = 0, relaxation_time = 0;  ///< see Tissue
-  double tick = 1e-3;                                ///< [s] that most steps take
+  double tick = 1e-3;                                ///< [s] length of most steps
 };
 
 struct BodyOptions {
@@ -48,7 +48,7 @@ struct BodyForce {
   double energy = 0;                                ///< [J] in the springs
 };
 
-/// Whether the force grows with every depth, at every place that was looked at.
+/// Whether the force grows with depth at every place that was examined.
 struct MonotonicityReport {
   double slope = 1;  ///< least slope of the force over the stiffness of the normal spring, both at the same place
   double ratio = 1, limit = 1;  ///< there: rest length over least length of the worst spring; what it may be
@@ -60,7 +60,7 @@ class Body {
  public:
   /// [main] @throws std::invalid_argument that says what is wrong with the data.
   Body(const BodyData& data, const BodyOptions& options);
-  Body(const Body&) = delete;  // the deformation looks at the skeleton beside it
+  Body(const Body&) = delete;  // the deformation uses the skeleton beside it
   Body& operator=(const Body&) = delete;
 
   const Skeleton& skeleton() const noexcept { return skeleton_; }
@@ -74,14 +74,14 @@ class Body {
   /// the force: its part along the normal is stiffness * depth, as the file says.
   BodyForce press(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, double depth,
                   double closing_speed) const noexcept;
-  /// [rt] The place of the contour that a probe at `p` is at, with its foot, as a felt surface needs it.
+  /// [rt] The place of the contour at which a probe at `p` is, with its foot, as a felt surface needs it.
   /// @param direct 1: `normal` is the direction from the foot to the probe; 0: it is not; between, in part
   void placeOf(const Eigen::Vector3d& p, const SkeletonFoot& foot, const Eigen::Vector3d& normal, Envelope envelope,
                double direct, FeltPlace& place) const noexcept;
   FeltSurface* feltSurface() noexcept { return felt_ ? &*felt_ : nullptr; }  ///< [any] nullptr: it is only seen
-  /// [main] Looks at the force law all over the skeleton, on both sides.
+  /// [main] Checks the force law all over the skeleton, on both sides.
   MonotonicityReport checkMonotonicity() const;
-  /// [any] No force rises faster with depth [N/m]: the normal spring and four others in line with it.
+  /// [any] No force grows faster with depth [N/m]: it has the normal spring and four others in line with it.
   double greatestStiffness() const noexcept {
     return (options_.shear_offset > 0 && !turns() ? 5 : 1) * stiffness_.greatest();
   }
@@ -92,12 +92,12 @@ class Body {
     std::array<ShearSpring, 4> springs;
     std::size_t count = 0;
   };
-  /// [any] The springs along the surface only turn the force; else they add to the normal spring, as in the paper.
+  /// [any] The springs along the surface only turn the force; otherwise they add to the normal spring, as in the paper.
   bool turns() const noexcept { return options_.shear_distance > 0; }
   /// Parameters to a neighbour along u (0) and v (1); 0: none.
   std::array<double, 2> offsetsAt(const SkeletonFoot& foot) const noexcept;
   Neighbours neighboursOf(const SkeletonFoot& foot, const Eigen::Vector3d& normal) const noexcept;
-  /// Lowers `report` where the springs along `normal` lose more slope than any before.
+  /// Lowers `report` if the springs along `normal` lose more slope here than before.
   void judgeMonotonicity(const SkeletonFoot& at, const Eigen::Vector3d& normal, MonotonicityReport& report) const;
   std::vector<Oscillator> materialOf(const BodyData& data) const;
   std::vector<Tissue> tissueOf(const std::vector<Oscillator>& material) const;

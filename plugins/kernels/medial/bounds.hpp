@@ -4,7 +4,7 @@
 
 namespace hapticd::medial {
 
-inline constexpr double kNearAxis = 1e-4;        ///< [m] from so near the direction to the probe says little
-inline constexpr double kSteepestRadius = 0.99;  ///< slope of the radius beyond which spheres are nested
+inline constexpr double kNearAxis = 1e-4;        ///< [m] nearer than this, the direction to the probe means little
+inline constexpr double kSteepestRadius = 0.99;  ///< slope of the radius above which spheres are nested
 
 }  // namespace hapticd::medial

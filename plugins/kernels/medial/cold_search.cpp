@@ -10,9 +10,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kSamplesPerInterval = 3;  ///< of a cold search, each way
-constexpr int kFiner = 4;               ///< times as many, where spheres are inside others
-constexpr int kColdStarts = 8;          ///< samples that Newton starts from in a cold search
+constexpr int kSamplesPerInterval = 3;  ///< samples of a cold search in each direction
+constexpr int kFiner = 4;               ///< factor for more samples where spheres are inside others
+constexpr int kColdStarts = 8;          ///< samples from which Newton's method starts in a cold search
 constexpr int kColdEvaluations = 60;
 
 /// A sample of the skeleton from which a cold search may start.
@@ -26,8 +26,8 @@ struct Start {
 };
 using Starts = std::array<Start, kColdStarts>;
 
-/// Keeps the best samples, best first, and of neighbours the better one: a wide valley must not take all places, where
-/// the deepest is a narrow one.
+/// Keeps the best samples, best first, and of neighbours only the better one: a wide valley must not take all places
+/// when a narrow one is deepest.
 void offer(Start start, Starts& starts) noexcept {
   std::size_t place = 0;
   while (place < starts.size() && starts[place].value <= start.value) {
@@ -37,7 +37,7 @@ void offer(Start start, Starts& starts) noexcept {
   const Start better = start;
   for (; place < starts.size(); ++place) {
     std::swap(start, starts[place]);
-    if (start.besides(better)) return;  // a worse neighbour makes room
+    if (start.besides(better)) return;  // a worse neighbour makes room for it
   }
 }
 

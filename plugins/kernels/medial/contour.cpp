@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kLeastSegments = 2;  ///< between two points of the grid: a dent is as wide as they are apart
+constexpr int kLeastSegments = 2;  ///< between two points of the grid, because a dent is as wide as their distance
 constexpr int kMostSegments = 64;
 constexpr int kLeastArc = 2;  ///< segments from the top to the bottom round the rim
 
@@ -154,7 +154,7 @@ uint32_t Contour::addAt(const Place& place, const Vector3d& normal) {
   return add(place.center, normal, place.radius, {shares.data(), count});
 }
 
-/// Triangles between two rows of equal length; the outside is on the left going along `low` with `high` ahead.
+/// Triangles between two rows of equal length; the outside is on the left if you go along `low` with `high` ahead.
 void Contour::strip(const std::vector<uint32_t>& low, const std::vector<uint32_t>& high) {
   for (std::size_t k = 0; k + 1 < low.size(); ++k) {
     triangle(low[k], low[k + 1], high[k + 1]);
@@ -188,7 +188,7 @@ void Contour::buildSheet(const Skeleton& skeleton, double chord_error) {
 void Contour::closeRim(const Skeleton& skeleton, const std::array<std::vector<uint32_t>, 2>& faces, int steps) {
   const auto rows = static_cast<uint32_t>(at_[0].size()), columns = static_cast<uint32_t>(at_[1].size());
   const Rim rim(rows, columns);
-  std::vector<std::vector<uint32_t>> arcs;  // one a place of the loop, several at a corner
+  std::vector<std::vector<uint32_t>> arcs;  // one per place of the loop, several at a corner
   const auto addArc = [&](const Rim::Step& at, const Place& p, const Vector3d& outward) {
     const std::size_t face = at.i * columns + at.j;
     const Vector3d top = normal(faces[0][face]);

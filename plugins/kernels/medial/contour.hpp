@@ -20,7 +20,7 @@ class Contour : public MovingMesh {
   Contour(const Skeleton& skeleton, double chord_error);
 
  private:
-  /// A place of the skeleton with all that a vertex there needs.
+  /// A place of the skeleton with everything that a vertex there needs.
   struct Place {
     std::array<uint32_t, 2> line;
     Eigen::Vector3d center, tangent_u, tangent_v, across;
@@ -38,7 +38,7 @@ class Contour : public MovingMesh {
   void closeRim(const Skeleton& skeleton, const std::array<std::vector<uint32_t>, 2>& faces, int steps);
   void buildTube(const Skeleton& skeleton, double chord_error);
 
-  std::array<std::vector<double>, 2> at_;        ///< parameters of the lines; only while building
+  std::array<std::vector<double>, 2> at_;        ///< parameters of the lines; used only while building
   std::array<std::vector<Influence>, 2> lines_;  ///< likewise
   int columns_ = 1;
   double greatest_radius_ = 0;

@@ -62,7 +62,7 @@ struct Basis {
   }
 };
 
-constexpr std::size_t kWidest = 11;  ///< control points of one direction in a place: 11 x 11 fit a FeltPlace
+constexpr std::size_t kWidest = 11;  ///< most control points of one direction in a place: 11 x 11 fit a FeltPlace
 static_assert(kWidest * kWidest <= FeltPlace::kMost);
 
 /// Shares of control points in a place and their derivatives.
@@ -70,7 +70,7 @@ struct Shares {
   std::array<double, kWidest> value{}, slope{};
   int first = 0, count = 0;
 
-  /// @param rate by which the place of `basis` follows
+  /// @param rate with which the place of `basis` follows
   void add(const Basis& basis, double part, double rate) noexcept {
     const int from = basis.first - first;
     for (int i = 0; i < basis.count && static_cast<std::size_t>(from + i) < kWidest; ++i) {
@@ -82,13 +82,13 @@ struct Shares {
   }
 };
 
-/// A place near a rim that stands for the one at t, and the rate by which it follows t.
+/// A place near a rim that stands for the one at t, and the rate with which it follows t.
 struct Place {
   double at = 0, rate = 1;
 };
 
 /// Within `width` of the rim a place follows ever less and comes no nearer than half of it. A foot that is held at the
-/// rim does not move: the slope of the dent ends there, and would end in one step.
+/// rim does not move: without this, the slope of the dent would end there in one step.
 Place nearRim(const std::vector<double>& knots, double t, double width) noexcept {
   const double low = knots.front(), high = knots.back();
   if (!(width > 0)) return {std::clamp(t, low, high), t > low && t < high ? 1.0 : 0.0};
@@ -98,7 +98,7 @@ Place nearRim(const std::vector<double>& knots, double t, double width) noexcept
   return {t, 1};
 }
 
-/// Shares in a place at t that takes the places `reach` before and behind it along.
+/// Shares in a place at t, which also takes the places `reach` before and after it.
 Shares sharesOf(const ControlGrid& grid, std::size_t axis, double t, double reach, double rim) noexcept {
   Shares shares;
   const std::vector<double>& knots = grid.knots[axis];
@@ -118,7 +118,7 @@ Shares sharesOf(const ControlGrid& grid, std::size_t axis, double t, double reac
   return shares;
 }
 
-/// The width of a rim as a difference of parameters: that of a control point, where the rim is one.
+/// The width of a rim as a difference of parameters: that of a control point, if the rim is one.
 double rimWidth(const Skeleton& skeleton, std::size_t axis) {
   const ControlGrid& grid = skeleton.control();
   if (grid.count[axis] < 2 || (axis == 0 && skeleton.curve())) return 0;
@@ -157,7 +157,7 @@ double parameterReach(const Skeleton& skeleton, std::size_t axis, double reach) 
 /// Of one direction: the least change from equal ones that makes the sum 1 at places all along it, by multiplying each
 /// by the mean of what is missing where it acts.
 std::vector<double> complianceAlong(const ControlGrid& grid, std::size_t axis) {
-  constexpr int kLooks = 16, kRounds = 60;  // a knot interval; the changes then are below 1e-3
+  constexpr int kLooks = 16, kRounds = 60;  // one knot interval; then the changes are below 1e-3
   const std::vector<double>& knots = grid.knots[axis];
   std::vector<Basis> looks;
   for (std::size_t k = 0; k + 1 < knots.size(); ++k)

@@ -18,25 +18,25 @@ struct Press {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< outward, unit
   double depth = 0;                                   ///< [m] below the contour at rest, > 0
   double speed = 0;                                   ///< [m/s] at which the probe goes deeper
-  uint32_t element = 0;                               ///< of a mesh: the cone or slab that holds the foot
+  uint32_t element = 0;                               ///< for a mesh: the cone or slab that has the foot
 };
 
 class Deformation : public Nodes {
  public:
-  /// [main] `material` one a control point, or one for all.
+  /// [main] `material` has one per control point, or one for all.
   /// @throws std::invalid_argument for a negative or non-finite number.
   Deformation(const Skeleton& skeleton, const std::vector<Oscillator>& material, const DeformationOptions& options);
 
-  /// [rt] Moves control points so that the contour is at no contact outside the probe, several contacts at once.
+  /// [rt] Moves control points so that at no contact the contour is outside the probe, several contacts at once.
   /// Without dynamics the displacements are those of these contacts alone.
   void press(std::span<const Press> contacts) noexcept;
   /// [rt] Displacement of the skeleton (x, y, z) and change of the radius at one point [m].
   Eigen::Vector4d at(double u, double v) const noexcept;
   /// [rt] The control points that shape the contour at (u, v), with their derivatives. With a shear reach L the place
-  /// goes down by half its own displacement and a quarter each of those L before and behind it, along u and along v: a
-  /// press takes the surface beside it along, and is pushed back by it. The energy stays that of the nodes.
+  /// sinks by half its own displacement and a quarter each of those L before and after it, along u and along v: a press
+  /// takes the surface beside it down, and is pushed back by it. The energy stays that of the nodes.
   void nodesAt(double u, double v, FeltPlace& place) const noexcept;
-  /// [main] One a control point, so that the sum of weight^2 * compliance is nearly 1 everywhere.
+  /// [main] One per control point, chosen so that the sum of weight^2 * compliance is nearly 1 everywhere.
   std::vector<double> compliance() const;
 
  private:

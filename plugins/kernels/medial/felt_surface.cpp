@@ -15,10 +15,10 @@ using Eigen::Vector3d;
 using Eigen::Vector4d;
 
 constexpr double kSteepestDent = 1;     ///< slope of a dent: on the inside of a bend the foot runs as fast as it likes
-constexpr uint32_t kLooksForSleep = 8;  ///< ticks between two looks for nodes that have come to rest
-constexpr double kNearby = 1e-6;        ///< [m] a probe so near to a surface touches it
-constexpr int kMostSweeps = 64;         ///< of several contacts over each other
-constexpr double kSettled = 1e-15;      ///< [N] change of a force that ends the sweeps, beside a share of it
+constexpr uint32_t kLooksForSleep = 8;  ///< ticks between two searches for nodes that have come to rest
+constexpr double kNearby = 1e-6;        ///< [m] a probe this near to a surface touches it
+constexpr int kMostSweeps = 64;         ///< sweeps over several contacts
+constexpr double kSettled = 1e-15;      ///< [N] change of a force at which the sweeps end, besides a share of the force
 constexpr double kSameForce = 1e-13;
 
 bool sameTissue(const Tissue& a, const Tissue& b) {
@@ -40,7 +40,7 @@ FeltSurface::FeltSurface(Nodes& nodes, const std::vector<Tissue>& tissue, std::v
   if (tissue.size() != 1 && tissue.size() != nodes.count())
     throw std::invalid_argument("felt surface: " + std::to_string(tissue.size()) + " materials, expected 1 or " +
                                 std::to_string(nodes.count()));
-  if (compliance_.size() != nodes.count()) throw std::invalid_argument("felt surface: one compliance a node expected");
+  if (compliance_.size() != nodes.count()) throw std::invalid_argument("felt surface: expected a compliance per node");
   const double g = nodes.options().split;
   shares_ << g, g, g, 1 - g;
   for (const Tissue& t : tissue) share_ = std::max(share_, t.relaxation_share);
@@ -114,7 +114,7 @@ double FeltSurface::shift(const FeltPlace& place) const noexcept {
   return place.scale * inwardOf(place.normal).dot(sum);
 }
 
-/// [m/N] by how much the contour at `a` gives way within a tick to a force at `b` of 1 N.
+/// [m/N] by how much the contour at `a` gives way within a tick if a force of 1 N acts at `b`.
 double FeltSurface::give(const FeltPlace& a, const FeltPlace& b, double dt) noexcept {
   const double along = inwardOf(a.normal).cwiseProduct(shares_).dot(inwardOf(b.normal));
   if (&a == &b && uniform()) {
@@ -142,8 +142,8 @@ void FeltSurface::wake(uint32_t node) noexcept {
   touched_[node] = tick_;
 }
 
-/// Moves the surface inward to a displacement [m], where it is less, as a press that has been held for long does.
-/// Toward rest this takes energy away.
+/// Moves the surface inward to a displacement [m], if it is less, as a long press does. Moving toward rest takes energy
+/// away.
 void FeltSurface::bring(const FeltPlace& place, double displacement) noexcept {
   const double ratio = contactRatio();
   const double lag = displacement - shift(place);
@@ -195,8 +195,8 @@ void FeltSurface::swingAlike(const ViscoelasticStep& step) noexcept {
   }
 }
 
-/// The forces of all contacts together: each answers to the surface as the others leave it, until none changes. The
-/// surface yields symmetrically, and each contact less to another than to itself, so this ends.
+/// The forces of all contacts together: each reacts to the surface as the others leave it, until none changes. The
+/// surface yields symmetrically, and less to another contact than to its own, so this ends.
 void FeltSurface::solve(double dt, std::span<FeltContact> contacts) noexcept {
   Give gives;
   std::array<double, kMaxContacts> ahead;
@@ -255,7 +255,7 @@ void FeltSurface::keepAwake(std::span<const FeltContact> contacts) noexcept {
       for (std::size_t i = 0; i < contact.place.count; ++i) touched_[contact.place.nodes[i].node] = tick_;
 }
 
-/// Nodes that no contact holds and no one feels move any more. @returns whether one was put to rest
+/// Finds nodes that no contact holds and whose motion nobody feels. @returns whether one was put to rest
 bool FeltSurface::letSleep() noexcept {
   bool some = false;
   std::vector<uint32_t>& awake = nodes_->awake_;
@@ -268,7 +268,7 @@ bool FeltSurface::letSleep() noexcept {
       ++k;
       continue;
     }
-    node = Nodes::Node{};  // also what is not a number
+    node = Nodes::Node{};  // also if it is not a number
     if (!branch_.empty()) branch_[i].setZero();
     nodes_->is_awake_[i] = 0;
     awake[k] = awake.back();
@@ -278,7 +278,7 @@ bool FeltSurface::letSleep() noexcept {
   return some;
 }
 
-/// The displacement is s(u, v, normal): it changes with the foot and with the direction that the probe is in.
+/// The displacement is s(u, v, normal): it changes with the foot and with the direction in which the probe is.
 Vector3d FeltSurface::slopeAt(const FeltPlace& place) const noexcept {
   Vector4d here = Vector4d::Zero(), along_u = Vector4d::Zero(), along_v = Vector4d::Zero();
   for (std::size_t i = 0; i < place.count; ++i) {
@@ -295,7 +295,7 @@ Vector3d FeltSurface::slopeAt(const FeltPlace& place) const noexcept {
   su += place.ripple[0] * s;
   sv += place.ripple[1] * s;
   const Vector3d aside = place.turn * (moved - moved.dot(place.normal) * place.normal);
-  su += aside.dot(place.tangent_u);  // the foot follows a part of the way: the normal turns by the rest
+  su += aside.dot(place.tangent_u);  // the foot follows only part of the way, and the normal turns by the rest
   sv += aside.dot(place.tangent_v);
   const Vector3d slope = place.scale * (su * place.toward_u + sv * place.toward_v - aside);
   const double steepness = slope.norm();

@@ -30,7 +30,7 @@ struct FeltPlace {
   std::array<PlaceNode, kMost> nodes;
   std::size_t count = 0;
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();       ///< outward, unit
-  double stiffness = 0;                                    ///< [N/m] of a held press here
+  double stiffness = 0;                                    ///< [N/m] for a held press here
   Eigen::Vector3d toward_u{0, 0, 0}, toward_v{0, 0, 0};    ///< [1/m] gradients of u and v as the probe moves
   Eigen::Vector3d tangent_u{0, 0, 0}, tangent_v{0, 0, 0};  ///< [m] of the skeleton
   double turn = 0;  ///< [1/m] by which the normal turns for a probe that moves aside while its foot stays
@@ -42,30 +42,30 @@ struct FeltPlace {
   std::array<double, 2> ripple{0, 0};  ///< relative change of `scale` along u and v that only the nodes' places cause
 };
 
-/// One probe at a surface over one tick.
+/// One probe at a surface during one tick.
 struct FeltContact {
   FeltPlace place;
   double depth = 0;     ///< [m] of the probe below the contour at rest; negative outside
   double before = 0;    ///< [m] by how much it was inside the present surface at the last tick
   bool known = false;   ///< `before` is known
-  bool placed = false;  ///< the probe did not come here by a motion: the surface is taken as held by it already
-  bool fresh = false;   ///< the probe comes from afar: a surface that has swung out beyond it is taken as beside it
+  bool placed = false;  ///< the probe did not move here: the surface counts as held by it already
+  bool fresh = false;   ///< the probe comes from far away: a surface that has swung out beyond it counts as beside it
 
   double inside = 0;               ///< out: [m] inside the present surface
   double force = 0;                ///< out: [N] of the contact spring now
-  double mean = 0;                 ///< out: [N] over the tick
+  double mean = 0;                 ///< out: [N] mean over the tick
   Eigen::Vector3d slope{0, 0, 0};  ///< out: gradient of the surface's displacement where the probe is
 };
 
 class FeltSurface {
  public:
-  /// [main] `tissue` one a node, or one for all. `compliance`: one a node, that weights make the displacement of most
-  /// places nearly right without `scale`. `ratio`: see elementOf(). `dt`: the tick that most steps will have.
+  /// [main] `tissue`: one per node, or one for all. `compliance`: one per node, with which the displacement of most
+  /// places is nearly right without `scale`. `ratio`: see elementOf(). `dt`: the tick that most steps will have.
   FeltSurface(Nodes& nodes, const std::vector<Tissue>& tissue, std::vector<double> compliance, double ratio, double dt);
 
   /// [rt] Finds the contact spring and the scale of a place whose nodes and stiffness are known.
   void fit(FeltPlace& place) const noexcept;
-  /// [rt] One tick of all nodes in motion under all contacts. dt = 0: only the forces of now.
+  /// [rt] One tick of all moving nodes under all contacts. dt = 0 computes only the present forces.
   void advance(double dt, std::span<FeltContact> contacts) noexcept;
   void reset() noexcept;  ///< [rt] back to rest
   /// [rt] Kinetic and elastic energy [J] of nodes and contact springs.
@@ -104,16 +104,16 @@ class FeltSurface {
   Eigen::Vector4d twiceEnergy() const noexcept;
   Eigen::Vector4d twiceEnergyAlike() const noexcept;
   void wake(uint32_t node) noexcept;
-  /// One material for all nodes: what depends on it is the same for each, and is worked out once.
+  /// If all nodes have one material, what depends on it is the same for each, and is computed once.
   bool uniform() const noexcept { return which_.empty(); }
 
   Nodes* nodes_;
   std::vector<Material> materials_;  ///< the distinct ones
-  std::vector<uint16_t> which_;      ///< material of each node; empty: all the first
+  std::vector<uint16_t> which_;      ///< material of each node; empty: all have the first
   std::vector<double> compliance_;
   std::vector<Eigen::Vector4d> branch_;  ///< y of each node; empty: no relaxation
-  std::vector<uint32_t> touched_;        ///< the tick in which a contact last moved a node
-  Eigen::Vector4d shares_;               ///< of skeleton (three times) and radius in a displacement
+  std::vector<uint32_t> touched_;        ///< the last tick in which a contact moved a node
+  Eigen::Vector4d shares_;               ///< weights of skeleton (three times) and radius in a displacement
   double ratio_ = 0, share_ = 0, settle_ = 0;
   uint32_t tick_ = 0;
 };

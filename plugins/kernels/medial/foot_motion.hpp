@@ -5,7 +5,7 @@
 
 namespace hapticd::medial {
 
-/// Derivatives of a foot. The foot is stationary along the direction to the probe: only motion aside moves it.
+/// Derivatives of a foot. The foot is stationary along the direction to the probe, so only motion aside moves it.
 struct FootMotion {
   Eigen::Vector3d toward_u{0, 0, 0}, toward_v{0, 0, 0};    ///< [1/m] gradients of its parameters
   Eigen::Vector3d tangent_u{0, 0, 0}, tangent_v{0, 0, 0};  ///< [m] of the skeleton there

@@ -14,23 +14,23 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kLeastCurvature = 0.05;  ///< of a Hessian over that of the metric: below it a step would go too far
-constexpr double kOnSkeleton = 1e-9;      ///< [m] a query on the rim nearer than this is on it: d has no direction
-constexpr double kNearSkeleton = 1e-6;    ///< [m] a query nearer than this sees what is left of the search in d
+constexpr double kOnSkeleton = 1e-9;      ///< [m] a query nearer to the rim is on it, so that d has no direction
+constexpr double kNearSkeleton = 1e-6;    ///< [m] a query nearer than this sees the rest error of the search in d
 constexpr double kRemainders = 10;        ///< likewise, in Newton steps that were left
 constexpr double kSingular = 1e-14;       ///< share of the trace that keeps a collapsed direction solvable
 
 using Box = std::array<std::array<double, 2>, 2>;
 
-/// All that one evaluation gives.
+/// Everything that one evaluation gives.
 struct State {
   spline::SurfacePoint s;
   ScalarField::Value r;
   Vector3d d;           ///< from the skeleton to the query
   double distance = 0;  ///< |d|
-  double value = 0;     ///< what is least at the foot
+  double value = 0;     ///< the quantity that is least at the foot
 };
 
-/// One search: what it minimises and where.
+/// One search: what it minimises, and where.
 class Search {
  public:
   Search(const Skeleton& skeleton, const Vector3d& p, Envelope envelope)
@@ -69,7 +69,7 @@ class Search {
     const Vector3d& tangent = axis == 0 ? q.s.Su : q.s.Sv;
     return q.d.dot(tangent) + (exact_ ? height * (axis == 0 ? q.r.fu : q.r.fv) : 0);
   }
-  /// Takes a last, short step to first order, without an evaluation: what is left is its square.
+  /// Takes a last, short step to first order, without an evaluation; the remaining error is its square.
   void follow(const Vector2d& move, Vector2d& x, State& q) const noexcept {
     x += move;
     q.s.S += q.s.Su * move[0] + q.s.Sv * move[1];
@@ -103,8 +103,8 @@ Matrix2d metricOf(const State& q) noexcept {
   return metric;
 }
 
-/// Shifts a Hessian so that it curves upward in every direction that is not held: the least curvature, relative to the
-/// metric, changes its sign.
+/// Shifts a Hessian so that it curves upward in every direction that is not held: the least curvature relative to the
+/// metric changes its sign.
 void makeConvex(Matrix2d& h, const Matrix2d& metric, const std::array<bool, 2>& held) noexcept {
   double least = 0;
   if (held[0] || held[1]) {
@@ -198,7 +198,7 @@ Vector2d Search::step(const State& q, const Vector2d& x) const noexcept {
   return moveFor(planeHeight(q, metricOf(q)), true);  // |d| has its kink within reach of the step
 }
 
-/// How the radius grows along the skeleton, at most kSteepestRadius long.
+/// The slope of the radius along the skeleton, at most kSteepestRadius long.
 Vector3d Search::radiusGradient(const State& q) const noexcept {
   if (!exact_) return Vector3d::Zero();
   Vector3d gradient = Vector3d::Zero();
@@ -256,7 +256,7 @@ SkeletonFoot Skeleton::nearest(const Vector3d& p, double u, double v, const Newt
   if (!p.allFinite() || !std::isfinite(u) || !std::isfinite(v)) return foot;
   Search search(*this, p, options.envelope);
   Vector2d x = search.inside({u, v});
-  std::array<State, 2> states;  // in turn: the current one and the one tried
+  std::array<State, 2> states;  // the current one and the one being tried, in turn
   std::size_t now = 0;
   search.evaluate(x, states[now]);
   Vector2d move = search.step(states[now], x);
@@ -306,7 +306,7 @@ SkeletonFoot Skeleton::bisect(const Vector3d& p, Envelope envelope, int halvings
   foot.residual = (q.s.Su.norm() * (search.box()[0][1] - search.box()[0][0]) +
                    q.s.Sv.norm() * (search.box()[1][1] - search.box()[1][0])) *
                   std::ldexp(1.0, -halvings);
-  search.follow(search.toRim(x, std::ldexp(1.0, -halvings)) - x, x, q);  // halving never ends on it
+  search.follow(search.toRim(x, std::ldexp(1.0, -halvings)) - x, x, q);  // halving never ends on it exactly
   search.finish(q, x, foot);
   foot.converged = true;
   return foot;

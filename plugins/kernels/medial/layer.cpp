@@ -10,12 +10,12 @@
 namespace hapticd::medial {
 namespace {
 
-constexpr int kPoints = 24;          ///< along the radius of the tip
-constexpr double kDeepest = 20;      ///< wave number times thickness from which a layer is as thick as any
+constexpr int kPoints = 24;          ///< steps along the radius of the tip
+constexpr double kDeepest = 20;      ///< wave number times thickness above which a layer behaves as infinitely thick
 constexpr int kWavesAUnit = 16;      ///< steps of the integral over wave numbers
-constexpr double kLeastWave = 1e-3;  ///< below it sinh(2x) - 2x has no digits left where nu is 1/2
+constexpr double kLeastWave = 1e-3;  ///< below it sinh(2x) - 2x loses all digits if nu is 1/2
 
-/// What is missing to 1 in the compliance of the layer to a wave of pressure, over that of a half-space; x: wave number
+/// What the compliance of the layer to a wave of pressure, divided by that of a half-space, lacks to 1; x: wave number
 /// times thickness.
 double missing(double x, double nu) {
   if (x < kLeastWave) {  // the first term of the series
@@ -23,7 +23,7 @@ double missing(double x, double nu) {
     return 1 - (1 - 2 * nu) * x / (2 * kept * kept);
   }
   const double k = 3 - 4 * nu;
-  const double grows = std::exp(2 * x), shrinks = 1 / grows;  // sinh and cosh of our own: the same bits everywhere
+  const double grows = std::exp(2 * x), shrinks = 1 / grows;  // our own sinh and cosh, with the same bits everywhere
   const double above = k * (grows - shrinks) / 2 - 2 * x;
   const double below = k * (grows + shrinks) / 2 + 2 * x * x + 5 - 12 * nu + 8 * nu * nu;
   return 1 - above / below;
@@ -54,7 +54,7 @@ struct Gauss {
 };
 
 /// kappa for a tip of `ratio` thicknesses: phi(t) - 2/pi int_0^1 K(t, s) phi(s) ds = 1, and kappa = int phi. K is the
-/// cosine transform of what is missing.
+/// cosine transform of the lack.
 double kappa(double ratio, double nu) {
   const Gauss gauss;
   const int waves = 2 * static_cast<int>(0.5 * kDeepest * kWavesAUnit * std::max(1.0, ratio));  // even

@@ -38,7 +38,7 @@ void requireCorners(const std::array<int, kCount>& corners, std::size_t vertices
 }  // namespace
 
 MedialMesh::MedialMesh(const MeshData& data) : vertices_(data.vertices) {
-  if (vertices_.empty()) throw std::invalid_argument("no vertices, expected at least one");
+  if (vertices_.empty()) throw std::invalid_argument("there are no vertices, expected at least one");
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     const Sphere& s = vertices_[i];
     if (!s.center.allFinite() || !std::isfinite(s.radius) || s.radius < 0)
@@ -163,7 +163,7 @@ HullFoot MedialMesh::footOn(uint32_t element, const Vector3d& p) const noexcept 
   return element < cones_.size() ? cones_[element].foot(p) : slabs_[element - cones_.size()].foot(p);
 }
 
-/// No sphere of the node is nearer: its centre is in the box, its radius at most the greatest.
+/// No sphere of the node is nearer, because its centre is in the box and its radius is at most the greatest.
 double MedialMesh::lowerBound(const Node& node, const Vector3d& p) noexcept {
   return (node.low - p).cwiseMax(p - node.high).cwiseMax(0.0).norm() - node.radius;
 }
@@ -210,7 +210,7 @@ void MedialMesh::nearest(const Vector3d& p, uint32_t start, double band, MeshFee
     }
     const Entry a{node.child, lowerBound(nodes_[node.child], p)};
     const Entry b{node.child + 1, lowerBound(nodes_[node.child + 1], p)};
-    stack[depth++] = a.bound < b.bound ? b : a;  // the nearer one is taken first
+    stack[depth++] = a.bound < b.bound ? b : a;  // the nearer one comes first
     stack[depth++] = a.bound < b.bound ? a : b;
   }
 }

@@ -21,24 +21,24 @@ struct MeshData {
   std::vector<std::array<int, 3>> triangles;
 };
 
-/// A foot, and the cone or slab that holds it.
+/// A foot, and the cone or slab that has it.
 struct MeshFoot : HullFoot {
   uint32_t element = 0;
 };
 
-/// The feet that are nearest and nearly as near, nearest first.
+/// The nearest feet and those nearly as near, nearest first.
 struct MeshFeet {
   static constexpr std::size_t kMost = 8;
   std::array<MeshFoot, kMost> feet;
   std::size_t count = 0;
-  int evaluations = 0;  ///< primitives that were looked at
-  int visits = 0;       ///< nodes of the tree that were looked at, leaves too
+  int evaluations = 0;  ///< primitives that were examined
+  int visits = 0;       ///< nodes of the tree that were examined, including leaves
   double doubt = 0;     ///< [m] by which another primitive may be nearer; 0: none is
 };
 
 class MedialMesh {
  public:
-  /// One sphere, a cone of two or a slab of three: vertices, those left over repeat the first.
+  /// One sphere, a cone of two or a slab of three vertices; unused ones repeat the first.
   struct Element {
     std::array<uint32_t, 3> vertex{};
     uint8_t count = 0;
@@ -51,8 +51,8 @@ class MedialMesh {
   explicit MedialMesh(const MeshData& data);
 
   /// [any] The feet of p within `band` [m] of the nearest one. `start`: an element that was nearest a moment ago.
-  /// `most_visits`: nodes after which the search ends with what it has and with a doubt, as it may in the middle of a
-  /// body whose parts are all as near.
+  /// `most_visits`: nodes after which the search ends with its result so far and a doubt, as it may in the middle of a
+  /// body whose parts are all equally near.
   void nearest(const Eigen::Vector3d& p, uint32_t start, double band, MeshFeet& out,
                int most_visits = INT_MAX) const noexcept;
   /// [any] The foot of p on one cone or slab.
@@ -67,11 +67,11 @@ class MedialMesh {
   /// [any] Weights of an element's vertices at a foot on it.
   std::array<double, 3> weights(uint32_t element, const Eigen::Array2d& parameter) const noexcept;
   const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }  ///< of all spheres
-  double leastRadius() const noexcept { return least_radius_; }           ///< [m] that is not zero
+  double leastRadius() const noexcept { return least_radius_; }           ///< [m] a length that is not zero
   std::size_t bytes() const noexcept;
 
  private:
-  /// The centres of some elements lie in a box, and no radius there is greater.
+  /// The centres of some elements lie in a box, and no radius among them is greater than `radius`.
   struct alignas(64) Node {
     Eigen::Vector3d low, high;
     double radius = 0;
@@ -83,7 +83,7 @@ class MedialMesh {
   void gather(const MeshData& data);
   void buildTree();
   static Node boundsOf(const std::vector<Node>& boxes, std::span<const uint32_t> members);
-  /// Sorts the members' lower half along their longest extent to the front. @return how many these are
+  /// Sorts the members' lower half along their longest extent to the front. @return how many there are
   static std::size_t halve(const std::vector<Node>& boxes, std::span<uint32_t> members);
   /// Takes the foot among the nearest if it lies within `band` of the nearest one.
   static void enter(const HullFoot& foot, uint32_t element, double band, MeshFeet& out) noexcept;

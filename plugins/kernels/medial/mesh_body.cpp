@@ -23,12 +23,12 @@ constexpr double kOneTube = 0.5;   ///< [rad] joined parts that turn by less are
 constexpr double kRoundingOfFeet = 1e-6;  ///< of the radius: feet this near to each other are one
 constexpr double kOpposite = 4;           ///< normals farther apart than acos(1 / this - 1) count less and less
 
-/// One value for all stays one.
+/// One value for all vertices stays one value.
 std::vector<double> oneOrAll(const std::vector<double>& values, std::size_t vertices, const char* what) {
   if (values.empty()) return {0};
   if (values.size() != 1 && values.size() != vertices)
     throw std::invalid_argument(std::string(what) + ": " + std::to_string(values.size()) + " values, expected " +
-                                std::to_string(vertices) + ", one a vertex");
+                                std::to_string(vertices) + ", one per vertex");
   for (const double value : values)
     if (!(value >= 0) || !std::isfinite(value))
       throw std::invalid_argument(std::string(what) + ": " + std::to_string(value) +
@@ -112,7 +112,7 @@ PlaceNode& MeshDeformation::nodeOf(FeltPlace& place, uint32_t node) noexcept {
     place_[node] = static_cast<uint32_t>(place.count);
     place.nodes[place.count++] = {node, 0, 0, 0};
   }
-  return place.nodes[place_[node] == UINT32_MAX ? 0 : place_[node]];  // what finds no room goes to the first corner
+  return place.nodes[place_[node] == UINT32_MAX ? 0 : place_[node]];  // a weight without room goes to the first corner
 }
 
 void MeshDeformation::spread(FeltPlace& place) noexcept {
@@ -188,7 +188,7 @@ MeshBody::MeshBody(const MeshBodyData& data, const BodyOptions& options) : optio
   felt_.emplace(*deformation_, tissue, std::vector<double>(count, 1.0), options.felt.contact_ratio, options.felt.tick);
 }
 
-/// How parameters follow the probe is measured on the cone or slab of the foot: its closed form is cheap.
+/// How parameters follow the probe is measured on the foot's cone or slab, whose closed form is cheap.
 void MeshBody::placeOf(const Vector3d& p, const SkeletonFoot& foot, const Vector3d& normal, double direct,
                        FeltPlace& place) noexcept {
   deformation_->nodesAt(foot.element, {foot.u, foot.v}, place);
@@ -210,7 +210,7 @@ void MeshBody::placeOf(const Vector3d& p, const SkeletonFoot& foot, const Vector
   place.turn = distance > kNearAxis ? direct * std::min(1.0, distance / kNearAxis - 1) / distance : 0;
 }
 
-/// The foot on a cone or slab may lie on its end, where the next one begins: that is no part of its own, and a flat
+/// The foot on a cone or slab may lie on its end, where the next one begins: that is not a part of its own, and a flat
 /// sheet of many slabs is flat.
 double MeshBody::apart(const MeshFoot& a, const MeshFoot& b) const noexcept {
   const MedialMesh::Element &one = mesh_.elements()[a.element], &other = mesh_.elements()[b.element];
@@ -308,7 +308,7 @@ SkeletonFoot MeshBody::foot(const Vector3d& p, uint32_t start, double crease, in
   foot.residual = doubt;
   foot.converged = std::isfinite(best.distance) && !(doubt > 0);
   if (feet.count < 2) return foot;
-  // The opposite side of a sheet or tube is as near as this one in its middle: that is no crease.
+  // In the middle of a sheet or tube the opposite side is equally near: that is no crease.
   Vector3d sum = best.normal;
   for (std::size_t i = 1; i < feet.count; ++i) {
     const double cosine = feet.feet[i].normal.dot(best.normal);

@@ -15,7 +15,7 @@
 
 namespace hapticd::medial {
 
-/// What a model file says of a body; material one a vertex, or one for all.
+/// What a model file says about a body; one material per vertex, or one for all.
 struct MeshBodyData {
   MeshData mesh;
   std::vector<double> stiffness;  ///< [N/m]
@@ -28,7 +28,7 @@ struct MeshBodyData {
 /// next: the corners' weights, spread evenly along the edges once a ring.
 class MeshDeformation : public Nodes {
  public:
-  /// [main] @throws std::invalid_argument for a material that is no material.
+  /// [main] @throws std::invalid_argument if a material is impossible.
   MeshDeformation(const MedialMesh& mesh, const std::vector<Oscillator>& material, const DeformationOptions& options);
 
   /// [rt] Moves vertices so that the contour is at no contact outside the probe; u, v are weights 1 and 2 of a slab,
@@ -69,7 +69,7 @@ class MeshBody {
  public:
   /// [main] @throws std::invalid_argument that says what is wrong with the data.
   MeshBody(const MeshBodyData& data, const BodyOptions& options);
-  MeshBody(const MeshBody&) = delete;  // the deformation looks at the mesh beside it
+  MeshBody(const MeshBody&) = delete;  // the deformation uses the mesh beside it
   MeshBody& operator=(const MeshBody&) = delete;
 
   const MedialMesh& mesh() const noexcept { return mesh_; }
@@ -82,7 +82,7 @@ class MeshBody {
   /// much another may be nearer.
   SkeletonFoot foot(const Eigen::Vector3d& p, uint32_t start, double crease, int most_visits = INT_MAX) const noexcept;
   /// [rt] The foot of p with its own normal and, of other parts of the body within `crease` [m] as near, the one that
-  /// counts most. @return 0: there is none; 1: it is another part; between: the feet are just parting
+  /// counts most. @return 0: there is none; 1: it is another part; between: the feet are just separating
   double feet(const Eigen::Vector3d& p, uint32_t start, double crease, SkeletonFoot& foot,
               SkeletonFoot& rival) const noexcept;
   /// [rt] The force on a probe `depth` below the surface along `normal`: spring, and damping against `closing_speed`.
@@ -115,7 +115,7 @@ class MeshBody {
 
   BodyOptions options_;
   MedialMesh mesh_;
-  std::vector<double> stiffness_, damping_;  ///< one a vertex, or one for all
+  std::vector<double> stiffness_, damping_;  ///< one per vertex, or one for all
   std::optional<MeshDeformation> deformation_;
   std::optional<FeltSurface> felt_;
 };

@@ -10,10 +10,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostCells = 256;           ///< along a side; a power of two
-constexpr double kMargin = 0.01;          ///< of the body's size, round it
-constexpr double kClear = 1e-9;           ///< share of a cell by which no corner is on the surface
-constexpr int kSettle = 2;                ///< steps that bring a vertex onto the surface
+constexpr int kMostCells = 256;           ///< most cells along a side; a power of two
+constexpr double kMargin = 0.01;          ///< share of the body's size, as a margin around it
+constexpr double kClear = 1e-9;           ///< share of a cell by which every corner is off the surface
+constexpr int kSettle = 2;                ///< steps that move a vertex onto the surface
 constexpr uint64_t kStride = 1ULL << 20;  ///< more than any coordinate of a corner, doubled
 
 uint64_t keyOf(const Eigen::Vector3i& c) {
@@ -37,7 +37,7 @@ MeshContour::MeshContour(const MedialMesh& mesh, double chord_error) : mesh_(&me
   crossings_ = {};
 }
 
-/// The distance changes by no more than the way that is gone: a cube whose middle is farther from the surface than its
+/// The distance changes by at most the length of the way: a cube whose middle is farther from the surface than its
 /// corners are from the middle holds none of it.
 void MeshContour::visit(const Cell& low, int size) {
   const Vector3d middle = place(low) + Vector3d::Constant(0.5 * size * cell_);
@@ -59,7 +59,7 @@ double MeshContour::distanceAt(const Cell& corner) {
   return known->second = distance;
 }
 
-/// Six tetrahedra about a diagonal of the cell: neighbours share the triangles of their common side.
+/// Six tetrahedra about a diagonal of the cell, so that neighbours share the triangles of their common side.
 void MeshContour::cut(const Cell& cell) {
   constexpr std::array<std::array<int, 3>, 6> kOrders{
       {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
@@ -84,7 +84,7 @@ void MeshContour::tetrahedron(const std::array<Cell, 4>& corners, const std::arr
   const auto crossing = [&](std::size_t a, std::size_t b) {
     return vertexOn(corners[a], distances[a], corners[b], distances[b]);
   };
-  // Whether the order of four corners is an even one.
+  // True if the order of four corners is an even one.
   const auto even = [](std::array<std::size_t, 4> order) {
     int swaps = 0;
     for (std::size_t i = 0; i < 4; ++i)

@@ -10,15 +10,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kMostVisits = 400;  ///< nodes of the tree for one neighbour: at the surface some tens are enough
+constexpr int kMostVisits = 400;  ///< nodes of the tree for one neighbour: some tens suffice at the surface
 constexpr double kLeastAside =
     1e-6;  ///< sine below which an axis of the model's frame has no direction along a surface
 
 }  // namespace
 
-/// A mesh has no rows to go along. The neighbours are in the directions of the model's axes along the surface, forward
-/// and back; each counts by how far its axis lies in the surface, squared. So the six together are the same for every
-/// direction of the surface, and nothing jumps where cones and slabs meet.
+/// A mesh has no rows. The neighbours are in the directions of the model's axes along the surface, forward and back;
+/// each counts by how far its axis lies in the surface, squared. So the six together are the same for every direction
+/// of the surface, and nothing jumps where cones and slabs meet.
 std::size_t MeshBody::neighboursOf(const Vector3d& surface, const SkeletonFoot& foot, const Vector3d& normal,
                                    std::array<ShearSpring, 6>& springs) const noexcept {
   const double here = material(stiffness_, foot), distance = options_.shear_distance;

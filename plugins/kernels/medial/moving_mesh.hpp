@@ -13,10 +13,10 @@ using Displacements = std::vector<Eigen::Vector4f>;
 
 class MovingMesh {
  public:
-  virtual ~MovingMesh() = default;  ///< its owners do not know which mesh they own
+  virtual ~MovingMesh() = default;  ///< its owners do not know which mesh it is
 
   std::size_t vertexCount() const noexcept { return vertices_.size(); }
-  /// Three vertices a triangle, counter-clockwise seen from outside.
+  /// Three vertices per triangle, counter-clockwise seen from outside.
   const std::vector<uint32_t>& indices() const noexcept { return indices_; }
 
   /// [any] Writes at most `capacity` vertices from `first` on, 3 floats each, of the body displaced as

@@ -23,7 +23,7 @@ void requireMaterial(const Oscillator& o, std::size_t i) {
                                 std::to_string(o.stiffness) + ", expected finite numbers of at least 0");
 }
 
-/// A node without mass creeps, one without mass and damping or without a spring returns at once.
+/// A node without mass creeps; one without mass and damping, or without a spring, returns at once.
 OscillatorStep stepOf(const Oscillator& o, double dt) noexcept {
   if (!(o.stiffness > 0) || (!(o.mass > 0) && !(o.damping > 0))) return {0, 0, 0, 0};
   if (!(o.mass > 0)) return {std::exp(-o.stiffness / o.damping * dt), 0, 0, 0};
@@ -101,7 +101,7 @@ void Nodes::advance(double dt) noexcept {
       ++k;
       continue;
     }
-    node = Node{};  // also what is not a number
+    node = Node{};  // also if it is not a number
     is_awake_[i] = 0;
     awake_[k] = awake_.back();
     awake_.pop_back();
@@ -124,7 +124,7 @@ void Nodes::clear() noexcept {
 void Nodes::wake(std::size_t node) noexcept {
   if (is_awake_[node] != 0) return;
   is_awake_[node] = 1;
-  awake_.push_back(static_cast<uint32_t>(node));  // reserved for all: never allocates
+  awake_.push_back(static_cast<uint32_t>(node));  // room for all is reserved, so it never allocates
 }
 
 void Nodes::place(std::size_t i, const Vector4d& displacement, const Vector4d& rate) noexcept {

@@ -14,16 +14,16 @@ namespace hapticd::medial {
 
 inline constexpr double kAsleep = 1e-7;  ///< [m] amplitude below which no one sees or feels a node move
 /// The step of an undamped node is a rotation: rounding may turn it into a growing spiral, by at most a few units in
-/// the last place a tick. So much is taken off.
+/// the last place a tick. This much is subtracted.
 inline constexpr double kRoundingLoss = 4e-15;
-inline constexpr double kSameStep = 1e-9;  ///< relative difference of two dt for which one prepared step serves
+inline constexpr double kSameStep = 1e-9;  ///< two dt with a smaller relative difference share one prepared step
 
 struct DeformationOptions {
   double split = 0.5;                  ///< share of the depth that the skeleton moves; the radius shrinks by the rest
-  std::array<int, 2> influence{4, 4};  ///< of a grid: control points that a contact moves, p' x q'
-  int rings = 2;                       ///< of a mesh: neighbours of neighbours ... that a contact moves
+  std::array<int, 2> influence{4, 4};  ///< for a grid: control points that a contact moves, p' x q'
+  int rings = 2;                       ///< for a mesh: how many rings of neighbours a contact moves
   bool dynamics = true;                ///< false: nodes return at once
-  double shear_reach = 0;              ///< [m] of a grid that is felt: places so far beside a contact go along with it
+  double shear_reach = 0;              ///< [m] for a felt grid: places this far beside a contact sink with it
 };
 
 /// A node and its share in a point of the skeleton.
@@ -34,7 +34,7 @@ struct NodeWeight {
 
 class Nodes {
  public:
-  /// [main] `material` one a node, or one for all. Memory is taken here, for every node awake.
+  /// [main] `material`: one per node, or one for all. It allocates for every awake node.
   /// @throws std::invalid_argument for a negative or non-finite number.
   Nodes(std::size_t count, const std::vector<Oscillator>& material, const DeformationOptions& options);
 
@@ -52,13 +52,13 @@ class Nodes {
   const Eigen::Vector4d& rate(std::size_t i) const noexcept { return nodes_[i].v; }  ///< [any] its speed [m/s]
   /// [any] Puts node i where it is said to be, such as where it was when a scene was saved.
   void place(std::size_t i, const Eigen::Vector4d& displacement, const Eigen::Vector4d& rate) noexcept;
-  double settleTime() const noexcept { return settle_; }  ///< [s] after which a free body is at rest, whatever it was
+  double settleTime() const noexcept { return settle_; }  ///< [s] after which a free body is at rest, however it moved
   double bulge() const noexcept { return bulge_; }        ///< [m] by which all radii have grown to keep the volume
   void setBulge(double bulge) noexcept { bulge_ = bulge; }
   std::size_t bytes() const noexcept;
 
  protected:
-  friend class FeltSurface;  // moves the nodes by itself where they are felt
+  friend class FeltSurface;  // moves the nodes itself if the surface is felt
 
   /// A contact that holds the contour where the probe is.
   struct Hold {
@@ -67,8 +67,8 @@ class Nodes {
   };
   void clear() noexcept;  ///< [rt] all nodes to rest; the bulge stays
   const DeformationOptions& options() const noexcept { return options_; }
-  /// [rt] Pushes the contour in to the probe where it is outside it, and takes it along where it is slower. `felt` are
-  /// the nodes that shape the contour there, `moved` those that give way: the sum of their products is 1.
+  /// [rt] Pushes the contour in to the probe if it is outside, and takes it along if it is slower. `felt` are the nodes
+  /// that shape the contour there, `moved` those that give way: the sum of their products is 1.
   void yield(const Hold& contact, std::span<const NodeWeight> felt, std::span<const NodeWeight> moved) noexcept;
 
  private:
@@ -88,13 +88,13 @@ class Nodes {
   DeformationOptions options_;
   std::vector<Node> nodes_;
   std::vector<Material> materials_;  ///< the distinct ones
-  std::vector<uint16_t> which_;      ///< material of each node; empty: all the first
+  std::vector<uint16_t> which_;      ///< material of each node; empty: all have the first
   std::vector<uint32_t> awake_;      ///< indices, reserved for all
   std::vector<uint8_t> is_awake_;
   double prepared_dt_ = -1, settle_ = 0, bulge_ = 0;
 };
 
 inline constexpr int kMaxContacts = 16;  ///< that one body answers at once
-inline constexpr int kSweeps = 8;        ///< over several contacts; each brings the next nearer to its probe
+inline constexpr int kSweeps = 8;        ///< sweeps over several contacts; each brings the next one nearer to its probe
 
 }  // namespace hapticd::medial

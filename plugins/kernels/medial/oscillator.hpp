@@ -4,7 +4,7 @@
 
 namespace hapticd::medial {
 
-inline constexpr double kLongestSettle = 3600;  ///< [s] an undamped body swings for ever: this is for ever
+inline constexpr double kLongestSettle = 3600;  ///< [s] an undamped body swings for ever, which this stands for
 
 /// Material of one degree of freedom.
 struct Oscillator {
@@ -14,8 +14,8 @@ struct Oscillator {
 };
 
 /// The exact solution of m x'' + b x' + k x = 0 over a fixed time as a 2x2 matrix on (x, v): stable for every mass,
-/// stiffness, damping and time, unlike the Euler steps, and four multiplications. A constant force moves the point
-/// about which x is measured to f / k.
+/// stiffness, damping and time, unlike the Euler steps, and it takes four multiplications. A constant force moves the
+/// point about which x is measured to f / k.
 struct OscillatorStep {
   double xx = 1, xv = 0, vx = 0, vv = 1;
   double xf = 0, vf = 0;  ///< what a constant force of 1 N adds over the time [m], [m/s]
@@ -31,10 +31,10 @@ struct OscillatorStep {
 /// [any] The step of `dt` seconds. Computed in extended precision, so that 1e5 steps keep 1e-11 of the amplitude.
 OscillatorStep oscillatorStep(const Oscillator& oscillator, double dt) noexcept;
 
-/// [any] Whether explicit Euler with this step dies out: w^2 h < c and 4 - 2 c h + w^2 h^2 > 0 with c = b / m.
+/// [any] True if explicit Euler with this step decays: w^2 h < c and 4 - 2 c h + w^2 h^2 > 0 with c = b / m.
 bool explicitEulerStable(const Oscillator& oscillator, double dt) noexcept;
 
-/// [any] Whether symplectic Euler with this step stays bounded: w^2 h^2 + 2 c h < 4.
+/// [any] True if symplectic Euler with this step stays bounded: w^2 h^2 + 2 c h < 4.
 bool symplecticEulerStable(const Oscillator& oscillator, double dt) noexcept;
 
 }  // namespace hapticd::medial

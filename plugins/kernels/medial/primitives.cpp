@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Sine of the smallest angle of a triangle that still has a plane to speak of; thinner ones are their edges.
+/// Sine of the smallest angle of a triangle that still has a meaningful plane; thinner ones are treated as their edges.
 constexpr double kThinTriangle = 1e-9;
 
 void requireSphere(const Sphere& sphere, const char* what) {
@@ -152,7 +152,7 @@ HullFoot Slab::foot(const Vector3d& p) const noexcept {
     }
   }
   // The distance is convex over the triangle: from a stationary point beyond an edge, the least value lies on an edge
-  // that it is beyond. Not-a-number is beyond none, and falls through to the first edge.
+  // that it is beyond. NaN is beyond none, and falls through to the first edge.
   HullFoot best;
   bool found = false;
   for (std::size_t i = 0; i < 3; ++i) {

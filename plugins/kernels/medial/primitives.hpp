@@ -18,7 +18,7 @@ struct Sphere {
 /// Where a point stands relative to a hull.
 struct HullFoot {
   double distance = 0;                                ///< [m] signed: negative inside
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< centre of the sphere that holds the foot
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< centre of the sphere that has the foot
   double radius = 0;                                  ///< of that sphere
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< outward unit normal at the foot, also for a point on the axis
   Eigen::Array2d parameter = Eigen::Array2d::Zero();  ///< cone: (t, 0); slab: barycentric weights of spheres 1 and 2
@@ -79,7 +79,7 @@ class Slab {
   Eigen::Vector3d edge1_ = Eigen::Vector3d::Zero(), edge2_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d gradient_ = Eigen::Vector3d::Zero();  ///< of the radius, in the plane of the centres
   double cosine_ = 1, tangent_scale_ = 1;
-  bool plane_ = false;  ///< false: no sphere touches the hull's flat sides alone (thin triangle, nested spheres)
+  bool plane_ = false;  ///< false: no sphere touches only the hull's flat sides (thin triangle, nested spheres)
 };
 
 }  // namespace hapticd::medial

@@ -15,7 +15,7 @@ class ScalarField {
   /// [main] Samples at every pair of parameters. @throws std::invalid_argument for a negative or non-finite sample.
   ScalarField(const std::array<std::vector<double>, 2>& parameters, const std::vector<double>& samples);
 
-  /// Value with first and second derivatives. The second ones jump where the samples stand.
+  /// Value with first and second derivatives. The second ones jump at the samples.
   struct Value {
     double f = 0, fu = 0, fv = 0, fuu = 0, fuv = 0, fvv = 0;
   };

@@ -29,7 +29,7 @@ Eigen::MatrixXd rowsOf(const std::vector<Vector3d>& points) {
   return rows;
 }
 
-/// Means of `degree` successive knots: where a control point acts most.
+/// Means of `degree` successive knots, where a control point acts most.
 std::vector<double> grevilleOf(const std::vector<double>& knots, int degree, int count) {
   std::vector<double> all(static_cast<std::size_t>(count), 0);
   for (int i = 0; i < count && degree > 0; ++i) {
@@ -85,7 +85,7 @@ void Skeleton::buildCurve(const SkeletonGrid& grid, int degree, spline::Form for
   radius_ = ScalarField(parameters_, radius);
 }
 
-/// Bounds: a spline stays in the box of its control points, and a radius below its greatest sample.
+/// Bounds: a spline stays in the box of its control points, and a radius is at most its greatest sample.
 void Skeleton::measure() {
   for (const Vector3d& point : control_.points) bounds_.extend(point);
   const Vector3d reach = Vector3d::Constant(radius_.greatest());
@@ -106,7 +106,7 @@ void Skeleton::measure() {
 
 Steepness Skeleton::steepest() const {
   constexpr int kLooks = 4;            // a cell, each way
-  constexpr double kCollapsed = 1e-9;  // of the trace squared: a pole, without a direction across
+  constexpr double kCollapsed = 1e-9;  // share of the squared trace: a pole, without a direction across
   Steepness most;
   const auto look = [&](double u, double v) {
     spline::SurfacePoint s;

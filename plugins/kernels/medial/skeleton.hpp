@@ -16,21 +16,21 @@ namespace hapticd::medial {
 struct SkeletonGrid {
   std::array<int, 2> count{0, 0};
   std::vector<Eigen::Vector3d> points;  ///< [m]
-  std::vector<double> radius;           ///< [m] one a point, not negative
+  std::vector<double> radius;           ///< [m] one per point, not negative
 };
 
-/// A foot on the skeleton: the sphere that comes nearest to a point, or that the point is deepest in.
+/// A foot on the skeleton: the sphere nearest to a point, or in which the point is deepest.
 struct SkeletonFoot {
   double u = 0, v = 0;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< [m] on the skeleton
   double radius = 0;                                  ///< [m]
   double depth = 0;                                   ///< [m] radius less the distance to the centre; > 0 inside
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  ///< outward unit direction
-  Eigen::Vector3d across = Eigen::Vector3d::Zero();   ///< unit Su x Sv; zero where the skeleton has no plane
-  double slope = 0;                                   ///< metres of radius a metre of skeleton, if the radius counts
-  double residual = 0;                                ///< [m] length of the Newton step that was left
+  Eigen::Vector3d across = Eigen::Vector3d::Zero();   ///< unit Su x Sv; zero if the skeleton has no plane
+  double slope = 0;                                   ///< metres of radius per metre of skeleton, if the radius counts
+  double residual = 0;                                ///< [m] length of the remaining Newton step
   int evaluations = 0;
-  uint32_t element = 0;  ///< of a medial mesh: the cone or slab that holds the foot
+  uint32_t element = 0;  ///< for a medial mesh: the cone or slab that has the foot
   bool rim = false;      ///< on the boundary of the skeleton
   bool converged = false;
 };
@@ -57,7 +57,7 @@ struct ControlGrid {
 
 /// Where radii change most along a skeleton.
 struct Steepness {
-  double slope = 0;     ///< metres of radius a metre of skeleton; from 1 on spheres are swallowed by their neighbours
+  double slope = 0;     ///< metres of radius per metre of skeleton; from 1 on, neighbours enclose spheres
   double u = 0, v = 0;  ///< there
 };
 
@@ -71,8 +71,8 @@ class Skeleton {
   SkeletonFoot nearest(const Eigen::Vector3d& p, double u, double v, const NewtonOptions& options) const noexcept;
   /// [any] The foot of p with no start known: Newton from the best samples of the whole skeleton.
   SkeletonFoot search(const Eigen::Vector3d& p, const NewtonOptions& options) const noexcept;
-  /// [any] The paper's binary search, nested so that it is right on skew skeletons as well: for each of `halvings`
-  /// intervals of u, as many of v. One minimum along each line is assumed.
+  /// [any] The paper's binary search, nested so that it also works on skew skeletons: for each of `halvings` intervals
+  /// of u, as many of v. One minimum along each line is assumed.
   SkeletonFoot bisect(const Eigen::Vector3d& p, Envelope envelope, int halvings) const noexcept;
   /// [any] No point of the body is nearer to p than this [m]; 0 inside the bounding box.
   double leastDistance(const Eigen::Vector3d& p) const noexcept { return bounds_.exteriorDistance(p); }
@@ -81,14 +81,14 @@ class Skeleton {
   const ScalarField& radius() const noexcept { return radius_; }
   bool curve() const noexcept { return curve_; }                          ///< one row of points
   const Eigen::AlignedBox3d& bounds() const noexcept { return bounds_; }  ///< of all spheres
-  /// [main] Looks between all points of the grid. From a slope of 1 on, spheres are inside others, and what was given
-  /// is not the medial axis of anything. The body is then still the union of all spheres.
+  /// [main] Checks between all points of the grid. From a slope of 1 on, spheres are inside others, and the data are
+  /// not the medial axis of any body. The body is then still the union of all spheres.
   Steepness steepest() const;
   bool nested() const noexcept { return nested_; }  ///< [any] some slope is 1 or more
   const std::array<std::vector<double>, 2>& parameters() const noexcept { return parameters_; }
   double spacing() const noexcept { return spacing_; }  ///< [m] greatest distance of neighbouring points
   const ControlGrid& control() const noexcept { return control_; }
-  /// [main] Frees what only set-up needs: where the control points stand.
+  /// [main] Frees what only set-up needs: the places of the control points.
   void trim() {
     control_.points = {};
     control_.greville = {};
@@ -102,7 +102,7 @@ class Skeleton {
 
   std::unique_ptr<spline::Surface> surface_;
   ScalarField radius_;
-  std::array<std::vector<double>, 2> parameters_;  ///< of the points of the grid
+  std::array<std::vector<double>, 2> parameters_;  ///< counts of the grid's points
   ControlGrid control_;
   Eigen::AlignedBox3d bounds_;
   double spacing_ = 0;

@@ -10,9 +10,9 @@ namespace {
 using Eigen::Array3d;
 using Eigen::Vector3d;
 
-constexpr double kAtCorner = 1e-60;  ///< product of weights below which a foot is on a corner
+constexpr double kAtCorner = 1e-60;  ///< product of weights below which a foot counts as on a corner
 
-/// A number on a slab and its gradient by the three barycentric weights.
+/// A number on a slab, and its gradient with respect to the three barycentric weights.
 struct Field {
   double value = 0;
   Array3d gradient = Array3d::Zero();
@@ -73,7 +73,7 @@ CornerWeights softOnCone(double t) noexcept {
   return {{smooth(1 - t), smooth(t), 0}, {-slope, slope, 0}, {}};
 }
 
-/// What each edge says by itself, blended by how much it counts.
+/// The result of each edge alone, blended by how much it counts.
 CornerWeights softOnSlab(const std::array<Vector3d, 3>& centers, double u, double v) noexcept {
   const Array3d b = Array3d(1 - u - v, u, v).cwiseMax(0.0);
   std::array<Field, 3> corners;

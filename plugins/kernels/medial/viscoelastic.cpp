@@ -52,7 +52,7 @@ Matrix exponential(Matrix a) noexcept {
   return sum;
 }
 
-/// One without mass creeps. Its rate is not a state.
+/// An element without mass creeps. Its rate is not a state.
 ViscoelasticStep creep(const SurfaceElement& e, double dt) noexcept {
   ViscoelasticStep step{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
   if (!(e.stiffness > 0)) return step;
@@ -67,7 +67,7 @@ ViscoelasticStep swing(const SurfaceElement& e, double dt) noexcept {
   return {o.xx, o.xv, 0, o.xf, o.vx, o.vv, 0, o.vf, 0, 0, 0, 0};
 }
 
-/// With a branch: the exponential of the whole. One without mass has its rate from the other states.
+/// With a branch: the exponential of the whole system. Without mass, the rate follows from the other states.
 ViscoelasticStep relax(const SurfaceElement& e, double dt) noexcept {
   Matrix a{};
   const long double k = static_cast<long double>(e.stiffness) + e.branch, k1 = e.branch, b = e.damping, m = e.mass;
@@ -98,13 +98,13 @@ SurfaceElement elementOf(const Tissue& t, double ratio) noexcept {
   e.contact = ratio * fast;
   const auto behind = [&e](double felt) { return felt * e.contact / (e.contact - felt); };  // 1/felt = 1/contact + 1/x
   e.stiffness = behind(t.stiffness);
-  const double share = (1 - 1 / ratio) * (1 - 1 / ratio);  // of a small change of the element that comes through
+  const double share = (1 - 1 / ratio) * (1 - 1 / ratio);  // share of a small change of the element that comes through
   e.damping = t.damping / share;
   e.mass = t.mass / share;
   if (t.relaxation_share > 0 && t.relaxation_time > 0) {
     e.branch = behind(fast) - e.stiffness;
     const double held = e.contact + e.stiffness;
-    e.branch_time = t.relaxation_time * held / (held + e.branch);  // beside the other springs it forgets more slowly
+    e.branch_time = t.relaxation_time * held / (held + e.branch);  // the other springs make it forget more slowly
   }
   return e;
 }

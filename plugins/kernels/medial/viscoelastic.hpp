@@ -11,15 +11,15 @@ struct Tissue {
   double stiffness = 0;         ///< [N/m] of a held press
   double damping = 0;           ///< [N s/m]
   double mass = 0;              ///< [kg]
-  double relaxation_share = 0;  ///< of the stiffness that a fast press feels beyond it
+  double relaxation_share = 0;  ///< share of the stiffness that a fast press feels in addition
   double relaxation_time = 0;   ///< [s]
 };
 
 /// The same place as it is integrated. The spring of the contact stands between the probe and the surface: no change of
 /// contact kicks, because the mass is behind it. In series with the other spring it gives Tissue::stiffness.
 struct SurfaceElement {
-  double contact = 0;      ///< [N/m] between the probe and the surface; no fast motion feels more
-  double stiffness = 0;    ///< [N/m] of the surface to its place at rest
+  double contact = 0;      ///< [N/m] between the probe and the surface; no fast motion feels more than this
+  double stiffness = 0;    ///< [N/m] between the surface and its place at rest
   double damping = 0;      ///< [N s/m]
   double mass = 0;         ///< [kg]
   double branch = 0;       ///< [N/m] of the relaxing branch; 0: there is none

@@ -15,14 +15,14 @@ namespace hapticd::medial {
 /// energy of the nodes falls with it as it does without.
 class VolumeKeeper {
  public:
-  /// [main] Memory is taken here.
+  /// [main] It allocates its memory here.
   VolumeKeeper(const MovingMesh& contour, double greatest_radius)
       : contour_(&contour), xyz_(contour.atRest()), limit_(kMostBulge * greatest_radius) {
     rest_ = contour.volume(xyz_);
     area_ = contour.area(xyz_);
   }
 
-  /// [rt] Goes on with the sum; sets the bulge of `nodes` when it is whole. Costs nothing while the body is at rest.
+  /// [rt] Continues the sum; sets the bulge of `nodes` when it is complete. Costs nothing while the body is at rest.
   void step(Nodes& nodes) noexcept {
     if (nodes.awake() == 0 && nodes.bulge() == 0 && next_vertex_ == 0) return;
     for (std::size_t work = 0; work < kWork;) {
@@ -52,9 +52,9 @@ class VolumeKeeper {
   std::size_t bytes() const noexcept { return sizeof *this + xyz_.capacity() * sizeof(float); }
 
  private:
-  static constexpr std::size_t kWork = 1024;  ///< vertices and triangles a tick
+  static constexpr std::size_t kWork = 1024;  ///< vertices and triangles per tick
   static constexpr double kMostBulge = 0.5;   ///< of the greatest radius
-  static constexpr double kStill = 1e-7;      ///< [m] a bulge that no one sees, once the body is at rest
+  static constexpr double kStill = 1e-7;      ///< [m] a bulge that nobody sees, once the body is at rest
 
   void correct(Nodes& nodes) noexcept {
     const double step = area_ > 0 ? (rest_ - sum_ / 6) / area_ : 0;

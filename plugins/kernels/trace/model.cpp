@@ -11,7 +11,7 @@
 namespace hapticd::trace {
 
 Model::Model(const std::vector<spline::SurfaceData>& surfaces, const ModelOptions& options) {
-  if (surfaces.empty()) throw std::invalid_argument("model: no surfaces, expected at least one");
+  if (surfaces.empty()) throw std::invalid_argument("model: there are no surfaces, expected at least one");
   split(surfaces, options.form);
   tree_.build();
   bounds_ = tree_.bounds();

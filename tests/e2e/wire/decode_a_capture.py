@@ -304,7 +304,7 @@ with tempfile.TemporaryDirectory() as folder:
     os.close(keyboard), os.close(screen)
     text = open(asked).read() if os.path.exists(asked) else ""
     check("wrong answers are asked for again", done.returncode == 0 and done.stdout.count("Bus: ") == 2 and done.stdout.count("Motor turns") == 2 and
-          "\"many\" is no list of numbers" in done.stdout and done.stdout.count("Lengths of upper arm") == 3, (done.stdout, done.stderr))
+          "\"many\" is not a list of numbers" in done.stdout and done.stdout.count("Lengths of upper arm") == 3, (done.stdout, done.stderr))
     check("and the right ones are in the file", "16c0:0486" in text and f"scale: {2 * 3.14159265358979 / 38000:.6g}"[:14] in text and "type: i24" in text and
           "button: 2" in text and "lengths: [0.21, 0.17, 0, 0, 0]" in text, text)
     for command in ("calibrate", "record"):

@@ -40,15 +40,15 @@ void Admittance::step(const Vector3d& force, const Vector3d& measured, double dt
   const double decay = damping_ * dt / mass_;
   const double drift = decay > 1e-9 ? -std::expm1(-decay) / decay : 1;  // of v' = f/m - (b/m) v over dt
   v_ = std::exp(-decay) * v_ + dt * drift / mass_ * force;
-  x_ += dt * v_;  // the new velocity: a contact in the loop then keeps its energy instead of growing
+  x_ += dt * v_;  // the new velocity, so that a contact in the loop keeps its energy instead of gaining some
   if (measured.allFinite() && (x_ - measured).norm() > kMaxLead)
     keepTo(measured + kMaxLead * (x_ - measured).normalized());
   follow(dt);
 }
 
-/// The joints one step on toward the virtual mass; what they cannot do, it cannot either.
+/// Moves the joints one step toward the virtual mass; where they cannot follow, it cannot go either.
 void Admittance::follow(double dt) noexcept HSP_RT {
-  constexpr double kReached = 1e-4;  // [m] more than a step's curvature leaves: a joint limit or a singular pose
+  constexpr double kReached = 1e-4;  // [m] more than a step's curvature causes: a joint limit or a singular pose
   Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HDV_MAX_JOINTS> J(6, q_.size());
   const JointVector before = q_;
   if (device_->kinematics().jacobian(device_->handle(), q_.data(), J.data()) == HSP_OK && J.allFinite()) {
@@ -66,7 +66,7 @@ void Admittance::follow(double dt) noexcept HSP_RT {
   if ((x_ - tip_).norm() > kReached) keepTo(tip_);
 }
 
-/// The virtual mass stands at `where`; of its velocity only what leads back there is left.
+/// The virtual mass stands at `where`; it keeps only the velocity that leads back there.
 void Admittance::keepTo(const Vector3d& where) noexcept HSP_RT {
   const Vector3d beyond = x_ - where;
   const double out = v_.dot(beyond);

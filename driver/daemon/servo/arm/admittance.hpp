@@ -14,26 +14,26 @@ namespace hapticd::servo {
 
 class Admittance {
  public:
-  static constexpr double kMaxLead = 0.02;  ///< [m] the virtual mass waits for an arm that cannot follow
-  static constexpr double kHoming = 1;  ///< [1/s] at which joints that the tip leaves free return to where they began
+  static constexpr double kMaxLead = 0.02;  ///< [m] the virtual mass waits for an arm that lags farther behind
+  static constexpr double kHoming = 1;  ///< [1/s] at which joints that the tip leaves free go back to where they began
 
-  /// [main] Why this device cannot do it, in words; "": it can.
+  /// [main] Says why this device cannot do it; "" if it can.
   static std::string refusal(const hdv_info& info);
 
-  /// [main] @param device opened; stays where it is
+  /// [main] @param device is open already, and stays in place
   Admittance(const scene::Admittance& settings, const host::DeviceInstance& device);
 
-  /// [rt] Puts the virtual mass at rest where the joints are. False: they are nowhere.
+  /// [rt] Puts the virtual mass at rest where the joints are. False if the joints are unknown.
   bool start(const double* joints) noexcept HSP_RT;
   bool started() const noexcept { return started_; }
   void stop() noexcept { started_ = false; }  ///< [rt]
 
   /// [rt] Moves the virtual mass by dt [s] under a force [N], and the joints with it. @param measured tip of the arm
-  /// [m] All in the device frame. The force of a tick is held over it, the motion under it exact.
+  /// [m] All in the device frame. The force is constant over a tick, and the motion under it is exact.
   void step(const Eigen::Vector3d& force, const Eigen::Vector3d& measured, double dt) noexcept HSP_RT;
 
   const JointVector& joints() const noexcept { return q_; }              ///< reference for the arm
-  const Eigen::Vector3d& position() const noexcept { return x_; }        ///< of the virtual mass [m]
+  const Eigen::Vector3d& position() const noexcept { return x_; }        ///< position of the virtual mass [m]
   const Eigen::Vector3d& velocity() const noexcept { return v_; }        ///< [m/s]
   const Eigen::Vector4d& orientation() const noexcept { return turn_; }  ///< of the tip at the reference: w, x, y, z
 

@@ -14,20 +14,20 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr double kFastestTip = 5;  ///< [m/s] of real hardware, unless limits.velocity says otherwise
+constexpr double kFastestTip = 5;  ///< [m/s] limit of real hardware, unless limits.velocity says otherwise
 
-/// As the kinematics extension writes it.
+/// In the form in which the kinematics extension writes it.
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor, 6, HDV_MAX_JOINTS>;
 
 constexpr double kAssumedMass =
-    0.05;  ///< [kg] of a light arm: the damping that the passivity controller may add stays small
+    0.05;  ///< [kg] mass of a light arm, so that the passivity controller may add little damping
 
 /// A simulated arm hurts nobody, and a recording keeps the forces that were felt.
 bool pushesInFull(const hdv_info& info, const ArmOptions& options) {
   return options.full_when_slow || (info.capabilities & HDV_C_SIMULATED) != 0;
 }
 
-/// An arm that only pushes has no torque to follow. A slow one pushes less.
+/// An arm without measured torques can only push. A slow one pushes less.
 scene::Limits limitsOf(const scene::Limits& described, const hdv_info& info, const ArmOptions& options) {
   scene::Limits limits = described;
   if (info.joint_count <= 3) limits.torque_slew = 0;
@@ -39,12 +39,12 @@ scene::Limits limitsOf(const scene::Limits& described, const hdv_info& info, con
   return limits;
 }
 
-/// [N] by the device and its file, however slow it is; 0: unknown.
+/// [N] by the device and its file, even if it is slow; 0: unknown.
 double fullForce(const scene::Limits& limits, const hdv_info& info) {
   return Limiter(limits, info.max_force).maxForce();
 }
 
-/// What programs of the HDAPI are to see, and the device has not; "": it has all of it.
+/// What HDAPI programs need to see and the device lacks; "" if it lacks nothing.
 std::string refusalOf(const std::optional<scene::HdArm>& hd, const hdv_info& info) {
   const auto told = [](const std::string& key, uint32_t wrong, uint32_t count, const char* things) {
     return key + " is " + std::to_string(wrong) + ", but the device has " + std::to_string(count) + " " + things +
@@ -136,7 +136,7 @@ void Arm::watchSamples(const scene::Limits& limits) {
 void Arm::exchangeDry(Nanoseconds now) noexcept HSP_RT {
   if (taken_.exchange(true)) return;
   hdv_sample sample{};
-  (void)device_->read(now, sample);  // what is wrong with it, the first tick will find too
+  (void)device_->read(now, sample);  // if something is wrong with it, the first tick will find that too
   (void)device_->write(now, {sizeof(hdv_command), HDV_OFF, {}, {}});
   fresh_at_ = now;
   taken_.store(false);
@@ -185,9 +185,9 @@ uint32_t Arm::links(std::array<LinkEnd, HDV_MAX_LINKS>& ends) const noexcept HSP
   return links->link_count;
 }
 
-/// Under compliance control shapes meet the virtual mass, not the arm that is on its way there.
+/// Under compliance control shapes meet the virtual mass, not the arm that follows it.
 void Arm::takeVirtualProbe() noexcept HSP_RT {
-  if (limiter_.fault() != Fault::kNone) return admittance_->stop();  // force alone from now on: it can be faded
+  if (limiter_.fault() != Fault::kNone) return admittance_->stop();  // from now on only by force, which can be faded
   if (!admittance_->started() && !admittance_->start(sample_.position)) return;
   const Eigen::Vector4d& q = admittance_->orientation();
   probe_.position = R_world_device_ * admittance_->position() + origin_world_;
@@ -195,8 +195,8 @@ void Arm::takeVirtualProbe() noexcept HSP_RT {
   probe_.velocity = R_world_device_ * admittance_->velocity();
 }
 
-/// Compliance control: `force` of the contacts and the hand's push move the virtual mass; the arm shall follow. False:
-/// not now, and the force goes to the motors.
+/// Compliance control: `force` of the contacts and the hand's push move the virtual mass; the arm follows it. False if
+/// that is impossible now, so that the force goes to the motors.
 bool Arm::comply(double dt, const Eigen::Vector3d& force, const Weight::Torques& weight) noexcept HSP_RT {
   if (!admittance_ || !admittance_->started()) return false;
   const auto hand = handForce();
@@ -208,7 +208,7 @@ bool Arm::comply(double dt, const Eigen::Vector3d& force, const Weight::Torques&
   admittance_->step(R_world_device_.transpose() * (force + *hand), tip, dt);
   command_.mode = HDV_POSITION;
   for (uint32_t i = 0; i < device_->info().joint_count; ++i) command_.position[i] = admittance_->joints()[i];
-  // The arm adds it to its own loop, which then need not sag to carry it.
+  // The arm adds it to its own loop, which need not sag then to carry the weight.
   std::copy(weight.begin(), weight.end(), command_.torque);
   return true;
 }
@@ -237,7 +237,7 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
     command.mode = HDV_TORQUE;
     Eigen::Map<Eigen::VectorXd> tau(command.torque, joints);
     const Eigen::Vector3d force_device = R_world_device_.transpose() * force;
-    tau.noalias() = J.topRows<3>().transpose() * force_device;  // Thompson et al. 1999, Eq. 9
+    tau.noalias() = J.topRows<3>().transpose() * force_device;  // see Thompson et al. 1999, Eq. 9
     if (turns()) tau.noalias() += J.bottomRows<3>().transpose() * (R_world_device_.transpose() * torque);
     scaleToMotors(weight, command);
   }
@@ -245,13 +245,13 @@ void Arm::write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector
   const bool wrote = write_status_ >= 0;
   send(now);
   if (write_status_ >= 0) return;
-  // A command that could not be written leaves the last one on: there is nothing to ramp by.
+  // If a command could not be written, the last one stays on, and nothing is left with which to ramp.
   if (wrote) device_->cut();
   trip(Fault::kDeviceLost);
   limiter_.cut(Fault::kDeviceLost, 0);
 }
 
-/// A force that no torque stands for is not sent. Where the tip is known and its Jacobian is not, the module is at
+/// A force that no torque can make is not sent. Where the tip is known but its Jacobian is not, the module is at
 /// fault.
 void Arm::sendsNothing() noexcept HSP_RT {
   limiter_.sentNothing();
@@ -264,7 +264,7 @@ void Arm::send(Nanoseconds now) noexcept HSP_RT {
   if (taken_.exchange(true)) return;  // the watchdog is writing its zero force
   if (cut_in_write_) cut_.store(true);
   cut_in_write_ = false;
-  if (cut_.load()) {  // the module waits for this tick's acknowledgement: motors off
+  if (cut_.load()) {  // the module waits for this tick's acknowledgement, so motors are off
     findCut(CutFound::kInWrite);
     command_ = {sizeof command_, HDV_OFF, {}, {}};
   }
@@ -283,8 +283,8 @@ void Arm::cut(double after) noexcept {
   if (cut_.exchange(true)) return;
   cut_after_.store(after);
   if (device_->cut()) return;
-  // Without a cut of its own the module may be called by one thread at a time: if the servo is inside it, the
-  // hardware's own watchdog is what is left.
+  // A module without a cut of its own may be called by one thread at a time: if the servo is inside it, only the
+  // hardware's own watchdog is left.
   if (taken_.exchange(true)) return;
   hdv_command off{};
   off.struct_size = sizeof off;
@@ -299,7 +299,7 @@ void Arm::findCut(CutFound when) noexcept HSP_RT {
 }
 
 void Arm::cutAsThen(CutFound when, double after) noexcept HSP_RT {
-  cut_known_ = true;  // the recording has it already
+  cut_known_ = true;  // the recording contains it already
   cut_after_.store(after);
   cut_in_write_ = when == CutFound::kInWrite;
   if (when == CutFound::kInRead) cut_.store(true);
@@ -323,8 +323,8 @@ Weight::Torques Arm::weightTorques(const TipJacobian& J, double dt) noexcept HSP
 }
 
 void Arm::scaleToMotors(const Weight::Torques& gravity, hdv_command& command) noexcept HSP_RT {
-  // All joints by one factor: the direction of the force on the hand stays true when a motor is at its limit. What
-  // carries the arm's own weight comes first, or the arm would fall on the hand.
+  // Scales all joints by one factor, so that the direction of the force on the hand stays true when a motor is at its
+  // limit. The torques that carry the arm's weight come first, or the arm would fall on the hand.
   double factor = 1;
   for (uint32_t i = 0; i < device_->info().joint_count; ++i) {
     const double most = device_->info().max_torque[i], asked = command.torque[i];

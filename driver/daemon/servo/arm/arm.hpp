@@ -32,9 +32,9 @@ struct ArmOptions {
   bool needs_velocity = false;               ///< run the estimator
   const host::Playback* playback = nullptr;  ///< samples from a recording instead of the hardware
   scene::Clients clients = {};               ///< whether programs may push on it
-  bool found_pressed = false;                ///< a hold button that was down before the run enables, as it did once
-  bool full_when_slow = false;               ///< a real arm pushes with its full force however slow it is, as once
-  bool former_passivity = false;  ///< a steady push of a program counts as energy from nothing, as it once did
+  bool found_pressed = false;                ///< as formerly, a hold button that was down before the run enables forces
+  bool full_when_slow = false;               ///< as formerly, a real arm pushes with its full force however slow it is
+  bool former_passivity = false;             ///< as formerly, a program's steady push counts as created energy
 };
 
 class Arm {
@@ -47,43 +47,43 @@ class Arm {
   Result<void> start(Nanoseconds now, const Eigen::Vector3d& gravity_world);
   void stop() { device_->stop(); }  ///< [main] motors off
 
-  /// [rt] One exchange with the device before the first tick: motors off, and nothing of it is kept.
+  /// [rt] One exchange with the device before the first tick: the motors are off, and no result is kept.
   void exchangeDry(Nanoseconds now) noexcept HSP_RT;
 
   /// [rt] The newest sample as a probe in the world frame. A bad sample gives an invalid probe and a fault.
   const Probe& read(Nanoseconds now, double dt) noexcept HSP_RT;
 
   /// [rt] Limits a wrench (N, N m, world frame), maps it to torques (tau = J^T W + gravity) and hands it to the device.
-  /// @param exchange what the scene says of its energy, for the passivity controller
+  /// @param exchange what the scene reports of its energy, for the passivity controller
   void write(Nanoseconds now, double dt, Eigen::Vector3d force, Eigen::Vector3d torque,
              passivity::Exchange exchange = {}) noexcept HSP_RT;
 
-  /// [any] Motors free at once, while the servo is stuck or dying; async-signal-safe. They stay so until clear().
+  /// [any] Frees the motors at once, while the servo is stuck or dying; async-signal-safe. It holds until clear().
   /// @param after [s] that the servo was stuck
   void cut(double after) noexcept;
-  /// [any] The last cut has left for the hardware, as far as the module knows; async-signal-safe.
+  /// [any] True if the last cut has been sent to the hardware, as far as the module knows; async-signal-safe.
   bool cutLeft() const noexcept { return device_->cutLeft(); }
-  /// [rt] Whether something in the scene can be felt: without it not even the arm's weight is carried.
+  /// [rt] Says whether anything in the scene can be felt: if nothing can, not even the arm's weight is carried.
   void carryWeight(bool wanted) noexcept HSP_RT { weight_.carry(wanted); }
   /// [rt] Clears the latched fault, and a cut, by the user's order.
   void clear() noexcept HSP_RT;
 
   /// When the servo finds that its motors were cut: a replay must find it then too.
   enum class CutFound : uint8_t { kNo, kInWrite, kInRead };
-  /// [rt] Since the last call.
+  /// [rt] What was found since the last call.
   CutFound takeCutFound() noexcept HSP_RT { return std::exchange(cut_found_, CutFound::kNo); }
-  double cutAfter() const noexcept { return cut_after_.load(); }  ///< [s] that the servo was stuck
-  /// [rt] Before a tick of a replay: the cut will be found in it, as it was then.
+  double cutAfter() const noexcept { return cut_after_.load(); }  ///< [s] how long the servo was stuck
+  /// [rt] Called before a tick of a replay: the cut will be found in it, as it was in the recorded run.
   void cutAsThen(CutFound when, double after) noexcept HSP_RT;
 
   const hdv_info& info() const { return device_->info(); }
   host::DeviceInstance& device() { return *device_; }
   Limiter& limiter() noexcept { return limiter_; }
-  /// [any] Its enable switch was down when the run began, and was not let go since: no force flows.
+  /// [any] True if its enable switch was down when the run began and was not released since: no force flows.
   bool foundPressed() const noexcept { return found_pressed_.load(std::memory_order_relaxed); }
-  /// [any] What the device said of its last fault, "cause; cure"; nullptr: nothing.
+  /// [any] The device's words for its last fault, "cause; cure"; nullptr: it gave none.
   const char* trouble() const noexcept { return trouble_.load(std::memory_order_acquire); }
-  /// [any] The same for a fault that only the device can explain; nullptr for every other.
+  /// [any] The same for a fault that only the device can explain; nullptr for every other fault.
   const char* troubleOf(Fault fault) const noexcept {
     const bool own = fault == Fault::kDeviceLost || fault == Fault::kDeviceFault || fault == Fault::kStale;
     return own ? trouble() : nullptr;
@@ -101,29 +101,29 @@ class Arm {
   hsp_status readStatus() const noexcept { return read_status_; }    ///< of the last read
   hsp_status writeStatus() const noexcept { return write_status_; }  ///< of the last write
   /// [rt] Force [N] of the hand on the arm, world frame, from the joint torques of the newest sample less what carries
-  /// the arm's own weight: -pinv(J^T) (tau - gravity). Nothing: the device measures no torque. In motion it has the
-  /// inertia of what lies beyond the load cells in it.
+  /// the arm's own weight: -pinv(J^T) (tau - gravity). Nothing if the device measures no torque. In motion it includes
+  /// the inertia of what lies beyond the load cells.
   std::optional<Eigen::Vector3d> handForce() const noexcept HSP_RT;
-  /// [rt] The Jacobian at the newest sample, world frame: rows x, y, z of the tip [m/rad] and of the turn [rad/rad], a
-  /// column a joint, zeros beyond. False: it cannot be told now.
+  /// [rt] The Jacobian at the newest sample, world frame: rows x, y, z of the tip [m/rad] and of the turn [rad/rad],
+  /// one column per joint, zeros beyond. False if it is unknown now.
   bool jacobian(double (&rows)[6][HDV_MAX_JOINTS]) const noexcept HSP_RT;
   /// Compliance control; nullptr: this arm is driven by force.
   const Admittance* admittance() const noexcept { return admittance_ ? &*admittance_ : nullptr; }
   /// The passivity controller; nullptr: this arm needs none.
   const passivity::PassivityController* passivity() const noexcept { return passivity_ ? &*passivity_ : nullptr; }
-  /// Why it pushes less than its limits say; "": it does not.
+  /// Why it pushes less than its limits allow; "" if it does not.
   const std::string& slowness() const { return slowness_; }
-  /// It can turn the hand; an arm of three joints only pushes.
+  /// True if it can turn the hand; an arm of three joints can only push.
   bool turns() const { return device_->info().joint_count > 3; }
-  /// An end of a link, world frame.
+  /// The far end of a link, world frame.
   struct LinkEnd {
     double position[3], orientation[4];  ///< [m], w x y z of the link's body
   };
   uint32_t linkCount() const { return device_->links() != nullptr ? device_->links()->link_count : 0; }
-  /// [rt] The far ends of the links as of the newest sample. 0: there are none, or they cannot be told now.
+  /// [rt] The far ends of the links at the newest sample. 0: there are none, or they are unknown now.
   uint32_t links(std::array<LinkEnd, HDV_MAX_LINKS>& ends) const noexcept HSP_RT;
   const Eigen::Matrix3d& mount() const noexcept { return R_world_device_; }
-  const Eigen::Vector3d& origin() const noexcept { return origin_world_; }  ///< [m] of the device frame, world
+  const Eigen::Vector3d& origin() const noexcept { return origin_world_; }  ///< [m] of the device frame, in the world
   bool estimatesVelocity() const { return velocity_.has_value(); }
   bool simulated() const noexcept { return (device_->info().capabilities & HDV_C_SIMULATED) != 0; }
   double rampOut() const noexcept { return limiter_.rampOut(); }  ///< [s]
@@ -141,8 +141,8 @@ class Arm {
   double trustIn(Nanoseconds age) const noexcept HSP_RT;
   bool comply(double dt, const Eigen::Vector3d& force, const Weight::Torques& weight) noexcept HSP_RT;
   void takeVirtualProbe() noexcept HSP_RT;
-  /// What carries the arm's own weight in this tick; zeros where the module does not know, or answers what is no
-  /// number.
+  /// What carries the arm's own weight in this tick; zeros if the module does not know, or does not answer with
+  /// numbers.
   Weight::Torques weightTorques(const TipJacobian& J, double dt) noexcept HSP_RT;
   void scaleToMotors(const Weight::Torques& gravity, hdv_command& command) noexcept HSP_RT;
   void heatMotors(double dt) noexcept HSP_RT;
@@ -163,7 +163,7 @@ class Arm {
   MotorHeat heat_;
   Weight weight_;
   std::string slowness_;
-  std::atomic<bool> cut_{false}, taken_{false};  // taken: a thread is inside the module
+  std::atomic<bool> cut_{false}, taken_{false};  // held while a thread is inside the module
   std::atomic<double> cut_after_{0};
   std::atomic<bool> found_pressed_{false};
   bool as_found_ = false;          // ArmOptions::found_pressed
@@ -174,18 +174,18 @@ class Arm {
   hdv_command command_{};
   hsp_status read_status_ = HSP_OK, write_status_ = HSP_OK;
   std::atomic<const char*> trouble_{nullptr};
-  bool well_ = false;  // nothing was wrong with the device in this tick
-  double calm_ = 0;    // [s] that it has been well, and still or free
+  bool well_ = false;  // in this tick, nothing was wrong with the device
+  double calm_ = 0;    // [s] how long it has been well, and still or free
   Eigen::Vector3d calm_at_ = Eigen::Vector3d::Zero();
   uint64_t last_sequence_ = 0;
   Nanoseconds fresh_at_ = 0;
   double fresh_after_ = 0;  // [s] between the last two new samples
   bool fresh_ = false;      // the sample of this tick is new
   bool watches_jumps_ = false, tip_known_ = false;
-  double fastest_ = 0;        // [m/s] that a tip may be between two samples; 0: as fast as it likes
-  double sample_period_ = 0;  // [s] of the arm; 0: unknown
+  double fastest_ = 0;        // [m/s] possible speed of a tip between two samples; 0: unbounded
+  double sample_period_ = 0;  // [s] of the arm's samples; 0: unknown
   SampleSpeed sample_speed_{0, 0};
-  Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();  // of the last good sample, world
+  Eigen::Vector3d tip_ = Eigen::Vector3d::Zero();  // of the last good sample, in the world
   Probe probe_;
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
 };

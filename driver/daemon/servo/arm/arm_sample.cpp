@@ -11,16 +11,16 @@ namespace hapticd::servo {
 namespace {
 
 constexpr double kCalmFor = 0.5;           ///< [s] that a device must be well before its force comes back by itself
-constexpr double kCalmTravel = 0.02;       ///< [m] and its tip may move meanwhile, while something pushes on it
-constexpr double kStaleAfter = 0.05;       ///< [s] without a new sample: no force on yesterday's position
-constexpr double kPeriodsTrusted = 2.001;  ///< without a new sample before the force fades: one may be late
-constexpr double kTrustFades = 2e-3;       ///< [s] in which it does
-constexpr double kPairWithin = 2e-3;  ///< [s] two samples may come so close together that were measured farther apart
+constexpr double kCalmTravel = 0.02;       ///< [m] how far its tip may move meanwhile, while something pushes on it
+constexpr double kStaleAfter = 0.05;       ///< [s] without a new sample: the position is too old for a force
+constexpr double kPeriodsTrusted = 2.001;  ///< periods without a new sample before the force fades: one may be late
+constexpr double kTrustFades = 2e-3;       ///< [s] in which it fades
+constexpr double kPairWithin = 2e-3;       ///< [s] how much closer two samples may arrive than they were measured
 
 }  // namespace
 
-/// What a sample of this age is good for: an arm that falls silent keeps the last force no longer than two of its
-/// periods and 2 ms more. Where its period is unknown, silence of 50 ms is all that is noticed.
+/// What share of a force a sample of this age allows: an arm that falls silent keeps the last force for at most two of
+/// its periods and 2 ms more. If its period is unknown, only a silence of 50 ms is noticed.
 double Arm::trustIn(Nanoseconds age) const noexcept HSP_RT {
   if (sample_period_ <= 0) return 1;
   const double over = static_cast<double>(age) * kSecondsPerNanosecond - kPeriodsTrusted * sample_period_;
@@ -40,7 +40,7 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
   read_status_ = device_->read(now, sample_);
   taken_.store(false);
   const bool sampled = read_status_ >= 0 && (sample_.flags & HDV_S_LOST) == 0;
-  const bool told = sampled && (sample_.sequence > 0 || as_found_);  // before the first report no button is known
+  const bool told = sampled && (sample_.sequence > 0 || as_found_);  // before the first report the buttons are unknown
   limiter_.watchButtons(told ? std::optional(sample_.buttons) : std::nullopt);
   found_pressed_.store(limiter_.foundPressed(), std::memory_order_relaxed);
   probe_.valid = judge(read_status_, now) && locate();
@@ -51,8 +51,8 @@ const Probe& Arm::read(Nanoseconds now, double dt) noexcept HSP_RT {
   }
   watchJump();
   if (admittance_) takeVirtualProbe();
-  // A device slower than the servo repeats its sample: a difference to itself is no speed, and one taken for a tick's
-  // way would be several times the hand's. A virtual mass moves in every tick.
+  // A device slower than the servo repeats its sample, whose difference is no speed; and the next difference, taken for
+  // that of one tick, would be several times the hand's. A virtual mass moves in every tick.
   if (velocity_ && (fresh_ || admittance_)) {
     probe_.velocity = velocity_->update(probe_.position, admittance_ ? dt : fresh_after_);
     limiter_.watchVelocity(probe_.velocity);
@@ -95,8 +95,8 @@ void Arm::trip(Fault fault, double measured) noexcept HSP_RT {
   limiter_.trip(fault, measured);
 }
 
-/// A device that was unplugged, silent or at fault gets its force back once it has been well for a while and nobody is
-/// surprised by it: its tip rests, or nothing would push on it now.
+/// A device that was unplugged, silent or at fault gets its force back once it has been well for a while and the force
+/// surprises nobody: its tip rests, or nothing would push on it now.
 void Arm::recover(double dt, bool pushes) noexcept HSP_RT {
   const bool moved = pushes && !((probe_.position - calm_at_).norm() <= kCalmTravel);
   if (!well_ || !probe_.valid || moved || !limiter_.silent()) {
@@ -128,8 +128,8 @@ bool Arm::locate() noexcept HSP_RT {
   return true;
 }
 
-/// An encoder that lost its count, or a packet that was misread, must not choose the force: no hand moves a tip so far.
-/// Where there is no force anyway, a device may find its zero or itself anew.
+/// An encoder that lost its count, or a packet that was misread, must not determine the force: no hand moves a tip so
+/// far. While there is no force anyway, a device may find its zero or its position anew.
 void Arm::watchJump() noexcept HSP_RT {
   if (!watches_jumps_ || !fresh_) return;
   const double jumped = (probe_.position - tip_).norm() / std::max(fresh_after_, kPairWithin);

@@ -16,32 +16,32 @@ namespace hapticd::servo {
 class ClientForces {
  public:
   static constexpr uint32_t kMost = 8;          ///< programs that push on one arm
-  static constexpr double kSilentAfter = 3e-3;  ///< [s] after its last answer the force of a program ramps out
-  static constexpr double kFadeOut = 17e-3;     ///< [s] from all of it to none: none is left 20 ms after the answer
-  static constexpr double kFadeIn = 50e-3;      ///< [s] from none to all of it
-  static constexpr double kOldest = 20e-3;      ///< [s] an answer to an older tick is none
-  static constexpr double kLargestNumber = link::kLargestPush;  ///< [N], [N m] beyond it a program is out of its mind
+  static constexpr double kSilentAfter = 3e-3;  ///< [s] after its last answer a program's force begins to ramp out
+  static constexpr double kFadeOut = 17e-3;     ///< [s] from full force to none: none is left 20 ms after the answer
+  static constexpr double kFadeIn = 50e-3;      ///< [s] from none to full force
+  static constexpr double kOldest = 20e-3;      ///< [s] an answer to an older tick does not count
+  static constexpr double kLargestNumber = link::kLargestPush;  ///< [N], [N m] more than any sound program asks for
 
   /// Why an answer was refused.
   enum class Refusal : uint32_t { kNone, kNotFinite, kTooLarge, kAhead };
 
-  /// One program. Counts are read by other threads.
+  /// One program. Other threads read the counts.
   struct Client {
-    hapticd_push push{};                       ///< the last that was taken
+    hapticd_push push{};                       ///< the last answer that was taken
     double gain = 0, silence = 0;              ///< [s]
-    const link::PushSlot* slot = nullptr;      ///< its memory; nullptr: it has gone, and its force ramps out
+    const link::PushSlot* slot = nullptr;      ///< its memory; nullptr: the program has gone, and its force ramps out
     uint64_t seen = 0;                         ///< count of the memory
     bool answered = false;                     ///< ever
     bool fresh = false;                        ///< `push` was taken in this tick
     std::atomic<uint64_t> answers{0};          ///< that were taken
-    std::atomic<uint64_t> in_time{0};          ///< of these, in the tick that they answer
+    std::atomic<uint64_t> in_time{0};          ///< of these, answers in the tick that they answer
     std::atomic<uint64_t> silences{0};         ///< times that it fell silent
-    std::atomic<uint64_t> next_tick{0};        ///< of the answers, one tick late
+    std::atomic<uint64_t> next_tick{0};        ///< of the answers, those one tick late
     std::atomic<double> felt{0};               ///< [N] of its force now, bounded and faded
     std::atomic<double> largest{0};            ///< [N] of that ever
     std::atomic<double> asked{0};              ///< [N] the largest that it asked for
     std::atomic<double> given{0};              ///< [N] of its last answer, bounded
-    std::atomic<double> quiet{0};              ///< [s] it is silent for so long; 0: it is not, or never answered
+    std::atomic<double> quiet{0};              ///< [s] how long it has been silent; 0: it is not, or never answered
     std::atomic<uint64_t> bounded{0};          ///< answers that were cut to the bound
     std::atomic<uint64_t> refused{0};          ///< answers that were refused
     std::atomic<Refusal> why{Refusal::kNone};  ///< the last of these
@@ -54,25 +54,25 @@ class ClientForces {
 
   bool possible() const noexcept { return mode_ != scene::ClientMode::kOff; }  ///< programs may push
 
-  /// [rt] A program begins. @param slot its memory, valid until end() @param place less than kMost
+  /// [rt] A program begins. @param slot its memory, valid until end() @param place below kMost
   void begin(uint32_t place, const link::PushSlot& slot) noexcept HSP_RT;
   void end(uint32_t place) noexcept HSP_RT;  ///< [rt] it has gone
 
-  /// [rt] A program that answered one of the last two ticks has not answered this one yet.
+  /// [rt] True if a program that answered one of the last two ticks has not answered this one yet.
   bool awaits(uint64_t tick) const noexcept HSP_RT;
 
-  /// [rt] Once a tick, after the shapes: what the programs want now. @param tick number of this tick, @param dt [s]
+  /// [rt] Once per tick, after the shapes: takes what the programs want. @param tick number of this tick, @param dt [s]
   void collect(uint64_t tick, double dt) noexcept HSP_RT {
     if (places_ == 0 && share_ == 1) return;
     step(tick, dt);
   }
 
-  const Eigen::Vector3d& force() const noexcept { return force_; }    ///< [N] of all of them, world frame
+  const Eigen::Vector3d& force() const noexcept { return force_; }    ///< [N] sum of all of them, world frame
   const Eigen::Vector3d& torque() const noexcept { return torque_; }  ///< [N m]
-  double share() const noexcept { return share_; }       ///< of the models' force that is felt beside it: 0 to 1
-  bool present() const noexcept { return places_ > 0; }  ///< somebody pushes, or what is left of it ramps out
+  double share() const noexcept { return share_; }       ///< share of the models' force that is felt beside it: 0 to 1
+  bool present() const noexcept { return places_ > 0; }  ///< somebody pushes, or the rest of a push ramps out
   const std::array<Client, kMost>& clients() const noexcept { return clients_; }
-  uint64_t refused() const noexcept { return refused_; }  ///< [rt] answers that were refused so far
+  uint64_t refused() const noexcept { return refused_; }  ///< [rt] how many answers were refused so far
   double bound() const noexcept { return max_force_; }    ///< [any] [N] of the force of each program; infinity: none
 
  private:

@@ -11,12 +11,12 @@ namespace hapticd::servo {
 
 class LedHand {
  public:
-  /// [main] @param hand of the device; nullptr: it has none, and only the books of a lead are kept, as in a replay
+  /// [main] @param hand of the device; nullptr: it has none, and the lead is only accounted for, as in a replay
   LedHand(const hdv_ext_hand* hand, hdv_device* device, const Eigen::Matrix3d& R_world_device,
           const Eigen::Vector3d& origin_world)
       : hand_(hand), device_(device), R_world_device_(R_world_device), origin_world_(origin_world) {}
 
-  /// [any] It does what a leader says.
+  /// [any] True if it does what a leader says.
   bool guided() const noexcept { return hand_ != nullptr && hand_->guided(device_) != 0; }
   bool led() const noexcept { return lead_.led(); }
 
@@ -28,7 +28,7 @@ class LedHand {
     }
     lead_.begin(slot, pose_);
   }
-  void end() noexcept HSP_RT { lead_.end(); }  ///< [rt] it stays where it is then
+  void end() noexcept HSP_RT { lead_.end(); }  ///< [rt] the hand stays where it is then
 
   /// [rt] Before the arm is read at t [s], dt [s] after the last; epoch: CLOCK_MONOTONIC [s] at t = 0.
   void step(double t, double dt, double epoch) noexcept HSP_RT {
@@ -42,7 +42,7 @@ class LedHand {
     hand_->guide(device_, p_device.data(), v_device.data(), kNoForce);
   }
 
-  const hapticd_target* taken() const noexcept { return lead_.taken(); }  ///< in the last step; nullptr: none
+  const hapticd_target* taken() const noexcept { return lead_.taken(); }  ///< of the last step; nullptr: there was none
   uint64_t refused() const noexcept { return lead_.refused(); }
   Follow::Refusal why() const noexcept { return lead_.why(); }  ///< the last was
 

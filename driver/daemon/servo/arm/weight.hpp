@@ -11,15 +11,15 @@ namespace hapticd::servo {
 
 class Weight {
  public:
-  using Torques = std::array<double, HDV_MAX_JOINTS>;  ///< [N m], or [N] of a sliding joint
+  using Torques = std::array<double, HDV_MAX_JOINTS>;  ///< [N m], or [N] for a sliding joint
 
   /// [main] @param max_force [N] of the arm, used where limits.weight is not given; 0: unknown, no bound
   Weight(const scene::Limits& limits, double max_force);
 
-  /// [rt] Whether the arm is carried at all: with nothing to feel in the scene, its motors stay off.
+  /// [rt] Whether the arm is carried at all: if nothing in the scene can be felt, its motors stay off.
   void carry(bool wanted) noexcept HSP_RT { wanted_ = wanted; }
 
-  /// [rt] What is left of the torques that the kinematics ask for, in this tick. Call once a tick.
+  /// [rt] The torques of this tick: what the kinematics ask for, bounded and faded. Call once a tick.
   /// @param J of the tip, device frame @param allowed share of a full force that ramps and faults allow now, 0 to 1
   /// @return true if limits.weight made them smaller
   bool bound(Torques& torques, const TipJacobian& J, double allowed, double dt) noexcept HSP_RT;
@@ -30,8 +30,8 @@ class Weight {
   bool wanted_ = false;
 };
 
-/// [rt] The share of joint torques at which they amount to `most` [N] at the tip: 1 where they amount to less. A joint
-/// that hardly moves the tip may not have more than `most` times the longest lever of the arm.
+/// [rt] The factor that reduces joint torques to `most` [N] at the tip; 1 where they amount to less. A joint that
+/// hardly moves the tip may not have more than `most` times the longest lever of the arm.
 double shareWithin(double most, const Weight::Torques& torques, const TipJacobian& J) noexcept HSP_RT;
 
 }  // namespace hapticd::servo

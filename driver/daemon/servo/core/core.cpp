@@ -155,7 +155,7 @@ void Core::findJumps(double dt, std::span<const Probe> probes) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     jumped_[i] = 0;
     if (!probes[i].valid) {
-      wants_search_ = true;  // whatever comes next may be elsewhere
+      wants_search_ = true;  // the next sample may be elsewhere
       continue;
     }
     const double travel = (probes[i].position - last_position_[i]).norm();
@@ -227,7 +227,7 @@ void Core::stepModel(uint32_t index, double t, double dt, std::span<const Probe>
   }
 }
 
-/// Runs the plugin over inputs_ and outputs_, with the time it takes where that is measured.
+/// Runs the plugin over inputs_ and outputs_, and takes its time if that is measured.
 void Core::callShape(ModelState& model, double dt, hsp_pose& pose) noexcept HSP_RT {
   hsp_step step{};
   step.struct_size = sizeof step;
@@ -261,7 +261,7 @@ void Core::sendTransform(ModelState& model, uint32_t index) noexcept HSP_RT {
   transform.model = index;
   for (size_t i = 0; i < 3; ++i) transform.position[i] = model.pose.position[i];
   for (size_t i = 0; i < 4; ++i) transform.orientation[i] = model.pose.orientation[i];
-  link_.transforms.push(transform);  // full: the next tick sends a newer one
+  link_.transforms.push(transform);  // the queue is full, but the next tick sends a newer one
 }
 
 }  // namespace hapticd::servo

@@ -15,20 +15,20 @@ using ConstMap = Eigen::Map<const Vector3d>;
 
 constexpr double kLargest = 1e100;
 
-/// Also false for numbers whose squares overflow: a length of them would be none, and a ratio of two such.
+/// Also false for numbers whose squares overflow: neither a length of them nor a ratio of two would mean anything.
 bool finite(const double* values, size_t count) noexcept HSP_RT {
   for (size_t i = 0; i < count; ++i)
     if (!(std::abs(values[i]) <= kLargest)) return false;
   return true;
 }
 
-/// Adjacent numbers of the answer to a probe: its force and torque, its foot with the normal and the depth.
+/// Adjacent numbers of the answer to a probe: its force and torque, then its foot with normal and depth.
 using Wrench = Eigen::Map<const Eigen::Matrix<double, 6, 1>>;
 using Foot = Eigen::Map<const Eigen::Matrix<double, 7, 1>>;
 static_assert(offsetof(hsp_contact, torque) == offsetof(hsp_contact, force) + 3 * sizeof(double));
 static_assert(offsetof(hsp_contact, depth_m) == offsetof(hsp_contact, point) + 6 * sizeof(double));
 
-/// Where the sum of the squares is small enough each number is: this is asked of every answer in every tick.
+/// If the sum of the squares is small, so is each number. Every answer in every tick is checked in this way.
 bool finite(const hsp_contact& c) noexcept HSP_RT {
   const bool traced = (c.flags & HSP_OUT_TRACED) != 0;
   const double squares = Wrench(c.force).squaredNorm() + (traced ? Foot(c.point).squaredNorm() : 0);
@@ -38,8 +38,8 @@ bool finite(const hsp_contact& c) noexcept HSP_RT {
 
 }  // namespace
 
-/// True if the torque of the answer to this probe was beyond the claim: it is then what the claim explains. Before the
-/// force is, which tells the claim where the probe was.
+/// True if the torque of the answer to this probe was beyond the claim, to which it is then reduced. Judged before the
+/// force, which tells the claim where the probe was.
 bool Core::holdTorque(const ModelState& model, Claim& claim, uint32_t probe, double dt) noexcept HSP_RT {
   ClaimStep& step = claim_step_;
   hsp_contact& out = outputs_[probe];
@@ -56,9 +56,9 @@ bool Core::holdTorque(const ModelState& model, Claim& claim, uint32_t probe, dou
 
 namespace {
 
-constexpr double kFreeFor = 0.05;  ///< [s] a search finds what is near every 5 ms, later on a busy machine
+constexpr double kFreeFor = 0.05;  ///< [s] a search finds what is near every 5 ms, or later on a busy machine
 
-/// Keeps the largest jump so far, as the plugin would have to report it; its time is noted after the step.
+/// Keeps the largest jump so far, in the form in which the plugin would report it; its time is noted after the step.
 void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, const hsp_contact& out) noexcept HSP_RT {
   const double size = step.force.norm();
   const double felt = step.max_force > 0 && size > step.max_force ? step.max_force / size : 1;
@@ -70,8 +70,8 @@ void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, con
 
 }  // namespace
 
-/// What of the answer to this probe was beyond the claim: it is then what the claim explains. This and what calls it go
-/// into judge(): they are asked of every answer in every tick, and calls cost as much as they do.
+/// Which parts of the answer to this probe were beyond the claim, to which they are then reduced. This and what calls
+/// it go into judge(): they are asked of every answer in every tick, and calls cost as much as they do.
 [[gnu::always_inline]] inline Trouble Core::holdToClaim(ModelState& model, uint32_t index, uint32_t probe,
                                                         double dt) noexcept HSP_RT {
   hsp_contact& out = outputs_[probe];
@@ -84,7 +84,7 @@ void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, con
   step.max_force = uses_.max_force[probe];
   if ((out.flags & HSP_OUT_TRACED) != 0) step.normal = model.frame.vectorToWorld(ConstMap(out.normal));
   step.turn = model.moves ? &turn_ : nullptr;
-  if (model.claims.moves_itself) {  // after the probe was put into its frame
+  if (model.claims.moves_itself) {  // after the probe was moved into its frame
     step.p_world = last_position_[probe];
     step.p_model = model.frame.pointToModel(step.p_world);
     step.origin = model.frame.origin_world;
@@ -102,7 +102,7 @@ void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, con
   return claim.excused() ? Trouble::kNone : held ? Trouble::kJump : Trouble::kTwists;
 }
 
-/// What a healthy answer may still break: the time it was given, and what was claimed for it.
+/// What a healthy answer may still violate: the time that it was given, and the claims of the shape.
 [[gnu::always_inline]] inline Trouble Core::holdToClaims(ModelState& model, uint32_t index, double dt) noexcept HSP_RT {
   constexpr int kJumps = 3;
   Trouble trouble = Trouble::kNone;
@@ -115,7 +115,7 @@ void noteJump(ModelState& model, const ClaimStep& step, const Vector3d& let, con
   return trouble == Trouble::kNone ? holdToTime(model) : trouble;
 }
 
-/// Whether the answers may be felt; a model that moves itself goes to its new pose.
+/// Decides whether the answers may be felt; a model that moves itself goes to its new pose.
 Trouble Core::judge(ModelState& model, uint32_t index, double dt, const hsp_pose& pose) noexcept HSP_RT {
   bool answers_finite = true;
   for (const hsp_contact& out : outputs_) answers_finite &= finite(out);
@@ -137,7 +137,7 @@ Trouble Core::judge(ModelState& model, uint32_t index, double dt, const hsp_pose
   return trouble;
 }
 
-/// The last good force, a part of it: what a model in trouble is still felt by.
+/// A part of the last good force, with which a model in trouble is still felt.
 void Core::fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP_RT {
   Contact& last = contacts_[size_t{index} * probe_count_ + probe];
   last.traced = false;
@@ -145,7 +145,7 @@ void Core::fadeContact(uint32_t index, uint32_t probe, double part) noexcept HSP
   Map(last.world.torque) *= part;
 }
 
-/// True if one of the answers pulls, which is then noted.
+/// True if one of the answers pulls; the pull is then noted.
 bool Core::pulls(ModelState& model) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     if (!pullsIn(outputs_[i], model.frame.pointToModel(last_position_[i]))) continue;
@@ -155,7 +155,7 @@ bool Core::pulls(ModelState& model) noexcept HSP_RT {
   return false;
 }
 
-/// The force of the last tick was held while the model's surface moved on: that work is the model's.
+/// The force of the last tick was held while the model's surface moved on; that work was done by the model.
 void Core::bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT {
   for (uint32_t i = 0; i < probe_count_; ++i) {
     const Contact& held = contacts_[size_t{index} * probe_count_ + i];
@@ -168,7 +168,7 @@ void Core::bookMotion(const ModelState& model, uint32_t index) noexcept HSP_RT {
   }
 }
 
-/// A wall whose force grows with depth stores less than force times depth. What deforms says itself what it stores.
+/// A wall whose force grows with depth stores less than force times depth. A soft shape tells what it stores.
 void Core::bookContact(const ModelState& model, const Contact& contact, uint32_t probe) noexcept HSP_RT {
   const ConstMap force(contact.world.force);
   if (force.isZero(0)) return;
@@ -210,8 +210,8 @@ void Core::takeContact(ModelState& model, uint32_t index, uint32_t probe, double
   if (!frame.identity) transforms_ += 2;
 }
 
-/// Whether a model that came, or was enabled, may be felt. Not while a tip is in it: its whole force would come at once
-/// to a hand that met nothing on its way there. What pushes without a surface has no outside, so it fades in slowly.
+/// Whether a model that was added or enabled may be felt. It may not while a tip is in it: its whole force would reach
+/// a hand at once that had met nothing on its way. What pushes without a surface has no outside, so it fades in slowly.
 /// In its first ticks no search has told what is near, and a model that has not been looked at seems to be free.
 /// @param pace [s] of its fade in this tick
 bool Core::enters(ModelState& model, std::span<const Probe> probes, double& pace) const noexcept HSP_RT {

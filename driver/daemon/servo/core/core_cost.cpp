@@ -10,8 +10,8 @@
 
 namespace hapticd::servo {
 
-/// A coarsest shape that no probe can reach before its turn comes again answers in every fourth tick alone: it stands
-/// still, and its foot and distance are those of a moment ago. Turns are spread over the ticks.
+/// A shape at the coarsest level answers only in every fourth tick if no probe can reach it before its next turn: it
+/// stands still, and its foot and distance are those of a moment ago. The turns are spread over the ticks.
 bool Core::mayRest(const ModelState& model, uint32_t index, double dt) const noexcept HSP_RT {
   if (model.always || model.moves || model.change_count > 0) return false;
   if ((tick_ + index) % Accuracy::kTurns == 0) return false;
@@ -29,7 +29,7 @@ Core::Begun Core::beginCost() const noexcept HSP_RT {
 }
 
 void Core::takeCost(ModelState& model, const Begun& begun) noexcept HSP_RT {
-  constexpr uint32_t kSuspicion = 100;  // ticks, as many as a strike counts for
+  constexpr uint32_t kSuspicion = 100;  // ticks for which a strike counts
   model.step_ns = monotonicNow() - begun.wall;
   model.cpu_timed = begun.cpu != 0;
   if (settings_.evaluation_ns > 0) {
@@ -39,14 +39,14 @@ void Core::takeCost(ModelState& model, const Begun& begun) noexcept HSP_RT {
   } else if (model.cpu_timed) {
     model.step_ns = std::min(model.step_ns, os::cpuTimeOfThread() - begun.cpu);
   }
-  // a spent budget stays at 1: the next shape may still answer, but must be quick
+  // a spent budget stays at 1, so that the next shape may still answer, but must be quick
   if (budget_left_ns_ > 0) budget_left_ns_ = budget_left_ns_ > model.step_ns ? budget_left_ns_ - model.step_ns : 1;
   if (budget_left_ns_ == 1 && settings_.evaluation_ns == 0) suspicious_ = kSuspicion;
 }
 
-/// A tick that took long because the kernel interrupted it is no fault of a shape. Where the thread's own time was
-/// taken, an interruption is not in it: it excuses nothing, or a watchdog on the same processor would excuse every
-/// step.
+/// A shape is not at fault for a tick that was long because the kernel interrupted it. Where the thread's own time is
+/// measured, interruptions are not part of it and excuse nothing; otherwise a watchdog on the same processor would
+/// excuse every step.
 bool Core::excused() noexcept HSP_RT {
   if (settings_.evaluation_ns > 0 || cpu_timed_) return false;
   preempted_ |= os::wasPreempted();

@@ -11,11 +11,11 @@ namespace hapticd::servo {
 
 class LedPose {
  public:
-  /// What a record without an orientation (four zeros) means.
+  /// How a record without an orientation (four zeros) is understood.
   enum class Turns { kAsked, kNever };
   explicit LedPose(Turns turns = Turns::kAsked) : turns_(turns) {}
 
-  /// [rt] A leader begins. @param slot its memory, valid until end() @param from where the pose is now, with velocities
+  /// [rt] A leader begins. @param slot its memory, valid until end() @param from the present pose, with velocities
   void begin(const link::PoseSlot& slot, const hsp_pose& from) noexcept HSP_RT {
     slot_ = &slot;
     seen_ = refused_ = 0;
@@ -32,7 +32,7 @@ class LedPose {
   /// [rt] Something else moves the pose from now on.
   void forget() noexcept HSP_RT { active_ = fresh_ = false; }
 
-  /// The pose is this one's to say, with a leader or after it.
+  /// True if this decides the pose, with a leader or after one has gone.
   bool active() const noexcept { return active_; }
   bool led() const noexcept { return slot_ != nullptr; }
 
@@ -44,11 +44,11 @@ class LedPose {
     follow_.step(t, dt, pose);
   }
 
-  /// The record that the last step took, for the recording: nullptr where there was none.
+  /// The record that the last step took, for the recording; nullptr if there was none.
   const hapticd_target* taken() const noexcept { return fresh_ ? &taken_ : nullptr; }
-  /// Records of this leader that were refused so far.
+  /// How many records of this leader were refused so far.
   uint64_t refused() const noexcept { return refused_; }
-  /// Why the last of them was.
+  /// Why the last of them was refused.
   Follow::Refusal why() const noexcept { return why_; }
 
  private:

@@ -7,7 +7,7 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr uint32_t kWeight = 4;  ///< of a tick that was too long against one that was not: every fifth is forgiven
+constexpr uint32_t kWeight = 4;  ///< weight of a tick that was too long against a good one: every fifth is forgiven
 
 bool lowers(const Load& load) noexcept HSP_RT {
   return load.step_ns > 0 && load.level < Accuracy::kCoarsest;
@@ -22,7 +22,7 @@ std::span<const LoadShedding::Change> LoadShedding::judge(std::span<const Load> 
   for (const Load& load : loads) spent += load.step_ns;
   if (since_raise_ < kLongest) ++since_raise_;
   if (spent > budget_ns) {
-    // What was given back did not fit: the next attempt waits longer, so that accuracy does not flap.
+    // The accuracy that was given back did not fit: the next attempt waits longer, so that accuracy does not alternate.
     patience_ = since_raise_ < patience_ ? std::min(2 * patience_, kLongest) : patience_;
     calm_ = 0;
     over_ = std::min(over_ + kWeight, 2 * kWeight * kLasting);
@@ -38,12 +38,12 @@ std::span<const LoadShedding::Change> LoadShedding::judge(std::span<const Load> 
   return {changes_.data(), count_};
 }
 
-/// What is touched stays as it is through a tick that was merely interrupted.
+/// A shape in contact stays as it is if the tick was merely interrupted.
 bool LoadShedding::mayLower(const Load& load) const noexcept HSP_RT {
   return lowers(load) && (load.importance <= 0 || over_ >= kWeight * kLasting);
 }
 
-/// A shape in contact that takes too long by itself, and did so before: nothing interrupted it, so nothing is waited
+/// A shape in contact that takes too long by itself, and did so before: nothing interrupted it, so it is not waited
 /// for.
 bool LoadShedding::isProven(const Load& load) const noexcept HSP_RT {
   return load.proven && lowers(load) && over_ >= 2 * kWeight;
@@ -54,7 +54,7 @@ bool LoadShedding::changed(uint32_t model) const noexcept HSP_RT {
                      [&](const Change& c) { return c.model == model; });
 }
 
-/// The least important first; a shape that takes more than all may together goes down at once.
+/// Lowers the least important first; a shape that takes more than all together may take is lowered at once.
 void LoadShedding::lower(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT {
   for (const Load& load : loads)
     if (load.step_ns > budget_ns && (mayLower(load) || isProven(load)) && count_ < kMostChanges)
@@ -66,11 +66,11 @@ void LoadShedding::lower(std::span<const Load> loads, uint64_t spent, uint64_t b
         least = &load;
     if (least == nullptr) return;  // nothing is left to lower: ticks will be late, and are counted
     changes_[count_++] = {least->model, least->level + 1};
-    spent -= std::min(spent, least->step_ns / 2);  // what a level may save
+    spent -= std::min(spent, least->step_ns / 2);  // how much a level may save
   }
 }
 
-/// The most important first, if what it took before still fits; after long patience even so, for it may be cheaper now.
+/// Raises the most important first, if its former cost still fits; after long patience even if it does not.
 void LoadShedding::raise(std::span<const Load> loads, uint64_t spent, uint64_t budget_ns) noexcept HSP_RT {
   const Load* best = nullptr;
   for (const Load& load : loads)

@@ -10,8 +10,8 @@
 
 namespace hapticd::servo {
 
-/// How exactly a shape is asked to answer. 0: as its parameters say. Never to first order: far from a curved surface
-/// that step leaves the foot, and the probe seems to be inside.
+/// How exactly a shape must answer. 0: as its parameters say. The method is never of first order: far from a curved
+/// surface that step leaves the foot, and the probe seems to be inside.
 struct Accuracy {
   static constexpr uint32_t kCoarsest = 3;
   static constexpr uint32_t kTurns = 4;    ///< a coarsest shape out of reach answers in one of so many ticks
@@ -27,19 +27,19 @@ struct Accuracy {
 struct Load {
   uint32_t model = 0, level = 0;
   uint64_t step_ns = 0;   ///< of the last tick
-  uint64_t finer_ns = 0;  ///< what it took one level finer, when it was last there
+  uint64_t finer_ns = 0;  ///< its cost one level finer, when it was last there
   double importance = 0;  ///< [m] depth in contact, minus the distance otherwise; -infinity: not traced
-  bool proven = false;    ///< it took that time itself: no interruption is in it
+  bool proven = false;    ///< it took that time itself, without an interruption
 };
 
-/// Decides for the next tick from what the last one took. Costs are an argument: measured ones in a run, counted ones
-/// in tests.
+/// Decides for the next tick from the cost of the last one. Costs are an argument: measured in a run, counted in
+/// tests.
 class LoadShedding {
  public:
   static constexpr size_t kMostChanges = 4;     ///< in a tick
-  static constexpr double kComfort = 0.8;       ///< of the budget: what accuracy is given back up to
+  static constexpr double kComfort = 0.8;       ///< share of the budget up to which accuracy is given back
   static constexpr uint32_t kLasting = 20;      ///< [ticks] of overload in a row before a shape in contact is lowered
-  static constexpr uint32_t kPatience = 200;    ///< [ticks] of comfort before that
+  static constexpr uint32_t kPatience = 200;    ///< [ticks] of low load before accuracy is given back
   static constexpr uint32_t kLongest = 20'000;  ///< [ticks] the same after attempts that failed
 
   struct Change {
@@ -59,7 +59,7 @@ class LoadShedding {
   std::array<Change, kMostChanges> changes_{};
   size_t count_ = 0;
   uint32_t over_ = 0;                ///< ticks of overload in a row
-  uint32_t calm_ = 0;                ///< ticks of comfort in a row
+  uint32_t calm_ = 0;                ///< ticks of low load in a row
   uint32_t since_raise_ = kLongest;  ///< ticks
   uint32_t patience_ = kPatience;
 };

@@ -9,18 +9,18 @@ namespace hapticd::servo {
 
 class MinimumJerk {
  public:
-  static constexpr double kMoveSpeed = 0.2;      ///< [m/s] where nobody says how long it takes
-  static constexpr double kShortest = 0.5;       ///< [s] and what it takes at least then
-  static constexpr double kMostSpeed = 1.0;      ///< [m/s] of a moved model: a hand may be behind it
-  static constexpr double kMostTurn = 3.141593;  ///< [rad/s] so that 0.3 m from its origin a surface keeps to that too
+  static constexpr double kMoveSpeed = 0.2;      ///< [m/s] speed if nobody says how long a move takes
+  static constexpr double kShortest = 0.5;       ///< [s] shortest time of such a move
+  static constexpr double kMostSpeed = 1.0;      ///< [m/s] of a moved model, because a hand may be behind it
+  static constexpr double kMostTurn = 3.141593;  ///< [rad/s] at which a surface 0.3 m from its origin keeps to that too
   static constexpr double kPeakOfMean = 1.875;   ///< speed of a path of least jerk
 
   bool active() const noexcept { return active_; }
   double seconds() const noexcept { return seconds_; }  ///< that it takes
 
-  /// [rt] From `pose` to another, beginning at t [s]. @param seconds it takes at least; longer where it would be faster
-  /// than kMostSpeed or kMostTurn; 0: about kMoveSpeed @param to_orientation w,x,y,z, a unit quaternion; zeros: as it
-  /// is
+  /// [rt] From `pose` to another, beginning at t [s]. @param seconds at least; longer where it would be faster than
+  /// kMostSpeed or kMostTurn; 0: about kMoveSpeed @param to_orientation w,x,y,z, a unit quaternion; zeros: it stays as
+  /// it is
   void begin(double t, double seconds, const hsp_pose& pose, const double* to_position,
              const double* to_orientation) noexcept HSP_RT;
 

@@ -23,13 +23,13 @@ class Door {
  public:
   static constexpr uint32_t kStateAt = sizeof(hapticd_state_page);  ///< [bytes] of the first arm
   static constexpr uint32_t kStateStride = 1152;                    ///< [bytes] whole cache lines
-  static constexpr int kMostWoken = 16;  ///< at a time: a crowd that waits must not hold up a tick
+  static constexpr int kMostWoken = 16;  ///< programs woken at a time: a crowd that waits must not delay a tick
 
   static constexpr size_t stateBytes(size_t arms) { return kStateAt + arms * kStateStride; }
 
-  /// [any] One thread; once. @param page zeroed, of stateBytes(), valid until the loop has ended
+  /// [any] Only one thread, and only once. @param page zeroed, of stateBytes(), valid until the loop has ended
   void showState(std::byte* page, uint32_t arms) noexcept;
-  /// [any] One thread; once. @param bell zeroed, valid until the loop has ended
+  /// [any] Only one thread, and only once. @param bell zeroed, valid until the loop has ended
   void hangBell(hapticd_bell* bell) noexcept { bell_.store(bell, std::memory_order_release); }
 
   /// [rt] The arms were read.

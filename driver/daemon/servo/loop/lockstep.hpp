@@ -13,7 +13,7 @@ class Lockstep {
   /// [main] @param core says when it wants a search; outlives this  @param search one global search
   Lockstep(const Core& core, std::function<void()> search) : core_(core), search_(std::move(search)) {}
 
-  /// Before a tick at time t [s], after the probes were published. Not real time: the search allocates.
+  /// Called before a tick at time t [s], after the probes were published. Not for real time: the search allocates.
   void before(double t);
 
  private:

@@ -14,8 +14,8 @@ namespace hapticd::servo {
 
 namespace {
 
-constexpr uint64_t kWarmUpTicks = 200;  ///< first touches of code and tables; faults and allocations count after them
-constexpr double kLateFault = 0.1;      ///< [s] without a tick: a stale force must not hold a hand
+constexpr uint64_t kWarmUpTicks = 200;  ///< first touches of code and tables; only later faults and allocations count
+constexpr double kLateFault = 0.1;      ///< [s] without a tick, after which a stale force must not hold a hand
 
 bool isToArm(const Order& order) noexcept HSP_RT {
   switch (order.kind) {
@@ -68,7 +68,7 @@ void Loop::beat() noexcept HSP_RT {
   if (beat_ != nullptr) beat_->store(beat_->load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
 }
 
-/// Nothing of these cycles is kept: what follows is the same with and without them.
+/// Nothing of these cycles is kept: what follows is the same with them and without them.
 void Loop::runDry() noexcept HSP_RT {
   Nanoseconds deadline = clock_.now();
   for (uint64_t n = 0; n < settings_.dry_cycles && !stop_; ++n) {
@@ -133,7 +133,7 @@ void Loop::publishTick(uint64_t number, Nanoseconds ended) noexcept HSP_RT {
   tick_begun_.store(0, std::memory_order_relaxed);
 }
 
-/// Page faults and allocations of the first ticks are no fault of the later ones.
+/// Page faults and allocations of the first ticks do not count against the later ones.
 void Loop::countFromHere() noexcept {
   search_allocations_ = 0;
   faults_warm_ = os::pageFaultsOfThread();
@@ -141,7 +141,7 @@ void Loop::countFromHere() noexcept {
   noteAllocations(true);
 }
 
-/// Between two ticks: samples that drive the loop are waited for for a while, see PacedClock.
+/// Between two ticks: waits for a while for samples that drive the loop, see PacedClock.
 Nanoseconds Loop::longestRest() const noexcept HSP_RT {
   return settings_.paced ? 5 * settings_.period_ns / 2 : settings_.period_ns;
 }
@@ -150,7 +150,7 @@ void Loop::trip(Fault fault, double measured) noexcept HSP_RT {
   for (const auto& arm : arms_) arm->limiter().trip(fault, measured);
 }
 
-/// The end of the run. What failed before keeps its name: it is what the user must know.
+/// Ends the run. If something failed before, that is what the user must know, so it keeps its name.
 void Loop::rampOut() noexcept HSP_RT {
   for (const auto& arm : arms_)
     if (arm->limiter().fault() == Fault::kNone) arm->limiter().trip(Fault::kStopped);
@@ -179,7 +179,7 @@ void Loop::obey(double t) noexcept HSP_RT {
   }
 }
 
-/// A hold is an order like the others, for the recording; it only waits behind none of them.
+/// A hold is an order like the others, so that it is recorded; but it waits behind none of them.
 void Loop::obeyHolds() noexcept HSP_RT {
   const uint64_t held = hold_.load(std::memory_order_relaxed);
   if (held == 0) return;
@@ -212,7 +212,7 @@ void Loop::obey(const Order& order, Arm& arm) noexcept HSP_RT {
   }
 }
 
-/// After a tick: logs decisions that depended on measured times, for replay.
+/// After a tick, writes decisions that depended on measured times into the log for replay.
 void Loop::logTimedDecisions() noexcept HSP_RT {
   Order order;
   order.kind = Order::Kind::kOverran;
@@ -232,7 +232,7 @@ void Loop::logTimedDecisions() noexcept HSP_RT {
   }
 }
 
-/// What the servo does by itself to keep its deadline changes forces, so it is written down as an order is.
+/// What the servo does by itself to keep its deadline changes forces, so it is recorded as an order is.
 void Loop::shedLoad() noexcept HSP_RT {
   for (const LoadShedding::Change& change : core_.shedLoad()) {
     Order order;
@@ -254,7 +254,7 @@ void Loop::search(double t) noexcept {
   search_time_ = monotonicNow() - begun;
 }
 
-/// Samples come when they come: a tick that follows them is at the time it woke.
+/// Samples come at their own time, so a tick that follows them is at the time at which it woke.
 Nanoseconds Loop::timeOfTick(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT {
   const Nanoseconds by_clock = skipMissed(deadline, woke);
   return settings_.paced ? woke : by_clock;
@@ -262,7 +262,7 @@ Nanoseconds Loop::timeOfTick(Nanoseconds deadline, Nanoseconds woke) noexcept HS
 
 Nanoseconds Loop::skipMissed(Nanoseconds deadline, Nanoseconds woke) noexcept HSP_RT {
   if (woke < deadline + settings_.period_ns) return deadline;
-  // Whole periods are skipped and the phase kept: running late ticks back to back would only make the next ones late.
+  // Whole periods are skipped and the phase is kept: late ticks run back to back would only make the next ones late.
   const uint64_t missed = (woke - deadline) / settings_.period_ns;
   log_.overrun(missed);
   return deadline + missed * settings_.period_ns;
@@ -285,7 +285,7 @@ void Loop::tick(const TickTime& tick) noexcept HSP_RT {
   wants_search_.store(core_.wantsSearch(), std::memory_order_relaxed);
 }
 
-/// Spins, since no sleep is that short, until every program that keeps up has answered, or its time is over.
+/// Spins, because no sleep is that short, until every program that keeps up has answered, or its time is over.
 void Loop::listen(const TickTime& tick) noexcept HSP_RT {
   const auto awaited = [&](const auto& arm) { return arm->clients().awaits(tick.number); };
   const Nanoseconds begun = monotonicNow();
@@ -295,7 +295,7 @@ void Loop::listen(const TickTime& tick) noexcept HSP_RT {
   listen_time_ = now - begun;
 }
 
-/// Programs that push are asked as late as can be: whoever answers this tick is heard in it.
+/// Programs that push are asked as late as possible, so that an answer in this tick still counts in it.
 void Loop::write(uint32_t index, const TickTime& tick) noexcept HSP_RT {
   Arm& arm = *arms_[index];
   ClientForces& clients = arm.clients();
@@ -304,7 +304,7 @@ void Loop::write(uint32_t index, const TickTime& tick) noexcept HSP_RT {
   if (!clients.present() && clients.share() == 1)
     return arm.write(tick.time, tick.dt, core_.force(index), core_.torque(index), core_.exchange(index));
   passivity::Exchange exchange = core_.exchange(index);
-  exchange.recoverable = std::numeric_limits<double>::infinity();  // what a program has stored, nobody knows
+  exchange.recoverable = std::numeric_limits<double>::infinity();  // nobody knows how much energy a program has stored
   exchange.pushed = true;
   arm.write(tick.time, tick.dt, clients.share() * core_.force(index) + clients.force(),
             clients.share() * core_.torque(index) + clients.torque(), exchange);

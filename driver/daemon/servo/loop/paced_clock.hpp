@@ -10,8 +10,8 @@
 
 namespace hapticd::servo {
 
-/// Waits for a sample instead of for the time. A silent arm delays a tick by one and a half periods at most: the loop
-/// goes on and finds it stale. Reports that come in a burst make one tick.
+/// Waits for a sample instead of a time. A silent arm delays a tick by at most one and a half periods: then the loop
+/// continues and finds the sample stale. Reports that come in a burst make one tick.
 class PacedClock final : public Clock {
  public:
   /// @param clock of the run; `arm` outlives this and canPace()

@@ -17,7 +17,7 @@ using Arms = std::vector<std::unique_ptr<Arm>>;
 /// What a tick took.
 struct Spent {
   Nanoseconds total = 0;
-  Nanoseconds in_arms = 0;  ///< of it, in reading the arms: the physics of simulated ones, the traffic of others
+  Nanoseconds in_arms = 0;  ///< the part of it that arms took: physics of simulated arms, traffic of others
 };
 
 /// Every function is [rt] and called by the servo thread, in this order within a tick: begin, order (any number),
@@ -26,7 +26,7 @@ class TickLog {
  public:
   virtual ~TickLog() = default;
 
-  /// Before a tick at time `now`.
+  /// Called before a tick at time `now`.
   virtual void begin(Nanoseconds now, const Arms& arms) noexcept HSP_RT = 0;
   /// An order was obeyed in this tick, or a decision that depends on measured times was taken.
   virtual void order(const Order& order) noexcept HSP_RT = 0;

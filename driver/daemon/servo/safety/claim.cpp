@@ -10,14 +10,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The part of a force that another has too: a force may always shrink.
+/// The part of a force that another one has too: a force may always shrink.
 Vector3d nearestPart(const Vector3d& of, const Vector3d& to) noexcept HSP_RT {
   const double square = of.squaredNorm();
   if (!(square > 0)) return Vector3d::Zero();
   return std::clamp(to.dot(of) / square, 0.0, 1.0) * of;
 }
 
-/// [N/m] of the law of contact, in its steepest place.
+/// [N/m] stiffness of the law of contact at its steepest place.
 double stiffnessOf(const ClaimBounds& bounds) noexcept HSP_RT {
   return Claim::kMargin * (bounds.stiffness > 0 ? bounds.stiffness : Claim::kUnclaimed);
 }
@@ -26,7 +26,7 @@ double stiffnessOf(const ClaimBounds& bounds) noexcept HSP_RT {
 
 Vector3d Claim::judge(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT {
   Vector3d let = step.force;
-  // The root of the square of a number is that number: squares tell the same, and cost no root in most ticks.
+  // The root of the square of a number is that number, so squares tell the same without a root in most ticks.
   if (const double most = step.max_force, square = let.squaredNorm(); most > 0 && square > most * most)
     let *= most / std::sqrt(square);
   passes_ = std::min(kPasses, passes_ + kPassesPerSecond * dt);
@@ -35,7 +35,7 @@ Vector3d Claim::judge(const ClaimStep& step, const ClaimBounds& bounds, double d
   finds_anew_ -= dt;
   held = false;
   Vector3d from = let;
-  double follows = 1;  // the share of the change that explained_ goes along with
+  double follows = 1;  // share of the change by which explained_ follows
   if (known_ && (step.in & (HSP_IN_JUMP | HSP_IN_INVALID)) == 0) {
     const double turned = step.turn != nullptr ? turn(explained_, *step.turn, bounds, dt) : 0;
     from = nearestPart(explained_, let);
@@ -51,8 +51,8 @@ Vector3d Claim::judge(const ClaimStep& step, const ClaimBounds& bounds, double d
   return held ? let : step.force;
 }
 
-/// True if the stiffness alone explains a change of this square [N^2], as it does in nearly every tick of a contact:
-/// then nothing else need be looked at. Found without a root, so with room for its rounding.
+/// True if the stiffness alone explains a change of this square [N^2], as in nearly every tick of a contact: then
+/// nothing else need be checked. It uses no root, so it leaves room for rounding.
 bool Claim::surelyExplained(double square, const ClaimStep& step, const ClaimBounds& bounds) const noexcept HSP_RT {
   if (bounds.moves_itself) return false;
   const double per_metre = kSurely * stiffnessOf(bounds);
@@ -67,12 +67,12 @@ double Claim::holdBack(Vector3d& let, const Vector3d& from, const Vector3d& chan
   held = size > most && !mayJump(step);
   if (held) let = from + change * (most / size);
   if (!held && (size > most || size <= follows)) return 1;
-  // What somebody asked for comes slowly: until it is there, it is not the plugin that goes too far.
+  // What somebody asked for comes slowly; until it is there, the plugin is not at fault.
   if (asked_ && dt > 0) excused_ = std::max(excused_, std::min(kExcused, size / room.drift * dt));
   return follows / std::min(size, most);
 }
 
-/// One change of a step that nothing explains, of the force and the torque alike.
+/// One change of force and torque in a step that nothing explains.
 bool Claim::mayJump(const ClaimStep& step) noexcept HSP_RT {
   jumps_ = jumps_ || takePass(step);
   if (jumps_ || !asked_ || asked_passes_ < 1) return jumps_;
@@ -80,8 +80,8 @@ bool Claim::mayJump(const ClaimStep& step) noexcept HSP_RT {
   return jumps_ = true;
 }
 
-/// [N] or [N m] What the turn of the model since the last step explains beside its way. The force of a model that the
-/// host turns turns with it.
+/// [N] or [N m] How much the turn of the model since the last step explains, besides its way: the force of a model that
+/// the host turns also turns.
 double Claim::turn(Vector3d& explained, const Eigen::Matrix3d& turn, const ClaimBounds& bounds,
                    double dt) noexcept HSP_RT {
   const Vector3d carried = turn * explained;
@@ -90,7 +90,7 @@ double Claim::turn(Vector3d& explained, const Eigen::Matrix3d& turn, const Claim
   return 0;
 }
 
-/// [N] How far the force may have changed by what the probe and the model did since the last step.
+/// [N] How much the motion of probe and model since the last step may have changed the force.
 double Claim::explained(const ClaimStep& step, const ClaimBounds& bounds, double dt) const noexcept HSP_RT {
   double way = (step.p_model - p_model_).norm(), speed = std::max(step.velocity.norm(), velocity_.norm());
   double change = (step.velocity - velocity_).norm();
@@ -104,8 +104,8 @@ double Claim::explained(const ClaimStep& step, const ClaimBounds& bounds, double
   return stiffnessOf(bounds) * way + std::max(kDamping * change, kMargin * bounds.damping * speed);
 }
 
-/// [m] How far the surface at the probe may have come by a pose that is the shape's own word: a body's speed along, and
-/// a body's speed round, so that a model that spins in place explains next to nothing there.
+/// [m] How far the surface at the probe may have moved because of a pose that the shape itself reports: at the speeds
+/// at which a body moves and turns, so that a model that spins in place explains next to nothing there.
 double Claim::ownWay(const ClaimStep& step, double dt) const noexcept HSP_RT {
   const double along = std::min((step.origin - origin_).norm(), kOwnSpeed * dt);
   if (step.turn == nullptr) return along;
@@ -120,7 +120,7 @@ bool Claim::takePass(const ClaimStep& step) noexcept HSP_RT {
   return true;
 }
 
-/// Only what the next step is compared with: this is done for each shape, probe and tick.
+/// Remembers only what the next step is compared with, because it runs for each shape, probe and tick.
 void Claim::remember(const ClaimStep& step, const ClaimBounds& bounds) noexcept HSP_RT {
   known_ = (step.in & HSP_IN_INVALID) == 0;
   asked_ = jumps_ = false;
@@ -134,14 +134,14 @@ void Claim::remember(const ClaimStep& step, const ClaimBounds& bounds) noexcept 
   origin_ = step.origin;
 }
 
-/// Torques are held to a claim as forces are: a stiffness k at a handle of length l turns the hand back by k l^2 for
-/// each radian, and a force that jumps by f is a torque that jumps by f l.
+/// Torques are held to a claim as forces are: a stiffness k at a handle of length l turns the hand back by k l^2 per
+/// radian, and a force that jumps by f is a torque that jumps by f l.
 Vector3d Claim::judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT {
   Vector3d let = step.torque;
   if (const double size = let.norm(); step.max_torque > 0 && size > step.max_torque) let *= step.max_torque / size;
   held = false;
   Vector3d from = let;
-  double follows = 1;  // the share of the change that explained_torque_ goes along with
+  double follows = 1;  // share of the change by which explained_torque_ follows
   if (torque_known_ && (step.in & (HSP_IN_JUMP | HSP_IN_INVALID)) == 0) {
     const double turned = step.turn != nullptr ? turn(explained_torque_, *step.turn, bounds, dt) : 0;
     from = nearestPart(explained_torque_, let);
@@ -157,18 +157,18 @@ Vector3d Claim::judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, do
   return held ? let : step.torque;
 }
 
-/// [rad] How far the probe turned in the frame of the model since the last step, at least. A turn that is the shape's
-/// own word explains nothing but that its torque turns along: what a body can do at the probe is in explained().
+/// [rad] How far the probe turned in the frame of the model since the last step, at least. A turn that the shape itself
+/// reports explains only that its torque turns with it: what a body can do at the probe is in explained().
 double Claim::angle(const ClaimStep& step, const ClaimBounds& bounds) const noexcept HSP_RT {
-  constexpr double kOfChord = 2.3;    // an angle up to half a turn over the distance of its quaternion from none
-  constexpr double kOfMatrix = 0.72;  // a small angle over the distance of matrices
+  constexpr double kOfChord = 2.3;    // an angle up to half a turn, from the distance of its quaternion to the identity
+  constexpr double kOfMatrix = 0.72;  // a small angle, from the distance of two matrices
   const double chord = std::min((step.orientation - orientation_).norm(), (step.orientation + orientation_).norm());
   const bool carried = step.turn != nullptr && !bounds.moves_itself;
   return kOfChord * chord + (carried ? kOfMatrix * (*step.turn - Eigen::Matrix3d::Identity()).norm() : 0);
 }
 
 bool pullsIn(const hsp_contact& contact, const Vector3d& p) noexcept HSP_RT {
-  constexpr double kSmallest = 1e-6, kRounding = 0.01;  // [m] to a foot that tells no direction; [N], and of the force
+  constexpr double kSmallest = 1e-6, kRounding = 0.01;  // [m] a foot nearer than this gives no direction; [N]
   if ((contact.flags & HSP_OUT_TRACED) == 0) return false;
   const Vector3d force(contact.force), out = Vector3d(contact.point) - p;
   const double outward = contact.depth_m > 0 ? force.dot(out) : -force.dot(out);

@@ -10,74 +10,74 @@
 
 namespace hapticd::servo {
 
-/// What a shape may do to a probe; from its report and its parameters.
+/// What a shape may do to a probe, from its report and its parameters.
 struct ClaimBounds {
-  double stiffness = 0;       ///< [N/m] 0: nothing was claimed, kUnclaimed holds
+  double stiffness = 0;       ///< [N/m] 0: nothing was claimed, so kUnclaimed holds
   double damping = 0;         ///< [N s/m]
-  double jump = 0;            ///< [N] on purpose; at least kStep
-  bool moves_itself = false;  ///< its pose is its own word: what that explains is bounded
+  double jump = 0;            ///< [N] jumps on purpose; at least kStep
+  bool moves_itself = false;  ///< it reports its own pose, which explains only so much
 };
 
-/// One answer of a shape to one probe. World frame where nothing else is said. `normal` is looked at where it is
-/// traced, `p_world` and `origin` where the shape moves itself.
+/// One answer of a shape to one probe, in the world frame unless a comment says otherwise. `normal` is used if a
+/// surface is traced, `p_world` and `origin` if the shape moves itself.
 struct ClaimStep {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();     ///< [N]
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< outward, where it is traced
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< outward, if a surface is traced
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();   ///< [m] the probe
   Eigen::Vector3d p_model = Eigen::Vector3d::Zero();   ///< [m] the same in the frame of the model, after the step
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s] relative to the model; zero where it asks for none
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s] relative to the model; zero if it asks for none
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();    ///< [m] of the model, after the step
   const Eigen::Matrix3d* turn = nullptr;               ///< of the model since its last step; nullptr: it does not turn
-  double max_force = 0;      ///< [N] that the arm lets through; 0: unknown. Forces are compared no further.
+  double max_force = 0;      ///< [N] that the arm lets through; 0: unknown. Larger forces are not compared.
   uint32_t in = 0, out = 0;  ///< HSP_IN_*, HSP_OUT_*
-  // Looked at by judgeTorque() alone.
+  // Only judgeTorque() uses these.
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m] on the probe
-  /// x y z w of the probe in the world; the same in each step where the shape does not read how the probe is turned.
+  /// x y z w of the probe in the world; constant if the shape does not read how the probe is turned.
   Eigen::Vector4d orientation = Eigen::Vector4d::UnitW();
-  double max_torque = 0;  ///< [N m] that the arm lets through; 0: unknown. Torques are compared no further.
-  bool former = false;    ///< a jump of the probe excuses nothing, as once
+  double max_torque = 0;  ///< [N m] that the arm lets through; 0: unknown. Larger torques are not compared.
+  bool former = false;    ///< as formerly, a jump of the probe excuses nothing
 };
 
-/// What is remembered of one model and one probe.
+/// What is remembered for one model and one probe.
 class Claim {
  public:
   static constexpr double kMargin = 10;       ///< laws of contact are steeper in places than their authors think
-  static constexpr double kStep = 2;          ///< [N] a click may be as sudden as this
-  static constexpr double kUnclaimed = 2000;  ///< [N/m] where nothing is claimed
-  static constexpr double kDamping = 100;     ///< [N s/m] allowed to every shape: friction and inertia work like it
-  static constexpr double kDrift = 100;       ///< [N/s] that a force may change with nothing to explain it
-  static constexpr double kOwnSpeed = 5;      ///< [m/s] of a surface that moves itself
+  static constexpr double kStep = 2;          ///< [N] a click may come as suddenly as this
+  static constexpr double kUnclaimed = 2000;  ///< [N/m] used where nothing is claimed
+  static constexpr double kDamping = 100;     ///< [N s/m] allowed to every shape: friction and inertia act like it
+  static constexpr double kDrift = 100;       ///< [N/s] by which a force may change with nothing to explain it
+  static constexpr double kOwnSpeed = 5;      ///< [m/s] speed of a surface that moves itself
   static constexpr double kOwnTurn = 50;      ///< [rad/s] the same
   /// A surface that is found anew under the probe, or a foot that goes over an edge, changes the force at once.
   /// kPasses such changes may come together, and kPassesPerSecond per second.
   static constexpr double kPasses = 3, kPassesPerSecond = 20;
-  static constexpr double kEdge = 0.1;     ///< [rad] a normal that turns farther in one step has gone over an edge
-  static constexpr double kSurely = 0.99;  ///< of what stiffness explains: what is below needs no second look
-  /// [m] From the tip to where a hand holds the handle: a force there is a torque of so much.
+  static constexpr double kEdge = 0.1;     ///< [rad] a normal that turns farther in one step has crossed an edge
+  static constexpr double kSurely = 0.99;  ///< share of what stiffness explains: a smaller change needs no second look
+  /// [m] distance from the tip to where a hand holds the handle, which turns a force into a torque.
   static constexpr double kHandle = 0.1;
   /// A live parameter that somebody set may change the force at once: kAsked such changes may come together, and
-  /// kAskedPerSecond per second. Who sets one in every tick must not open a door for a plugin that kicks.
+  /// kAskedPerSecond per second. A program that sets one in every tick must not let a plugin kick.
   static constexpr double kAsked = 3, kAskedPerSecond = 2;
-  static constexpr double kExcused = 1;  ///< [s] for which what was asked for may be held back and blames nobody
-  /// [s] After a jump of the probe or a bad sample the search finds the surface anew, some ticks later. The force comes
-  /// by a pass then, whatever the normal was, and what is held back is no fault of the plugin.
+  static constexpr double kExcused = 1;  ///< [s] for which a change that was asked for may be held back without blame
+  /// [s] After a jump of the probe or a bad sample the search finds the surface anew some ticks later. The force may
+  /// then come at once, whatever the normal was, and the plugin is not blamed for what is held back.
   static constexpr double kFindsAnew = 0.1;
 
-  /// [rt] How much of the force of `step` may be let through, world frame: all of it, or what the claim explains.
+  /// [rt] How much of the force of `step` may pass, world frame: all of it, or what the claim explains.
   /// @param dt [s] since the last step  @param held true if the force was held back
   Eigen::Vector3d judge(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
 
-  /// [rt] The same of the torque of `step`. Before judge(), which remembers where the probe was.
+  /// [rt] The same for the torque of `step`. Call it before judge(), which remembers where the probe was.
   Eigen::Vector3d judgeTorque(const ClaimStep& step, const ClaimBounds& bounds, double dt, bool& held) noexcept HSP_RT;
 
   /// [rt] Somebody set a live parameter of the model: in the next step the force may change with nothing to explain it.
   void expectChange() noexcept HSP_RT { asked_ = true; }
 
-  /// [rt] What was held back in the last step was asked for by somebody, or the probe jumped: it is no fault of the
-  /// plugin.
+  /// [rt] True if somebody asked for what was held back in the last step, or the probe jumped, so that the plugin is
+  /// not at fault.
   bool excused() const noexcept HSP_RT { return excused_ > 0 || finds_anew_ > 0; }
 
-  /// [any] The next step is compared with nothing.
+  /// [any] Compares the next step with nothing.
   void forget() noexcept { known_ = torque_known_ = false; }
 
  private:
@@ -85,7 +85,7 @@ class Claim {
   struct Room {
     double moved;  ///< that motion explains
     double jump;   ///< beyond it
-    double drift;  ///< in this step, with nothing to explain it
+    double drift;  ///< allowed in this step, with nothing to explain it
   };
   double holdBack(Eigen::Vector3d& let, const Eigen::Vector3d& from, const Eigen::Vector3d& change, const Room& room,
                   const ClaimStep& step, double dt, bool& held) noexcept HSP_RT;
@@ -101,10 +101,10 @@ class Claim {
 
   bool known_ = false, traced_ = false;
   bool torque_known_ = false;
-  bool asked_ = false, jumps_ = false;  // of this step: a parameter was set; it was let jump
+  bool asked_ = false, jumps_ = false;  // in this step: a parameter was set; a jump was allowed
   double passes_ = kPasses, asked_passes_ = kAsked;
-  double excused_ = 0, finds_anew_ = 0;  // [s] for which it still is
-  /// [N] The force that motion explains, world: what was let through is never farther from it than a jump.
+  double excused_ = 0, finds_anew_ = 0;  // [s] for which that still holds
+  /// [N] The force that motion explains, world frame: the force that passes is never farther from it than a jump.
   Eigen::Vector3d explained_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_world_ = Eigen::Vector3d::Zero(), p_model_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero(), normal_ = Eigen::Vector3d::Zero();
@@ -113,10 +113,10 @@ class Claim {
   Eigen::Vector4d orientation_ = Eigen::Vector4d::UnitW();
 };
 
-/// A pull of a surface that reports to push only.
+/// A pull by a surface that reported that it only pushes.
 struct Pull {
   double t = -1;      ///< [s] since the start of the run; negative: unknown
-  double depth = -1;  ///< [m] as the shape told it; negative: unknown, or outside
+  double depth = -1;  ///< [m] as the shape reported it; negative: unknown, or outside
   double force = 0;   ///< [N]
 };
 

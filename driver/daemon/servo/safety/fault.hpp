@@ -7,7 +7,7 @@
 
 namespace hapticd::servo {
 
-/// What took the force away. Recordings keep the number: new ones come at the end.
+/// What took the force away. Recordings keep the number, so new faults come at the end.
 enum class Fault : uint8_t {
   kNone,
   kNotFinite,      ///< a force or position that is not a number
@@ -25,11 +25,11 @@ enum class Fault : uint8_t {
 };
 constexpr int kFaultCount = 13;
 
-/// True if the fault ends by itself once the device is well: unplugged, silent, at fault, not calibrated. What the
-/// daemon or the user did wrong stays until the user clears it.
+/// True if the fault ends by itself once the device is well: unplugged, silent, at fault, not calibrated. A fault of
+/// the daemon or the user stays until the user clears it.
 bool endsByItself(Fault fault) noexcept;
 
-/// Words for a fault: what failed, and the command or act that cures it.
+/// Words for a fault: what failed, and the command or action that cures it.
 const char* describe(Fault fault);
 
 /// [main] One message of four parts: what failed, the measured state, the consequence, what cures it.
@@ -37,7 +37,7 @@ const char* describe(Fault fault);
 /// @param why the device's own words, "cause; cure"; nullptr: it has none
 std::string faultMessage(const std::string& device, Fault fault, double measured, const char* why = nullptr);
 
-/// A fault that one thread latches and others read.
+/// A fault that one thread latches and other threads read.
 class LatchedFault {
  public:
   LatchedFault() = default;

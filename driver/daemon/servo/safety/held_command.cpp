@@ -9,7 +9,7 @@ namespace hapticd::servo {
 
 namespace {
 
-/// [Hz] from which on a tick, or a sample, is soon enough for the full force.
+/// [Hz] at or above this rate the next tick or sample comes soon enough for the full force.
 constexpr double kServoRateInFull = 1 / kHeldInFull, kArmRateInFull = 2 / kHeldInFull;
 
 }  // namespace

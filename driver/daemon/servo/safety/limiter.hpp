@@ -28,12 +28,12 @@ struct Clips {
 
 class Limiter {
  public:
-  static constexpr double kImpulseWindow = 0.1;  ///< [s] within which limits.impulse holds
+  static constexpr double kImpulseWindow = 0.1;  ///< [s] any window of this length for which limits.impulse holds
   /// [s] At a fault, and when the enable switch is let go, a full force is gone in this time, or in limits.ramp_out if
-  /// that is shorter. A tip that nobody holds any more takes up energy for as long: with 8.5 N on 75 g, 0.5 mJ. An end
-  /// that was planned takes limits.ramp_out.
+  /// that is shorter. A tip that nobody holds any more gains energy for as long: with 8.5 N on 75 g, 0.5 mJ. A planned
+  /// end takes limits.ramp_out.
   static constexpr double kFaultRamp = 0.002;
-  /// [s] A force that was less because the samples were old grows again in this time.
+  /// [s] A force that was reduced because the samples were old grows back in this time.
   static constexpr double kFreshRamp = 0.02;
   /// [s] over which limits.slew is counted: a step of an encoder is as large at 20 kHz as at 1 kHz, so a bound on each
   /// tick would clip good contact the more, the faster the servo.
@@ -50,50 +50,50 @@ class Limiter {
   void watchSpeed(double speed) noexcept HSP_RT;
   /// [rt] Judges the tip's velocity [m/s], in the frame of the forces, and keeps it for the power limit.
   void watchVelocity(const Eigen::Vector3d& velocity) noexcept HSP_RT;
-  /// [rt] The buttons of the newest sample, for the enable switch; nullopt: there is no good one.
+  /// [rt] Takes the buttons of the newest sample, for the enable switch; nullopt: there is no good sample.
   void watchButtons(std::optional<uint32_t> buttons) noexcept HSP_RT;
-  /// [main] A hold button that was down before the run enables: in recordings of versions that let it.
+  /// [main] A hold button that was down before the run enables forces, as in recordings of versions that allowed it.
   void enableByFoundPressed() { released_ = true; }
   /// [main] What limits.power must reckon with. @param lag [s] of the velocity that watchVelocity() gets
   /// @param mass [kg] of the arm at its tip, 0: unknown
   void expectMotion(double lag, double mass) { power_.expect(lag, mass); }
-  /// [rt] How much of the force the newest sample is good for, 1 to 0 as it grows old. Call before apply().
+  /// [rt] What share of the force the newest sample allows, from 1 to 0 as it ages. Call it before apply().
   void trustSample(double share) noexcept HSP_RT { trusted_ = share; }
-  /// [rt] What the motors leave of the force, 0 to 1: it holds from the next tick on.
+  /// [rt] The share of the force that the motors allow, 0 to 1; it holds from the next tick on.
   void spareMotors(double factor) noexcept HSP_RT { heat_factor_ = factor; }
-  /// [rt] The motors' own limit, or that of the arm's weight, made the torques of this tick smaller.
+  /// [rt] The motors' own limit, or that of the arm's weight, reduced the torques of this tick.
   void clippedByMotors() noexcept HSP_RT { count(Limit::kMotors); }
   void clippedWeight() noexcept HSP_RT { count(Limit::kWeight); }
 
-  /// [rt] Latches a fault: the force ramps to zero from what it is now. The first one is kept, but for one that ends by
-  /// itself: a graver one takes its place. @param measured for the message, in the unit of the fault
+  /// [rt] Latches a fault: the force ramps to zero from what it is now. The first fault is kept, unless it ends by
+  /// itself: then a graver one takes its place. @param measured for the message, in the unit of the fault
   void trip(Fault fault, double measured = 0) noexcept HSP_RT;
 
-  /// [rt] The motors were cut already: the fault latches and no force is left to ramp.
+  /// [rt] The motors were cut already: the fault latches, and there is no force left to ramp.
   void cut(Fault fault, double measured) noexcept HSP_RT;
 
-  /// [rt] After apply(): the arm could not be told the force, for nobody knows where it is. What is left of a ramp is
-  /// not taken up again, and another force grows from none.
+  /// [rt] Called after apply(), if the arm could not be told the force because nobody knows where it is. The rest of a
+  /// ramp is not resumed, and a later force grows from zero.
   void sentNothing() noexcept HSP_RT;
 
-  /// [rt] A fault that ends by itself is over: the force ramps in again. Others stay.
+  /// [rt] A fault that ends by itself is over, and the force ramps in again. Other faults stay.
   void recover() noexcept HSP_RT;
 
-  /// [rt] Clears a latched fault by the user's order: the force ramps in again, once it has ramped out.
+  /// [rt] Clears a latched fault by the user's order: the force ramps in again once it has ramped out.
   void clear() noexcept HSP_RT;
 
   Fault fault() const noexcept { return fault_.get(); }          ///< [any]
-  Fault recovered() const noexcept { return recovered_.get(); }  ///< [any] the last one that ended by itself
+  Fault recovered() const noexcept { return recovered_.get(); }  ///< [any] the last fault that ended by itself
   double measured() const noexcept { return measured_; }         ///< [main] at the fault
-  bool enabled() const noexcept { return enabled_; }             ///< by the enable switch, if there is one
+  bool enabled() const noexcept { return enabled_; }             ///< forces are enabled by the switch, if there is one
   bool foundPressed() const noexcept { return found_pressed_; }  ///< the enable switch, and not let go since
   double rampOut() const noexcept { return limits_.ramp_out; }   ///< [s] from full force to none, at a planned end
   const Clips& clips() const noexcept { return clips_; }         ///< [main] after the run
   double maxForce() const noexcept { return max_force_; }        ///< [N] 0: none
   double maxTorque() const noexcept { return limits_.torque; }   ///< [N m] 0: none
-  /// [rt] The share of a full force that the ramps let flow in this tick, after apply(): 0 to 1.
+  /// [rt] The share of a full force that the ramps allow in this tick, after apply(): 0 to 1.
   double allowed() const noexcept { return fault() == Fault::kNone ? ramp_ : fade_ * ramp_; }
-  bool silent() const noexcept { return fault() != Fault::kNone && fade_ == 0; }  ///< ramped all the way down
+  bool silent() const noexcept { return fault() != Fault::kNone && fade_ == 0; }  ///< the force has ramped down to zero
 
  private:
   using Vector3d = Eigen::Vector3d;
@@ -107,16 +107,16 @@ class Limiter {
 
   scene::Limits limits_;
   double max_force_;
-  double ramp_ = 0;  // from the start, and after a fault was cleared, to full force
-  double fade_ = 0;  // from the force at a fault to none
+  double ramp_ = 0;  // from zero to full force, at the start and after a fault was cleared
+  double fade_ = 0;  // from the force at a fault to zero
   LatchedFault fault_, recovered_;
   double measured_ = 0;
-  // A switch must be pressed, not be found pressed: who sets up an arm with a button taped down holds nothing.
+  // A switch must be pressed, not found pressed: somebody who tapes a button down does not hold it.
   bool enabled_ = true, button_was_down_ = true, released_ = false, found_pressed_ = false;
   bool clipped_ = false;  // in this tick
-  bool cleared_ = false;  // by the user, while the force was still on its way down
+  bool cleared_ = false;  // cleared by the user while the force was still ramping down
   double heat_factor_ = 1, impulse_ = 0;
-  double trusted_ = 1, fresh_ = 1;  // by the age of the sample: now, and as it grows again
+  double trusted_ = 1, fresh_ = 1;  // factor for the age of the sample: now, and as it grows again
   Clips clips_;
   PowerBound power_;
   Vector3d fault_force_ = Vector3d::Zero(), fault_torque_ = Vector3d::Zero();

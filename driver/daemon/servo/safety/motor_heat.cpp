@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kCopper = 0.00393;   ///< [1/K] rise of a copper winding's resistance
 constexpr double kRatedAt = 25;       ///< [degC] at which data sheets give the resistance
-constexpr double kOvershoot = 5;      ///< [K] beyond the limit that a held force alone never reaches
-constexpr double kLongestHold = 0.1;  ///< [s] of one torque; longer gaps end in faults of their own
+constexpr double kOvershoot = 5;      ///< [K] above the limit, which a held force alone never reaches
+constexpr double kLongestHold = 0.1;  ///< [s] of one torque; longer gaps end in other faults
 
 }  // namespace
 

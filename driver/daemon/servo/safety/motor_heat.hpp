@@ -12,7 +12,7 @@ namespace hapticd::servo {
 
 class MotorHeat {
  public:
-  static constexpr double kMargin = 10;  ///< [K] below its limit a motor begins to be spared
+  static constexpr double kMargin = 10;  ///< [K] below its limit, at which derating of a motor begins
 
   /// [main] @param motors in the order of the joints; joints beyond have none. All start at the air's temperature.
   explicit MotorHeat(const std::vector<scene::Motor>& motors);
@@ -23,11 +23,11 @@ class MotorHeat {
   /// [rt] The torques [N m] at the joints are held for dt [s].
   void heat(const double* torque, double dt) noexcept HSP_RT;
 
-  /// What the hottest motor leaves of every force: 1 while cool, 0 at its limit.
+  /// The share of every force that the hottest motor allows: 1 while cool, 0 at its limit.
   double factor() const noexcept { return factor_; }
-  /// [degC] of the winding that is nearest to its limit.
+  /// [degC] temperature of the winding nearest to its limit.
   double hottest() const noexcept { return hottest_; }
-  /// A winding is beyond its limit: something else than forces heats it, such as gravity compensation.
+  /// A winding is beyond its limit: something other than forces heats it, such as gravity compensation.
   bool overheated() const noexcept { return overheated_; }
   double winding(size_t joint) const noexcept { return bodies_[joint].winding; }  ///< [degC]
 

@@ -11,7 +11,7 @@ namespace hapticd::servo {
 class PowerBound {
  public:
   static constexpr double kMargin = 1.5;     ///< of the accelerations that were seen: the next may be larger
-  static constexpr double kRemember = 0.02;  ///< [s] in which they are forgotten
+  static constexpr double kRemember = 0.02;  ///< [s] after which they are forgotten
 
   /// [main] @param lag [s] of the velocity estimate  @param mass [kg] of the arm at its tip; 0: the force accelerates
   /// it by nothing
@@ -26,14 +26,14 @@ class PowerBound {
   /// [rt] Once a tick. @param dt [s] since the last tick, taken for the time to the next too
   void pass(double dt) noexcept HSP_RT;
 
-  /// [rt] The most [N] along `direction` (unit) that stays within `power` [W]; infinite where the hand moves against
-  /// it.
+  /// [rt] The largest force [N] along `direction` (unit) that stays within `power` [W]; infinite if the hand moves
+  /// against it.
   double most(const Eigen::Vector3d& direction, double power) const noexcept HSP_RT;
 
  private:
   double lag_ = 0, mass_ = 0;
-  double acceleration_ = 0;  // [m/s^2] the largest of late
-  double age_ = 0, dt_ = 0;  // [s] of the estimate, of a tick
+  double acceleration_ = 0;  // [m/s^2] the largest recent one
+  double age_ = 0, dt_ = 0;  // [s] of the estimate, and of a tick
   bool known_ = false;
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
 };

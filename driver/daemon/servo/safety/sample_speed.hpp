@@ -11,9 +11,9 @@ namespace hapticd::servo {
 
 class SampleSpeed {
  public:
-  static constexpr double kAssumedPeriod = 2e-3;  ///< [s] of samples, where the arm does not say
-  /// [s] A time stamp may run so far ahead of what the host saw pass: packets wait in buffers. A clock that says more
-  /// is not believed: it would make a jump slow.
+  static constexpr double kAssumedPeriod = 2e-3;  ///< [s] between samples, if the arm does not say
+  /// [s] A time stamp may be so far ahead of the time that the host saw pass, because packets wait in buffers. A clock
+  /// that says more is not believed, since it would make a jump look slow.
   static constexpr double kAhead = 2e-3;
 
   /// [main] @param rate [Hz] of the arm's samples, 0: unknown  @param resolution [m] of a position, 0: unknown
@@ -24,7 +24,7 @@ class SampleSpeed {
   /// saw pass since the last one  @return [m/s]; 0 for the first
   double update(const Eigen::Vector3d& position, uint64_t stamp_ns, double passed) noexcept HSP_RT;
 
-  /// [rt] A gap: the next sample is the first.
+  /// [rt] There is a gap: the next sample is the first.
   void reset() noexcept HSP_RT { known_ = false; }
 
  private:

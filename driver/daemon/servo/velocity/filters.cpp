@@ -35,7 +35,7 @@ Vector3d Butterworth::update(const Vector3d& position, double dt) noexcept {
   }
   const Vector3d difference = (position - last_) / dt;
   last_ = position;
-  if (!primed_) {  // as if it had moved like this for ever: no step from rest
+  if (!primed_) {  // as if it had always moved like this, so that it does not start with a step
     s2_ = (b0_ - a2_) * difference;
     s1_ = (2 * b0_ - a1_) * difference + s2_;
     primed_ = true;
@@ -113,7 +113,7 @@ Vector3d Kalman::update(const Vector3d& position, double dt) noexcept {
   v_ += gain[1] * innovation;
   a_ += gain[2] * innovation;
   covariance_ = predicted - gain * predicted.row(0);
-  covariance_ = ((covariance_ + covariance_.transpose()) / 2).eval();  // rounding must not tilt it over days
+  covariance_ = ((covariance_ + covariance_.transpose()) / 2).eval();  // rounding errors must not tilt it over days
   return v_;
 }
 

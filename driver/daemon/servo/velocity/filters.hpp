@@ -8,8 +8,8 @@
 namespace hapticd::velocity {
 
 constexpr int kMaxWindow = 1024;  ///< samples of a window
-constexpr int kMaxAdaptive = 32;  ///< samples of foaw, whose cost grows with the square
-constexpr int kMaxMissed = 16;    ///< periods a filter bridges; after a longer gap it starts anew
+constexpr int kMaxAdaptive = 32;  ///< most samples of foaw, whose cost grows with the square of their number
+constexpr int kMaxMissed = 16;    ///< periods that a filter bridges; after a longer gap it restarts
 
 /// (x_i - x_(i-n)) / (nT): Thompson et al. 1999, Eq. 5. Delay nT/2, white-noise gain sqrt(2)/(nT).
 class Window {

@@ -39,12 +39,12 @@ class ProbeVelocity {
     return estimator_.update(position, dt);
   }
 
-  void reset() noexcept {  ///< [rt] a gap: there is no good sample
+  void reset() noexcept {  ///< [rt] there is a gap: no good sample
     known_ = false;
     estimator_.reset();
   }
 
-  double speed() const noexcept { return speed_; }  ///< [rt] [m/s] from the last sample to this one, a jump's too
+  double speed() const noexcept { return speed_; }  ///< [rt] [m/s] from the last sample to this one, also for a jump
 
  private:
   VelocityEstimator estimator_;

@@ -48,14 +48,14 @@ void tell(hapticd_error* error, const char* code, const std::string& text) {
 
 namespace {
 
-/// The socket of `name`, in the folder that programs look in; under systemd also in the system's.
+/// The socket of `name`, in the folder where programs look; under systemd also in the system's folder.
 std::string baseOf(const std::string& name) {
   const std::string own = status::runtimeFolder(false) + "/" + name, system = "/run/hapticd/" + name;
   const auto isThere = [](const std::string& base) { return access((base + ".sock").c_str(), F_OK) == 0; };
   return !isThere(own) && isThere(system) ? system : own;
 }
 
-/// A program has no option --name.
+/// A program has no option --name, so the message must not mention one.
 std::string forPrograms(std::string text) {
   constexpr std::string_view kOption = "name a running one with --name";
   if (const size_t at = text.find(kOption); at != std::string::npos)
@@ -82,7 +82,7 @@ bool refused(const std::string& line, hapticd_error* error) {
 
 }  // namespace
 
-/// So that the daemon does not tell of a program that died. Without an answer the end of the connection does it.
+/// So that the daemon does not report a program that died. Without an answer the connection's end does the same.
 void endInOrder(hapticd_client& client, const hapticd_lead& lead) try {
   constexpr double kPatience = 0.5;  // s
   const std::lock_guard lock(client.asking);
@@ -119,7 +119,7 @@ std::byte* hapticd_client::page(const char* request, hapticd::client::Mapping& k
   return kept.data();
 }
 
-/// Why there was no answer: the daemon has ended, it ended this connection, or it takes too long.
+/// Why there was no answer: the daemon has ended, or it ended this connection, or it takes too long.
 void hapticd_client::tellOfSilence(const std::string& problem, hapticd_error* error) {
   if (!line.ended()) return tell(error, "timeout", problem);
   constexpr useconds_t kMeanwhile = 20'000;  // [us] a daemon that ends closes its connections first
@@ -130,7 +130,7 @@ void hapticd_client::tellOfSilence(const std::string& problem, hapticd_error* er
       "the daemon ended this connection, because others waited for its place while it was silent\n  fix: connect anew");
 }
 
-/// A connection may end before the daemon does: where others need its place.
+/// A connection may end before the daemon does, if others need its place.
 bool hapticd_client::ended() {
   return line.ended() && hapticd_alive(this) == 0;
 }
@@ -160,7 +160,7 @@ int hapticd_alive(hapticd_client* client) {
   if (client->line.ended() && !client->rows.isFile(client->base + ".blackbox.h5")) return 0;  // another has its name
   const std::string file = client->base + ".lock";
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  // Another user's lock cannot be opened; its socket goes with it.
+  // Another user's lock cannot be opened; its socket disappears with the daemon.
   if (fd < 0) return errno == EACCES && access((client->base + ".sock").c_str(), F_OK) == 0 ? 1 : 0;
   const bool free = flock(fd, LOCK_SH | LOCK_NB) == 0;
   close(fd);

@@ -21,11 +21,11 @@
 
 namespace hapticd::client {
 
-/// Memory of the daemon in this process.
+/// Memory of the daemon, mapped into this process.
 class Mapping {
  public:
   Mapping() = default;
-  /// @param bytes 0: all of the file. An error leaves nothing mapped: data() is nullptr, errno says why
+  /// @param bytes 0: all of the file. After an error nothing is mapped: data() is nullptr, and errno says why
   Mapping(int fd, size_t bytes, int protection);
   Mapping(Mapping&& other) noexcept : data_(std::exchange(other.data_, nullptr)), bytes_(other.bytes_) {}
   Mapping& operator=(Mapping&& other) noexcept {
@@ -51,10 +51,10 @@ struct Stream {
   std::string name;
   uint64_t* written = nullptr;  ///< in the mapping
   uint64_t* rows = nullptr;
-  uint64_t handed = 0;  ///< rows before this number were read already, by any thread
+  uint64_t handed = 0;  ///< rows before this number were read already, by some thread
   uint64_t capacity = 0;
   size_t row_words = 0;
-  std::list<std::string> texts;  ///< that the columns point to
+  std::list<std::string> texts;  ///< names to which the columns point
   std::vector<hapticd_column> columns;
 };
 
@@ -67,7 +67,7 @@ class Rows {
   /// ns from one tick to the next.
   int64_t period() const { return period_; }
   std::vector<Stream>& streams() { return streams_; }
-  /// The file is that of the daemon which was connected to: another would have replaced it.
+  /// True if the file belongs to the daemon to which it connected: another daemon would have replaced it.
   bool isFile(const std::string& file) const;
   static uint64_t written(const Stream& stream);
   static long read(const Stream& stream, uint64_t& row, void* rows, size_t most);
@@ -93,7 +93,7 @@ struct Answer {
 /// Any `error` may be nullptr.
 void tell(hapticd_error* error, const char* code, const std::string& text);
 
-/// Ends a lead that the client's end would end.
+/// Ends a lead that would otherwise end with the client.
 void endInOrder(hapticd_client& client, const hapticd_lead& lead);
 
 }  // namespace hapticd::client
@@ -102,29 +102,29 @@ void endInOrder(hapticd_client& client, const hapticd_lead& lead);
 struct hapticd_client {
   hapticd_client(std::string where, hapticd::control::Client on, hapticd::client::Rows box)
       : base(std::move(where)), line(std::move(on)), rows(std::move(box)) {}
-  /// A request whose answer says that it was done.
+  /// Sends a request whose answer only says that it was done.
   bool ask(const std::string& request, hapticd::client::Answer& answer, hapticd_error* error);
-  /// A request whose answer nobody waits for.
+  /// Sends a request whose answer nobody waits for.
   void leave(const std::string& request);
-  /// The memory of a request, mapped once. nullptr: it cannot be had
+  /// The memory of a request, mapped once. nullptr if it cannot be had
   std::byte* page(const char* request, hapticd::client::Mapping& kept, size_t least, int protection);
 
-  /// [any] The daemon that this is a client of has ended: its rows and states are old.
+  /// [any] True if the daemon of this client has ended, so that its rows and states are old.
   bool ended();
   void tellOfSilence(const std::string& problem, hapticd_error* error);
 
-  std::string base;  ///< of the daemon's files, "/run/hapticd/NAME"
+  std::string base;  ///< beginning of the daemon's file names, "/run/hapticd/NAME"
   hapticd::control::Client line;
   hapticd::client::Rows rows;
   std::mutex asking, mapping;
   hapticd::client::Mapping bell, states;
   std::list<hapticd_lead*> leads;
-  std::atomic<int64_t> listen_ns = 0;  ///< before and after a tick is due, without sleeping
+  std::atomic<int64_t> listen_ns = 0;  ///< time before and after a tick is due in which it polls
 };
 
 struct hapticd_lead {
   hapticd_client* client;
-  std::string unlead;  ///< the request that ends it
+  std::string unlead;  ///< the request that ends the lead
   bool pushes;
   hapticd::client::Mapping memory;
 };

@@ -12,7 +12,7 @@ namespace {
 using hapticd::client::Answer;
 using hapticd::client::tell;
 
-/// Why the arm gets no force, as the daemon says it; "": it gets what is asked for.
+/// Why the arm gets no force, in the daemon's words; "" if it gets what is asked for.
 std::string noForce(const std::string& answer) {
   const auto json = nlohmann::json::parse(answer, nullptr, false);
   return json.is_object() && json.contains("no_force") ? json["no_force"].get<std::string>() : "";
@@ -30,7 +30,7 @@ hapticd_lead* leadOf(hapticd_client* client, const char* what, const char* name,
   const std::string begin = requestOf("lead", what, name), end = requestOf("unlead", what, name);
   Answer answer;
   if (!client->ask(begin, answer, told)) {
-    if (std::strcmp(told->code, "timeout") == 0) client->leave(end);  // it may be led yet, and by nobody
+    if (std::strcmp(told->code, "timeout") == 0) client->leave(end);  // it may still be led, though by nobody
     return nullptr;
   }
   hapticd::client::Mapping memory(answer.descriptor.get(), HAPTICD_LEAD_BYTES, PROT_READ | PROT_WRITE);
@@ -66,7 +66,7 @@ int hapticd_lead_put(hapticd_lead* lead, const hapticd_target* target) {
 
 int hapticd_lead_push(hapticd_lead* lead, const hapticd_push* push) {
   if (!lead->pushes || lead->client->line.ended()) return -1;
-  // The daemon would refuse it and count, but cannot tell: nothing comes back along this way.
+  // The daemon would refuse and count it, but could not say so, because nothing comes back this way.
   for (const double* numbers : {push->force, push->torque})
     for (int i = 0; i < 3; ++i)
       if (!(std::abs(numbers[i]) <= hapticd::link::kLargestPush)) return -1;

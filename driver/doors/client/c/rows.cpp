@@ -50,7 +50,7 @@ Result<void> Rows::readStreams() {
   auto* header = reinterpret_cast<record::FileHeader*>(memory_.at(record::kHeaderAt, sizeof(record::FileHeader)));
   if (header == nullptr || std::strncmp(header->magic, record::kRecordingFormat, sizeof header->magic) != 0 ||
       header->ring != 1 || header->stream_count > record::kMaxStreams)
-    return Error{"is no black box of a daemon that this library knows"};
+    return Error{"is not a black box of a daemon that this library knows"};
   const auto* about = reinterpret_cast<const char*>(memory_.at(header->about_address, header->about_bytes));
   if (about == nullptr) return Error{"ends inside its description"};
   about_.assign(about, header->about_bytes);
@@ -104,7 +104,7 @@ uint64_t Rows::written(const Stream& stream) {
 
 long Rows::read(const Stream& stream, uint64_t& row, void* rows, size_t most) {
   for (;;) {
-    const uint64_t end = written(stream), kept = stream.capacity - 1;  // the slot behind the newest is being written
+    const uint64_t end = written(stream), kept = stream.capacity - 1;  // the slot after the newest row is being written
     const uint64_t first = std::min(std::max(row, end > kept ? end - kept : 0), end);
     const uint64_t count = std::min<uint64_t>(most, end - first);
     auto* to = static_cast<std::byte*>(rows);
@@ -159,6 +159,6 @@ long hapticd_read(hapticd_client* client, int stream, uint64_t* row, void* rows,
   if (*row > handed.load(std::memory_order_relaxed))
     handed.store(*row, std::memory_order_relaxed);
   else if (client->ended())
-    return -1;  // what was told before is no news
+    return -1;  // what was reported before is not new
   return got;
 }

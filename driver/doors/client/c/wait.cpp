@@ -30,18 +30,18 @@ void sleepUntil(int64_t ns) {
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &when, nullptr);
 }
 
-/// Sleeps until the word is another than `seen`, or it is woken for nothing, at most so long.
+/// Sleeps until the word is no longer `seen`, or until a spurious wake-up, but at most for this time.
 void sleepOn(uint32_t& word, uint32_t& waiting, uint32_t seen, long ms) {
   std::atomic_ref<uint32_t>(waiting).store(1);
-  if (std::atomic_ref<uint32_t>(word).load() != seen) return;  // it rang before it could know of us
+  if (std::atomic_ref<uint32_t>(word).load() != seen) return;  // it rang before it could know that this program waits
   const timespec limit{ms / kMsPerSecond, ms % kMsPerSecond * kNsPerMs};
   syscall(SYS_futex, &word, FUTEX_WAIT, seen, &limit, nullptr, 0);
 }
 
-/// Asks until `there` says so, or nowMs() is `end`. @return 1: it did; 0: not in time; -1: the daemon has ended
+/// Asks until `there` is true, or nowMs() is `end`. @return 1: it was true; 0: not in time; -1: the daemon has ended
 template <class There>
 int waitFor(hapticd_client* client, uint32_t& word, uint32_t& waiting, long end, There&& there) {
-  constexpr long kLongest = 100;  // a wake-up may be lost to somebody who plays with the bell
+  constexpr long kLongest = 100;  // a wake-up may be lost if somebody writes to the bell
   for (;;) {
     const uint32_t seen = std::atomic_ref<uint32_t>(word).load();
     if (there()) return 1;
@@ -62,17 +62,17 @@ template <class Record>
 bool newest(std::byte* at, Record& record) {
   constexpr int kTries = 1000;
   for (int i = 0; i < kTries; ++i) {
-    uint64_t seen = 0;  // of one that was never written
+    uint64_t seen = 0;  // the count of a record that was never written
     if (reinterpret_cast<hapticd::link::LeadSlot<Record>*>(at)->take(seen, record)) return true;
     if (std::atomic_ref<uint64_t>(*reinterpret_cast<uint64_t*>(at)).load() == 0) return false;
   }
   return false;
 }
 
-/// Looks without sleeping while the tick behind `state` is due. @return there is one after `after`
+/// Polls while the tick after `state` is due. @return whether there is one after `after`
 bool listen(std::byte* at, int64_t period, int64_t before, uint64_t after, hapticd_state& state) {
   const int64_t due = static_cast<int64_t>(state.time_ns) + period, now = nowNs();
-  // In virtual time, or after a pause of the daemon, nobody knows when it is due.
+  // In virtual time, or after a pause of the daemon, nobody knows when the next tick is due.
   if (due + before < now || due - now > 2 * period) return false;
   sleepUntil(due - before);
   while (nowNs() < due + before)
@@ -80,7 +80,7 @@ bool listen(std::byte* at, int64_t period, int64_t before, uint64_t after, hapti
   return false;
 }
 
-/// A record of an arm on the page of states. nullptr: there is none
+/// The record of an arm on the page of states. nullptr if there is none
 std::byte* recordOf(hapticd_client* client, int device, size_t behind, size_t bytes) {
   const auto* page = reinterpret_cast<hapticd_state_page*>(
       client->page(R"({"do":"state"})", client->states, sizeof(hapticd_state_page), PROT_READ));
@@ -108,7 +108,7 @@ int hapticd_next_state(hapticd_client* client, int device, uint64_t after, int t
   const auto there = [&] { return newest(at, *state) && (after == UINT64_MAX || state->tick > after); };
   const int64_t before = client->listen_ns.load(std::memory_order_relaxed), period = client->rows.period();
   const long end = nowMs() + timeout_ms;
-  if (after == UINT64_MAX && client->ended()) return -1;  // the newest state is that of the past
+  if (after == UINT64_MAX && client->ended()) return -1;  // the newest state is older than the one asked for
   if (there()) return 1;
   if (before > 0 && after != UINT64_MAX && timeout_ms * kNsPerMs > 2 * period &&
       listen(at, period, before, after, *state))

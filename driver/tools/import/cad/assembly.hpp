@@ -10,7 +10,7 @@ namespace hapticd::cad {
 /// [main] Appends the shapes of a document with their names, colours and poses. @throws CadError
 void readTree(const Handle(TDocStd_Document) & document, CadFile& file);
 
-/// [main] Appends a shape: one node for each solid, free shell and heap of loose faces in it, in a common assembly if
+/// [main] Appends a shape: one node for each solid, free shell and set of loose faces in it, in a common assembly if
 /// there are several.
 void addShape(const TopoDS_Shape& shape, Node node, CadFile& file);
 

@@ -21,7 +21,7 @@ class BodyBuilder {
 
   /// [main] Appends the body and returns its index. Faces that cannot be kept become losses.
   std::uint32_t add(const TopoDS_Shape& shape, std::uint32_t name, std::uint32_t colour);
-  /// How many of its spline faces were planes, cylinders and their kind.
+  /// How many of its spline faces were planes, cylinders and the like.
   std::size_t recognisedFaces() const { return recognised_; }
 
  private:
@@ -43,10 +43,10 @@ class BodyBuilder {
   const Colours& colours_;
   std::string name_;
   brep::Part& part_;
-  TopTools_IndexedMapOfShape edges_, vertices_;  ///< of the body; equal in whatever orientation
+  TopTools_IndexedMapOfShape edges_, vertices_;  ///< edges of the body; equal in whatever orientation
   std::vector<std::uint32_t> edge_index_, vertex_index_;
   std::size_t face_number_ = 0, recognised_ = 0;
-  std::optional<Unfolding> unfolding_;  ///< of the face in work, if its surface was recognised
+  std::optional<Unfolding> unfolding_;  ///< for the present face, if its surface was recognised
 };
 
 }  // namespace hapticd::cad

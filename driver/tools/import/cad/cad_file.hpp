@@ -22,17 +22,17 @@ struct CadError : std::runtime_error {
 /// An assembly, or a shape where it stands.
 struct Node {
   std::string name;
-  std::string body_name;     ///< of the shape itself; instances have names of their own
+  std::string body_name;     ///< name of the shape itself; instances have their own names
   std::uint32_t colour = 0;  ///< as in brep::Face
   int parent = -1;           ///< index of the assembly that holds it
-  TopoDS_Shape shape;        ///< null: an assembly. Its own location is none.
+  TopoDS_Shape shape;        ///< null: an assembly. It has no location of its own.
   gp_Trsf pose;              ///< to the frame of the file [mm]
 };
 
 struct CadFile {
-  std::vector<Node> nodes;                                 ///< parents stand before their children
+  std::vector<Node> nodes;                                 ///< parents come before their children
   std::string unit;                                        ///< "mm", "in"
-  std::unordered_map<const void*, std::uint32_t> colours;  ///< of faces and other shapes, by their TShape
+  std::unordered_map<const void*, std::uint32_t> colours;  ///< colours of faces and other shapes, by their TShape
   std::vector<brep::Loss> losses;                          ///< faces of the file that the reader could not make
 };
 

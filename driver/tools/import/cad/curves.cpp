@@ -36,7 +36,7 @@ void refuse(const std::string& wrong, const char* what) {
   if (!wrong.empty()) throw Unkept(std::string(what) + ": " + wrong);
 }
 
-/// What Curve3 and Curve2 have alike: splines of Open CASCADE in two and three dimensions share their methods.
+/// What Curve3 and Curve2 have in common: splines of Open CASCADE in two and three dimensions share their methods.
 template <class Record, class Spline, class Point>
 Record splineRecord(const Spline& spline, double scale, Part& part, const Point& coordinates) {
   Record record;
@@ -87,7 +87,7 @@ Handle(Geom2d_Curve) basisOf(Handle(Geom2d_Curve) curve) {
   return curve;
 }
 
-/// Degrees beyond the kernel's are approximated like curves of other kinds.
+/// Curves whose degree is beyond the kernel's are approximated like curves of other kinds.
 template <class Spline>
 bool isKept(const Spline& spline) {
   return !spline.IsNull() && spline->Degree() <= spline::kMaxDegree;
@@ -122,7 +122,7 @@ brep::Vector2 plain(const gp_XY& v) {
   return {v.X(), v.Y()};
 }
 
-/// Numbers beyond what a part may hold, or none at all.
+/// True for numbers beyond what a part may hold, or that are not numbers.
 template <class Record>
 void refuseFar(const Record& record, double most, const char* what) {
   for (const auto* axis : {&record.o, &record.x, &record.y})

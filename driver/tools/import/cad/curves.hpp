@@ -11,17 +11,17 @@
 
 namespace hapticd::cad {
 
-/// Metres in a length of Open CASCADE.
+/// Metres per length unit of Open CASCADE.
 inline constexpr double kMetres = 1e-3;
 
 inline constexpr double kFullTurn = 2 * std::numbers::pi;  ///< [rad]
 
-/// Why a face or a curve cannot be kept; the words follow its name.
+/// Why a face or a curve cannot be kept; the text follows its name.
 struct Unkept : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What a record cost in accuracy: 0 where nothing was approximated.
+/// How much accuracy a record lost: 0 if nothing was approximated.
 struct Kept {
   std::uint32_t index = brep::kNone;
   double error = 0;  ///< [m] of curves in space and of surfaces; in parameters for pcurves

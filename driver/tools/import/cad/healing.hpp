@@ -9,16 +9,16 @@
 
 namespace hapticd::cad {
 
-/// Colours by the TShape of what has them.
+/// Colours, found by the TShape of what has them.
 using Colours = std::unordered_map<const void*, std::uint32_t>;
 
 /// [main] Checks a body and fixes it if it is not valid; sews loose faces; makes solids of closed shells. Each step
-/// adds a line to `steps`. Colours of faces that were replaced go over to those that replace them.
+/// adds a line to `steps`. Faces that replace others inherit their colours.
 /// @param body its name, for the lines
 TopoDS_Shape healed(const TopoDS_Shape& shape, const std::string& body, Colours& colours,
                     std::vector<std::string>& steps);
 
-/// [main] Whether a closed shape has its outside inside: its volume is negative.
+/// [main] True if a closed shape has its outside inside, so that its volume is negative.
 bool isInsideOut(const TopoDS_Shape& shape);
 
 }  // namespace hapticd::cad

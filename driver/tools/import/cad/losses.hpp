@@ -11,7 +11,7 @@ namespace hapticd::cad {
 /// @param to_mm millimetres per unit of the coordinates that the file states
 void findLostFaces(const Handle(XSControl_WorkSession) & session, double to_mm, std::vector<brep::Loss>& losses);
 
-/// [main] Appends a loss for each entity that others of a STEP file refer to and that does not stand in it.
+/// [main] Appends a loss for each entity to which others of a STEP file refer, but which is missing from it.
 void findMissingEntities(const Handle(XSControl_WorkSession) & session, std::vector<brep::Loss>& losses);
 
 }  // namespace hapticd::cad

@@ -30,7 +30,7 @@ struct Options {
   bool check = false, json = false;
 };
 
-/// What the file may cost. Sanitizers take more addresses than any limit.
+/// What the file may cost. Sanitizers use more addresses than any limit allows.
 void setLimits(const Options& options) {
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
   app.addFlag("--json", options.json, "report as JSON");
   if (const auto ended = app.parse(argc, argv)) return *ended;
   hapticd::cad::setLimits(options);
-  // What Open CASCADE tells goes nowhere: the report has what matters.
+  // Messages of Open CASCADE are dropped: the report has what matters.
   Message::DefaultMessenger()->ChangePrinters().Clear();
   std::cout.rdbuf(nullptr);
   return hapticd::cad::guarded(options);

@@ -6,7 +6,7 @@
 
 namespace hapticd::cad {
 
-/// [main] Heals and converts every body of a file. Source::file and sha256 are left to the caller. @throws CadError if
+/// [main] Heals and converts every body of a file. The caller fills in Source::file and sha256. @throws CadError if
 /// nothing is left of it.
 brep::Part buildPart(CadFile& file, Report& report);
 

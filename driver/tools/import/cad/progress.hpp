@@ -7,14 +7,14 @@
 
 namespace hapticd::cad {
 
-/// Open CASCADE asks this object while it works: it shows how far the work is, and stops it after a time.
+/// Open CASCADE asks this object while it works; it shows the progress, and stops the work after a time.
 class Progress : public Message_ProgressIndicator {
  public:
-  /// @param what words for the terminal. @param seconds the step is broken off after these; 0: never.
+  /// @param what words for the terminal. @param seconds after which the step is broken off; 0: never.
   explicit Progress(std::string what, double seconds = 0);
   ~Progress() override;
   Standard_Boolean UserBreak() override;
-  /// Whether the limit of time ended the step.
+  /// True if the time limit ended the step.
   bool late() const { return late_; }
 
  protected:

@@ -19,7 +19,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kFarthestOff = 1e-9;  ///< [m] farthest that a point of a recognised surface may be from it
+constexpr double kFarthestOff = 1e-9;  ///< [m] largest distance of a point from a recognised surface
 
 Vector3d inMetres(const gp_XYZ& v) {
   return Vector3d(v.X(), v.Y(), v.Z()) * kMetres;
@@ -63,7 +63,7 @@ Vector3d mean(const std::vector<Vector3d>& v) {
   return sum / static_cast<double>(v.size());
 }
 
-/// The direction along which vectors about their mean spread least.
+/// The direction along which vectors spread least about their mean.
 Vector3d flattest(const std::vector<Vector3d>& v, const Vector3d& about) {
   Matrix3d spread = Matrix3d::Zero();
   for (const Vector3d& x : v) spread += (x - about) * (x - about).transpose();
@@ -96,7 +96,7 @@ std::optional<Surface> planeOf(const Handle(Geom_BSplineSurface) & spline, const
   return s;
 }
 
-/// Centre and radius with which P = c + r n, in the least squares, along the directions that `keep` lets through.
+/// Centre and radius with which P = c + r n, by least squares, along the directions that `keep` selects.
 bool center(const Cloud& cloud, const Matrix3d& keep, Vector3d& c, double& r) {
   const Vector3d p0 = mean(cloud.points), n0 = mean(cloud.normals);
   double pn = 0, nn = 0;
@@ -132,7 +132,7 @@ std::optional<Surface> sphereOf(const Cloud& cloud) {
   if (!center(cloud, Matrix3d::Identity(), c, r) || !(std::abs(r) < 1e3)) return {};
   for (const Vector3d& p : cloud.points)
     if (std::abs((p - c).norm() - std::abs(r)) > kFarthestOff) return {};
-  const Vector3d toward = (cloud.middle - c).normalized();  // poles and seam as far from the face as can be
+  const Vector3d toward = (cloud.middle - c).normalized();  // puts poles and seam as far from the face as possible
   Surface s = frame(SurfaceKind::kSphere, c, toward.unitOrthogonal(), toward, r < 0);
   s.r[0] = std::abs(r);
   s.period[0] = kFullTurn;
@@ -168,7 +168,7 @@ std::optional<Surface> coneOf(const Cloud& cloud) {
   return s;
 }
 
-/// (u, v) of a point near the surface, u nearest to `near_u`.
+/// (u, v) of a point near the surface, with u nearest to `near_u`.
 Vector2d parametersOf(const Surface& s, const Vector3d& p, double near_u) {
   const Vector3d d = p - vec(s.o), x = vec(s.x), y = vec(s.y), z = vec(s.z);
   if (s.kind == SurfaceKind::kPlane) return {d.dot(x) / x.squaredNorm(), d.dot(y) / y.squaredNorm()};
@@ -196,7 +196,7 @@ Tangents tangentsAt(const Surface& s, const Vector2d& uv) {
   return {o + r * e + uv[1] * z, r * f, slope * e + z};
 }
 
-/// A curve in space seen along the normal of a plane: exact, whatever its kind.
+/// A curve in space, seen along the normal of a plane: it is exact, whatever its kind.
 brep::Curve2 projected(const brep::Curve3& c, const Surface& s, brep::Part& part) {
   const auto seen = [&](const Vector3d& w) {
     const Vector3d x = vec(s.x), y = vec(s.y);
@@ -279,7 +279,7 @@ brep::Curve2 lineBetween(const Vector2& a, const Vector2& b, double t0, double t
   return line;
 }
 
-/// Cubics with the slopes of the edge: off by h^4 / 384 of its fourth derivative.
+/// Cubics with the slopes of the edge, which err by h^4 / 384 of its fourth derivative.
 template <class Sample>
 brep::Curve2 cubicsThrough(const std::vector<Sample>& samples, double t0, double t1, brep::Part& part) {
   brep::Curve2 spline;
@@ -330,7 +330,7 @@ std::vector<Unfolding::Sample> Unfolding::samplesAlong(const Handle(Geom_Curve) 
   return samples;
 }
 
-/// Whether a line in the parameters stays on the edge.
+/// True if a line in the parameters stays on the edge.
 bool Unfolding::follows(const brep::Curve2& line, const std::vector<Sample>& samples) const {
   return std::all_of(samples.begin(), samples.end(), [&](const Sample& s) {
     const Tangents there = tangentsAt(shape_, Vector2d(s.uv[0], s.uv[1]));

@@ -9,12 +9,12 @@
 
 namespace hapticd::cad {
 
-/// [main] The surface that a spline surface is over [lo, hi], if it is one to within 1e-6 mm everywhere. Its own normal
-/// points where that of the spline does, so that loops keep their sense.
+/// [main] The surface that a spline surface is over [lo, hi], if it is one to within 1e-6 mm everywhere. Its normal
+/// points where that of the spline does, so that loops keep their direction.
 std::optional<brep::Surface> recognised(const Handle(Geom_Surface) & surface, const brep::Vector2& lo,
                                         const brep::Vector2& hi);
 
-/// The curves of a face's edges in the parameters of the surface that was recognised.
+/// The curves of a face's edges in the parameters of the recognised surface.
 class Unfolding {
  public:
   /// @param surface the spline, @param lo, hi the range of the face in it

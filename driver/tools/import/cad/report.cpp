@@ -16,7 +16,7 @@ constexpr const char* kSurfaceNames[] = {"plane",    "cylinder",  "cone",       
                                          "B-spline", "extrusion", "revolution", "offset"};
 
 struct Counts {
-  std::size_t placed = 0, faces = 0;  ///< bodies that stand somewhere, and their faces
+  std::size_t placed = 0, faces = 0;  ///< bodies that are placed somewhere, and their faces
   std::map<std::string, std::size_t> kinds;
 };
 

@@ -10,7 +10,7 @@ namespace hapticd::cad {
 
 struct Report {
   std::vector<std::string> steps;  ///< what was healed, sewn or recognised, in order
-  std::size_t recognised = 0;      ///< spline faces that were planes, cylinders and their kind
+  std::size_t recognised = 0;      ///< spline faces that were planes, cylinders and the like
   double seconds = 0;
 };
 

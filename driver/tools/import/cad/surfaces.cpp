@@ -34,7 +34,7 @@ Vector plain(const gp_XYZ& v) {
   return {v.X(), v.Y(), v.Z()};
 }
 
-/// The frame of a surface of revolution: unit vectors across, `along` metres to a unit of v.
+/// The frame of a surface of revolution: unit vectors across, and `along` metres per unit of v.
 Surface framed(SurfaceKind kind, const gp_Ax3& axes, double along, double r0, double r1) {
   Surface s;
   s.kind = kind;
@@ -129,7 +129,7 @@ Surface planeRecord(const gp_Ax3& axes) {
   return s;
 }
 
-/// Extrusions, revolutions and offsets: what they are made of is added before them.
+/// Extrusions, revolutions and offsets; what they are made of is added before them.
 bool swept(const Handle(Geom_Surface) & surface, const Vector2& lo, const Vector2& hi, Part& part, Surface& s,
            double& error) {
   if (const auto extrusion = Handle(Geom_SurfaceOfLinearExtrusion)::DownCast(surface); !extrusion.IsNull()) {

@@ -7,7 +7,7 @@
 
 namespace hapticd::cad {
 
-/// [main] Appends a surface as it is needed over [lo, hi]; what is of no kind that a part knows is approximated.
+/// [main] Appends a surface as it is needed over [lo, hi]; a kind that a part does not have is approximated.
 /// @throws Unkept
 Kept addSurface(const Handle(Geom_Surface) & surface, const brep::Vector2& lo, const brep::Vector2& hi,
                 brep::Part& part);

@@ -13,7 +13,7 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using Triangle = std::array<Vector3d, 3>;
 
-constexpr double kNothing = 1e-9;  ///< of a triangle's size: nearer to its plane, a corner lies on it
+constexpr double kNothing = 1e-9;  ///< share of a triangle's size: a corner nearer to its plane lies on it
 
 /// Where the way from a to b goes through a triangle; a way that ends on its plane only touches it.
 std::optional<Vector3d> pierces(const Vector3d& a, const Vector3d& b, const Triangle& t) {
@@ -43,7 +43,7 @@ class Sweep {
     for (std::size_t t = 0; t < corners.size(); ++t) boxes_[shell[t]].extend(boxOf(t));
   }
 
-  /// Along x: each triangle is tried with those that begin before it ends.
+  /// Along x, each triangle is tried with those that begin before it ends.
   Crossings run() {
     constexpr std::size_t kMost = 200'000'000;  // some seconds
     take();
@@ -73,7 +73,7 @@ class Sweep {
     for (const std::uint32_t corner : corners_[t]) box.extend(points_[corner]);
     return box;
   }
-  /// Triangles that lie within the box of another shell. Shells are few, or small and far apart.
+  /// Triangles within the box of another shell. Shells are few, or small and far apart.
   void take() {
     constexpr std::size_t kFew = 64;
     for (std::size_t t = 0; t < corners_.size(); ++t) {

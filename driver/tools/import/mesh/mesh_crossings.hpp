@@ -10,9 +10,9 @@
 namespace hapticd::importing {
 
 struct Crossings {
-  std::size_t pairs = 0;           ///< triangles of two shells that cut each other
-  Eigen::Vector3d first{0, 0, 0};  ///< [m] where the first of them do
-  bool all_tried = true;           ///< false: there were too many to try them all
+  std::size_t pairs = 0;           ///< triangles of two shells that intersect
+  Eigen::Vector3d first{0, 0, 0};  ///< [m] place of the first intersection
+  bool all_tried = true;           ///< false: there were too many to try all of them
 };
 
 /// [main] Faces that only touch do not cross. @param shell of each triangle

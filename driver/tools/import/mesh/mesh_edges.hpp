@@ -34,7 +34,7 @@ inline std::size_t endOfEdge(const std::vector<MeshEdge>& edges, std::size_t i) 
   return end;
 }
 
-/// [main] By 3 * triangle + edge: the code of the other triangle, where there are exactly two; 0xffffffff else.
+/// [main] Indexed by 3 * triangle + edge: the code of the other triangle if there are exactly two, else 0xffffffff.
 inline std::vector<std::uint32_t> pairedNeighbours(const std::vector<MeshEdge>& edges, std::size_t triangles) {
   std::vector<std::uint32_t> across(3 * triangles, 0xffffffffu);
   for (std::size_t i = 0; i < edges.size();) {

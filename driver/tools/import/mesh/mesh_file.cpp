@@ -24,7 +24,7 @@ Error tooMany(const std::string& where) {
   return Error{where + "more than 20,000,000 triangles"};
 }
 
-/// An OBJ index, counted from 1, or backwards from the last point.
+/// An OBJ index, counted from 1, or backward from the last point.
 std::optional<std::uint32_t> objIndex(std::string_view word, std::size_t points) {
   word = word.substr(0, word.find('/'));
   std::int64_t index = 0;
@@ -73,7 +73,7 @@ Result<MeshFile> parseTextStl(std::string_view bytes, const std::string& name) {
     if (mesh.corners.size() > kMostTriangles) return tooMany(name + ": ");
   }
   if (mesh.corners.empty())
-    return Error{name + ": no triangles, expected an STL of text (solid, facet, vertex x y z) or a whole binary one"};
+    return Error{name + ": has no triangles, expected a text STL (solid, facet, vertex x y z) or a whole binary one"};
   return mesh;
 }
 
@@ -119,7 +119,7 @@ Result<MeshFile> parseObjMesh(std::string_view bytes, const std::string& name) {
     for (std::size_t k = 2; k < polygon.size(); ++k) mesh.corners.push_back({polygon[0], polygon[k - 1], polygon[k]});
     if (mesh.corners.size() > kMostTriangles) return tooMany(where());
   }
-  if (mesh.corners.empty()) return Error{name + ": no triangles, expected lines f i j k"};
+  if (mesh.corners.empty()) return Error{name + ": has no triangles, expected lines f i j k"};
   return mesh;
 }
 

@@ -14,14 +14,14 @@ namespace hapticd::importing {
 
 inline constexpr std::size_t kMostTriangles = 20'000'000;
 
-/// Triangles as a file states them, in its unit. Points that are equal bit for bit are one.
+/// Triangles as a file states them, in its unit. Points that are equal bit for bit are stored once.
 struct MeshFile {
   std::vector<Eigen::Vector3d> points;
   std::vector<std::array<std::uint32_t, 3>> corners;  ///< polygons are cut into fans
 };
 
-/// [main] Reads a mesh. `name` opens the messages and its ending tells the format (.obj, .stl, .ply in any case).
-/// Errors say the line where there are lines.
+/// [main] Reads a mesh. Messages begin with `name`, whose ending gives the format (.obj, .stl, .ply in any case).
+/// Errors give the line if there are lines.
 Result<MeshFile> parseMesh(std::string_view bytes, const std::string& name);
 
 /// [main] The single formats.
@@ -29,7 +29,7 @@ Result<MeshFile> parseObjMesh(std::string_view bytes, const std::string& name);
 Result<MeshFile> parseStlMesh(std::string_view bytes, const std::string& name);
 Result<MeshFile> parsePlyMesh(std::string_view bytes, const std::string& name);
 
-/// [any] Whether a file name has the ending of a mesh.
+/// [any] True if a file name has the ending of a mesh.
 bool isMeshFile(const std::string& name);
 
 }  // namespace hapticd::importing

@@ -65,7 +65,7 @@ class Repair {
     report_.duplicates = std::erase_if(corners_, [&](const Corners&) { return drop[at++] != 0; });
   }
 
-  /// Turns triangles so that neighbours agree. In each shell the majority keeps its side.
+  /// Turns triangles so that neighbours agree. In each shell the orientation of the majority is kept.
   void orient() {
     const std::vector<std::uint32_t> across = pairedNeighbours(edges_, corners_.size());
     shell_.assign(corners_.size(), kNone);
@@ -83,7 +83,7 @@ class Repair {
           const std::uint32_t code = across[3 * t + k];
           if (code == kNone) continue;
           const std::uint32_t other = code / 4, m = code % 4;
-          const bool alike = corners_[t][k] == corners_[other][m];  // the edge runs the same way in both
+          const bool alike = corners_[t][k] == corners_[other][m];  // the edge runs in the same direction in both
           if (shell_[other] == kNone) {
             shell_[other] = shell_[seed];
             flip[other] = static_cast<char>((flip[t] != 0) != alike);
@@ -126,7 +126,7 @@ class Repair {
     }
   }
 
-  /// A closed shell must enclose a positive volume, unless it lies inside another one: then it may be a cavity.
+  /// A closed shell must enclose a positive volume, unless it lies inside another one, where it may be a cavity.
   void turnOutward() {
     std::vector<Eigen::AlignedBox3d> boxes(report_.shells);
     std::vector<double> volumes(report_.shells, 0);
@@ -151,7 +151,7 @@ class Repair {
     std::vector<std::uint32_t> number(points_.size(), kNone);
     std::vector<Vector3d> kept;
     for (Corners& c : corners_)
-      for (std::uint32_t& corner : c) {  // in the order of use: neighbours in space are neighbours in memory
+      for (std::uint32_t& corner : c) {  // in the order of use, so that neighbours in space are neighbours in memory
         if (number[corner] == kNone) {
           number[corner] = static_cast<std::uint32_t>(kept.size());
           kept.push_back(points_[corner]);

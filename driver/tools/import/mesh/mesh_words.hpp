@@ -12,12 +12,12 @@
 
 namespace hapticd::importing {
 
-/// Cuts a text into lines and these into words, without copies.
+/// Splits a text into lines and these into words, without copies.
 class Words {
  public:
   explicit Words(std::string_view text) : rest_(text) {}
 
-  /// The next line, false at the end.
+  /// Goes to the next line; false at the end.
   bool nextLine() {
     if (rest_.empty()) return false;
     const std::size_t end = rest_.find('\n');
@@ -44,7 +44,7 @@ class Words {
   std::size_t number_ = 0;
 };
 
-/// A finite number that is all of a word.
+/// A finite number, if it is the whole word.
 inline std::optional<double> finiteNumber(std::string_view word) {
   if (!word.empty() && word[0] == '+') word.remove_prefix(1);
   double value = 0;
@@ -64,7 +64,7 @@ inline std::optional<Eigen::Vector3d> nextPoint(Words& words) {
   return p;
 }
 
-/// Gives equal points one index: open addressing over their bits.
+/// Gives equal points one index, by open addressing over their bits.
 class Weld {
  public:
   explicit Weld(std::vector<Eigen::Vector3d>& points) : points_(points), table_(1024, kFree) {}

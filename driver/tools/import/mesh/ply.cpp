@@ -29,8 +29,8 @@ std::size_t sizeOf(Type type) {
 
 struct Property {
   std::string_view name;
-  Type type = Type::kUnknown;   ///< of the value, or of each in a list
-  Type count = Type::kUnknown;  ///< of the length of a list; kUnknown: not a list
+  Type type = Type::kUnknown;   ///< type of the value, or of each value in a list
+  Type count = Type::kUnknown;  ///< type of a list's length; kUnknown: it is not a list
 };
 struct Element {
   std::string_view name;
@@ -105,7 +105,7 @@ class Reader {
       for (std::size_t i = 0; i < element.count && !element.properties.empty(); ++i)
         if (!readItem(element, body))
           return Error{name_ + ": " + std::string(element.name) + " " + std::to_string(i) + ": " + wrong_};
-    if (mesh_.corners.empty()) return Error{name_ + ": no triangles, expected an element face with vertex_indices"};
+    if (mesh_.corners.empty()) return Error{name_ + ": has no triangles, expected an element face with vertex_indices"};
     return std::move(mesh_);
   }
 
@@ -145,7 +145,7 @@ class Reader {
   }
 
   bool readProperty() {
-    if (elements_.empty()) return fail("a property without an element");
+    if (elements_.empty()) return fail("a property comes before the first element");
     Property property;
     std::string_view word = words_.next();
     if (word == "list") {
@@ -170,7 +170,7 @@ class Reader {
         continue;
       }
       const auto value = body.next(property.type);
-      if (!value) return fail("the file ends, or holds something else than a number");
+      if (!value) return fail("the file ends, or holds something other than a number");
       if (property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z')
         p[property.name[0] - 'x'] = *value;
     }
@@ -187,9 +187,9 @@ class Reader {
     polygon_.clear();
     for (int k = 0; k < static_cast<int>(*count); ++k) {
       const auto index = body.next(property.type);
-      if (!index) return fail("the file ends inside a list, or holds something else than a number");
+      if (!index) return fail("the file ends inside a list, or holds something other than a number");
       if (!corners) continue;
-      if (!(*index >= 0) || *index >= static_cast<double>(points_.size())) return fail("a vertex that does not exist");
+      if (!(*index >= 0) || *index >= static_cast<double>(points_.size())) return fail("its vertex is out of range");
       polygon_.push_back(points_[static_cast<std::size_t>(*index)]);
     }
     for (std::size_t k = 2; k < polygon_.size(); ++k)

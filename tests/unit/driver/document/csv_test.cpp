@@ -45,7 +45,7 @@ TEST(Csv, NamesLineColumnAndWhatWasExpected) {
   EXPECT_EQ(firstProblem("t,x,y,z\n1,0,0,0\n1,0,0,0\n"), "p.csv:3:1: t: 1 does not grow, expected more than 1");
   EXPECT_EQ(firstProblem("t,x,y,z\n0,nan,0,0\n"), "p.csv:2:3: x: \"nan\" is not valid, expected a finite number");
   EXPECT_EQ(firstProblem("# only a comment\n"),
-            "p.csv:1:1: no rows, expected a header t,x,y,z or t,x,y,z,qw,qx,qy,qz and at least one row");
+            "p.csv:1:1: there are no rows, expected a header t,x,y,z or t,x,y,z,qw,qx,qy,qz and at least one row");
 }
 
 TEST(Csv, SaysHowToWriteWhatASpreadsheetWrites) {

@@ -34,7 +34,7 @@ TEST(MaFile, SaysWhichLineIsWrongAndWhatWasExpected) {
   EXPECT_NE(complaintOf("3 0\n").find("body.ma:1: too few numbers, expected three"), std::string::npos);
   EXPECT_NE(complaintOf("3 -1 0\n").find("body.ma:1: -1 of a kind, expected 0 to 10000000"), std::string::npos);
   EXPECT_NE(complaintOf("20000000 0 0\n").find("body.ma:1: 20000000 of a kind"), std::string::npos);
-  EXPECT_NE(complaintOf("0 0 0\n").find("body.ma:1: no vertices"), std::string::npos);
+  EXPECT_NE(complaintOf("0 0 0\n").find("body.ma:1: there are no vertices"), std::string::npos);
   EXPECT_NE(complaintOf("1 0 0\nv 0 0 0 -1\n").find("body.ma:2: expected v x y z r"), std::string::npos);
   EXPECT_NE(complaintOf("1 0 0\nv 0 0 nan 1\n").find("body.ma:2: "), std::string::npos);
   EXPECT_NE(complaintOf("1 0 0\nv 1e308 0 0 1\n").find("body.ma:2: expected v x y z r"), std::string::npos);

@@ -22,7 +22,7 @@ struct Wall {
   int n, delay;
   double period;
 
-  /// What is left of b for the stiffness, and the stiffness' share per N/m, at one frequency.
+  /// What is left of b for the stiffness, and the share that each N/m takes, at one frequency.
   double left(double theta) const noexcept {
     return b - damping / (2 * n) * (dirichlet(delay, theta) - dirichlet(delay + n, theta));
   }
@@ -30,7 +30,7 @@ struct Wall {
   double bound(double theta) const noexcept { return left(theta) / share(theta); }
 };
 
-/// Minimum of sign * bound between two grid points, by golden section.
+/// The minimum of sign * bound between two grid points, by golden section.
 double refine(const Wall& wall, double sign, double low, double high) noexcept {
   constexpr double kGolden = 0.6180339887498949;
   constexpr int kSteps = 60;
@@ -49,7 +49,7 @@ double refine(const Wall& wall, double sign, double low, double high) noexcept {
 
 WindowCoefficient windowCoefficient(int n) noexcept {
   const double a = n + 0.5;
-  double low = M_PI / a, high = 2 * M_PI / a;  // the first lobe below zero, the deepest
+  double low = M_PI / a, high = 2 * M_PI / a;  // the first lobe below zero is the deepest
   constexpr int kHalvings = 80;
   for (int i = 0; i < kHalvings; ++i) {
     const double t = (low + high) / 2;

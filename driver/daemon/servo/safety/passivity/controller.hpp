@@ -7,16 +7,16 @@
 
 namespace hapticd::passivity {
 
-/// What the scene says of its energy at one probe, each tick.
+/// What the scene reports of its energy at one probe, in each tick.
 struct Exchange {
-  /// [J] Work that moving models did on the probe since the last tick: their force times the way of their surface. It
-  /// is theirs to give; without it a model that pushes the hand along would look like a wall that makes energy.
+  /// [J] Work that moving models did on the probe since the last tick: their force times the way of their surface. They
+  /// may give this energy; without it a model that pushes the hand would look like a wall that makes energy.
   double supplied = 0;
-  /// [J] The most that the contacts can still give back. A long stroke with damping pays in far more than that; kept in
-  /// the book, it would hide a vibration that begins later.
+  /// [J] The most that the contacts can still give back. A long stroke with damping pays in far more, which would hide
+  /// a later vibration if it stayed in the book.
   double recoverable = std::numeric_limits<double>::infinity();
-  /// A program's push is in the force. What of it is steady or changes slowly is its to give, as a weight is: only what
-  /// swings is held against it.
+  /// A program's push is part of the force. The program may give its steady or slow part, as a weight does: only the
+  /// part that swings is held against it.
   bool pushed = false;
 };
 
@@ -39,14 +39,14 @@ class PassivityController {
   Eigen::Vector3d update(const Eigen::Vector3d& position, const Eigen::Vector3d& force, double dt,
                          const Exchange& exchange = {}) noexcept;
 
-  /// [rt] After update(): the force [N] that the limits left of it. That is what the hand will have felt.
+  /// [rt] Call it after update(): the force [N] that the limits left of it, which the hand will have felt.
   void applied(const Eigen::Vector3d& force) noexcept;
   void reset() noexcept;  ///< [rt]
 
   double energy() const noexcept { return energy_; }          ///< [rt] [J] put in minus given back, since contact began
-  double swing() const noexcept { return swing_; }            ///< [rt] [J] likewise, of what swings under a push alone
+  double swing() const noexcept { return swing_; }            ///< [rt] [J] the same for what swings under a push alone
   double damping() const noexcept { return damping_; }        ///< [rt] [N s/m] that it is ready to add
-  double dissipated() const noexcept { return dissipated_; }  ///< [rt] [J] taken by the controller, ever
+  double dissipated() const noexcept { return dissipated_; }  ///< [rt] [J] taken by the controller so far
 
  private:
   void follow(const Eigen::Vector3d& way, double dt) noexcept;
@@ -60,9 +60,9 @@ class PassivityController {
   double energy_ = 0, damping_ = 0, dissipated_ = 0;
   double swing_ = 0;   ///< [J] as energy_, without the slow part of force and motion
   double lively_ = 1;  ///< 1: the probe moves; 0: it rests but for counts of the encoder
-  double share_ = 1;   ///< of the scene's force that the limits let through in the tick that ended
+  double share_ = 1;   ///< of the scene's force, as the limits let it through in the last tick
   Eigen::Vector3d position_{0, 0, 0}, held_{0, 0, 0}, added_{0, 0, 0}, smoothed_{0, 0, 0}, velocity_{0, 0, 0};
-  Eigen::Vector3d rest_{0, 0, 0};                     ///< [m] where it was when it moved last
+  Eigen::Vector3d rest_{0, 0, 0};                     ///< [m] where the probe was when it last moved
   Eigen::Vector3d steady_{0, 0, 0}, drift_{0, 0, 0};  ///< [N], [m/s] slow parts of force and motion
   bool started_ = false, pushed_ = false;
 };

@@ -31,7 +31,7 @@ bool comesToRest(double k, double b, int n) noexcept {
   return swing[3] < swing[1];
 }
 
-/// Largest stable k for a damping b, by bisection; stability is lost once as k grows.
+/// The largest stable k for a damping b, by bisection; as k grows, stability is lost only once.
 double largestStiffness(double b, int n) noexcept {
   constexpr int kHalvings = 18;
   double low = 0, high = 1;

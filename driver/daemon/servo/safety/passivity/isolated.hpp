@@ -8,8 +8,8 @@ namespace hapticd::passivity {
 /// of n samples (Eq. 5 of Thompson et al. 1999), comes to rest. Force is held between samples.
 bool stableAlone(double mass, double stiffness, double damping, int n, double period) noexcept;
 
-/// [any] Largest stiffness [N/m] that is stable alone with the damping that suits it best. A wall stiffer than this has
-/// nothing but friction and the hand to calm it.
+/// [any] Largest stiffness [N/m] that is stable alone with the damping that suits it best. Only friction and the hand
+/// can calm a stiffer wall.
 double maxStiffnessAlone(double mass, int n, double period) noexcept;
 
 }  // namespace hapticd::passivity

@@ -400,7 +400,7 @@ class Client:
         end, seen = time.monotonic() + self.timeout, 0
         while (state := self._states.read(self._arm(device))) is None:
             if time.monotonic() > end:
-                raise HapticdError("the daemon tells of no tick; it may have ended")
+                raise HapticdError("the daemon reports no tick; it may have ended")
             seen = self._ring().wait("state", seen, 0.1)
         return state
 

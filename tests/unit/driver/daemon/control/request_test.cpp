@@ -66,7 +66,7 @@ TEST(Request, SaysWhatIsWrongAndWhatWasExpected) {
 TEST(Request, RefusesAKeyThatStandsThereTwice) {
   const auto twice = parseRequest(R"({"do":"status","do":"stop"})");
   ASSERT_FALSE(twice);
-  EXPECT_NE(twice.error().find("\"do\" stands there twice"), std::string::npos) << twice.error();
+  EXPECT_NE(twice.error().find("\"do\" is given twice"), std::string::npos) << twice.error();
   EXPECT_FALSE(parseRequest(R"({"do":"set","model":"a","parameter":"k","value":1,"value":2})"));
   EXPECT_TRUE(parseRequest(R"({"do":"set","model":"a","parameter":"k","value":1})"));
 }

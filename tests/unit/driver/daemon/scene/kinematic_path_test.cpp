@@ -42,7 +42,7 @@ TEST(KinematicPath, NamesLineColumnAndReason) {
   EXPECT_EQ(firstProblem("t,x,y,z\n0,0,0,1e300\n"),
             "p.csv:2:7: z: \"1e300\" is not valid, expected a finite number of at most 1e+06");
   EXPECT_EQ(firstProblem("t,x,y,z\n"),
-            "p.csv:1:1: no rows, expected a header t,x,y,z,qw,qx,qy,qz or t,x,y,z and at least one row");
+            "p.csv:1:1: there are no rows, expected a header t,x,y,z,qw,qx,qy,qz or t,x,y,z and at least one row");
 }
 
 TEST(KinematicPath, StopsReportingAFileThatIsWrongThroughout) {
