@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -15,12 +16,13 @@
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/hand_path_advice.hpp"
 #include "diagnostics/hand_start.hpp"
+#include "diagnostics/key_place.hpp"
 #include "diagnostics/model_trial.hpp"
 #include "diagnostics/slow_arm.hpp"
 #include "diagnostics/unit_advice.hpp"
-#include "diagnostics/velocity_advice.hpp"
 #include "diagnostics/unusual_settings.hpp"
 #include "diagnostics/unusual_values.hpp"
+#include "diagnostics/velocity_advice.hpp"
 #include "document/node.hpp"
 #include "document/reader.hpp"
 #include "host/device_instance.hpp"
@@ -203,6 +205,9 @@ document::Problems badModules(const scene::Scene& scene) {
     const scene::Device& device = scene.devices[i];
     const ModuleTrial trial = tryModule(device);
     if (trial.error.empty()) continue;
+    const document::Problems placed = tryDevice(device.file, catalog());
+    problems.insert(problems.end(), placed.begin(), placed.end());
+    if (!placed.empty()) continue;  // else it is what the scene says of the arm
     const document::Place place =
         device.place.file.empty() ? document::Place{device.file.string()} : document::Place(device.place);
     document::report(
@@ -219,6 +224,31 @@ void addRefusals(const scene::Scene& full, bool needs_velocity, Verdict& verdict
     verdict.problems.insert(verdict.problems.end(), problems.begin(), problems.end());
 }
 
+/// Where a device file that a scene names is wrong, its module tells the rest of it in the same round.
+void addOfDevices(Verdict& verdict) {
+  std::set<std::string> others;
+  for (const document::Problem& one : verdict.problems)
+    if (one.place.file != verdict.file) others.insert(one.place.file);
+  for (const std::string& file : others)
+    for (const document::Problem& one : tryDevice(file, catalog(), verdict.problems)) verdict.problems.push_back(one);
+  document::sortByPlace(verdict.problems);
+}
+
+/// Where nobody knew the place of a key, and its file has it; and what two have found is told once.
+void placeWarnings(document::Problems& warnings) {
+  document::Problems once;
+  for (document::Problem& one : warnings) {
+    if (one.place.line <= 1 && one.place.column <= 1 && !one.key.empty())
+      if (const auto found = placeOfKey(one.place.file, one.key)) one.place = *found;
+    if (std::none_of(once.begin(), once.end(), [&one](const document::Problem& told) {
+          return told.place.line > 1 && told.key == one.key && told.place.file == one.place.file &&
+                 told.place.line == one.place.line && told.place.column == one.place.column && told.what == one.what;
+        }))
+      once.push_back(std::move(one));
+  }
+  warnings = std::move(once);
+}
+
 Verdict checkOne(const std::string& file, const CheckArguments& options) {
   std::optional<scene::Scene> scene;
   Verdict verdict{file, scene::checkFile(file, catalog(), &scene), {}};
@@ -228,7 +258,10 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
     scene = std::move(other.scene);
     found = std::move(other.problems);
     verdict.whole = found.empty();
-    if (!scene) return verdict;
+    if (!scene) {
+      addOfDevices(verdict);
+      return verdict;
+    }
   }
   if (scene && !options.files_only)
     if (document::Problems bad = badModules(*scene); !bad.empty()) {
@@ -239,18 +272,23 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   if (scene && !options.files_only) trial = tryModels(*scene, servo::maxForceOf(withArm(*scene)));
   found.insert(found.end(), trial.problems.begin(), trial.problems.end());
   if (scene && !options.files_only) addRefusals(withArm(*scene), trial.needs_velocity, verdict);
-  if (!scene && !found.empty()) tryTheRest(options, verdict);
+  if (!scene && !found.empty()) {
+    tryTheRest(options, verdict);
+    if (!options.files_only) addOfDevices(verdict);
+  }
   if (!scene) {
     const document::Problems more = tryDevice(file, catalog(), found, &verdict.warnings);
     found.insert(found.end(), more.begin(), more.end());
     document::sortByPlace(found);
   }
+  if (!scene && found.empty() && !options.files_only) found = refusedAlone(file, catalog());
   verdict.warnings.insert(verdict.warnings.end(), trial.warnings.begin(), trial.warnings.end());
   verdict.whole = verdict.whole && found.empty();
   if (!scene && found.empty())
     for (const document::Problem& one : adviseDevice(file, catalog())) verdict.warnings.push_back(one);
   if (scene) addWarnings(withArm(*scene), trial, options, verdict);
   if (scene) addUnusual(withArm(*scene), trial.boxes, verdict);
+  placeWarnings(verdict.warnings);
   return verdict;
 }
 

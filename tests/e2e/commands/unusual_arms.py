@@ -98,6 +98,42 @@ CASES = [
     (PREMIUM, {"  seed: 1": "  joint: {gear: 0.1, counts: |4}"}, "parameters.joint.counts", "one count moves the tip by"),
 ]
 
+# What no run could begin with is an error of the device file alone.
+REFUSED = [
+    (TWIN, {"    masses": "    max_torque: |[0.5, 0.4]\n    masses"}, "parameters.arm.max_torque", "2 numbers, expected 1 or 3"),
+    (TWIN, {"rate: 1,": "rate: 1, axis: |[0, 0, 0],"}, "hand.axis", "expected a direction"),
+    (TWIN, {"center: [0, 0, -0.09]": "center: |[0, 0, -0.9]"}, "hand", "which the arm cannot reach"),
+    (TWIN, {"kind: phantom": "kind: premium15", "lengths: [": "lengths: |["}, "parameters.arm.lengths", "expected arm.kind phantom"),
+    (TWIN, {"{force: 2}": "{force: 2, enable: {button: |1}}"}, "limits.enable.button", "the device has 0 buttons"),
+    (WIRED, {"lengths: [0.21": "lengths: [|205"}, "parameters.arm.lengths[0]", "205 mm are 0.205 m\n"),
+]
+
+
+def refused(folder):
+    for i, (text, changes, key, word) in enumerate(REFUSED):
+        file, place = written(os.path.join(folder, f"refused{i}.yaml"), text, changes)
+        done = subprocess.run([HAPTICD, "check", file], capture_output=True, text=True, timeout=120)
+        check(f"refused: {key}: {word.strip()}", done.returncode == 2 and f"{place}: {key}: " in done.stdout and word in done.stdout, done.stdout)
+    # A scene tells all of it, too, at the places there.
+    file, _ = written(os.path.join(folder, "two.yaml"), WIRED, {"rate: 1000": "rate: |1", "watchdog: 0.02": "watchdog: 0.02\n    keep_alive: 5"})
+    scene = os.path.join(folder, "scene.yaml")
+    with open(scene, "w") as out:
+        out.write(f"hapticd: 1\ndevice: two.yaml\nmodels:\n  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {SOURCE}/config/models/sphere.yaml}}}}\n")
+    done = subprocess.run([HAPTICD, "check", scene], capture_output=True, text=True, timeout=120)
+    told = [line for line in done.stdout.splitlines() if f"{os.path.realpath(file)}:" in line]
+    check("a scene tells all of its device", done.returncode == 2 and len(told) == 2 and all("parameters.wire." in line for line in told), done.stdout)
+
+
+def written(file, text, changes):
+    """The file without its bar, and the place of it."""
+    for old, new in changes.items():
+        assert old in text, (file, old)
+        text = text.replace(old, new, 1)
+    before = text[:text.index("|")]
+    with open(file, "w") as out:
+        out.write(text.replace("|", "", 1))
+    return file, f"{file}:{before.count(chr(10)) + 1}:{len(before) - before.rfind(chr(10))}"
+
 
 def right():
     files = glob.glob(os.path.join(SOURCE, "config", "devices", "*.yaml")) + glob.glob(os.path.join(SOURCE, "devices", "*", "*.yaml"))
@@ -109,14 +145,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         placed = []
         for i, (text, changes, key, word) in enumerate(CASES):
-            file = os.path.join(folder, f"arm{i}.yaml")
-            for old, new in changes.items():
-                assert text.count(old) >= 1, (i, old)
-                text = text.replace(old, new, 1)
-            before = text[:text.index("|")]
-            place = f"{file}:{before.count(chr(10)) + 1}:{len(before) - before.rfind(chr(10))}"
-            with open(file, "w") as out:
-                out.write(text.replace("|", "", 1))
+            file, place = written(os.path.join(folder, f"arm{i}.yaml"), text, changes)
             placed.append((file, place, key, word))
         usual = []
         for i, text in enumerate((WIRED, TWIN, PREMIUM)):
@@ -133,6 +162,7 @@ def main():
         for file in usual + ships:
             odd = [w["what"] for w in told[file]["warnings"] if "sustains" not in w["what"]]
             check(f"{os.path.basename(file)} is as it should be", told[file]["ok"] and not odd, odd)
+        refused(folder)
     finish()
 
 
