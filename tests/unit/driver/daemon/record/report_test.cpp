@@ -281,7 +281,7 @@ TEST_F(Report, TellsPeopleOfAModelThatDrivesTheHand) {
       << summary(report);
   report.models[0].moves = true;  // it may have had that
   EXPECT_EQ(summary(report).find("gave the hand"), std::string::npos);
-  report.models[0] = {.name = "ball", .given_j = 0.0063, .taken_j = 0.00625};
+  report.models[0].moves = false, report.models[0].given_j = 0.0063, report.models[0].taken_j = 0.00625;
   EXPECT_EQ(summary(report).find("gave the hand"), std::string::npos);
 }
 
