@@ -155,8 +155,8 @@ kinematics::PhantomInertia inertiaOf(const Parameters& p, const JointVector& rot
 std::unique_ptr<kinematics::Arm> makeArm(const Parameters& p) {
   if (!p.lengths.empty() && p.arm() != Kind::kPhantom)
     throw std::invalid_argument(p.arm() == Kind::kChain
-                                    ? "arm.lengths is given, and a chain has its lengths in arm.dh"
-                                    : "arm.lengths is given, and a premium15 has its own; expected arm.kind phantom");
+                                    ? "arm.lengths: given, and a chain has its lengths in arm.dh"
+                                    : "arm.lengths: given, and a premium15 has its own; expected arm.kind phantom");
   if (p.arm() == Kind::kChain) return std::make_unique<kinematics::Chain>(chainOf(p));
   return std::make_unique<kinematics::Phantom>(makePhantom(p));
 }

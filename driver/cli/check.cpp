@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "diagnostics/hand_path_advice.hpp"
 #include "diagnostics/hand_script.hpp"
 #include "diagnostics/hand_start.hpp"
+#include "diagnostics/key_place.hpp"
 #include "diagnostics/model_trial.hpp"
 #include "diagnostics/slow_arm.hpp"
 #include "diagnostics/unit_advice.hpp"
@@ -204,6 +206,9 @@ document::Problems badModules(const scene::Scene& scene) {
     const scene::Device& device = scene.devices[i];
     const ModuleTrial trial = tryModule(device);
     if (trial.error.empty()) continue;
+    const document::Problems placed = tryDevice(device.file, catalog());
+    problems.insert(problems.end(), placed.begin(), placed.end());
+    if (!placed.empty()) continue;  // else it is what the scene says of the arm
     const document::Place place =
         device.place.file.empty() ? document::Place{device.file.string()} : document::Place(device.place);
     document::report(
@@ -220,15 +225,29 @@ void addRefusals(const scene::Scene& full, bool needs_velocity, Verdict& verdict
     verdict.problems.insert(verdict.problems.end(), problems.begin(), problems.end());
 }
 
-/// A simulated arm that no scene names: it is opened all the same, as `run` would.
-void tryAlone(const std::string& file, Verdict& verdict) {
-  scene::LoadedDevice loaded = scene::loadDevice(file, catalog());
-  if (!loaded.device) return;
-  scene::Scene alone;
-  alone.file = file;
-  alone.devices.push_back(std::move(*loaded.device));
-  addRefusals(alone, false, verdict);
-  for (const document::Problem& one : hastyHands(alone)) verdict.warnings.push_back(one);
+/// Where a device file that a scene names is wrong, its module tells the rest of it in the same round.
+void addOfDevices(Verdict& verdict) {
+  std::set<std::string> others;
+  for (const document::Problem& one : verdict.problems)
+    if (one.place.file != verdict.file) others.insert(one.place.file);
+  for (const std::string& file : others)
+    for (const document::Problem& one : tryDevice(file, catalog(), verdict.problems)) verdict.problems.push_back(one);
+  document::sortByPlace(verdict.problems);
+}
+
+/// Where nobody knew the place of a key, and its file has it; and what two have found is told once.
+void placeWarnings(document::Problems& warnings) {
+  document::Problems once;
+  for (document::Problem& one : warnings) {
+    if (one.place.line <= 1 && one.place.column <= 1 && !one.key.empty())
+      if (const auto found = placeOfKey(one.place.file, one.key)) one.place = *found;
+    if (std::none_of(once.begin(), once.end(), [&one](const document::Problem& told) {
+          return told.place.line > 1 && told.key == one.key && told.place.file == one.place.file &&
+                 told.place.line == one.place.line && told.place.column == one.place.column && told.what == one.what;
+        }))
+      once.push_back(std::move(one));
+  }
+  warnings = std::move(once);
 }
 
 Verdict checkOne(const std::string& file, const CheckArguments& options) {
@@ -240,7 +259,10 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
     scene = std::move(other.scene);
     found = std::move(other.problems);
     verdict.whole = found.empty();
-    if (!scene) return verdict;
+    if (!scene) {
+      addOfDevices(verdict);
+      return verdict;
+    }
   }
   if (scene && !options.files_only)
     if (document::Problems bad = badModules(*scene); !bad.empty()) {
@@ -251,13 +273,16 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   if (scene && !options.files_only) trial = tryModels(*scene, servo::maxForceOf(withArm(*scene)));
   found.insert(found.end(), trial.problems.begin(), trial.problems.end());
   if (scene && !options.files_only) addRefusals(withArm(*scene), trial.needs_velocity, verdict);
-  if (!scene && !found.empty()) tryTheRest(options, verdict);
+  if (!scene && !found.empty()) {
+    tryTheRest(options, verdict);
+    if (!options.files_only) addOfDevices(verdict);
+  }
   if (!scene) {
     const document::Problems more = tryDevice(file, catalog(), found, &verdict.warnings);
     found.insert(found.end(), more.begin(), more.end());
     if (found.empty()) {
       for (const document::Problem& one : adviseDevice(file, catalog())) verdict.warnings.push_back(one);
-      if (!options.files_only) tryAlone(file, verdict);
+      if (!options.files_only) found = refusedAlone(file, catalog(), verdict.warnings);
     }
     document::sortByPlace(found);
   }
@@ -265,6 +290,7 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   verdict.whole = verdict.whole && found.empty();
   if (scene) addWarnings(withArm(*scene), trial, options, verdict);
   if (scene) addUnusual(withArm(*scene), trial.boxes, verdict);
+  placeWarnings(verdict.warnings);
   return verdict;
 }
 

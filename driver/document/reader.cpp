@@ -49,6 +49,12 @@ bool normalise(Eigen::Quaterniond& q) {
   return true;
 }
 
+/// Without the noise of a product in its last digits.
+static std::string shortText(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 10).ptr};
+}
+
 /// What a number that is too large was meant to be, if that is in range: millimetres, degrees, milliseconds.
 static std::string inOtherUnits(double value, const Range& range) {
   struct Slip {
@@ -59,7 +65,7 @@ static std::string inOtherUnits(double value, const Range& range) {
   for (const Slip& slip : kSlips)
     if (const double meant = value * slip.factor;
         std::string_view(range.unit) == slip.unit && meant >= range.min && meant <= range.max)
-      return "; " + numberText(value) + " " + slip.meant + " are " + numberText(meant) + " " + slip.unit;
+      return "; " + numberText(value) + " " + slip.meant + " are " + shortText(meant) + " " + slip.unit;
   return "";
 }
 

@@ -29,11 +29,14 @@ std::string wrongBetweenStops(const hdv_ext_kinematics& kinematics, const hdv_de
 /// but simulated hands and `device encode` go wrong because of it. @return as wrongJacobian()
 std::string wrongInverse(const hdv_ext_kinematics& kinematics, const hdv_device* device);
 
-/// [main] What causes no fault in a run, but is hardly intended: joints that turn the tip without angular rows, or a
-/// tip farther away than a hand moves it.
+/// [main] What causes no fault in a run, but is hardly intended: joints that turn the tip without angular rows, a
+/// tip farther away than a hand moves it, places without numbers, or torques that pull the arm down with its weight.
 std::vector<std::string> doubtsAboutKinematics(const hdv_ext_kinematics& kinematics, const hdv_device* device);
 
 /// [main] Joints whose motors cannot carry the arm's own weight at any place between its stops; "" if there are none.
 std::string weightBeyondMotors(const hdv_ext_kinematics& kinematics, const hdv_device* device, const hdv_info& info);
+
+/// [main] The same at half of all places and mountings: masses in other units. "" if there is nothing to tell.
+std::string heavyForMotors(const hdv_ext_kinematics& kinematics, const hdv_device* device, const hdv_info& info);
 
 }  // namespace hapticd::host

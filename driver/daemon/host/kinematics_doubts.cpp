@@ -87,6 +87,51 @@ bool turnsWithoutRows(const KinematicsCalls& calls, const Joints& q, const Tip& 
   return false;
 }
 
+/// [N] How hard the torques that gravity() asks for lift the tip against gravity.
+double liftAt(const KinematicsCalls& calls, const Joints& q, const Eigen::Vector3d& down) {
+  constexpr double kRoom = 1e-6;  // [m^2] directions in which no joint moves the tip
+  const Eigen::Index n = calls.joints();
+  KinematicsCalls::JacobianRoom room(static_cast<size_t>(6 * n));
+  KinematicsCalls::JointRoom torque(static_cast<size_t>(n));
+  if (calls.jacobian(q, room) < 0 || calls.gravity(q, down, torque) < 0 || !torque.finite()) return 0;
+  const Eigen::Map<const Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>> J(room.data(), 3, n);
+  const Eigen::Map<const Eigen::VectorXd> tau(torque.data(), n);
+  Eigen::MatrixXd square = J.transpose() * J;
+  square.diagonal().array() += kRoom;
+  const Eigen::Vector3d force = J * square.ldlt().solve(tau);
+  return -force.dot(down.normalized());
+}
+
+/// Torques that pull an arm down with its weight have the wrong sign. Counterweights make some lifts negative, never
+/// nearly all.
+bool pullsDown(const KinematicsCalls& calls) {
+  constexpr double kFelt = 0.05;  // [N]
+  int felt = 0, down = 0;
+  for (int i = 0; i < kPlaces; ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      const double lift = liftAt(calls, anyPlace(i), 9.81 * Eigen::Vector3d::Unit(axis));
+      felt += std::abs(lift) > kFelt ? 1 : 0;
+      down += lift < -kFelt ? 1 : 0;
+    }
+  return felt >= kPlaces && 10 * down >= 9 * felt;
+}
+
+/// Places at which forward() says HSP_OK and gives no number. Nobody knows the stops before the arm is opened, so one
+/// of them is no error yet.
+std::string placesWithoutNumbers(const KinematicsCalls& calls) {
+  int without = 0;
+  Joints first = Joints::Zero();
+  for (int i = 0; i < kPlaces; ++i) {
+    Tip tip;
+    if (calls.forward(anyPlace(i), tip) < 0 || tip.position.allFinite()) continue;
+    if (without++ == 0) first = anyPlace(i);
+  }
+  if (without == 0) return "";
+  return "its forward() gives numbers that are not finite at " + std::to_string(without) + " of " +
+         std::to_string(kPlaces) + " places within 0.9 rad (or m) of zero, first at " +
+         placeText(first, calls.joints()) + ", and says HSP_OK; expected numbers, or HSP_E_NUMERIC beyond its stops";
+}
+
 }  // namespace
 
 std::string wrongInverse(const hdv_ext_kinematics& kinematics, const hdv_device* device) {
@@ -122,6 +167,12 @@ std::vector<std::string> doubtsAboutKinematics(const hdv_ext_kinematics& kinemat
     turns = turns && turnsWithoutRows(calls, q, tip);
   }
   std::vector<std::string> doubts;
+  if (std::string without = placesWithoutNumbers(calls); any && !without.empty()) doubts.push_back(std::move(without));
+  if (any && pullsDown(calls))
+    doubts.push_back(
+        "the torques of its gravity() pull the tip down, so the arm would weigh twice as much on the hand; expected "
+        "those "
+        "that hold it up: tau = - sum of m J^T g");
   if (any && turns)
     doubts.push_back(
         "its forward() turns the tip, but rows 3 to 5 of its Jacobian are 0 everywhere: no torque of a shape reaches "
@@ -163,6 +214,36 @@ std::string weightBeyondMotors(const hdv_ext_kinematics& kinematics, const hdv_d
       return text;
     }
   return "";
+}
+
+std::string heavyForMotors(const hdv_ext_kinematics& kinematics, const hdv_device* device, const hdv_info& info) {
+  const KinematicsCalls calls(kinematics, device);
+  int asked = 0, beyond = 0;
+  double worst = 0;
+  uint32_t joint = 0;
+  for (int i = 0; i < kPlaces; ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      KinematicsCalls::JointRoom torque(static_cast<size_t>(calls.joints()));
+      if (calls.gravity(placeBetweenStops(i, info), 9.81 * Eigen::Vector3d::Unit(axis), torque) < 0) continue;
+      bool too_much = false;
+      for (uint32_t k = 0; k < info.joint_count; ++k) {
+        if (!(info.max_torque[k] > 0)) continue;
+        const double times = std::abs(torque.data()[k]) / info.max_torque[k];
+        too_much |= times > 1;
+        if (times > worst) worst = times, joint = k;
+      }
+      ++asked;
+      beyond += too_much ? 1 : 0;
+    }
+  if (asked == 0 || 2 * beyond < asked) return "";
+  char text[280];
+  std::snprintf(
+      text, sizeof text,
+      "the torques of gravity() are more than the motors give at %d of %d places and mountings, up to %.4g N m "
+      "(or N) at joint %u, where hdv_info.max_torque is %.4g: the arm would fall on the hand; expected N m, kg "
+      "and m",
+      beyond, asked, worst * info.max_torque[joint], joint + 1, info.max_torque[joint]);
+  return text;
 }
 
 }  // namespace hapticd::host

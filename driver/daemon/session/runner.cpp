@@ -69,13 +69,18 @@ std::unique_ptr<watch::Watchdog> watchdogOf(watch::Watched& watched, bool may_la
   return watchdog;
 }
 
-Result<void> runInVirtualTime(Loop& loop, const watch::Watched& watched) {
+/// @param after the last tick: calls of modules that may hang as well
+Result<void> runInVirtualTime(Loop& loop, const watch::Watched& watched, const std::function<void()>& after) {
   const auto hung = [] {
     if (const Owner* keeps = keepsTheEnd()) watch::dieOf("a step that did not come back", keeps);
   };
   watch::EndWatch end(watched, [] { watch::endAnyway(keepsTheEnd()); }, hung);
   if (const auto code = end.start()) return Error{"cannot start the thread that watches the end: " + code.message()};
   loop.run();
+  end.lastCalls([] {
+    if (const Owner* keeps = keepsTheEnd()) watch::dieOf("a stop() that did not come back", keeps);
+  });
+  after();
   return {};
 }
 
@@ -193,9 +198,10 @@ Result<void> Runner::run(const std::function<void(const Runner&)>& every, const 
   os::prepareSignalStack();  // this thread may search, which runs plugins
   if (options_.virtual_time) {
     const Nanoseconds begun = monotonicNow();
-    done = runInVirtualTime(*loop_, watched);
-    wall_time_ = monotonicNow() - begun;
-    stopArms();
+    done = runInVirtualTime(*loop_, watched, [this, begun] {
+      wall_time_ = monotonicNow() - begun;
+      stopArms();
+    });
     ended();
   } else {
     done = runReal(watched, every, ended);

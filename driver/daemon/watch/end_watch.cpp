@@ -19,6 +19,11 @@ std::error_code EndWatch::start() {
   return thread_.start("hapticd-watch", [this] { watch(); });
 }
 
+void EndWatch::lastCalls(std::function<void()> stuck) {
+  const std::lock_guard lock(mutex_);
+  stuck_ = std::move(stuck);
+}
+
 void EndWatch::watch() {
   std::unique_lock lock(mutex_);
   while (!stopped_.wait_for(lock, std::chrono::nanoseconds(kLookEvery), [this] { return stop_; })) look(monotonicNow());
@@ -26,6 +31,11 @@ void EndWatch::watch() {
 
 /// A run of slow ticks ramps its forces out first, however long that takes; one whose tick never ends cannot.
 void EndWatch::look(Nanoseconds now) noexcept {
+  if (stuck_) {
+    looked_last_ += kLookEvery;
+    if (looked_last_ >= kWaitsForLast) stuck_();
+    return;
+  }
   const uint64_t ticks = servo_.ticks();
   lookForHang(ticks);
   const bool moved = std::exchange(ticks_, ticks) != ticks;

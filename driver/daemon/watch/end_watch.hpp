@@ -21,6 +21,8 @@ class EndWatch {
   static constexpr Nanoseconds kHungAfter = 5'000'000'000;
   /// [ns] of looks at one tick that waits for something, such as a lock or a file.
   static constexpr Nanoseconds kWaitsAfter = 30'000'000'000;
+  /// [ns] of looks at the calls after the last tick: a module may wait there for a thread of its own.
+  static constexpr Nanoseconds kWaitsForLast = 10'000'000'000;
 
   /// [main] @param late what ends the process that was asked to end @param hung what ends one whose tick hangs; it
   /// returns if it finds nobody to blame, and is asked again
@@ -31,6 +33,9 @@ class EndWatch {
   EndWatch& operator=(const EndWatch&) = delete;
 
   std::error_code start();  ///< [main]
+  /// [main] No tick is to come: what still is called, such as stop() of the arms, has kWaitsForLast.
+  /// @param stuck ends the process after that; it returns if it finds nobody to blame, and is asked again
+  void lastCalls(std::function<void()> stuck);
   /// [any] One look; the thread does nothing else.
   void look(Nanoseconds now) noexcept;
 
@@ -39,9 +44,10 @@ class EndWatch {
   void lookForHang(uint64_t ticks) noexcept;
 
   const Watched& servo_;
-  std::function<void()> late_, hung_;
+  std::function<void()> late_, hung_, stuck_;
   uint64_t ticks_ = UINT64_MAX;
   Nanoseconds still_since_ = 0;
+  Nanoseconds looked_last_ = 0;  ///< at the calls after the last tick
   Nanoseconds tick_begun_ = 0;
   Nanoseconds looked_ = 0, cpu_before_ = 0;  ///< of this tick; of the servo when it was first seen
   bool told_ = false, stop_ = false;

@@ -59,11 +59,56 @@ std::string framingOf(const Header& header) {
   return text;
 }
 
-}  // namespace
+/// True if the file has something that bytes from another place would not get right.
+bool tells(const codec::Report& report) {
+  return std::any_of(report.fields.begin(), report.fields.end(), [](const codec::Field& field) {
+    return field.role == codec::Role::kChecksum || field.role == codec::Role::kConstant ||
+           field.role == codec::Role::kFirmware;
+  });
+}
 
-std::string streamHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded) {
-  if (wire.framing.used || wire.input.id >= 0 || capture.text || capture.transfers.empty()) return "";
-  const Bytes& bytes = capture.transfers.front().bytes;
+/// How many bytes in front of the first whole report make nearly all others good; 0: none, or nobody can tell.
+size_t bytesBefore(const codec::Wire& wire, const Bytes& bytes) {
+  constexpr size_t kTriedBytes = 8 * 1024, kFewestGood = 3;
+  constexpr double kNearly = 0.8, kDoubt = 0.5;  // of the reports; of those from another place
+  const size_t size = wire.input.size;
+  size_t best = 0;
+  double most = 0, second = 0;
+  for (size_t before = 0; before < size && before < bytes.size(); ++before) {
+    Capture later;
+    const size_t end = std::min(bytes.size(), before + kTriedBytes);
+    later.transfers.push_back({-1, Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(before),
+                                         bytes.begin() + static_cast<std::ptrdiff_t>(end - (end - before) % size))});
+    const Decoded decoded = decodeCapture(wire, later);
+    const size_t good = decoded.good(), all = decoded.reports.size();
+    const double part = good < kFewestGood ? 0 : static_cast<double>(good) / static_cast<double>(all);
+    if (part > most)
+      second = most, most = part, best = before;
+    else
+      second = std::max(second, part);
+  }
+  return most >= kNearly && second < kDoubt ? best : 0;
+}
+
+/// The file's own constants and checksum tell where reports begin, also where some of them are damaged.
+std::string beginHint(const codec::Wire& wire, const Bytes& bytes, const Decoded& decoded) {
+  if (!tells(wire.input) || 2 * decoded.good() > decoded.reports.size()) return "";
+  const size_t before = bytesBefore(wire, bytes);
+  if (before == 0) return "";
+  const auto& fields = wire.input.fields;
+  const auto mark = std::find_if(fields.begin(), fields.end(), [](const codec::Field& field) {
+    return field.role == codec::Role::kConstant && field.at == 0 && field.bits == 8 && field.bit_skip == 0;
+  });
+  const std::string found = "the capture begins in the middle of a report: from byte " + std::to_string(before) +
+                            " on, nearly all reports are good; ";
+  if (mark != fields.end())
+    return found + "give " + framingOf({static_cast<uint8_t>(mark->code), before}) + ", and they are found\n";
+  return found + "leave out the first " + std::to_string(before) + (before == 1 ? " byte" : " bytes") + " (tail -c +" +
+         std::to_string(before + 1) + " FILE)\n";
+}
+
+/// A byte that the reports have in common tells their size, and where they begin.
+std::string headerHint(const codec::Wire& wire, const Bytes& bytes, const Decoded& decoded) {
   const size_t size = wire.input.size;
   char begins[64];
   if (const auto header = headerOf(bytes, size)) {
@@ -84,6 +129,15 @@ std::string streamHint(const codec::Wire& wire, const Capture& capture, const De
              "); size and offsets count this byte\n";
     }
   return "";
+}
+
+}  // namespace
+
+std::string streamHint(const codec::Wire& wire, const Capture& capture, const Decoded& decoded) {
+  if (wire.framing.used || wire.input.id >= 0 || capture.text || capture.transfers.empty()) return "";
+  const Bytes& bytes = capture.transfers.front().bytes;
+  const std::string header = headerHint(wire, bytes, decoded);
+  return header.empty() ? beginHint(wire, bytes, decoded) : header;
 }
 
 }  // namespace hapticd::capture

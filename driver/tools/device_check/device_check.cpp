@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
+#include <vector>
 
 #include "base/allocation_count.hpp"
 #include "conformance/allocation_place.hpp"
@@ -88,9 +90,61 @@ Finding claims(const scene::Device& device) {
                            ": hapticd device calibrate cannot calibrate it, and no force comes before samples carry "
                            "HDV_S_CALIBRATED");
   if (const std::string odd = unlikely(opened.arm->info()); !odd.empty()) return Finding::warned(odd);
+  if (const std::string heavy =
+          host::heavyForMotors(opened.arm->kinematics(), opened.arm->handle(), opened.arm->info());
+      !heavy.empty())
+    return Finding::warned(heavy);
   if (!has(HDV_EXT_CUT))
     return Finding::warned("there is no extension " HDV_EXT_CUT
                            ": a servo thread that hangs cannot be cut by the watchdog");
+  return Finding::passed();
+}
+
+/// Where a simulated arm is after some ticks without its motors, which are told torques all the same.
+std::optional<std::vector<double>> placeAfter(const scene::Device& device, double share) {
+  constexpr uint64_t kPeriod = 1'000'000, kTicks = 200;  // [ns]
+  const Opened opened = openArm(device);
+  if (opened.arm == nullptr) return std::nullopt;
+  const hdv_info& info = opened.arm->info();
+  hdv_start how{};
+  how.struct_size = sizeof how;
+  how.rate_hz = 1000;
+  host::tellCall("start");
+  if (!opened.arm->start(how)) return std::nullopt;
+  hdv_command off{};
+  off.struct_size = sizeof off;
+  off.mode = HDV_OFF;
+  for (uint32_t i = 0; i < info.joint_count; ++i)
+    off.torque[i] = share * (info.max_torque[i] > 0 ? info.max_torque[i] : 1);
+  hdv_sample sample{};
+  bool good = true;
+  for (uint64_t tick = 0; tick < kTicks && good; ++tick) {
+    sample = {};
+    host::tellCall("read");
+    good = opened.arm->read(tick * kPeriod, sample) >= 0;
+    host::tellCall("write");
+    good = good && opened.arm->write(tick * kPeriod, off) >= 0;
+  }
+  host::tellCall("stop");
+  opened.arm->stop();
+  if (!good) return std::nullopt;
+  return std::vector<double>(sample.position, sample.position + info.joint_count);
+}
+
+/// HDV_OFF means free motors, whatever numbers stand beside it.
+Finding offIsOff(const scene::Device& device) {
+  const Opened opened = openArm(device);
+  if (opened.arm == nullptr) return Finding::skipped("the arm was not opened");
+  if ((opened.arm->info().capabilities & HDV_C_SIMULATED) == 0)
+    return Finding::skipped("its motors are real: nobody may try that");
+  const auto still = placeAfter(device, 0), again = placeAfter(device, 0), pushed = placeAfter(device, 0.5);
+  if (!still || still != again || !pushed) return Finding::skipped("its samples are not the same for the same input");
+  for (size_t i = 0; i < still->size(); ++i)
+    if ((*still)[i] != (*pushed)[i])
+      return Finding::failed(
+          fmt::format("write() with HDV_OFF and torques beside it moves joint {} to {:.4g}, and without them it is at "
+                      "{:.4g}; expected free motors in the mode HDV_OFF, whatever the numbers say",
+                      i + 1, (*pushed)[i], (*still)[i]));
   return Finding::passed();
 }
 
@@ -173,6 +227,7 @@ const std::vector<Test>& tests() {
                                            {"open", &opens},
                                            {"claims", &claims},
                                            {"samples", &samples},
+                                           {"off", &offIsOff},
                                            {"no-allocation-in-read", &noAllocation},
                                            {"no-system-call-in-read", &noSystemCalls},
                                            {"start-again", &startsAgain}};

@@ -17,6 +17,7 @@
 #include "diagnostics/safety_advice.hpp"
 #include "diagnostics/travel_advice.hpp"
 #include "diagnostics/unit_advice.hpp"
+#include "diagnostics/unusual_arm.hpp"
 #include "diagnostics/wire_advice.hpp"
 #include "document/node.hpp"
 #include "document/reader.hpp"
@@ -124,6 +125,8 @@ document::Problems adviseDevice(const std::filesystem::path& file, host::Catalog
     adviseWire(*root, *loaded.device, (*arm)->kinematics().joint_count, warnings);
     adviseTravel(*root, *loaded.device, **arm, warnings);
     adviseMotors(*root, *loaded.device, (*arm)->kinematics().joint_count, warnings);
+    unusualFields(*root, *loaded.device, **arm, warnings);
+    unusualArm(*root, *loaded.device, **arm, warnings);
   }
   document::sortByPlace(warnings);
   return warnings;

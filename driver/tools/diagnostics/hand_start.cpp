@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 #include "host/child.hpp"
 #include "host/device_instance.hpp"
 #include "host/wire.hpp"
+#include "scene/load.hpp"
 #include "servo/arm/arm.hpp"
 #include "servo/loop/lockstep.hpp"
 #include "world/arm_force.hpp"
@@ -154,11 +156,12 @@ std::string tryTips(const scene::Scene& scene, bool may_walk) {
   return found.take();
 }
 
-/// The place where the file says what the hand wants.
+/// The place where a file says what the hand wants: what a scene says of it comes before what its device file says.
 document::Place placeOfHand(const scene::Device& device) {
-  for (const char* id : {"hand.path", "hand.center", "hand.radius", "hand.script"})
-    for (const scene::Value& value : device.parameters)
-      if (value.id == id) return value.place;
+  for (const bool in_scene : {true, false})
+    for (const char* id : {"hand.path", "hand.center", "hand.radius", "hand.script", "hand.normal", "hand.axis"})
+      for (const scene::Value& value : device.parameters)
+        if (value.id == id && in_scene == (value.place.file != device.file.string())) return value.place;
   return device.place;
 }
 
@@ -184,13 +187,14 @@ void tellRefused(const scene::Scene& scene, const scene::Device& device, const s
     const std::string key = told.substr(begin, end - begin);
     const std::string what = told.substr(std::min(told.find_first_not_of(": ", end), told.size()));
     for (const scene::Value& value : device.parameters)
-      if (value.id == key) return document::report(problems, value.place, key, what);
+      if (value.id == key)
+        return document::report(problems, value.place, key.starts_with("hand.") ? key : "parameters." + key, what);
     for (const auto& file : {device.file, scene.file})
       if (const auto place = placeOfKey(file, key)) return document::report(problems, *place, key, what);
     const size_t next = told.find(": ", begin);
     begin = next == std::string::npos ? told.size() : next + 2;
   }
-  document::report(problems, placeOfHand(device), "hand", told);
+  document::report(problems, placeOfHand(device), "hand", told.substr(told.rfind(before, 0) == 0 ? before.size() : 0));
 }
 
 void tellInside(const scene::Scene& scene, const std::string& list, uint32_t count, document::Problems& warnings) {
@@ -230,6 +234,23 @@ document::Problems refusedArms(const scene::Scene& scene, bool needs_velocity) {
     const auto told = host::runInChild([&] { return tryStart(scene, device, needs_velocity); }, kHandLimitMs);
     if (told && *told != "=") tellRefused(scene, device, *told, problems);
   }
+  return problems;
+}
+
+document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog& catalog,
+                                document::Problems& warnings) {
+  const scene::LoadedDevice loaded = scene::loadDevice(file, catalog);
+  if (!loaded.device) return {};
+  scene::Scene alone;
+  alone.file = file;
+  alone.devices.push_back(*loaded.device);
+  document::Problems problems = refusedArms(alone, false);
+  const auto& given = loaded.device->parameters;
+  const bool own_hand =
+      std::any_of(given.begin(), given.end(), [](const scene::Value& value) { return value.id.starts_with("hand."); });
+  if (!own_hand)  // scenes give it one
+    std::erase_if(problems, [](const document::Problem& one) { return one.key.starts_with("hand"); });
+  for (const document::Problem& one : hastyHands(alone)) warnings.push_back(one);
   return problems;
 }
 

@@ -2,8 +2,11 @@
 /// Where the tip of each arm is when a run begins: within its reach, and not within a model, or the hand is pushed at
 /// once.
 #pragma once
+#include <filesystem>
+
 #include "description/scene.hpp"
 #include "document/problem.hpp"
+#include "host/catalog.hpp"
 
 namespace hapticd::diagnostics {
 
@@ -18,5 +21,10 @@ document::Problems adviseHands(const scene::Scene& scene);
 /// begins, an enable button that it has not. The arms are started in a child process.
 /// @param scene with the devices that a run would take  @param needs_velocity some model reads the velocity of a probe
 document::Problems refusedArms(const scene::Scene& scene, bool needs_velocity);
+
+/// [main] The same for one device file. Without a hand of its own it waits for that of a scene, which is not judged.
+/// @param warnings get what hastyHands() says of its hand
+document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog& catalog,
+                                document::Problems& warnings);
 
 }  // namespace hapticd::diagnostics

@@ -14,7 +14,13 @@ void adviseMotors(const Node& root, const scene::Device& device, size_t joints, 
   constexpr double kCold = 1e-3, kHot = 200;  // W in the winding: less warms nothing, more melts those of a hand's arm
   const Node* list = find(root, {"limits", "motors"});
   const std::vector<double> torque = motorsOf(device, joints);
-  if (list == nullptr || !list->isSequence() || torque.empty()) return;
+  if (list == nullptr || !list->isSequence()) return;
+  if (const size_t given = device.limits.motors.size(); given < joints && given > 0)
+    document::report(warnings, device.file.string(), list->line, list->column, "limits.motors",
+                     fmt::format("{} of {} joints: nobody reckons the heat of the other motors; expected an entry for "
+                                 "each joint, in their order",
+                                 given, joints));
+  if (torque.empty()) return;
   for (size_t i = 0; i < device.limits.motors.size() && i < torque.size() && i < list->items.size(); ++i) {
     const scene::Motor& motor = device.limits.motors[i];
     if (!(motor.torque_constant > 0) || !(motor.ratio > 0)) continue;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "diagnostics/key_place.hpp"
 #include "diagnostics/wire_of.hpp"
+#include "document/reader.hpp"
 #include "host/device_instance.hpp"
 #include "servo/safety/held_command.hpp"
 
@@ -20,6 +22,16 @@ double number(const scene::Device& device, const char* id) {
 double forceOf(const scene::Device& device, double own) {
   const double asked = device.limits.force;
   return asked > 0 && own > 0 ? std::min(asked, own) : std::max(asked, own);
+}
+
+/// The arm's own rate is too low, not that of the servo: where its file has a rate, it is told there.
+void tellSlow(const scene::Scene& scene, const scene::Device& device, const std::string& slow,
+              document::Problems& warnings) {
+  const bool own = slow.starts_with("its own rate");
+  for (const char* key : {"parameters.wire.rate", "parameters.rate"})
+    if (const auto place = own ? placeOfKey(device.file, key) : std::nullopt)
+      return document::report(warnings, *place, key, document::numberText(namedRate(device)) + " Hz: " + slow);
+  document::report(warnings, scene.file.string(), 0, 0, "servo.rate", device.name + ": " + slow);
 }
 
 }  // namespace
@@ -42,7 +54,7 @@ document::Problems slowArms(const scene::Scene& scene) {
   document::Problems warnings;
   for (const scene::Device& device : scene.devices)
     if (const std::string slow = slownessOf(device, scene.servo.rate); !slow.empty())
-      document::report(warnings, scene.file.string(), 0, 0, "servo.rate", device.name + ": " + slow);
+      tellSlow(scene, device, slow, warnings);
   return warnings;
 }
 

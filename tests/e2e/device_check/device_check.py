@@ -42,7 +42,7 @@ def examined(slip, *more):
 
 
 code, tests = examined("none")
-check("an arm without a slip passes", code == 0 and len(tests) == 7 and all(r in ("ok", "skip") for r, _ in tests.values()), (code, tests))
+check("an arm without a slip passes", code == 0 and len(tests) == 8 and all(r in ("ok", "skip") for r, _ in tests.values()), (code, tests))
 code, tests = examined("absent")
 check("of an arm that is absent the kinematics are tried", code == 0 and tests["kinematics"][0] == "ok" and tests["open"][0] == "skip", tests)
 
@@ -96,6 +96,7 @@ for slip, test, words, *more in (
         ("read_status", "samples", "HSP_E_IO"),
         ("read_hangs", "samples", "in read()", "--timeout", "1"),
         ("stop_hangs", "samples", "in stop()", "--timeout", "1"),
+        ("off_pushes", "off", "HDV_OFF"),
         ("read_allocates", "no-allocation-in-read", "DeviceClass<SlipsArm>::read"),
         ("read_prints", "no-system-call-in-read", "prints"),
         ("read_sleeps", "no-system-call-in-read", "sleeps"),
@@ -108,15 +109,26 @@ for slip, test, words, *more in (
     code, tests = examined(slip, *more)
     result, what = tests.get(test, ("", tests))
     check(f"{slip} fails by {test}", code == 1 and result == "fail" and words in what, (code, tests))
-for slip, test, words in (("fast", "claims", "rate_hz"), ("no_angular_rows", "kinematics", "rows 3 to 5")):
+for slip, test, words in (("fast", "claims", "rate_hz"), ("no_angular_rows", "kinematics", "rows 3 to 5"), ("weight_pulls", "kinematics", "pull the tip down"),
+                          ("weight_in_grams", "claims", "the torques of gravity() are more than the motors give")):
     code, tests = examined(slip)
     check(f"{slip} is warned of", code == 0 and tests[test][0] == "warn" and words in tests[test][1], (code, tests))
+code, tests = examined("weight_right")
+check("the weight that an arm has is nothing to be told", code == 0 and all(r in ("ok", "skip") for r, _ in tests.values()), tests)
+for slip, words in (("weight_pulls", "pull the tip down"), ("forward_nan_aside", "not finite at")):
+    code, text = run("check", arm(slip))
+    check(f"check warns of {slip}", code == 0 and "warning" in text and words in text, (code, text))
+
+# What hangs after the last tick ends the run, with its name.
+scene = put("scene.yaml", f"hapticd: 1\ndevice: {os.path.basename(arm('stop_hangs'))}\nmodels:\n  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {SOURCE}/config/models/sphere.yaml, stiffness: 300}}}}\n")
+code, text = run("run", scene, "--virtual-time", "--for", "0.1")
+check("a stop() that hangs does not keep a run", code not in (0, 124) and "stop()" in text and "slips_arm" in text, (code, text))
 code, text = run("check", arm("inverse_mirrored"))
 check("check warns of a wrong inverse", code == 0 and "warning" in text and "inverse()" in text, (code, text))
 
 # A module alone; the modules that ship.
 code, text = run("device", "check", os.path.join(MODULES, "slips_arm.so"))
-check("a module file is tried with its defaults", code == 0 and "7 tests, 0 failed" in text, (code, text))
+check("a module file is tried with its defaults", code == 0 and "8 tests, 0 failed" in text, (code, text))
 code, text = run("device", "check", os.path.join(PLUGINS, "nurbs_rigid.so"))
 check("a plugin of shapes is sent to plugin check", code == 2 and "hapticd plugin check" in text, (code, text))
 for name in ("config/devices/simulated-premium15", "config/devices/simulated-sarcos", "devices/template/arm"):

@@ -52,6 +52,7 @@ struct SlipsArm : hapticd::Device {
     sample.sequence = is("sequence") ? 1 : ++sequence_;
     sample.flags = HDV_S_CALIBRATED;
     const bool later = now_ns > start_ns_ + 1'000'000'000;
+    sample.position[0] = pushed_;
     if (!later) return HSP_OK;
     if (is("read_nan")) sample.position[1] = std::nan("");
     if (is("read_beyond"))
@@ -65,7 +66,10 @@ struct SlipsArm : hapticd::Device {
     if (is("read_status")) return HSP_E_IO;
     return HSP_OK;
   }
-  hsp_status write(uint64_t, const hdv_command&) noexcept HSP_RT { return HSP_OK; }
+  hsp_status write(uint64_t, const hdv_command& command) noexcept HSP_RT {
+    if (is("off_pushes")) pushed_ += 1e-4 * command.torque[0];
+    return HSP_OK;
+  }
   void stop() {
     if (is("stop_hangs")) std::this_thread::sleep_for(std::chrono::seconds(100));
   }
@@ -90,6 +94,7 @@ struct SlipsArm : hapticd::Device {
     p[2] = 0;
     turn[0] = std::cos(b / 2), turn[1] = turn[2] = 0, turn[3] = std::sin(b / 2);
     if (me.is("orientation_0")) turn[0] = turn[3] = 0;
+    if (me.is("forward_nan_aside") && q[0] < 0) p[0] = std::nan("");
     if (me.is("forward_nan")) p[1] = std::nan("");
     if (me.is("forward_nan_at_stop") && q[0] > 0.7) p[1] = std::nan("");
     return me.is("forward_status") ? HSP_E_NUMERIC : HSP_OK;
@@ -105,8 +110,13 @@ struct SlipsArm : hapticd::Device {
     if (me.is("jacobian_hangs")) std::this_thread::sleep_for(std::chrono::seconds(100));
     return me.is("jacobian_status") ? HSP_E_NUMERIC : HSP_OK;
   }
-  static hsp_status gravity(const hdv_device* device, const double*, const double*, double* tau) noexcept HSP_RT {
-    tau[0] = tau[1] = self(device).is("weight") ? 50 : self(device).is("weight_nan") ? std::nan("") : 0;
+  static hsp_status gravity(const hdv_device* device, const double* q, const double* g, double* tau) noexcept HSP_RT {
+    const SlipsArm& me = self(device);
+    const double kg = me.is("weight_pulls") ? -0.3 : me.is("weight_in_grams") ? 300 : me.is("weight_right") ? 0.3 : 0;
+    double J[12];
+    jacobian(device, q, J);
+    for (int i = 0; i < 2; ++i) tau[i] = -kg * (J[i] * g[0] + J[2 + i] * g[1] + J[4 + i] * g[2]);
+    if (me.is("weight") || me.is("weight_nan")) tau[0] = tau[1] = me.is("weight") ? 50 : std::nan("");
     return HSP_OK;
   }
   static hsp_status inverse(const hdv_device* device, const double* p, double* q) noexcept HSP_RT {
@@ -126,6 +136,7 @@ struct SlipsArm : hapticd::Device {
 
   hdv_ext_kinematics table_{};
   std::vector<double> room_;
+  double pushed_ = 0;
   volatile int beyond_ = 60;
   uint64_t start_ns_ = 0, sequence_ = 0;
 };

@@ -134,4 +134,22 @@ with tempfile.TemporaryDirectory() as folder:
     named("a size of one byte too many, without an id", bare, longer, "as reports of 20 bytes they are good: give wire.input size: 20\n")
     code, out, err = decode(OVER[:21 * 100 + 5], {})
     check("the last report cut is no other size", code == 1 and "100 good" in err and "wire.input" not in err, err)
+
+    # Raw bytes that begin inside a report: the file's own checksum and constants tell where the next one begins, also
+    # of a few reports, and where some are damaged.
+    def damaged(capture, size):
+        return bytes(b ^ (0x10 if i % (97 * size) == 50 * size else 0) for i, b in enumerate(capture))
+
+    def marked(i):
+        body = b"\xa5" + report(i, False)[1:18]
+        return body + crc16(body).to_bytes(2, "little")
+
+    mark = {**no_id, "        - {is: counter, at: 0, type: u8}": "        - {is: constant, at: 0, type: u8, value: 0xa5}", "is: time, at: 1": "is: time, at: 2",
+            "{is: position, joint: 1, at: 4": "{is: position, joint: 1, at: 5", "{is: position, joint: 2, at: 8": "{is: position, joint: 2, at: 9",
+            "{is: position, joint: 3, at: 12": "{is: position, joint: 3, at: 13"}
+    whole = b"".join(marked(i) for i in range(400))
+    for what, capture in (("few", whole[:20 * 12]), ("some of them damaged", damaged(whole, 20))):
+        named(f"a capture that begins inside a report, {what}", capture[7:], mark, "from byte 13 on, nearly all reports are good; give framing: {start: 0xa5}, and they are found\n")
+    for what, capture in (("few", bare[:20 * 12]), ("some of them damaged", damaged(bare, 20))):
+        named(f"the same without a constant, {what}", capture[7:], {**no_id}, "from byte 13 on, nearly all reports are good; leave out the first 13 bytes (tail -c +14 FILE)\n")
 finish()

@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+"""Device files that their format allows and nobody means are told at the key; what ships and what is usual is not.
+
+Usage: unusual_arms.py HAPTICD SOURCE     prints one line per case; exit 1 when one is off.
+"""
+import glob
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+HAPTICD, SOURCE = (os.path.abspath(one) for one in sys.argv[1:3])
+sys.path.insert(0, os.path.join(SOURCE, "tests", "support"))
+from e2e import check, finish
+
+WIRED = """hapticd-device: 1
+module: usb_hid
+name: mine
+mount: {position: [0, 0, 0.09]}
+limits: {force: 2, passivity: true, workspace: 0.3, enable: {button: 0}}
+parameters:
+  usb: {id: "1209:0a0a"}
+  device: {max_force: 5, continuous_force: 2, max_stiffness: 600, mass: 0.2}
+  arm:
+    kind: phantom
+    lengths: [0.21, 0.17, 0.03, 0, 0]
+    masses: [0.02, 0.025, 0, 0]
+    max_torque: [0.6]
+    limits: [[-1.2, 1.2], [-0.3, 0.9], [-1, 1]]
+  calibration: {method: pose, pose: [0, 0, 0], instructions: "Hold every joint at its zero."}
+  wire:
+    exchange: stream
+    rate: 1000
+    watchdog: 0.02
+    input:
+      size: 12
+      fields:
+        - {is: counter, at: 0, type: u16}
+        - {is: position, joint: 1, at: 2, type: i16, scale: 9.6e-5}
+        - {is: position, joint: 2, at: 4, type: i16, scale: 9.6e-5}
+        - {is: position, joint: 3, at: 6, type: i16, scale: 9.6e-5}
+        - {is: button, button: 1, at: 8, type: u1}
+        - {is: checksum, at: 10, type: u16, method: crc16-modbus, from: 0, to: 10}
+    output:
+      size: 10
+      fields:
+        - {is: torque, joint: 1, at: 0, type: i16, scale: 2.0e-5}
+        - {is: torque, joint: 2, at: 2, type: i16, scale: 2.0e-5}
+        - {is: torque, joint: 3, at: 4, type: i16, scale: 2.0e-5}
+        - {is: enable, at: 6, type: u8}
+        - {is: counter, at: 7, type: u8}
+        - {is: checksum, at: 8, type: u16, method: crc16-modbus, from: 0, to: 8}
+"""
+TWIN = """hapticd-device: 1
+module: simulated
+name: twin
+mount: {position: [0, 0, 0.09]}
+limits: {force: 2}
+parameters:
+  arm:
+    kind: phantom
+    lengths: [0.21, 0.17, 0, 0, 0]
+    masses: [0.03, 0, 0.05, 0]
+hand: {script: press, radius: 0.05, rise: 0.003, rate: 1, center: [0, 0, -0.09]}
+"""
+PREMIUM = open(os.path.join(SOURCE, "config", "devices", "simulated-premium15.yaml")).read()
+IN, OUT = "parameters.wire.input.fields", "parameters.wire.output.fields"
+READ = "joint: {0}, at: {1}, type: i16, scale: 9.6e-5"
+SENT = "joint: {0}, at: {1}, type: i16, scale: 2.0e-5"
+SECOND, FIRST_OUT = READ.format(2, 4), SENT.format(1, 0)
+
+# What is given, what for, its key and a word that is told of it; a bar stands in front of the place.
+CASES = [
+    (WIRED, {SECOND: SECOND.replace("i16", "i16, endian: |big")}, f"{IN}[2].endian", "most other numbers of this report are little"),
+    (WIRED, {SENT.format(n + 1, 2 * n): SENT.format(n + 1, 2 * n).replace("i16", "i16, endian: " + "|" * (n == 0) + "big") for n in range(3)},
+     f"{OUT}[0].endian", "big in all of wire.output, and little in all of wire.input"),
+    (WIRED, {SECOND: SECOND.replace("i16", "|u16")}, f"{IN}[2].type", "those of the other joints are signed"),
+    (WIRED, {SECOND: SECOND.replace("9.6e-5", "|0.0055")}, f"{IN}[2].scale", "scale_degrees: 0.0055"),
+    (WIRED, {READ.format(3, 6): READ.format(3, 6).replace("9.6e-5", "|9.6e-4")}, f"{IN}[3].scale", "10 times as coarse as that of any other"),
+    (WIRED, {SENT.format(3, 4): SENT.format(3, 4).replace("2.0e-5", "|2.0e-4")}, f"{OUT}[2].scale", "measured by arm.max_torque"),
+    (WIRED, {FIRST_OUT: FIRST_OUT.replace("1, at", "|3, at"), SENT.format(3, 4): SENT.format(1, 4)}, f"{OUT}[0].joint",
+     "where wire.input has joint 1 in its place"),
+    (WIRED, {"        - {is: button": "        - {is: counter, at: |0, type: u16}\n        - {is: button"}, f"{IN}[4].at", "the counter of fields[0]"),
+    (WIRED, {"method: crc16-modbus, from: 0, to: 10": "method: crc, polynomial: |0xA001, reflected: true, initial: 0xffff, from: 0, to: 10"},
+     f"{IN}[5].polynomial", "0xa001 is 0x8005 with its bits turned round"),
+    (WIRED, {SECOND: SECOND.replace("9.6e-5", "9.6e-5, offset: |3")}, f"{IN}[2].offset", "has no effect"),
+    (WIRED, {"continuous_force: 2": "continuous_force: |8"}, "parameters.device.continuous_force", "more than the 5 N of device.max_force"),
+    (WIRED, {"max_stiffness: 600": "max_stiffness: |0.6"}, "parameters.device.max_stiffness", "0.6 N/mm are 600 N/m"),
+    (WIRED, {"max_stiffness: 600": "max_stiffness: |1000000"}, "parameters.device.max_stiffness", "no model is ever said to be too stiff"),
+    (WIRED, {"mass: 0.2": "mass: |75"}, "parameters.device.mass", "75 g are 0.075 kg"),
+    (WIRED, {"lengths: [0.21": "lengths: [|0.021"}, "parameters.arm.lengths[0]", "nearer to its shoulder than 0.149 m"),
+    (WIRED, {"force: 2,": "force: |0.002,"}, "limits.force", "0.002 kN are 2 N"),
+    (TWIN, {"masses: [0.03, 0, 0.05, 0]": "masses: |[30, 0, 50, 0]"}, "parameters.arm.masses", "30 g are 0.03 kg"),
+    (PREMIUM, {"force: 8.5": "force: |0.0085"}, "limits.force", "0.0085 kN are 8.5 N"),
+    (PREMIUM, {"force: 8.5": "force: |850"}, "limits.force", "850 mN are 0.85 N"),
+    (PREMIUM, {"force: 8.5": "force: |12"}, "limits.force", "12 N is more than the 8.5 N of the arm"),
+    (PREMIUM, {"  seed: 1": "  joint: {gear: 0.1, counts: |4}"}, "parameters.joint.counts", "one count moves the tip by"),
+]
+
+# What no run could begin with is an error of the device file alone.
+REFUSED = [
+    (TWIN, {"    masses": "    max_torque: |[0.5, 0.4]\n    masses"}, "parameters.arm.max_torque", "2 numbers, expected 1 or 3"),
+    (TWIN, {"rate: 1,": "rate: 1, axis: |[0, 0, 0],"}, "hand.axis", "expected a direction"),
+    (TWIN, {"center: [0, 0, -0.09]": "center: |[0, 0, -0.9]"}, "hand", "which the arm cannot reach"),
+    (TWIN, {"kind: phantom": "kind: premium15", "lengths: [": "lengths: |["}, "parameters.arm.lengths", "expected arm.kind phantom"),
+    (TWIN, {"{force: 2}": "{force: 2, enable: {button: |1}}"}, "limits.enable.button", "the device has 0 buttons"),
+    (WIRED, {"lengths: [0.21": "lengths: [|205"}, "parameters.arm.lengths[0]", "205 mm are 0.205 m\n"),
+]
+
+
+def refused(folder):
+    for i, (text, changes, key, word) in enumerate(REFUSED):
+        file, place = written(os.path.join(folder, f"refused{i}.yaml"), text, changes)
+        done = subprocess.run([HAPTICD, "check", file], capture_output=True, text=True, timeout=120)
+        check(f"refused: {key}: {word.strip()}", done.returncode == 2 and f"{place}: {key}: " in done.stdout and word in done.stdout, done.stdout)
+    # A scene tells all of it, too, at the places there.
+    file, _ = written(os.path.join(folder, "two.yaml"), WIRED, {"rate: 1000": "rate: |1", "watchdog: 0.02": "watchdog: 0.02\n    keep_alive: 5"})
+    scene = os.path.join(folder, "scene.yaml")
+    with open(scene, "w") as out:
+        out.write(f"hapticd: 1\ndevice: two.yaml\nmodels:\n  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {SOURCE}/config/models/sphere.yaml}}}}\n")
+    done = subprocess.run([HAPTICD, "check", scene], capture_output=True, text=True, timeout=120)
+    told = [line for line in done.stdout.splitlines() if f"{os.path.realpath(file)}:" in line]
+    check("a scene tells all of its device", done.returncode == 2 and len(told) == 2 and all("parameters.wire." in line for line in told), done.stdout)
+
+
+def written(file, text, changes):
+    """The file without its bar, and the place of it."""
+    for old, new in changes.items():
+        assert old in text, (file, old)
+        text = text.replace(old, new, 1)
+    before = text[:text.index("|")]
+    with open(file, "w") as out:
+        out.write(text.replace("|", "", 1))
+    return file, f"{file}:{before.count(chr(10)) + 1}:{len(before) - before.rfind(chr(10))}"
+
+
+def right():
+    files = glob.glob(os.path.join(SOURCE, "config", "devices", "*.yaml")) + glob.glob(os.path.join(SOURCE, "devices", "*", "*.yaml"))
+    check("there are devices that ship", len(files) >= 9, files)
+    return sorted(files)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        placed = []
+        for i, (text, changes, key, word) in enumerate(CASES):
+            file, place = written(os.path.join(folder, f"arm{i}.yaml"), text, changes)
+            placed.append((file, place, key, word))
+        usual = []
+        for i, text in enumerate((WIRED, TWIN, PREMIUM)):
+            usual.append(os.path.join(folder, f"usual{i}.yaml"))
+            with open(usual[-1], "w") as out:
+                out.write(text)
+        ships = right()
+        done = subprocess.run([HAPTICD, "check", "--json", *(one[0] for one in placed), *usual, *ships], capture_output=True, text=True, timeout=300)
+        told = {one["file"]: one for one in json.loads(done.stdout)["files"]}
+        for file, place, key, word in placed:
+            lines = [f"{w['file']}:{w['line']}:{w['column']}: {w['key']}: {w['what']}" for w in told[file]["warnings"]]
+            own = [line for line in lines if line.startswith(f"{place}: {key}: ")]
+            check(f"{key}: {word}", told[file]["ok"] and len(own) == 1 and word in own[0], lines)
+        for file in usual + ships:
+            odd = [w["what"] for w in told[file]["warnings"] if "sustains" not in w["what"]]
+            check(f"{os.path.basename(file)} is as it should be", told[file]["ok"] and not odd, odd)
+        refused(folder)
+    finish()
+
+
+main()
