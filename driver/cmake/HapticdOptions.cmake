@@ -2,7 +2,7 @@
 # What every target shares: language level, warnings as errors, sanitizers, where artefacts land.
 
 option(HAPTICD_TESTS "build the tests" ON)
-option(HAPTICD_BENCH "build the benchmarks" ON)
+option(HAPTICD_BENCH "build the benchmarks; they need the packages of driver/install-packages bench" OFF)
 option(HAPTICD_WERROR "treat warnings as errors; the presets of developers do, a packager's newer compiler must not fail" OFF)
 set(HAPTICD_SANITIZE "" CACHE STRING "sanitizers, for example 'address,undefined', 'thread' or 'realtime' (clang 20 and newer)")
 
