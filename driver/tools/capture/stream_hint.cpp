@@ -69,14 +69,14 @@ bool tells(const codec::Report& report) {
 
 /// How many bytes in front of the first whole report make nearly all others good; 0: none, or nobody can tell.
 size_t bytesBefore(const codec::Wire& wire, const Bytes& bytes) {
-  constexpr size_t kTriedBytes = 8 * 1024, kFewestGood = 3;
+  constexpr size_t kLookedAt = 8 * 1024, kFewestGood = 3;
   constexpr double kNearly = 0.8, kDoubt = 0.5;  // of the reports; of those from another place
   const size_t size = wire.input.size;
   size_t best = 0;
   double most = 0, second = 0;
   for (size_t before = 0; before < size && before < bytes.size(); ++before) {
     Capture later;
-    const size_t end = std::min(bytes.size(), before + kTriedBytes);
+    const size_t end = std::min(bytes.size(), before + kLookedAt);
     later.transfers.push_back({-1, Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(before),
                                          bytes.begin() + static_cast<std::ptrdiff_t>(end - (end - before) % size))});
     const Decoded decoded = decodeCapture(wire, later);
