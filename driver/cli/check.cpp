@@ -15,6 +15,7 @@
 #include "diagnostics/device_advice.hpp"
 #include "diagnostics/device_trial.hpp"
 #include "diagnostics/hand_path_advice.hpp"
+#include "diagnostics/hand_script.hpp"
 #include "diagnostics/hand_start.hpp"
 #include "diagnostics/key_place.hpp"
 #include "diagnostics/model_trial.hpp"
@@ -279,13 +280,14 @@ Verdict checkOne(const std::string& file, const CheckArguments& options) {
   if (!scene) {
     const document::Problems more = tryDevice(file, catalog(), found, &verdict.warnings);
     found.insert(found.end(), more.begin(), more.end());
+    if (found.empty()) {
+      for (const document::Problem& one : adviseDevice(file, catalog())) verdict.warnings.push_back(one);
+      if (!options.files_only) found = refusedAlone(file, catalog(), verdict.warnings);
+    }
     document::sortByPlace(found);
   }
-  if (!scene && found.empty() && !options.files_only) found = refusedAlone(file, catalog());
   verdict.warnings.insert(verdict.warnings.end(), trial.warnings.begin(), trial.warnings.end());
   verdict.whole = verdict.whole && found.empty();
-  if (!scene && found.empty())
-    for (const document::Problem& one : adviseDevice(file, catalog())) verdict.warnings.push_back(one);
   if (scene) addWarnings(withArm(*scene), trial, options, verdict);
   if (scene) addUnusual(withArm(*scene), trial.boxes, verdict);
   placeWarnings(verdict.warnings);

@@ -167,9 +167,8 @@ int kinematics(const KinematicsArguments& options) {
   auto device = host::DeviceInstance::create(*loaded.device, logToTerminal);
   if (!device) return fail(kFailed, device.error());
   const Inputs inputs{{options.joints, "the file of joints"}, {options.file, "the device file"}};
-  const std::string columns = headerOf((*device)->kinematics().joint_count) + kTipColumns;
-  if (const std::string wrong = whyNotWritten(options.out, tableKind(columns), inputs); !wrong.empty())
-    return fail(kBadInput, wrong);
+  const OutputKind kind{"a table of this command (CSV)", {"q1,"}, kTipColumns};  // of any number of joints
+  if (const std::string wrong = whyNotWritten(options.out, kind, inputs); !wrong.empty()) return fail(kBadInput, wrong);
   auto rows = readRows(options.joints, (*device)->kinematics().joint_count);
   if (!rows) return fail(kBadInput, rows.error());
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(

@@ -32,6 +32,13 @@ std::string_view unquoted(std::string_view text) {
   return quoted ? text.substr(1, text.size() - 2) : text;
 }
 
+/// A text for a terminal, which bytes of another encoding would confuse.
+std::string printable(std::string text) {
+  for (char& c : text)
+    if (c < ' ' || c > '~') c = '?';
+  return text;
+}
+
 std::string countText(size_t columns) {
   return std::to_string(columns) + (columns == 1 ? " column" : " columns");
 }
@@ -94,8 +101,8 @@ class Parser {
 
   /// Settles the columns. True if the line was a header.
   bool header(const std::vector<Field>& fields) {
-    std::string names;
-    for (const Field& field : fields) names.append(names.empty() ? "" : ",").append(field.text);
+    std::string names;  // some programs quote each
+    for (const Field& field : fields) names.append(names.empty() ? "" : ",").append(unquoted(field.text));
     const bool numbers = numberIn(fields.front().text).has_value();
     for (const std::string& header : rules_.headers) {
       const auto columns = static_cast<size_t>(std::count(header.begin(), header.end(), ',')) + 1;
@@ -107,7 +114,7 @@ class Parser {
     const std::string meant = separators(fields, static_cast<size_t>(-1));
     problem(0, "",
             (numbers ? countText(fields.size()) + ", expected " + expected()
-                     : "the header is \"" + names.substr(0, 60) + "\", expected " + expected()) +
+                     : "the header is \"" + printable(names.substr(0, 60)) + "\", expected " + expected()) +
                 meant);
     wrong_ = kShownProblems;  // without columns no row can be judged
     return true;
@@ -161,6 +168,12 @@ class Parser {
 std::optional<CsvTable> parseCsv(std::string_view text, const std::string& file, const CsvRules& rules,
                                  Problems& problems) {
   Parser parser(file, rules, problems);
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
+    report(problems, file, 1, 1, "", "the file is in UTF-16, expected UTF-8: save it as CSV UTF-8");
+    return std::nullopt;
+  }
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // spreadsheets begin UTF-8 with it
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   for (size_t start = 0; start < text.size() && !parser.tooWrong();) {
     const size_t end = std::min(text.find('\n', start), text.size());
     parser.line(text.substr(start, end - start));

@@ -99,9 +99,26 @@ class Builder final : public YAML::EventHandler {
     if (open_.size() >= kMaxDepth) throw Refused{mark, "nested deeper than " + std::to_string(kMaxDepth) + " levels"};
     open_.push_back({make(mark, kind), anchor, std::nullopt, {}});
   }
+  /// Puts the keys of other mappings beside those of this one, which come first (YAML 1.1, merge keys).
+  void merge(Open& map) {
+    std::vector<Entry>& entries = map.node.entries;
+    const auto named = std::find_if(entries.begin(), entries.end(),
+                                    [](const Entry& entry) { return entry.key.scalar == "<<" && !entry.key.quoted; });
+    if (named == entries.end()) return;
+    const Node merged = std::move(named->value);
+    entries.erase(named);
+    for (const Node& other : merged.isSequence() ? merged.items : std::vector<Node>{merged}) {
+      if (!other.isMap())
+        report(problems_, file_, other.line, other.column, "<<",
+               describe(other) + ", expected a mapping to merge, such as an alias (*name) of one, or a list of them");
+      for (const Entry& entry : other.entries)
+        if (map.names.insert(entry.key.scalar).second) entries.push_back(entry);
+    }
+  }
   void closeLast() {
     Open done = std::move(open_.back());
     open_.pop_back();
+    if (done.node.isMap()) merge(done);
     const YAML::Mark mark = YAML::Mark::null_mark();
     add(std::move(done.node), mark, done.anchor);
   }

@@ -33,7 +33,7 @@ Path surfaceAt(std::size_t surface, const char* key = nullptr) {
 void adviseSize(const trace::Model& model, Problems& odd) {
   constexpr double kHuge = 5, kTiny = 1e-3;  // [m]
   const double size = model.bounds().diagonal().norm();
-  if (size > kHuge || size < kTiny)
+  if (size > kHuge || (size > 0 && size < kTiny))  // 0: told of the surfaces without area
     odd.add({{"surfaces", 0}},
             written("the model is %.3g m large, expected metres and what a hand can feel: %.3g mm are %.3g m", size,
                     size, size / 1000));

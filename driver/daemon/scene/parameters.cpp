@@ -181,9 +181,9 @@ bool ParameterReader::readArray(const Node& node, const std::string& key, const 
       const Node& item = node.items[i];
       const std::string path = key + "[" + std::to_string(i) + "]";
       if (item.isSequence() && param.columns > 1 && item.items.size() != param.columns)
-        in_->problem(
-            item, path,
-            "it has " + std::to_string(item.items.size()) + " numbers, expected " + std::to_string(param.columns));
+        in_->problem(item, path,
+                     "it has " + std::to_string(item.items.size()) + (item.items.size() == 1 ? " number" : " numbers") +
+                         ", expected " + std::to_string(param.columns));
       else if (item.isSequence())
         for (size_t j = 0; j < item.items.size(); ++j) add(item.items[j], path + "[" + std::to_string(j) + "]", j);
       else

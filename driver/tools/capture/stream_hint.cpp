@@ -69,19 +69,19 @@ bool tells(const codec::Report& report) {
 
 /// How many bytes in front of the first whole report make nearly all others good; 0: none, or nobody can tell.
 size_t bytesBefore(const codec::Wire& wire, const Bytes& bytes) {
-  constexpr size_t kLookedAt = 8 * 1024, kFewestGood = 3;
+  constexpr size_t kMostBytes = 8 * 1024, kFewReports = 3;
   constexpr double kNearly = 0.8, kDoubt = 0.5;  // of the reports; of those from another place
   const size_t size = wire.input.size;
   size_t best = 0;
   double most = 0, second = 0;
   for (size_t before = 0; before < size && before < bytes.size(); ++before) {
     Capture later;
-    const size_t end = std::min(bytes.size(), before + kLookedAt);
+    const size_t end = std::min(bytes.size(), before + kMostBytes);
     later.transfers.push_back({-1, Bytes(bytes.begin() + static_cast<std::ptrdiff_t>(before),
                                          bytes.begin() + static_cast<std::ptrdiff_t>(end - (end - before) % size))});
     const Decoded decoded = decodeCapture(wire, later);
     const size_t good = decoded.good(), all = decoded.reports.size();
-    const double part = good < kFewestGood ? 0 : static_cast<double>(good) / static_cast<double>(all);
+    const double part = good < kFewReports ? 0 : static_cast<double>(good) / static_cast<double>(all);
     if (part > most)
       second = most, most = part, best = before;
     else

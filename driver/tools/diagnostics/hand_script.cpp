@@ -42,6 +42,7 @@ void readPath(const scene::Device& device, HandScript& hand) {
   for (size_t i = 1; i < table->rows(); ++i) {
     const double *from = table->row(i - 1), *to = table->row(i);
     const double way = std::hypot(to[1] - from[1], to[2] - from[2], to[3] - from[3]), speed = way / (to[0] - from[0]);
+    hand.path_way += way;
     if (speed <= hand.path_speed * (1 + 1e-9)) continue;  // of equal ones the first
     hand.path_speed = speed;
     hand.path_fastest_at = from[0];
@@ -75,6 +76,19 @@ void judgeSpeed(const scene::Scene& scene, const scene::Device& device, const Ha
                                "m/s: {}",
                                device.name, speed, wayOf(hand), kFastestHand,
                                follows ? "times in s, places in m" : "hand.rate in Hz, lengths in m, angles in rad"));
+}
+
+/// A file whose times are in ms, which makes minutes of seconds.
+void judgeCrawl(const scene::Scene& scene, const scene::Device& device, const HandScript& hand,
+                document::Problems& warnings) {
+  constexpr double kCrawl = 2e-3, kLong = 10, kFar = 5e-3;  // [m/s], [s], [m] a hand that rests is none that crawls
+  if (hand.kind != Kind::kPath || hand.path_end < kLong || hand.path_way < kFar) return;
+  if (hand.path_speed > 10 * kCrawl || hand.path_way > kCrawl * hand.path_end) return;
+  const HandKey key = keyOfHand(scene, device, {"hand.path"});
+  document::report(warnings, key.place, key.id,
+                   fmt::format("the hand of {} takes {:.4g} s for {:.3g} mm, {:.2g} mm/s; expected times in s (1 ms is "
+                               "0.001)",
+                               device.name, hand.path_end, hand.path_way * 1e3, hand.path_way / hand.path_end * 1e3));
 }
 
 /// True: it was meant in degrees, which tells enough of the speed too.
@@ -154,8 +168,10 @@ std::optional<HandScript> handScriptOf(const scene::Device& device) {
 document::Problems hastyHands(const scene::Scene& scene) {
   document::Problems warnings;
   for (const scene::Device& device : scene.devices)
-    if (const auto hand = handScriptOf(device); hand && !judgeSweep(device, *hand, warnings))
+    if (const auto hand = handScriptOf(device); hand && !judgeSweep(device, *hand, warnings)) {
       judgeSpeed(scene, device, *hand, warnings);
+      judgeCrawl(scene, device, *hand, warnings);
+    }
   return warnings;
 }
 

@@ -19,6 +19,7 @@ struct HandScript {
   double radius = 0, sweep = 0, rise = 0, rate = 0;          ///< [m], [rad], [m], [Hz]
   double lead_in = 0;                                        ///< [s]
   double path_end = 0, path_speed = 0, path_fastest_at = 0;  ///< [s], [m/s], [s] of the file that it follows
+  double path_way = 0;                                       ///< [m] of it in all
 
   /// It goes a way of its own: nobody else leads it, and it is there.
   bool goes() const { return kind != Kind::kNone && kind != Kind::kGuided; }
@@ -44,7 +45,7 @@ HandKey keyOfHand(const scene::Scene& scene, const scene::Device& device, std::i
 std::optional<HandScript> handScriptOf(const scene::Device& device);
 
 /// [main] Warns of strokes beyond half a turn to either side, which were meant in degrees, and of a hand that goes
-/// faster than hands go.
+/// faster than hands go, or so slowly that its times were not meant in s.
 document::Problems hastyHands(const scene::Scene& scene);
 
 }  // namespace hapticd::diagnostics

@@ -176,19 +176,25 @@ std::string tryStart(const scene::Scene& scene, const scene::Device& device, boo
   return started ? "=" : started.error();
 }
 
-/// "device 'name': limits.enable.button is 3, ..." begins with a key of the device file; the rest is about its hand.
-void tellRefused(const scene::Device& device, const std::string& told, document::Problems& problems) {
-  std::string_view rest = told;
-  for (const std::string& before : {"device '" + device.name + "': ", std::string("cannot be opened: ")})
-    if (rest.starts_with(before)) rest.remove_prefix(before.size());
-  const size_t end = std::min(rest.find_first_of(": "), rest.size());
-  const std::string key(rest.substr(0, end));
-  const std::string what(rest.substr(std::min(rest.find_first_not_of(": ", end), rest.size())));
-  for (const scene::Value& value : device.parameters)
-    if (value.id == key)
-      return document::report(problems, value.place, key.starts_with("hand.") ? key : "parameters." + key, what);
-  if (const auto place = placeOfKey(device.file, key)) return document::report(problems, *place, key, what);
-  document::report(problems, placeOfHand(device), "hand", std::string(rest));
+/// A refusal names the key that is wrong, at its beginning or after what could not be done: "device 'name': cannot be
+/// opened: hand.axis is zero, expected a direction".
+void tellRefused(const scene::Scene& scene, const scene::Device& device, const std::string& told,
+                 document::Problems& problems) {
+  const std::string before = "device '" + device.name + "': ";
+  size_t begin = told.rfind(before, 0) == 0 ? before.size() : told.size();
+  while (begin < told.size()) {
+    const size_t end = std::min(told.find_first_of(": ", begin), told.size());
+    const std::string key = told.substr(begin, end - begin);
+    const std::string what = told.substr(std::min(told.find_first_not_of(": ", end), told.size()));
+    for (const scene::Value& value : device.parameters)
+      if (value.id == key)
+        return document::report(problems, value.place, key.starts_with("hand.") ? key : "parameters." + key, what);
+    for (const auto& file : {device.file, scene.file})
+      if (const auto place = placeOfKey(file, key)) return document::report(problems, *place, key, what);
+    const size_t next = told.find(": ", begin);
+    begin = next == std::string::npos ? told.size() : next + 2;
+  }
+  document::report(problems, placeOfHand(device), "hand", told.substr(told.rfind(before, 0) == 0 ? before.size() : 0));
 }
 
 void tellInside(const scene::Scene& scene, const std::string& list, uint32_t count, document::Problems& warnings) {
@@ -226,15 +232,17 @@ document::Problems refusedArms(const scene::Scene& scene, bool needs_velocity) {
   for (const scene::Device& device : scene.devices) {
     if (device.module != "simulated") continue;
     const auto told = host::runInChild([&] { return tryStart(scene, device, needs_velocity); }, kHandLimitMs);
-    if (told && *told != "=") tellRefused(device, *told, problems);
+    if (told && *told != "=") tellRefused(scene, device, *told, problems);
   }
   return problems;
 }
 
-document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog& catalog) {
+document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog& catalog,
+                                document::Problems& warnings) {
   const scene::LoadedDevice loaded = scene::loadDevice(file, catalog);
   if (!loaded.device) return {};
   scene::Scene alone;
+  alone.file = file;
   alone.devices.push_back(*loaded.device);
   document::Problems problems = refusedArms(alone, false);
   const auto& given = loaded.device->parameters;
@@ -242,6 +250,7 @@ document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog
       std::any_of(given.begin(), given.end(), [](const scene::Value& value) { return value.id.starts_with("hand."); });
   if (!own_hand)  // scenes give it one
     std::erase_if(problems, [](const document::Problem& one) { return one.key.starts_with("hand"); });
+  for (const document::Problem& one : hastyHands(alone)) warnings.push_back(one);
   return problems;
 }
 

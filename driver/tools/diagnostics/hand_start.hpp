@@ -23,6 +23,8 @@ document::Problems adviseHands(const scene::Scene& scene);
 document::Problems refusedArms(const scene::Scene& scene, bool needs_velocity);
 
 /// [main] The same for one device file. Without a hand of its own it waits for that of a scene, which is not judged.
-document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog& catalog);
+/// @param warnings get what hastyHands() says of its hand
+document::Problems refusedAlone(const std::filesystem::path& file, host::Catalog& catalog,
+                                document::Problems& warnings);
 
 }  // namespace hapticd::diagnostics

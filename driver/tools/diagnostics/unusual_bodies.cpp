@@ -97,9 +97,22 @@ void judgePendulum(const GivenModel& given) {
                     given.box()->center().z()));
 }
 
+/// Below the power of 1 a wall is steeper the less deep a tip is: it begins with a jump.
+void judgeFirstTouch(const GivenModel& given) {
+  constexpr double kFirst = 1e-5, kJump = 1;  // [m] less than a tick brings, [N]
+  const double scale = given.number("depth_scale"), power = given.number("exponent");
+  if (!(power > 0 && power < 1 && scale > 0)) return;
+  const double force = given.number("stiffness") * scale * std::pow(kFirst / scale, power);
+  if (force > kJump)
+    given.warn({"exponent"}, fmt::format("with a depth_scale of {:g} m the first {:g} um give {:.2g} N, which a hand "
+                                         "feels as a blow; expected depth_scale in m (1 mm is 0.001), or exponent: 1",
+                                         scale, kFirst * 1e6, force));
+}
+
 }  // namespace
 
 void judgeBody(const GivenModel& given) {
+  judgeFirstTouch(given);
   if (given.choice("motion") == "dynamic" && given.plugin().indexOf("tether") >= 0) judgeDynamic(given);
   if (given.plugin().id == "org.hapticd.shape.pendulum") judgePendulum(given);
 }

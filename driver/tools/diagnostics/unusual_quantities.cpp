@@ -118,6 +118,16 @@ void judgeSpring(const GivenModel& given, const scene::Value& value) {
                                        value.number, value.number * kMilli));
 }
 
+/// Dampers of the surface: what they hold a hand with that strokes calmly.
+void judgeDamper(const GivenModel& given, const scene::Value& value) {
+  constexpr double kMost = 50, kCalm = 0.1;  // [N s/m], [m/s]
+  if (value.number > kMost && (value.id == "damping" || value.id == "viscosity") && given.choice("motion") != "dynamic")
+    given.warn({value.id},
+               fmt::format("{0:g} N s/m hold a hand that moves at {1:g} m/s with {2:.3g} N, more than most arms keep "
+                           "stable; expected at most {3:g} N s/m (1 N s/mm is 1000 N s/m)",
+                           value.number, kCalm, value.number * kCalm, kMost));
+}
+
 /// Heavier than any metal is, and than what a hand moves with ease: a light knob may stand for a whole machine.
 void judgeMass(const GivenModel& given, const scene::Value& value) {
   constexpr double kDensest = 25'000, kEasy = 3, kThin = 0.02;  // [kg/m^3], [kg], of the size
@@ -151,6 +161,7 @@ void judgeOne(const GivenModel& given, const scene::Value& value, const host::Pa
   if (param.unit == "rad/s") judgeTurn(given, value);
   judgeForce(given, value, param);
   if (param.unit == "N/m" && real) judgeSpring(given, value);
+  if (param.unit == "N s/m" && real) judgeDamper(given, value);
   if (param.unit == "kg" && real) judgeMass(given, value);
   if (param.unit.empty() && real && param.id.find("friction") != std::string::npos) judgeFriction(given, value);
 }

@@ -30,10 +30,11 @@ void tellAway(const scene::Scene& scene, uint32_t index, const HandScript& hand,
               const servo::World& world, document::Problems& warnings) {
   const scene::Device& device = scene.devices[index];
   const scene::Model& nearest = scene.models[seen.nearest];
-  const std::string what = fmt::format(
-      "the hand of {} comes no nearer than {:.3g} mm to any model ({} is the nearest): "
-      "it feels nothing; expected ",
-      device.name, seen.away * 1e3, nearest.name);
+  const std::string where = seen.away > 0
+                                ? fmt::format("comes no nearer than {:.3g} mm to any model ({} is the nearest)",
+                                              seen.away * 1e3, nearest.name)
+                                : fmt::format("goes where {} is and touches no surface", nearest.name);
+  const std::string what = fmt::format("the hand of {} {}: it feels nothing; expected ", device.name, where);
   if (hand.kind == HandScript::Kind::kPath) {
     const HandKey key = keyOfHand(scene, device, {"hand.path"});
     return document::report(warnings, key.place, key.id, what + "a path through a model, in m of the device frame");
@@ -42,8 +43,10 @@ void tellAway(const scene::Scene& scene, uint32_t index, const HandScript& hand,
     const HandKey key = keyOfHand(scene, device, {"hand.radius", "hand.rise", "hand.script"});
     return document::report(
         warnings, key.place, key.id,
-        what +
-            fmt::format("a hand.radius that is less by more than that ({:.4g} m now; it is no diameter)", hand.radius));
+        what + (seen.away > 0
+                    ? fmt::format("a hand.radius that is less by more than that ({:.4g} m now; it is no diameter)",
+                                  hand.radius)
+                    : fmt::format("a hand.radius that leads through its surface ({:.4g} m now)", hand.radius)));
   }
   const Eigen::Vector3d center = device.mount.position + device.mount.orientation * hand.center;
   const std::string at = fmt::format(

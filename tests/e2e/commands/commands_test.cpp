@@ -92,7 +92,7 @@ TEST_F(Commands, CheckPassesOnWhatAPluginWarnsOf) {
   const Outcome outcome =
       run("check " + scene, "HAPTICD_PLUGIN_PATH=" HAPTICD_BINARY_DIR "/" HAPTICD_MODULES "/plugins");
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_TRUE(has(outcome.text, scene + ":3:73: models[0].parameters.pop_through: warning: has no effect")) << outcome.text;
+  EXPECT_TRUE(has(outcome.text, scene + ":3:62: models[0].parameters.pop_through: warning: has no effect")) << outcome.text;
 }
 
 TEST_F(Commands, SchemasAreJsonWithThePluginsParameters) {

@@ -22,7 +22,7 @@ def model(parameters, plugin="nurbs_rigid", geometry=SPHERE, name="ball"):
     return f"  - name: {name}\n    plugin: {plugin}\n    parameters: {{geometry: {geometry}, {parameters}}}\n"
 
 
-def scene(*models, top=f"device: {ARM}\n"):
+def scene(*models, top=f"device: {ARM}\nhand: {{script: none}}\n"):  # what a hand meets is told by others
     return f"hapticd: 1\n{top}models:\n" + "".join(models)
 
 
@@ -42,11 +42,14 @@ SCENES = [
     ("a friction of no material", scene(model("friction_static: |5, friction_dynamic: 1")), P + "friction_static", "rubber"),
     ("likewise of a sliding tip", scene(model("friction_static: 5, friction_dynamic: |5")), P + "friction_dynamic", "rubber"),
     ("friction that ends as it slides", scene(model("friction_static: |0.4")), P + "friction_static", "friction_dynamic is not given"),
+    ("a damper in N s/mm", scene(model("stiffness: 800, damping: |1000")), P + "damping", "0.1 m/s with 100 N"),
+    ("a drag of 10 N", scene(model("stiffness: 800, viscosity: |100")), P + "viscosity", "0.1 m/s with 10 N"),
+    ("a wall that begins with a blow", scene(model("stiffness: 800, exponent: |0.25, depth_scale: 0.1")), P + "exponent", "the first 10 um give 8 N"),
     ("a shell that nothing holds", scene(model("sides: both, pop_through: |0.001")), P + "pop_through", "cannot be felt"),
     ("one model in another", scene(model("stiffness: 800"), model("stiffness: 700", name="two").replace("  - n", "  - |n")),
      "models[1].pose", "ball (line 4)"),
-    ("the stiffness of all in one place", scene(*(model("stiffness: 3000", name=f"w{i}") for i in range(6))).replace("- name: w0", "- |name: w0"),
-     "models[0]", "w0 with 5 models in its place pushes with up to 1.8e+04 N/m"),
+    ("the stiffness of all in one place", scene(*(model("stiffness: 3000", name=f"w{i}") for i in range(6))).replace("stiffness: 3", "stiffness: |3", 1),
+     P + "stiffness", "w0 with 5 models in its place pushes with up to 1.8e+04 N/m"),
     ("grams", body("mass: |500, tether: 20000"), P + "mass", "500 g are 0.5 kg"),
     ("a body that hangs far away", body("mass: 5, tether: |20"), P + "tether", "hangs 2.45 m below its pose"),
     ("a body that falls", body("mass: |0.5"), P + "mass", "nothing holds it"),

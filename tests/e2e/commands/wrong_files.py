@@ -72,6 +72,14 @@ with tempfile.TemporaryDirectory() as folder:  # of arms, check refuses what run
         place = re.search(r"^" + re.escape(os.path.realpath(arm)) + r":(\d+):\d+: " + re.escape(key) + ": (.*)$", told.stdout, re.M)
         check(f"check refuses {key} as run does", ran.returncode != 0 and told.returncode == 2 and place and int(place[1]) == 1 + shipped.count("\n") - 1
               and place[2] in ran.stderr and "--virtual-time allows" not in ran.stderr, told.stdout + ran.stderr)
+        alone = subprocess.run([HAPTICD, "check", arm], capture_output=True, text=True, timeout=120)
+        check(f"likewise of the arm alone: {key}", alone.returncode == 2 and f": {key}: " in alone.stdout, alone.stdout)
+    with open(os.path.join(folder, "path.csv"), "w") as out:
+        out.write("t,x,y,z\n" + "".join(f"{i},0,0,{0.06 - 0.0005 * i}\n" for i in range(40)))
+    with open(scene, "w") as out:
+        out.write(f"hapticd: 1\nhand: {{script: path, path: path.csv}}\nmodels:\n  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {geometry}}}}}\n")
+    told = subprocess.run([HAPTICD, "check", scene], capture_output=True, text=True, timeout=120)
+    check("a path in ms is told", f"{scene}:2:28: hand.path: warning: " in told.stdout and "expected times in s (1 ms is 0.001)" in told.stdout, told.stdout)
 
 for name in ("part.dae", "part.glb"):
     done = subprocess.run([HAPTICD, "import", name, "-o", "part.hpart"], capture_output=True, text=True, timeout=120)
@@ -85,7 +93,7 @@ with tempfile.TemporaryDirectory() as folder:
                               ("0.1", "pose: {position: [0, -5, 0]}, ", "its nearest point is 4.9 m from the world's origin")):
         subprocess.run([HAPTICD, "import", mesh, "--scale", scale, "-o", part], capture_output=True, check=True, timeout=120)
         with open(scene, "w") as out:
-            out.write("hapticd: 1\nhand: {script: press, center: [0.02, 0.02, -0.09], radius: 0.001, rise: 0.004}\n"
+            out.write("hapticd: 1\nhand: {script: none}\n"
                       f"models:\n  - {{name: egg, plugin: nurbs_rigid, {pose}parameters: {{geometry: egg.hpart}}}}\n")
         done = subprocess.run([HAPTICD, "check", scene], capture_output=True, text=True, timeout=120)
         check(f"check of a part: {told or 'no warning'}", done.returncode == 0 and (told in done.stdout if told else "warning" not in done.stdout), done.stdout)

@@ -69,7 +69,7 @@ def killLeavesAReadableFile(folder, environment):
         for command in (("plot", file, "--out", os.path.join(folder, "live.svg")), ("replay", file), ("export", file, "--csv", os.path.join(folder, "live"))):
             code, told = hapticd(*command)
             check(f"{command[0]} of what is still being written says by whom", code == 0 and f"still being written by process {run.pid};" in told
-                  and "killed" not in told and "lost" not in told, told)
+                  and "was killed" not in told and "lost" not in told, told)
         alive = run.poll() is None
         run.kill()
     check("the run was alive when it was killed", alive)

@@ -29,6 +29,19 @@ TEST(Csv, ReadsCommentsBlanksAndLineEndingsAlike) {
   EXPECT_EQ(table->row(1)[3], 0.5);
 }
 
+TEST(Csv, ReadsWhatSpreadsheetsAndStatisticsWrite) {
+  Problems problems;
+  for (const char* text : {"\xef\xbb\xbft,x,y,z\n0,1,2,3\n", "\"t\",\"x\",\"y\",\"z\"\r\n0,1,2,3\r\n"}) {
+    const auto table = parseCsv(text, "p.csv", kPath, problems);
+    ASSERT_TRUE(table) << problems.front().text();
+    EXPECT_EQ(table->row(0)[3], 3);
+  }
+  EXPECT_EQ(firstProblem(std::string("\xff\xfet\0,\0x\0", 8)),
+            "p.csv:1:1: the file is in UTF-16, expected UTF-8: save it as CSV UTF-8");
+  EXPECT_EQ(firstProblem("t,\x1b[2J\n0,1\n"),
+            "p.csv:1:1: the header is \"t,?[2J\", expected t,x,y,z or t,x,y,z,qw,qx,qy,qz");
+}
+
 TEST(Csv, TakesAFileWithoutAHeaderByTheNumberOfColumns) {
   Problems problems;
   const auto table = parseCsv("0,1,2,3,1,0,0,0\n1,1,2,3,1,0,0,0\n", "p.csv", kPath, problems);

@@ -53,6 +53,19 @@ TEST(Node, ExpandsAliases) {
   EXPECT_EQ(toJson(root), R"({"a":{"k":[1,2]},"b":{"k":[1,2]},"c":[{"k":[1,2]},{"k":[1,2]}]})");
 }
 
+TEST(Node, MergesMappingsBelowItsOwnKeys) {
+  const Node root = parsed("a: &a {x: 1, y: 2}\nb: &b {y: 3, z: 4}\nc: {<<: [*a, *b], x: 5}\nd: {\"<<\": 6}\n");
+  const Node& both = *root.find("c");
+  EXPECT_EQ(toJson(both), "{\"x\":5,\"y\":2,\"z\":4}");
+  EXPECT_EQ(both.find("z")->line, 2);
+  EXPECT_EQ(toJson(*root.find("d")), "{\"<<\":6}");
+  Problems problems;
+  parseText("c: {<<: 5}\n", "t.yaml", problems);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_EQ(problems[0].text(),
+            "t.yaml:1:9: <<: 5, expected a mapping to merge, such as an alias (*name) of one, or a list of them");
+}
+
 TEST(Node, RefusesAliasesOfAliasesAfterFewValues) {
   std::string text = "a0: &a0 [x, x, x, x, x, x, x, x]\n";
   for (int i = 1; i < 9; ++i) {
