@@ -188,7 +188,7 @@ void addWarnings(const scene::Scene& full, const ModelTrial& trial, const CheckA
 /// What no stage objects to and nobody can mean; a value is told of once, as others know more of it.
 void addUnusual(const scene::Scene& scene, const ModelBoxes& boxes, Verdict& verdict) {
   document::Problems more = unusualValues(scene, boxes, catalog());
-  for (const document::Problem& one : unusualSettings(scene)) more.push_back(one);
+  for (const document::Problem& one : unusualSettings(scene, boxes)) more.push_back(one);
   const size_t before = verdict.warnings.size();
   for (const document::Problem& one : more)
     if (std::none_of(verdict.warnings.begin(), verdict.warnings.begin() + static_cast<std::ptrdiff_t>(before),

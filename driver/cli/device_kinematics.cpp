@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 /// `hapticd device kinematics`: forward kinematics, Jacobian and torques of an arm, offline, for joints of a CSV file.
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <fstream>
 #include <iostream>
 #include <iterator>
 #include <memory>
+#include <optional>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "cli/command.hpp"
 #include "cli/output_file.hpp"
@@ -30,6 +35,39 @@ std::string headerOf(size_t joints) {
   return header;
 }
 
+/// The table that `device decode` writes, as q1,q2,...: its good rows. Nothing for another one.
+std::optional<std::string> fromDecoded(const std::string& text, size_t joints) {
+  std::istringstream in(text);
+  std::string line;
+  std::getline(in, line);
+  const auto cells = [](const std::string& row) {  // also empty ones
+    std::vector<std::string> found(1);
+    for (const char c : row) {
+      if (c == ',')
+        found.emplace_back();
+      else if (c != '\r')
+        found.back() += c;
+    }
+    return found;
+  };
+  const std::vector<std::string> names = cells(line);
+  const auto columnOf = [&names](const std::string& name) {
+    return static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  const size_t verdict = columnOf("verdict");
+  std::vector<size_t> columns;
+  for (size_t i = 1; i <= joints; ++i) columns.push_back(columnOf("position" + std::to_string(i)));
+  if (verdict == names.size() || *std::max_element(columns.begin(), columns.end()) >= names.size()) return std::nullopt;
+  std::string table = headerOf(joints) + "\n";
+  while (std::getline(in, line)) {
+    const std::vector<std::string> row = cells(line);
+    if (row.size() != names.size() || row[verdict] != "good") continue;
+    for (size_t i = 0; i < joints; ++i) table += (i > 0 ? "," : "") + row[columns[i]];
+    table += "\n";
+  }
+  return table;
+}
+
 /// Reads joints, and (where the file has them) force and torque on the hand.
 Result<document::CsvTable> readRows(const std::string& file, size_t joints) {
   const std::string q = headerOf(joints);
@@ -37,7 +75,18 @@ Result<document::CsvTable> readRows(const std::string& file, size_t joints) {
   document::CsvRules form;
   form.headers = {q, q + ",fx,fy,fz", q + ",fx,fy,fz,tx,ty,tz"};
   const bool input = file == "-";
-  const std::string text = input ? std::string(std::istreambuf_iterator<char>(std::cin), {}) : "";
+  std::string text;
+  if (input) {
+    text.assign(std::istreambuf_iterator<char>(std::cin), {});
+  } else {
+    std::ifstream in(file, std::ios::binary);
+    text.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  if (const auto decoded = fromDecoded(text, joints)) {
+    auto table = document::parseCsv(*decoded, file, form, problems);
+    if (!table) return Error{problems.front().text()};
+    return std::move(*table);
+  }
   auto table =
       input ? document::parseCsv(text, "-", form, problems) : document::readCsv(file, kMaxCsvBytes, form, problems);
   if (!table) return Error{problems.front().text()};
@@ -149,9 +198,10 @@ void addDeviceKinematics(const Command& app, int& exit_code) {
       "kinematics", "Compute tip pose, Jacobian, gravity torques and J^T W for the joint positions of a CSV file.");
   command.addOption("file", options->file, "device file (YAML)").required();
   command
-      .addOption("--joints", options->joints,
-                 "CSV with q1,q2,... [rad; m for sliding joints] and optionally fx,fy,fz[,tx,ty,tz] [N, N m]; - for "
-                 "standard input")
+      .addOption(
+          "--joints", options->joints,
+          "CSV with q1,q2,... [rad; m for sliding joints] and optionally fx,fy,fz[,tx,ty,tz] [N, N m], or the table "
+          "of device decode (its good rows); - for standard input")
       .required();
   command.addOption("-o,--out", options->out, "CSV file to write; - for standard output");
   command.footer(

@@ -319,6 +319,15 @@ int makeNew(const Command& command, NewDeviceArguments options) {
   if (!out) return fail(kFailed, file.string() + " is not writable");
   document::Problems problems = scene::loadDevice(file, catalog()).problems;
   if (problems.empty()) problems = diagnostics::tryDevice(file, catalog());
+  const bool of_checksum = std::any_of(problems.begin(), problems.end(),
+                                       [](const document::Problem& one) { return one.key.ends_with("].method"); });
+  if (of_checksum && !options.checksum.empty()) {
+    fs::remove(file, error);
+    return fail(kBadInput,
+                "--checksum " + options.checksum +
+                    ": no checksum has this name, expected one such as crc8, crc16, crc16-modbus, crc32, sum "
+                    "or xor (driver/docs/devices.md lists all); nothing was written");
+  }
   printProblems(problems, stderr);
   const std::string name = file.string();
   if (!problems.empty())

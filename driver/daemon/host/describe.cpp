@@ -163,8 +163,14 @@ Result<std::vector<ClassInfo>> describe(const std::filesystem::path& file) {
   const auto shapes = (*library)->shapes();
   const auto devices = (*library)->devices();
   if (!shapes && !devices) {
-    const bool meant_device = file.parent_path().filename() == "devices";
-    return Error{meant_device ? devices.error() : shapes.error()};
+    const std::string folder = file.parent_path().filename();
+    if (folder == "devices") return Error{devices.error()};
+    if (folder == "plugins") return Error{shapes.error()};
+    if (!(*library)->exports("hsp_plugin_entry") && !(*library)->exports("hdv_module_entry"))
+      return Error{file.string() +
+                   " is neither a plugin of shapes nor a device module: it exports no hsp_plugin_entry and no "
+                   "hdv_module_entry\n  fix: end it with HAPTICD_SHAPES(...) or HAPTICD_DEVICES(...)"};
+    return Error{(*library)->exports("hdv_module_entry") ? devices.error() : shapes.error()};
   }
   std::vector<ClassInfo> classes;
   try {

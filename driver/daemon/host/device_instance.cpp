@@ -142,6 +142,8 @@ Result<void> DeviceInstance::open() {
     open_ = false;
     return Error{who + "its module " + wrong};
   }
+  if (playback_ == nullptr)
+    for (const std::string& doubt : doubtsAboutKinematics(*kinematics_, device_)) services_.warn(doubt);
   return {};
 }
 

@@ -118,6 +118,10 @@ bool replacedSinceLoaded(const std::filesystem::path& file) {
   return first != all.first.end() && stampOf(real) != first->second;
 }
 
+bool Library::exports(const char* symbol) const {
+  return handle_ != nullptr && static_cast<bool>(symbolOf(handle_, symbol));
+}
+
 Result<const hsp_entry*> Library::shapes() const {
   constexpr const char* kSymbol = "hsp_plugin_entry";
   const BuiltIn* built_in = findBuiltIn(file_);

@@ -23,6 +23,7 @@ class Library {
   /// [main] The entry of a shape plugin or device module, checked for magic and major version.
   Result<const hsp_entry*> shapes() const;
   Result<const hdv_entry*> devices() const;
+  bool exports(const char* symbol) const;  ///< [main]
   const std::filesystem::path& file() const { return file_; }
 
  private:

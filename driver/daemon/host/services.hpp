@@ -35,6 +35,8 @@ class Services {
   std::string lastError() const;
   /// [main] Forgets that message, so that the next call is not blamed for an older one.
   void forgetError();
+  /// [main] What the host itself has to say of the instance.
+  void warn(const std::string& text) { write(HSP_LOG_WARNING, text.c_str()); }
   size_t lockedBytes() const { return locked_bytes_; }  ///< [main] how much alloc has given out
 
   /// [any] Only one reader: the next event of the servo thread. False if there is none.

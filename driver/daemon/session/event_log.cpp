@@ -148,8 +148,9 @@ EventLog::Message EventLog::messageOfModel(const hapticd_event& event) const {
       return {HSP_LOG_INFO, who, "has left the scene"};
     case HAPTICD_STALLED:
       return {HSP_LOG_WARNING, "",
-              fmt::format("no tick for {:.2f} s, until {:.2f} s: the process was stopped (SIGSTOP, a debugger), or the "
-                          "machine had no time for it",
+              fmt::format("no tick for {:.2f} s, until {:.2f} s: the process was stopped (SIGSTOP, a debugger), the "
+                          "machine had no time for it, or the module of an arm kept it (\"in arms\" of the report; "
+                          "hapticd device check FILE)",
                           event.value, event.t)};
     default:
       return {HSP_LOG_DEBUG, "", ""};

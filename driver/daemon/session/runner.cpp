@@ -69,6 +69,11 @@ std::unique_ptr<watch::Watchdog> watchdogOf(watch::Watched& watched, bool may_la
   return watchdog;
 }
 
+/// Asked again if nobody is to blame.
+void dieOfStop() {
+  if (const Owner* keeps = keepsTheEnd()) watch::dieOf("a stop() that did not come back", keeps);
+}
+
 /// @param after the last tick: calls of modules that may hang as well
 Result<void> runInVirtualTime(Loop& loop, const watch::Watched& watched, const std::function<void()>& after) {
   const auto hung = [] {
@@ -77,9 +82,7 @@ Result<void> runInVirtualTime(Loop& loop, const watch::Watched& watched, const s
   watch::EndWatch end(watched, [] { watch::endAnyway(keepsTheEnd()); }, hung);
   if (const auto code = end.start()) return Error{"cannot start the thread that watches the end: " + code.message()};
   loop.run();
-  end.lastCalls([] {
-    if (const Owner* keeps = keepsTheEnd()) watch::dieOf("a stop() that did not come back", keeps);
-  });
+  end.lastCalls(dieOfStop);
   after();
   return {};
 }
@@ -277,7 +280,13 @@ Result<void> Runner::runReal(watch::Watched& watched, const std::function<void(c
   watch::notify("STOPPING=1");
   servo.join();
   wall_time_ = monotonicNow() - begun;
-  stopArms();
+  {
+    const auto idle = [] {};
+    watch::EndWatch last(watched, idle, idle);
+    last.lastCalls(dieOfStop);
+    [[maybe_unused]] const auto unwatched = last.start();  // then the arms are stopped all the same
+    stopArms();
+  }
   if (guard_) guard_->arm(false);
   proximity.stop();
   host::Services::passOn(log::write);

@@ -125,7 +125,7 @@ std::string clock(const codec::Wire& wire, const DecodedReports& reports) {
   char text[320];
   std::snprintf(text, sizeof text,
                 "the arm's clock grows by %.3g s from one report to the next (median), and wire.rate %g is one each "
-                "%.3g s; give rate: %.3g, or a scale of time that is %.3g times %s\n",
+                "%.3g s; give rate: %.0f, or a scale of time that is %.4g times %s\n",
                 period, wire.rate, 1 / wire.rate, 1 / period, times > 1 ? times : 1 / times,
                 times > 1 ? "smaller" : "larger");
   return text;

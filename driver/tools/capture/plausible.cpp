@@ -46,6 +46,12 @@ std::string beyondStops(const Course& course, const Stops& stops) {
   constexpr double kTurns = 4 * M_PI;  // no joint with stops makes two turns
   const double way = course.most - course.least;
   if (stops.given ? !leavesStops(course.at, stops) : way <= kTurns * 1.1) return "";
+  if (stops.placed && way <= stops.high - stops.low)
+    return "from " + number(course.least) + " to " + number(course.most) + " rad, and arm.limits are " +
+           number(stops.low) + " to " + number(stops.high) + " rad: its way of " + number(way) +
+           " rad fits between them, so it is in another place: is offset in rad (for degrees: offset_degrees), with "
+           "the "
+           "right sign?";
   return "from " + number(course.least) + " to " + number(course.most) + " rad, " +
          (stops.placed  ? "and arm.limits are " + number(stops.low) + " to " + number(stops.high) + " rad"
           : stops.given ? "a way of more than the " + number(stops.high - stops.low) + " rad between its arm.limits"

@@ -42,24 +42,25 @@ bool has(const codec::Report& report, Role role) {
   return std::any_of(report.fields.begin(), report.fields.end(), [&](const Field& f) { return f.role == role; });
 }
 
-std::string hex(uint64_t value) {
+/// All digits of a field's bits, as a dump of its bytes has them.
+std::string hex(uint64_t value, const Field& field) {
   char text[24];
-  std::snprintf(text, sizeof text, "0x%" PRIx64, value);
+  std::snprintf(text, sizeof text, "0x%0*" PRIx64, (field.bits + 3) / 4, value);
   return text;
 }
 
 /// Why one field made a report bad.
 std::string whyWrong(const Field& field, std::span<const uint8_t> body) {
   const std::string at = " at byte " + std::to_string(field.at);
-  const std::string is = hex(codec::codeAt(field, body));
+  const std::string is = hex(codec::codeAt(field, body), field);
   switch (field.role) {
     case Role::kChecksum:
       return "checksum" + at + " is " + is + ", of the bytes " + std::to_string(field.from) + " to " +
-             std::to_string(field.to - 1) + " it is " + hex(codec::checksumAt(field, body));
+             std::to_string(field.to - 1) + " it is " + hex(codec::checksumAt(field, body), field);
     case Role::kFirmware:
     case Role::kConstant:
       return (field.role == Role::kFirmware ? "firmware" : "constant") + at + " is " + is + ", expected " +
-             hex(field.code);
+             hex(field.code, field);
     case Role::kSequence:
       return "counter" + at + " is " + is + ", which is another than the one before it, or beyond its modulo";
     default:

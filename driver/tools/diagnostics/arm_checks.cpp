@@ -95,8 +95,14 @@ std::vector<Finding> checkArm(const std::string& file, host::Catalog& catalog) {
     return {{file, Verdict::kFail, problems.empty() ? "cannot be used" : problems.front().text(),
              "no run opens this arm",
              "correct that; hapticd check " + file + " shows every problem of the file and its module"}};
-  if (found->simulated) return {{found->arm, Verdict::kOk, "a simulated arm has no motors", "", ""}};
   std::vector<Finding> findings;
+  for (const std::string& doubt : found->doubts)
+    findings.push_back({found->arm, Verdict::kWarn, doubt, "forces or simulated hands may go wrong",
+                        "correct its module; hapticd device check " + file + " examines all of it"});
+  if (found->simulated) {
+    findings.push_back({found->arm, Verdict::kOk, "a simulated arm has no motors", "", ""});
+    return findings;
+  }
   for (const auto& one : {missing(*found), withoutRule(*found, file)})
     if (one) findings.push_back(*one);
   findings.push_back(silenced(*found, file));

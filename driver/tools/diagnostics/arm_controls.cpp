@@ -155,13 +155,15 @@ std::optional<ArmControls> controlsOfFile(const std::string& file, host::Catalog
   const scene::LoadedDevice loaded = scene::loadDevice(file, catalog);
   problems = loaded.problems;
   if (!loaded.device) return std::nullopt;
-  const document::Problems wrong = tryDevice(file, catalog);
+  document::Problems doubts;
+  const document::Problems wrong = tryDevice(file, catalog, {}, &doubts);
   problems.insert(problems.end(), wrong.begin(), wrong.end());
   if (!wrong.empty()) return std::nullopt;
   auto device = host::DeviceInstance::create(*loaded.device, logNothing);
   if (!device) return document::report(problems, file, 0, 0, "", device.error()), std::nullopt;
   const auto opened = (*device)->open();
   ArmControls found;
+  for (const document::Problem& doubt : doubts) found.doubts.push_back(doubt.what);
   found.arm = loaded.device->name;
   found.opened = static_cast<bool>(opened);
   if (!opened) found.why = opened.error();

@@ -31,13 +31,14 @@ struct ArmControls {
   std::string arm;
   bool opened = false;  ///< it is plugged in; otherwise facts that only it can give are unknown
   std::vector<Control> controls;
-  bool silenced_after_us = false;  ///< something switches its motors off when the daemon has gone
-  bool simulated = false;          ///< it has no motors
-  bool watchdog = false;           ///< its own hardware does so when commands stop, as far as is known
-  std::string why;                 ///< why it could not be opened; "" if it could
-  std::string slow;                ///< why it pushes less than its limits allow; "" if it does not
-  std::string usb_id;              ///< "1209:0006"; "" for an arm on another bus
-  bool repeats_pass = false;       ///< the same report, sent repeatedly, would not be noticed
+  bool silenced_after_us = false;   ///< something switches its motors off when the daemon has gone
+  std::vector<std::string> doubts;  ///< about its module, which no run refuses
+  bool simulated = false;           ///< it has no motors
+  bool watchdog = false;            ///< its own hardware does so when commands stop, as far as is known
+  std::string why;                  ///< why it could not be opened; "" if it could
+  std::string slow;                 ///< why it pushes less than its limits allow; "" if it does not
+  std::string usb_id;               ///< "1209:0006"; "" for an arm on another bus
+  bool repeats_pass = false;        ///< the same report, sent repeatedly, would not be noticed
 };
 
 /// [main] Loads the file, and opens the arm if it is present; moves nothing. Nothing: `problems` say why.

@@ -16,7 +16,21 @@ namespace hapticd::diagnostics {
 namespace {
 
 using document::Node;
-using document::toJson;
+
+/// As a person writes it: no quotes where the file had none.
+std::string flowText(const Node& node) {
+  std::string text;
+  if (node.isMap()) {
+    for (const document::Entry& entry : node.entries)
+      text += (text.empty() ? "" : ", ") + flowText(entry.key) + ": " + flowText(entry.value);
+    return "{" + text + "}";
+  }
+  if (node.isSequence()) {
+    for (const Node& item : node.items) text += (text.empty() ? "" : ", ") + flowText(item);
+    return "[" + text + "]";
+  }
+  return node.isScalar() && !node.quoted ? node.scalar : document::toJson(node);
+}
 
 const Node kNothing{};
 
@@ -32,9 +46,9 @@ bool listed(const std::array<std::string_view, N>& keys, const std::string& key)
 
 /// A map without some of its keys, as one line of YAML.
 template <size_t N>
-std::string jsonWithout(Node map, const std::array<std::string_view, N>& keys) {
+std::string flowWithout(Node map, const std::array<std::string_view, N>& keys) {
   std::erase_if(map.entries, [&](const document::Entry& entry) { return listed(keys, entry.key.scalar); });
-  return toJson(map);
+  return flowText(map);
 }
 
 std::vector<double> numbersOf(const Node& list, size_t count) {
@@ -51,7 +65,7 @@ std::string armOfTwin(const Node& arm, bool chain) {
   for (const document::Entry& entry : arm.entries) {
     const std::string& key = entry.key.scalar;
     const std::string name = key == "origin" && chain ? "base_position" : key;
-    if (listed(kSame, key) || key == "origin") text += "    " + name + ": " + toJson(entry.value) + "\n";
+    if (listed(kSame, key) || key == "origin") text += "    " + name + ": " + flowText(entry.value) + "\n";
   }
   return text;
 }
@@ -77,7 +91,7 @@ constexpr std::array<std::string_view, 4> kCapabilities{"max_force", "continuous
 std::string deviceOf(const Node& device, double rate) {
   std::string text = fmt::format("  device: {{rate: {:g}", rate);
   for (const document::Entry& entry : device.entries)
-    if (listed(kCapabilities, entry.key.scalar)) text += ", " + entry.key.scalar + ": " + toJson(entry.value);
+    if (listed(kCapabilities, entry.key.scalar)) text += ", " + entry.key.scalar + ": " + flowText(entry.value);
   return text + "}\n";
 }
 
@@ -129,7 +143,7 @@ Stand standOfFlat(const RestPose& rest, const std::string& pose) {
 Stand standOf(const Node& mount, const Node& arm, bool chain) {
   Stand stand;
   stand.center = originOf(mount);
-  if (mount.isMap()) stand.mount = "mount: " + toJson(mount) + "\n";
+  if (mount.isMap()) stand.mount = "mount: " + flowText(mount) + "\n";
   if (mount.isMap() || !chain) return stand;
   const RestPose rest = restPoseOf(arm);
   const std::string pose = poseOf(rest, !below(arm, "limits").items.empty());
@@ -198,7 +212,7 @@ Result<std::string> twinOf(const Node& root, const std::string& file) {
       file, below(root, "name").scalar);
   text += stand.mount;
   if (limits.isMap())
-    text += "limits: " + jsonWithout(limits, kButtons) +
+    text += "limits: " + flowWithout(limits, kButtons) +
             (below(limits, "enable").isNull() ? "\n" : "    # without enable: it has no buttons\n");
   text += "parameters:\n  substep: 0.0002               # s, of the integration\n";
   if (const std::string borrowed = borrowedByTwin(root); !borrowed.empty()) text += "  # " + borrowed + "\n";

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -34,10 +35,11 @@ void forceBeyondArm(const scene::Device& device, document::Problems& warnings) {
                        document::numberText(most->number) + " N, expected no more");
 }
 
-/// Rows of the Jacobian at rest, from `first` on; nothing if the arm cannot tell.
-std::optional<Eigen::Matrix3Xd> jacobianAtRest(const Node& root, const host::DeviceInstance& arm, Eigen::Index first) {
+using Joints = std::array<double, HDV_MAX_JOINTS>;
+
+/// Rows of the Jacobian in one pose, from `first` on; nothing if the arm cannot tell.
+std::optional<Eigen::Matrix3Xd> jacobianAt(const Joints& q, const host::DeviceInstance& arm, Eigen::Index first) {
   const hdv_ext_kinematics& kinematics = arm.kinematics();
-  const auto q = restJoints(root, kinematics.joint_count);
   Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::RowMajor> all(6, kinematics.joint_count);
   if (kinematics.jacobian(arm.handle(), q.data(), all.data()) < 0) return std::nullopt;
   return all.middleRows<3>(first);
@@ -45,14 +47,14 @@ std::optional<Eigen::Matrix3Xd> jacobianAtRest(const Node& root, const host::Dev
 
 /// A force that the motors cannot make at rest in any direction: it was meant in other units, or its limit has no
 /// effect.
-void beyondMotors(const Node* at, const char* key, double given, double reach, const char* unit,
+void beyondMotors(const Node* at, const char* key, double given, double reach, const char* unit, const char* where,
                   const std::string& file, document::Problems& warnings) {
   constexpr double kBeyond = 1.5;  // elsewhere in its workspace an arm may give somewhat more
   if (at == nullptr || given <= kBeyond * reach) return;
   document::report(warnings, file, at->line, at->column, key,
-                   fmt::format("{:g} {} is beyond the motors: with arm.max_torque they give at most {:.3g} {} at rest; "
+                   fmt::format("{:g} {} is beyond the motors: with arm.max_torque they give at most {:.3g} {} {}; "
                                "expected a limit below that, or the torques at the joints (motor times gear)",
-                               given, unit, reach, unit));
+                               given, unit, reach, unit, where));
 }
 
 /// Motors that push a thousand times harder than allowed: N mm were meant.
@@ -103,8 +105,33 @@ std::vector<double> motorsOf(const scene::Device& device, size_t joints) {
 
 std::optional<double> forceOfMotors(const Node& root, const scene::Device& device, const host::DeviceInstance& arm) {
   const std::vector<double> motors = motorsOf(device, arm.kinematics().joint_count);
-  const auto linear = jacobianAtRest(root, arm, 0);
+  const auto linear = jacobianAt(restJoints(root, arm.kinematics().joint_count), arm, 0);
   return motors.empty() || !linear ? std::nullopt : farthestReach(*linear, motors);
+}
+
+/// What motors give, and where: at rest, or, of an arm that rests stretched out, the most of some poses. Stretched out
+/// it bears any force along itself.
+struct MotorForce {
+  double most = 0;
+  const char* where = "at rest";
+};
+
+static std::optional<MotorForce> motorForce(const Node& root, const scene::Device& device,
+                                            const host::DeviceInstance& arm) {
+  if (const auto at_rest = forceOfMotors(root, device, arm)) return MotorForce{*at_rest};
+  const uint32_t joints = arm.kinematics().joint_count;
+  const std::vector<double> motors = motorsOf(device, joints);
+  if (motors.empty()) return std::nullopt;
+  constexpr int kPoses = 12;
+  MotorForce found{0, "in twelve poses, as it rests stretched out"};
+  for (int pose = 0; pose < kPoses; ++pose) {
+    Joints q = restJoints(root, joints);
+    for (uint32_t i = 0; i < joints; ++i) q[i] += 0.9 * std::sin(1.7 * (pose + 1) + 2.3 * i);  // spread over a radian
+    keepWithinStops(root, q, joints);
+    if (const auto linear = jacobianAt(q, arm, 0))
+      found.most = std::max(found.most, farthestReach(*linear, motors).value_or(0));
+  }
+  return found.most > 0 ? std::optional(found) : std::nullopt;
 }
 
 void adviseLimits(const Node& root, const scene::Device& device, const host::DeviceInstance& arm,
@@ -112,19 +139,20 @@ void adviseLimits(const Node& root, const scene::Device& device, const host::Dev
   forceBeyondArm(device, warnings);
   const std::string file = device.file.string();
   const std::vector<double> motors = motorsOf(device, arm.kinematics().joint_count);
-  const auto angular = jacobianAtRest(root, arm, 3);
+  const auto angular = jacobianAt(restJoints(root, arm.kinematics().joint_count), arm, 3);
   if (motors.empty() || !angular) return;
-  if (const auto reach = forceOfMotors(root, device, arm)) {
-    beyondMotors(find(root, {"limits", "force"}), "limits.force", device.limits.force, *reach, "N", file, warnings);
-    motorsBeyondAll(root, device, *reach, warnings);
+  if (const auto reach = motorForce(root, device, arm)) {
+    beyondMotors(find(root, {"limits", "force"}), "limits.force", device.limits.force, reach->most, "N", reach->where,
+                 file, warnings);
+    motorsBeyondAll(root, device, reach->most, warnings);
     const scene::Value* claimed = valueOf(device, {"device.max_force"});
     beyondMotors(find(root, {"parameters", "device", "max_force"}), "parameters.device.max_force",
-                 claimed == nullptr ? 0 : claimed->number, *reach, "N", file, warnings);
+                 claimed == nullptr ? 0 : claimed->number, reach->most, "N", reach->where, file, warnings);
   }
   // In a direction that no motor turns, the joints carry the load: the motors together bound all other directions.
   const double together = std::accumulate(motors.begin(), motors.end(), 0.0);
   beyondMotors(find(root, {"limits", "torque"}), "limits.torque", device.limits.torque,
-               farthestReach(*angular, motors).value_or(together), "N m", file, warnings);
+               farthestReach(*angular, motors).value_or(together), "N m", "at rest", file, warnings);
 }
 
 }  // namespace hapticd::diagnostics

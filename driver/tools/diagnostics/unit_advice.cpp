@@ -70,6 +70,23 @@ void linkTooLong(const Node* lengths, const std::string& file, document::Problem
                                most, most, most / 1000));
 }
 
+/// The same of a chain, whose lengths are in two columns.
+void chainTooLong(const Node* rows, const std::string& file, document::Problems& warnings) {
+  constexpr double kLong = 2;  // m, as above
+  if (rows == nullptr || !rows->isSequence()) return;
+  for (size_t row = 0; row < rows->items.size(); ++row)
+    for (const size_t column : {size_t{0}, size_t{2}}) {
+      if (column >= rows->items[row].items.size()) continue;
+      const Node& at = rows->items[row].items[column];
+      const double length = std::abs(document::toNumber(at.scalar).value_or(0));
+      if (length <= kLong) continue;
+      document::report(warnings, file, at.line, at.column, fmt::format("parameters.arm.dh[{}][{}]", row, column),
+                       fmt::format("{0:g} m as {1} of joint {2} is longer than an arm that a hand leads; expected "
+                                   "metres: {0:g} mm are {3:g} m",
+                                   length, column == 0 ? "a" : "d", row + 1, length / 1000));
+    }
+}
+
 /// A link that points the other way has a twist, not a negative length.
 void lengthBelowZero(const Node* lengths, const std::string& file, document::Problems& warnings) {
   for (const double length : numbersIn(lengths))
@@ -137,6 +154,7 @@ void adviseUnits(const Node& root, const std::string& file, document::Problems& 
   beyondATurn(find(root, {"parameters", "arm", "limits"}), "parameters.arm.limits", file, warnings);
   beyondATurn(find(root, {"parameters", "calibration", "pose"}), "parameters.calibration.pose", file, warnings);
   twistInDegrees(find(root, {"parameters", "arm", "dh"}), file, warnings);
+  chainTooLong(find(root, {"parameters", "arm", "dh"}), file, warnings);
   linkTooLong(find(root, {"parameters", "arm", "lengths"}), file, warnings);
   lengthBelowZero(find(root, {"parameters", "arm", "lengths"}), file, warnings);
   offsetBeyondATurn(find(root, {"parameters", "wire", "input", "fields"}), file, warnings);

@@ -78,13 +78,43 @@ void judgeArms(const scene::Scene& scene, document::Problems& warnings) {
     }
 }
 
+/// The base of a chain is where its first link turns: within a model nothing else has room.
+void judgeBases(const scene::Scene& scene, const ModelBoxes& boxes, document::Problems& warnings) {
+  constexpr double kOpen = 0.6;  // of a box's half widths: its corners may be free, and models have rooms
+  for (const scene::Device& device : scene.devices) {
+    const document::Place place = device.place.file.empty() ? document::Place{device.file.string()} : device.place;
+    const scene::Value *links = nullptr, *base = nullptr;
+    for (const scene::Value& value : device.parameters) {
+      if (value.id == "arm.dh" && !value.numbers.empty()) links = &value;
+      if (value.id == "arm.base_position" && value.numbers.size() == 3) base = &value;
+    }
+    if (links == nullptr) continue;
+    Eigen::Vector3d at = device.mount.position;
+    if (base != nullptr) at += device.mount.orientation * Eigen::Map<const Eigen::Vector3d>(base->numbers.data());
+    for (size_t i = 0; i < boxes.size() && i < scene.models.size(); ++i) {
+      const scene::Pose& pose = scene.models[i].pose;
+      if (!boxes[i] || boxes[i]->isEmpty() || scene.models[i].kinematic) continue;
+      const Eigen::Vector3d in = pose.orientation.conjugate() * (at - pose.position) - boxes[i]->center();
+      if ((in.array().abs() > kOpen * 0.5 * boxes[i]->sizes().array()).any()) continue;
+      const auto mount = placeOfKey(device.file, "mount");
+      document::report(
+          warnings, mount ? *mount : place, "mount",
+          fmt::format("{} stands with its base in the middle of {}{}; expected mount: {{position: [x, y, z]}} in "
+                      "m, which puts its tip in front of the models: hapticd device twin proposes one",
+                      device.name, scene.models[i].name, mount ? "" : ", as it has no mount"));
+      break;
+    }
+  }
+}
+
 }  // namespace
 
-document::Problems unusualSettings(const scene::Scene& scene) {
+document::Problems unusualSettings(const scene::Scene& scene, const ModelBoxes& boxes) {
   document::Problems warnings;
   judgeGravity(scene, warnings);
   judgeServo(scene, warnings);
   judgeArms(scene, warnings);
+  judgeBases(scene, boxes, warnings);
   return warnings;
 }
 

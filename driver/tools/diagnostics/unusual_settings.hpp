@@ -5,13 +5,15 @@
 #include <vector>
 
 #include "description/scene.hpp"
+#include "diagnostics/model_trial.hpp"
 #include "document/problem.hpp"
 #include "hapticd/device.h"
 
 namespace hapticd::diagnostics {
 
 /// [main] Warns of gravity, search radii and budgets that are not usual, and of arms that stand in one another.
-document::Problems unusualSettings(const scene::Scene& scene);
+/// @param boxes as tryModels() found them
+document::Problems unusualSettings(const scene::Scene& scene, const ModelBoxes& boxes = {});
 
 /// [main] What models that lie in one place do together to an arm: tune::unstableSettings() with the sum of their
 /// stiffness. @param info what the arm says of itself  @param stiffness [N/m] that each model claims, in scene order

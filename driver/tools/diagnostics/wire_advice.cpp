@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
-#include "codec/wire_overlap.hpp"
 #include "diagnostics/node_path.hpp"
 #include "diagnostics/wire_of.hpp"
 
@@ -89,14 +89,39 @@ void adviseTorques(const Node& fields, const codec::Report& report, const scene:
   }
 }
 
+/// Fields that no checksum covers: numbers of joints, and what switches motors or tells of trouble. A counter may
+/// stand around all of it.
+std::vector<size_t> uncovered(const codec::Report& report) {
+  std::vector<bool> covered(report.size);
+  bool any = false;
+  for (const Field& field : report.fields)
+    if (field.role == Role::kChecksum && field.to <= report.size)
+      any = true, std::fill(covered.begin() + field.from, covered.begin() + field.to, true);
+  constexpr Role kIdle[] = {Role::kChecksum, Role::kConstant, Role::kFirmware,
+                            Role::kSequence, Role::kStarts,   Role::kTime};
+  std::vector<size_t> outside;
+  for (size_t i = 0; i < report.fields.size() && any; ++i) {
+    const Field& field = report.fields[i];
+    if (std::find(std::begin(kIdle), std::end(kIdle), field.role) != std::end(kIdle)) continue;
+    for (size_t byte = field.at; byte < std::min(field.at + field.bytes(), report.size); ++byte)
+      if (!covered[byte]) {
+        outside.push_back(i);
+        break;
+      }
+  }
+  return outside;
+}
+
 /// A number that no checksum covers is trusted as it comes.
 void adviseChecksum(const Node& fields, const codec::Report& report, const char* side, const scene::Device& device,
                     document::Problems& warnings) {
   std::string outside;
-  for (const Field* field : codec::outsideChecksum(report)) {
-    const size_t i = static_cast<size_t>(field - report.fields.data());
+  for (const size_t i : uncovered(report)) {
     const Node* is = i < fields.items.size() ? fields.items[i].find("is") : nullptr;
-    if (is != nullptr) outside += (outside.empty() ? "" : ", ") + is->scalar + fmt::format(" {}", field->index + 1);
+    if (is == nullptr) continue;
+    const bool numbered = fields.items[i].find("joint") != nullptr || fields.items[i].find("button") != nullptr;
+    outside += (outside.empty() ? "" : ", ") + is->scalar +
+               (numbered ? fmt::format(" {}", report.fields[i].index + 1) : std::string());
   }
   for (size_t i = 0; !outside.empty() && i < fields.items.size(); ++i) {
     const Field& field = report.fields[i];
@@ -105,7 +130,7 @@ void adviseChecksum(const Node& fields, const codec::Report& report, const char*
     document::report(warnings, device.file.string(), at->line, at->column,
                      fmt::format("parameters.wire.{}.fields[{}].to", side, i),
                      fmt::format("the checksum covers the bytes {} to {}, and leaves out {}: a wrong one would be "
-                                 "believed; expected from and to around every number",
+                                 "believed; expected from and to around all of them",
                                  field.from, field.to - 1, outside));
     return;
   }

@@ -64,6 +64,15 @@ parameters:
     masses: [0.03, 0, 0.05, 0]
 hand: {script: press, radius: 0.05, rise: 0.003, rate: 1, center: [0, 0, -0.09]}
 """
+CHAIN = WIRED.replace("""    kind: phantom
+    lengths: [0.21, 0.17, 0.03, 0, 0]
+    masses: [0.02, 0.025, 0, 0]
+""", """    kind: chain
+    dh:
+      - [0, 1.5707963, 0, 0]
+      - [0.22, 0, 0, 0]
+      - [0.2, 0, 0, 0]
+""").replace("workspace: 0.3, ", "")
 PREMIUM = open(os.path.join(SOURCE, "config", "devices", "simulated-premium15.yaml")).read()
 IN, OUT = "parameters.wire.input.fields", "parameters.wire.output.fields"
 READ = "joint: {0}, at: {1}, type: i16, scale: 9.6e-5"
@@ -91,6 +100,9 @@ CASES = [
     (WIRED, {"mass: 0.2": "mass: |75"}, "parameters.device.mass", "75 g are 0.075 kg"),
     (WIRED, {"lengths: [0.21": "lengths: [|0.021"}, "parameters.arm.lengths[0]", "nearer to its shoulder than 0.149 m"),
     (WIRED, {"force: 2,": "force: |0.002,"}, "limits.force", "0.002 kN are 2 N"),
+    (WIRED, {"from: 0, to: 8}": "from: 0, to: |6}"}, f"{OUT}[5].to", "leaves out enable: a wrong one"),
+    (CHAIN, {"force: 2": "force: |200"}, "limits.force", "in twelve poses, as it rests stretched out"),
+    (CHAIN, {"- [0.22, 0": "- [|2.2, 0"}, "parameters.arm.dh[1][0]", "2.2 mm are 0.0022 m"),
     (TWIN, {"masses: [0.03, 0, 0.05, 0]": "masses: |[30, 0, 50, 0]"}, "parameters.arm.masses", "30 g are 0.03 kg"),
     (PREMIUM, {"force: 8.5": "force: |0.0085"}, "limits.force", "0.0085 kN are 8.5 N"),
     (PREMIUM, {"force: 8.5": "force: |850"}, "limits.force", "850 mN are 0.85 N"),
@@ -121,6 +133,14 @@ def refused(folder):
         out.write(f"hapticd: 1\ndevice: two.yaml\nmodels:\n  - {{name: ball, plugin: nurbs_rigid, parameters: {{geometry: {SOURCE}/config/models/sphere.yaml}}}}\n")
     done = subprocess.run([HAPTICD, "check", scene], capture_output=True, text=True, timeout=120)
     told = [line for line in done.stdout.splitlines() if f"{os.path.realpath(file)}:" in line]
+    chain = os.path.join(folder, "chain.yaml")
+    with open(chain, "w") as out:
+        out.write(CHAIN.replace("mount: {position: [0, 0, 0.09]}\n", ""))
+    base = subprocess.run([HAPTICD, "check", os.path.join(SOURCE, "config", "scenes", "sphere.yaml"), "--device", chain], capture_output=True, text=True, timeout=120)
+    check("a chain without a mount stands in a sphere", f"{chain}:1:1: mount: warning: mine stands with its base in the middle of sphere" in base.stdout, base.stdout)
+    new = subprocess.run([HAPTICD, "device", "new", "a3", "--no-questions", "--checksum", "crc9"], capture_output=True, text=True, timeout=120, cwd=folder)
+    check("a checksum without a name writes nothing", new.returncode == 2 and "--checksum crc9: no checksum has this name" in new.stderr
+          and not os.path.exists(os.path.join(folder, "a3.yaml")), new)
     check("a scene tells all of its device", done.returncode == 2 and len(told) == 2 and all("parameters.wire." in line for line in told), done.stdout)
 
 
@@ -148,7 +168,7 @@ def main():
             file, place = written(os.path.join(folder, f"arm{i}.yaml"), text, changes)
             placed.append((file, place, key, word))
         usual = []
-        for i, text in enumerate((WIRED, TWIN, PREMIUM)):
+        for i, text in enumerate((WIRED, TWIN, PREMIUM, CHAIN)):
             usual.append(os.path.join(folder, f"usual{i}.yaml"))
             with open(usual[-1], "w") as out:
                 out.write(text)

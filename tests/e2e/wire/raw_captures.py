@@ -122,6 +122,13 @@ with tempfile.TemporaryDirectory() as folder:
     bodies = [bytes.fromhex(line) for line in done.stdout.decode().splitlines()]
     check("encode lets the clock go on", len(bodies) == 2 and bodies[0][2:4] != bodies[1][2:4], done)
 
+    # A number in another place is told from one of another size.
+    second = f"joint: 2, at: 8, type: i24, scale: {SCALE:.9g}"
+    code, out, err = decode(OVER, {second: second + ", offset: 2.3"})
+    check("an offset that is too large is named", "joint 2" in err and "fits between them" in err and "offset_degrees" in err, err)
+    code, out, err = decode(OVER, {second: second.replace("scale: ", "scale: 1")})
+    check("a scale that is too large is named", "joint 2" in err and "is scale in rad" in err, err)
+
     # Id and size.
     for form, of in (("raw", bytes), ("text", text_of)):
         named(f"an id that the file lacks, {form}", of(PLAIN), no_id, "each begins with 0x01 and has one byte too many", "give wire.input id: 1;")

@@ -31,7 +31,9 @@ const char* describe(Fault fault) {
     case Fault::kStopped:
       return "stopped by the user";
     case Fault::kStuck:
-      return "a tick did not end, and the watchdog cut the motors; find the cause with: hapticd doctor";
+      return "a tick did not end, and the watchdog cut the motors; find the cause with: hapticd doctor, or, in a "
+             "module "
+             "of your own: hapticd device check FILE";
     case Fault::kOverheated:
       return "a motor is hotter than limits.motors allow; let it cool down, then start again";
     case Fault::kJumped:

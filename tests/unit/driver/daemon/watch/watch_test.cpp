@@ -380,6 +380,17 @@ TEST(EndWatch, EndsATickThatComputesOnAndOnAndOneThatWaits) {
   EXPECT_GT(hungIn(servo, EndWatch::kWaitsAfter / kLook + 2, 0), 0);
 }
 
+TEST(EndWatch, EndsWhatDoesNotComeBackAfterTheLastTick) {
+  Fake servo;
+  int stuck = 0;
+  EndWatch watch(servo, [] {}, [] { FAIL() << "no tick is to come"; });
+  watch.lastCalls([&stuck] { ++stuck; });
+  for (Nanoseconds looks = 1; looks < EndWatch::kWaitsForLast / EndWatch::kLookEvery; ++looks) watch.look(looks);
+  EXPECT_EQ(stuck, 0);
+  watch.look(1), watch.look(2);
+  EXPECT_EQ(stuck, 2) << "asked again, as long as nobody is to blame";
+}
+
 TEST(EndWatch, LeavesSlowTicksAloneHoweverManyThereAre) {
   Fake servo;
   int hung = 0;
