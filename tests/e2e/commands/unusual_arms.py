@@ -120,6 +120,8 @@ CASES = [
     (TWIN, {"hand:": "  device: {rate: |10}\nhand:"}, "parameters.device.rate", "10 kHz are 10000"),
     (CHAIN, {"[0.2, 0, 0, 0]": "[0.2, 0, 0, 0]\n    masses: [0.1, 0.1, 0.1]\n    centers: |[[0, 0, 0], [-10, 0, 0], [-10, 0, 0]]"}, "parameters.arm.centers",
      "pull the tip up"),
+    (WIRED, {"max_torque: [0.6]": "max_torque: [|0, 0.6, 0.6]"}, "parameters.arm.max_torque[0]", "0 is no bound"),
+    (CHAIN, {"    dh:": "    base_orientation: |[0, 0, 0, 1]\n    dh:"}, "parameters.arm.base_orientation", "half turn about z"),
     (TWIN, {"masses: [0.03, 0, 0.05, 0]": "masses: |[30, 0, 50, 0]"}, "parameters.arm.masses", "30 g are 0.03 kg"),
     (PREMIUM, {"force: 8.5": "force: |0.0085"}, "limits.force", "0.0085 kN are 8.5 N"),
     (PREMIUM, {"force: 8.5": "force: |850"}, "limits.force", "850 mN are 0.85 N"),
