@@ -121,8 +121,10 @@ Result<std::unique_ptr<Runner>> Runner::prepare(const scene::Scene& scene, const
   if (auto opened = runner->openArms(log); !opened) {
     const bool real = std::any_of(scene.devices.begin(), scene.devices.end(),
                                   [](const scene::Device& device) { return device.module != "simulated"; });
-    return Error{opened.error() +
-                 (options.virtual_time && real ? "\n  note: --virtual-time allows simulated devices only" : "")};
+    const bool absent = opened.error().find("cannot be opened") != std::string::npos;  // else its module is wrong
+    return Error{opened.error() + (options.virtual_time && real && absent
+                                       ? "\n  note: --virtual-time allows simulated devices only"
+                                       : "")};
   }
   if (options.virtual_time && !runner->onlySimulated())
     return Error{

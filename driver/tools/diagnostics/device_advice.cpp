@@ -126,6 +126,7 @@ document::Problems adviseDevice(const std::filesystem::path& file, host::Catalog
     adviseTravel(*root, *loaded.device, **arm, warnings);
     adviseMotors(*root, *loaded.device, (*arm)->kinematics().joint_count, warnings);
     unusualFields(*root, *loaded.device, **arm, warnings);
+    unusualLimits(*root, *loaded.device, **arm, warnings);
     unusualArm(*root, *loaded.device, **arm, warnings);
   }
   document::sortByPlace(warnings);

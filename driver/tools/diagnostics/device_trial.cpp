@@ -111,6 +111,20 @@ std::string madeInChild(const scene::Device& device, host::Trail& trail) {
 
 }  // namespace
 
+/// Of an arm that a file describes, what its kinematics lack is in the file; else in the module.
+static void placeDoubt(const std::string& doubt, const Node& root, const std::string& file,
+                       document::Problems& warnings) {
+  const Node* parameters = root.find("parameters");
+  const Node* arm = parameters != nullptr && parameters->isMap() ? parameters->find("arm") : nullptr;
+  const Node* centers = arm != nullptr && arm->isMap() ? arm->find("centers") : nullptr;
+  if (centers == nullptr || doubt.find("pull the tip down") == std::string::npos)
+    return placeAtModule(doubt, root, file, warnings);
+  document::report(
+      warnings, file, centers->line, centers->column, "parameters.arm.centers",
+      "with these the masses pull the tip up, so the motors would pull the arm down; expected [x, y, z] of "
+      "each link, in m from its far end, in its frame: a link of 0.2 m has about -0.1 m along x");
+}
+
 ModuleTrial tryModule(const scene::Device& device) {
   constexpr int kLimitMs = 10'000;
   host::Trail trail;
@@ -141,7 +155,7 @@ document::Problems tryDevice(const std::filesystem::path& file, host::Catalog& c
   else if (!trial.error.empty() && known.empty())
     placeAtModule(trial.error, *root, file.string(), problems);
   for (const std::string& doubt : trial.doubts)
-    if (warnings != nullptr) placeAtModule(doubt, *root, file.string(), *warnings);
+    if (warnings != nullptr) placeDoubt(doubt, *root, file.string(), *warnings);
   document::sortByPlace(problems);
   return problems;
 }

@@ -10,8 +10,24 @@ namespace hapticd::diagnostics {
 
 using document::Node;
 
+/// 0 is taken for not known: such a joint has no bound of its own.
+static void noTorque(const Node& root, const scene::Device& device, document::Problems& warnings) {
+  const Node* list = find(root, {"parameters", "arm", "max_torque"});
+  if (list == nullptr || !list->isSequence()) return;
+  for (size_t i = 0; i < list->items.size(); ++i) {
+    const Node& item = list->items[i];
+    if (document::toNumber(item.scalar).value_or(1) != 0) continue;
+    document::report(warnings, device.file.string(), item.line, item.column,
+                     fmt::format("parameters.arm.max_torque[{}]", i),
+                     fmt::format("0 is no bound: joint {} gets whatever a force asks of it; expected the N m that its "
+                                 "motor gives at the joint",
+                                 i + 1));
+  }
+}
+
 void adviseMotors(const Node& root, const scene::Device& device, size_t joints, document::Problems& warnings) {
   constexpr double kCold = 1e-3, kHot = 200;  // W in the winding: less warms nothing, more melts those of a hand's arm
+  noTorque(root, device, warnings);
   const Node* list = find(root, {"limits", "motors"});
   const std::vector<double> torque = motorsOf(device, joints);
   if (list == nullptr || !list->isSequence()) return;

@@ -123,10 +123,11 @@ void mountFarAway(const Node* position, const std::string& file, document::Probl
                                most, most, most / 1000));
 }
 
-void quaternionTurnedRound(const Node* orientation, const std::string& file, document::Problems& warnings) {
+void quaternionTurnedRound(const Node* orientation, const char* key, const std::string& file,
+                           document::Problems& warnings) {
   const std::vector<double> q = numbersIn(orientation);
   if (q.size() != 4 || q[0] != 0 || q[1] != 0 || q[2] != 0) return;
-  document::report(warnings, file, orientation->line, orientation->column, "mount.orientation",
+  document::report(warnings, file, orientation->line, orientation->column, key,
                    "is w, x, y, z, so this is a half turn about z; expected [1, 0, 0, 0] where no turn was meant");
 }
 
@@ -159,7 +160,9 @@ void adviseUnits(const Node& root, const std::string& file, document::Problems& 
   lengthBelowZero(find(root, {"parameters", "arm", "lengths"}), file, warnings);
   offsetBeyondATurn(find(root, {"parameters", "wire", "input", "fields"}), file, warnings);
   mountFarAway(find(root, {"mount", "position"}), file, warnings);
-  quaternionTurnedRound(find(root, {"mount", "orientation"}), file, warnings);
+  quaternionTurnedRound(find(root, {"mount", "orientation"}), "mount.orientation", file, warnings);
+  quaternionTurnedRound(find(root, {"parameters", "arm", "base_orientation"}), "parameters.arm.base_orientation", file,
+                        warnings);
 }
 
 }  // namespace hapticd::diagnostics

@@ -18,4 +18,9 @@ void unusualArm(const document::Node& root, const scene::Device& device, host::D
 void unusualFields(const document::Node& root, const scene::Device& device, const host::DeviceInstance& arm,
                    document::Problems& warnings);
 
+/// [main] Warns of limits that leave nothing to feel or bound nothing, of what the wire format has no fields for, and
+/// of joints of simulated arms that rub, weigh or lag more than shapes push.
+void unusualLimits(const document::Node& root, const scene::Device& device, const host::DeviceInstance& arm,
+                   document::Problems& warnings);
+
 }  // namespace hapticd::diagnostics

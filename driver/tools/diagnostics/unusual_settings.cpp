@@ -86,7 +86,7 @@ void judgeBases(const scene::Scene& scene, const ModelBoxes& boxes, document::Pr
     const scene::Value *links = nullptr, *base = nullptr;
     for (const scene::Value& value : device.parameters) {
       if (value.id == "arm.dh" && !value.numbers.empty()) links = &value;
-      if (value.id == "arm.base_position" && value.numbers.size() == 3) base = &value;
+      if ((value.id == "arm.base_position" || value.id == "arm.origin") && value.numbers.size() == 3) base = &value;
     }
     if (links == nullptr) continue;
     Eigen::Vector3d at = device.mount.position;

@@ -62,6 +62,7 @@ struct SlipsArm : hapticd::Device {
     if (is("read_allocates")) room_ = std::vector<double>(1000 + sequence_);
     if (is("read_prints")) std::printf("read\n");
     if (is("read_sleeps")) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (is("read_stalls") && stalls_-- == 100) std::this_thread::sleep_for(std::chrono::seconds(1));
     if (is("read_hangs")) std::this_thread::sleep_for(std::chrono::seconds(100));
     if (is("read_status")) return HSP_E_IO;
     return HSP_OK;
@@ -137,6 +138,7 @@ struct SlipsArm : hapticd::Device {
   hdv_ext_kinematics table_{};
   std::vector<double> room_;
   double pushed_ = 0;
+  int stalls_ = 200;
   volatile int beyond_ = 60;
   uint64_t start_ns_ = 0, sequence_ = 0;
 };

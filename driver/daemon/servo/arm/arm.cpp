@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/blame.hpp"
 #include "servo/arm/velocity_use.hpp"
 #include "servo/safety/held_command.hpp"
 #include "servo/velocity/estimator_delay.hpp"
@@ -72,6 +73,11 @@ Arm::Arm(std::unique_ptr<host::DeviceInstance> device, const scene::Device& desc
       limiter_(std::move(limiter)),
       heat_(described.limits.motors),
       weight_(described.limits, fullForce(described.limits, device_->info())),
+      name_(described.name),
+      stuck_words_(
+          "a tick did not end, as its module did not come back, and the watchdog cut the motors; find the cause "
+          "with: hapticd device check " +
+          described.file.string()),
       former_passivity_(options.former_passivity) {}
 
 Result<std::unique_ptr<Arm>> Arm::open(const scene::Device& described, const scene::Servo& servo,
@@ -281,6 +287,8 @@ void Arm::heatMotors(double dt) noexcept HSP_RT {
 
 void Arm::cut(double after) noexcept {
   if (cut_.exchange(true)) return;
+  const Owner* in = calledBy(Worker::kServo);
+  stuck_here_.store(in != nullptr && in->device && in->name == name_, std::memory_order_release);
   cut_after_.store(after);
   if (device_->cut()) return;
   // A module without a cut of its own may be called by one thread at a time: if the servo is inside it, only the

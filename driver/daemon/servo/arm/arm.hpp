@@ -85,6 +85,7 @@ class Arm {
   const char* trouble() const noexcept { return trouble_.load(std::memory_order_acquire); }
   /// [any] The same for a fault that only the device can explain; nullptr for every other fault.
   const char* troubleOf(Fault fault) const noexcept {
+    if (fault == Fault::kStuck) return stuck_here_.load(std::memory_order_acquire) ? stuck_words_.c_str() : nullptr;
     const bool own = fault == Fault::kDeviceLost || fault == Fault::kDeviceFault || fault == Fault::kStale;
     return own ? trouble() : nullptr;
   }
@@ -163,6 +164,8 @@ class Arm {
   MotorHeat heat_;
   Weight weight_;
   std::string slowness_;
+  std::string name_, stuck_words_;  // of the device; what is told where its module kept the tick
+  std::atomic<bool> stuck_here_{false};
   std::atomic<bool> cut_{false}, taken_{false};  // held while a thread is inside the module
   std::atomic<double> cut_after_{0};
   std::atomic<bool> found_pressed_{false};

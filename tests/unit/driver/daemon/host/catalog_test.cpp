@@ -72,7 +72,7 @@ TEST(Catalog, KeepsPluginsAndModulesApart) {
 TEST(Catalog, TurnsABadFileIntoAMessageAboutThatFile) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"crash", "crashed: Segmentation fault"}, {"exits", "ended the process with code 0"},
-      {"wrong_major", "built for version 2.0"}, {"no_entry", "does not export hsp_plugin_entry"},
+      {"wrong_major", "built for version 2.0"}, {"no_entry", "exports no hsp_plugin_entry"},
       {"broken_table", "has 'a' twice"},        {"wrong_default", "a: its default is outside of its range"},
   };
   Catalog catalog(only({kBad}));
