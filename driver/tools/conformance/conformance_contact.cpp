@@ -79,8 +79,8 @@ std::string pullsThere(Subject& subject, const Place& place) {
 std::string forceOutward(const Recipe& recipe, uint64_t) {
   return atEachPlace(recipe, [](Subject& subject, const Place& place) {
     std::string wrong = wrongSign(subject, place);
-    const bool pushes = (subject.report().flags & HSP_R_PUSHES) != 0 &&
-                        !subject.moves();  // for other shapes, later tests report a pull
+    // pulls are judged only for shapes that claim to push and stand still
+    const bool pushes = (subject.report().flags & HSP_R_PUSHES) != 0 && !subject.moves();
     return wrong.empty() && pushes ? pullsThere(subject, place) : wrong;
   });
 }
